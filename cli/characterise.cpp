@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+
+#include "cli/commands.h"
+#include "cli/inputs.h"
+#include "dataset/atomic_file.h"
+#include "sim/dynamics/gyro.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;  // [rad]
+constexpr double kZeroCelsius = 273.15;             // [K]
+
+struct CharacteriseArguments {
+  std::string device, output;
+  std::string temperatures = "-40:60:0.25";
+  std::vector<std::string> overrides;
+};
+
+[[noreturn]] void fail_temperatures(const std::string& text,
+                                    const std::string& reason) {
+  throw std::invalid_argument(fmt::format(
+      "--beam-temperature {}: {}; expected START:STOP:STEP or one value, in "
+      "degC",
+      text, reason));
+}
+
+// Both ends belong to the grid; a single value is a grid of one.
+std::vector<double> temperature_grid(const std::string& text) {
+  std::vector<double> parts;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (true) {
+    double value = 0;
+    const auto [stop, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || !std::isfinite(value))
+      fail_temperatures(text, "not a number");
+    if (value <= -kZeroCelsius || value > 1000)
+      fail_temperatures(text, fmt::format("{} degC is out of range", value));
+    parts.push_back(value);
+    if (stop == end) break;
+    if (*stop != ':') fail_temperatures(text, "not a number");
+    at = stop + 1;
+  }
+  if (parts.size() == 1) return parts;
+  if (parts.size() != 3)
+    fail_temperatures(text, "neither one nor three values");
+  const double steps = (parts[1] - parts[0]) / parts[2];
+  if (!(steps >= 0 && steps < 1e7))
+    fail_temperatures(text, "STEP does not lead from START to STOP");
+  std::vector<double> grid;
+  const auto count = static_cast<std::size_t>(std::floor(steps + 1e-9)) + 1;
+  for (std::size_t i = 0; i < count; ++i)
+    grid.push_back(parts[0] + static_cast<double>(i) * parts[2]);
+  return grid;
+}
+
+void append_row(std::string& csv, const Gyro& gyro, double celsius) {
+  const double T = celsius + kZeroCelsius;
+  const ModalParameters modal =
+      modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim);
+  const BeamSignal signal = beam_signal(gyro, modal, {});
+  const Electronics electronics = electronics_at(gyro, T);
+  const std::complex<double> terms = zero_rate_terms(gyro, modal);
+  const double w = signal.drive_frequency;
+  const double w_y = std::sqrt(modal.stiffness(1, 1) / modal.mass);
+  fmt::format_to(std::back_inserter(csv),
+                 "{},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},"
+                 "{:.12g},{:.12g}\n",
+                 celsius, electronics.output(signal.demodulated).rate / kDegree,
+                 terms.real() / kDegree, -terms.imag() / kDegree,
+                 w / (2 * std::numbers::pi), (w_y - w) / (2 * std::numbers::pi),
+                 w * modal.mass / modal.damping(0, 0),
+                 w * modal.mass / modal.damping(1, 1), signal.drive_voltage,
+                 rate_slope(gyro, modal, T));
+}
+
+int characterise(const CharacteriseArguments& arguments) {
+  const std::vector<double> grid = temperature_grid(arguments.temperatures);
+  const LoadedDevice input = load_device(arguments.device, arguments.overrides);
+  require_writable(arguments.output);
+
+  const Gyro gyro = make_gyro(input.device);
+  std::string csv =
+      "temperature_degC,bias_deg_per_s,in_phase_deg_per_s,"
+      "quadrature_deg_per_s,drive_frequency_Hz,split_Hz,q_drive,q_sense,"
+      "drive_voltage_V,scale_factor_rel\n";
+  for (const double celsius : grid) append_row(csv, gyro, celsius);
+  write_text_file(arguments.output, csv);
+  return 0;
+}
+
+}  // namespace
+
+void add_characterise(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<CharacteriseArguments>();
+  CLI::App* command = program.add_subcommand(
+      "characterise",
+      "Tabulate a device over beam temperature: the static map, noise-free");
+  command->add_option("device", arguments->device, "DEVICE.toml")->required();
+  command->add_option("-o,--output", arguments->output, "OUT.csv")->required();
+  command
+      ->add_option("--beam-temperature", arguments->temperatures,
+                   "START:STOP:STEP with both ends, or one value, in degC")
+      ->capture_default_str();
+  command
+      ->add_option("--set", arguments->overrides,
+                   "KEY=VALUE, overrides a key of the device; may be repeated")
+      ->allow_extra_args(false);
+  command->callback([arguments, &action] {
+    action = [arguments] { return characterise(*arguments); };
+  });
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "cli/commands.h"
+#include "cli/terminal.h"
+#include "compensation/compensator_file.h"
+#include "dataset/atomic_file.h"
+#include "dataset/hdf5_file.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr const char* kColumn = "compensated_rate";
+
+struct CompensateArguments {
+  std::string compensator, run, output;
+};
+
+int compensate(const CompensateArguments& arguments) {
+  const Compensator compensator = read_compensator(arguments.compensator);
+  Recording recording = read_recording(arguments.run);
+  require_writable(arguments.output);
+  if (find_column(recording, kColumn)) {
+    throw std::invalid_argument(fmt::format(
+        "{}: holds a {} already; expected a recording that was not compensated",
+        arguments.run, kColumn));
+  }
+  std::vector<double> rate = compensated_rate(compensator, recording);
+  if (const std::size_t clamped = clamped_samples(compensator, recording)) {
+    print_warning(fmt::format(
+        "{}: {} of {} samples lie outside {:g} to {:g} degC, the temperatures "
+        "seen in training; clamped",
+        arguments.run, clamped, recording.time.size(),
+        compensator.temperature_range.lowest,
+        compensator.temperature_range.highest));
+  }
+  recording.columns.push_back({kColumn, "degree/s", "rate after compensation",
+                               Role::kCompensated, std::move(rate)});
+  write_recording(recording, arguments.output);
+  return 0;
+}
+
+}  // namespace
+
+void add_compensate(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<CompensateArguments>();
+  CLI::App* command = program.add_subcommand(
+      "compensate", "Copy a recording and add the compensated rate");
+  command->add_option("compensator", arguments->compensator, "COMPENSATOR.json")
+      ->required();
+  command->add_option("run", arguments->run, "RUN.h5")->required();
+  command->add_option("-o,--output", arguments->output, "OUT.h5")->required();
+  command->callback([arguments, &action] {
+    action = [arguments] { return compensate(*arguments); };
+  });
+}
+
+}  // namespace beamgyro

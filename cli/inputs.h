@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/device/device.h"
+#include "sim/scenario/scenario.h"
+
+namespace beamgyro {
+
+/// A device file with the command's overrides in it.
+struct LoadedDevice {
+  Device device;
+  std::string text;  // byte for byte as read
+};
+LoadedDevice load_device(const std::filesystem::path& path,
+                         const std::vector<std::string>& overrides);
+
+/// A scenario, its device, and the texts a recording keeps.
+struct LoadedScenario {
+  Scenario scenario;
+  Device device;
+  std::string scenario_text, device_text, overrides_text;
+};
+/// Throws std::invalid_argument for anything wrong in either file or in an
+/// override that neither of them knows.
+LoadedScenario load_scenario(const std::filesystem::path& path,
+                             const std::vector<std::string>& overrides);
+
+}  // namespace beamgyro

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string_view>
+
+namespace beamgyro {
+
+/// No notes and no progress after this; errors stay.
+void set_quiet(bool quiet);
+
+/// A result, on standard output. Throws std::runtime_error when it cannot be
+/// written (a full disk, a closed pipe).
+void print_result(std::string_view text);
+
+/// One line of side information on standard error.
+void print_note(std::string_view text);
+void print_warning(std::string_view text);
+void print_error(std::string_view text);
+
+}  // namespace beamgyro

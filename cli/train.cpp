@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/train.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <stdexcept>
+
+#include "cli/commands.h"
+#include "cli/terminal.h"
+#include "compensation/compensator_file.h"
+#include "dataset/atomic_file.h"
+#include "dataset/hdf5_file.h"
+#include "dataset/sha256.h"
+
+namespace beamgyro {
+namespace {
+
+struct TrainArguments {
+  std::vector<std::string> runs, held_out;
+  std::string model, output;
+  std::uint64_t seed = 0;
+};
+
+std::vector<TrainingRun> read_runs(const std::vector<std::string>& paths) {
+  std::vector<TrainingRun> runs;
+  for (const std::string& path : paths) {
+    runs.push_back({std::filesystem::path(path).filename().string(),
+                    sha256_of_file(path), read_recording(path)});
+  }
+  return runs;
+}
+
+std::string shown(const std::optional<double>& value) {
+  return value ? fmt::format("{:.6f}", *value) : "-";
+}
+
+void print_equation_one(const BiasModel& model, const char* label,
+                        std::string& text) {
+  const EquationOne equation = equation_one(model);
+  auto out = std::back_inserter(text);
+  fmt::format_to(out, "{}: F({:g} degC) = {:.6g} deg/s", label,
+                 kReferenceTemperature, equation.bias_at_reference);
+  for (std::size_t i = 0; i < equation.coefficients.size(); ++i) {
+    fmt::format_to(out, ", a{} = {:.6g} K^-{}", i + 1, equation.coefficients[i],
+                   i + 1);
+  }
+  text += '\n';
+}
+
+std::string report(const TrainResult& result) {
+  const Provenance& source = result.compensator.provenance;
+  std::string text = fmt::format("{}, {} rows, {} held-out rows\n",
+                                 kind_name(result.compensator.bias),
+                                 result.rows, result.held_out_rows);
+  auto out = std::back_inserter(text);
+  for (std::size_t k = 0; k < result.restarts.size() && result.held_out_rows;
+       ++k) {
+    const TrainSummary& summary = result.restarts[k];
+    fmt::format_to(out,
+                   "restart {}{}: {} epochs, best {}, rms in-sample {:.6f}, "
+                   "held-out {} deg/s; {}\n",
+                   k + 1, k == result.chosen ? " (kept)" : "", summary.epochs,
+                   summary.best_epoch, summary.in_sample_rms,
+                   shown(summary.held_out_rms), sentence(summary.stop_reason));
+  }
+  fmt::format_to(out, "stopped: {}\n", source.stop_reason);
+  fmt::format_to(out, "rms in-sample {:.6f}, held-out {} deg/s\n",
+                 source.in_sample_rms, shown(source.held_out_rms));
+  fmt::format_to(out, "cubic: rms in-sample {:.6f}, held-out {} deg/s\n",
+                 source.baseline_in_sample_rms,
+                 shown(source.baseline_held_out_rms));
+  print_equation_one(result.compensator.baseline, "cubic", text);
+  return text;
+}
+
+int run_training(const TrainArguments& arguments) {
+  const ModelSpec spec = read_model(arguments.model);
+  require_writable(arguments.output);
+  const TrainResult result =
+      train(spec, read_runs(arguments.runs), read_runs(arguments.held_out),
+            arguments.seed);
+  write_compensator(result.compensator, arguments.output);
+  print_result(report(result));
+  return 0;
+}
+
+}  // namespace
+
+void add_train(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<TrainArguments>();
+  CLI::App* command = program.add_subcommand(
+      "train", "Fit a compensator to recordings of one gyro");
+  command->add_option("runs", arguments->runs, "RUN.h5...")->required();
+  command->add_option("--model", arguments->model, "MODEL.toml")->required();
+  command->add_option("--held-out", arguments->held_out,
+                      "RUN.h5..., scored but not fitted; a network stops early "
+                      "on them");
+  command->add_option("-o,--output", arguments->output, "COMPENSATOR.json")
+      ->required();
+  command->add_option("--seed", arguments->seed, "of the initial weights")
+      ->capture_default_str();
+  command->callback([arguments, &action] {
+    action = [arguments] { return run_training(*arguments); };
+  });
+}
+
+}  // namespace beamgyro

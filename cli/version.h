@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+namespace beamgyro {
+
+extern const char* const kGitRevision;  // "unknown" outside a git checkout
+extern const char* const kProgramVersion;
+
+/// Program, revision and libraries, for --version.
+std::string version_text();
+
+}  // namespace beamgyro

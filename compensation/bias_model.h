@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "compensation/bp_network.h"
+#include "compensation/cubic_spline.h"
+#include "compensation/polynomial.h"
+
+namespace beamgyro {
+
+/// scaled = (value - centre) / half_width
+struct Scale {
+  double centre = 0.0;
+  double half_width = 1.0;  // > 0
+
+  bool operator==(const Scale&) const = default;
+};
+
+/// Takes the values to [-1, 1]. Throws std::invalid_argument when they are all
+/// equal; `what` names them in the message.
+Scale scale_to_unit(const Eigen::Ref<const Eigen::ArrayXd>& values,
+                    const std::string& what);
+
+/// Bias predicted from inputs in the units of the recording (degC, V, Hz, ...):
+///
+///   b = bias.centre + bias.half_width * function(scaled inputs)   [deg/s]
+struct BiasModel {
+  std::vector<Scale> input_scales;  // one per input
+  Scale bias_scale;                 // [deg/s]
+  std::variant<Polynomial, CubicSpline, BpNetwork> function;
+
+  /// One sample per row, one input per column.
+  Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
+};
+
+/// "polynomial", "spline" or "bp".
+std::string kind_name(const BiasModel& model);
+
+constexpr double kReferenceTemperature = 25.0;  // [degC], T0 of equation (1)
+
+/// Equation (1) at rest: F(T) = F(T0) [1 + a_1 dT + a_2 dT^2 + ...],
+/// dT = T - T0.
+struct EquationOne {
+  double bias_at_reference = 0.0;    // F(T0) [deg/s]
+  std::vector<double> coefficients;  // a_n [1/K^n]; not finite if F(T0) = 0
+};
+
+/// The polynomial of `model` written as equation (1). Throws
+/// std::invalid_argument when the model is of another kind.
+EquationOne equation_one(const BiasModel& model);
+
+}  // namespace beamgyro

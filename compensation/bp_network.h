@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "dataset/random_stream.h"
+
+namespace beamgyro {
+
+/// Fully connected network of the paper, equations (2) and (3): tansig hidden
+/// layers, one purelin output,
+///
+///   a_0 = x,   a_k = tanh(W_k a_{k-1} + b_k),   y = W_n a_{n-1} + b_n
+///
+/// with tansig(n) = 2 / (1 + exp(-2 n)) - 1 = tanh(n). All weights live in one
+/// flat vector: W_1 column by column, b_1, W_2, b_2, ... Inputs and output are
+/// scaled to order one. One sample per row; the answer for a sample does not
+/// depend, to the last bit, on the samples it is evaluated with.
+class BpNetwork {
+ public:
+  /// `layer_sizes` = {inputs, hidden..., 1}, zero weights. Throws
+  /// std::invalid_argument for fewer than two layers, a size below one or more
+  /// than one output.
+  explicit BpNetwork(std::vector<int> layer_sizes);
+
+  const std::vector<int>& layer_sizes() const { return layer_sizes_; }
+  const Eigen::VectorXd& weights() const { return weights_; }
+  /// Throws std::invalid_argument for another number of weights.
+  void set_weights(const Eigen::VectorXd& weights);
+
+  /// Initial weights after Nguyen and Widrow (IJCNN 1990): the rows of a hidden
+  /// W have length 0.7 S^(1/R) in random directions, its biases spread the
+  /// transitions evenly over [-1, 1]; output weights uniform in (-0.5, 0.5).
+  void randomise(RandomStream& random);
+
+  Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
+
+  /// Output of every sample, and dy/dw in `jacobian`, one row per sample and
+  /// one column per weight, by back-propagation.
+  Eigen::ArrayXd predict_with_jacobian(
+      const Eigen::Ref<const Eigen::ArrayXXd>& x,
+      Eigen::MatrixXd& jacobian) const;
+
+  /// Output of every sample, and d(1/2 Σ e^2)/dw in `gradient` for the errors
+  /// e = y - target, equation (4).
+  Eigen::ArrayXd predict_with_gradient(
+      const Eigen::Ref<const Eigen::ArrayXXd>& x,
+      const Eigen::Ref<const Eigen::ArrayXd>& target,
+      Eigen::VectorXd& gradient) const;
+
+ private:
+  std::vector<int> layer_sizes_;
+  Eigen::VectorXd weights_;
+};
+
+}  // namespace beamgyro

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/compensator.h"
+
+#include <algorithm>
+
+namespace beamgyro {
+namespace {
+
+// Keeps the intermediate arrays in the cache; the result does not depend on it.
+constexpr Eigen::Index kBlockRows = 4096;
+
+std::vector<double> corrected_rate(const BiasModel& bias,
+                                   const std::vector<Input>& inputs,
+                                   const TemperatureRange& range,
+                                   const Recording& recording) {
+  std::vector<double> rate = column_values(recording, "rate");
+  const Eigen::ArrayXXd x = features_of(inputs, recording, range);
+  for (Eigen::Index first = 0; first < x.rows(); first += kBlockRows) {
+    const Eigen::Index count = std::min(kBlockRows, x.rows() - first);
+    const Eigen::ArrayXd b = bias.predict(x.middleRows(first, count));
+    Eigen::Map<Eigen::ArrayXd>(rate.data() + first, count) -= b;
+  }
+  return rate;
+}
+
+}  // namespace
+
+std::vector<double> compensated_rate(const Compensator& compensator,
+                                     const Recording& recording) {
+  return corrected_rate(compensator.bias, compensator.inputs,
+                        compensator.temperature_range, recording);
+}
+
+std::vector<double> baseline_rate(const Compensator& compensator,
+                                  const Recording& recording) {
+  return corrected_rate(compensator.baseline, {parse_input("temperature")},
+                        compensator.temperature_range, recording);
+}
+
+std::size_t clamped_samples(const Compensator& compensator,
+                            const Recording& recording) {
+  const std::vector<double>& temperature =
+      column_values(recording, "temperature");
+  const TemperatureRange& range = compensator.temperature_range;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < temperature.size(); ++k)
+    if ((recording.status[k] & kUnpowered) == 0 &&
+        (temperature[k] < range.lowest || temperature[k] > range.highest))
+      ++count;
+  return count;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compensation/bias_model.h"
+#include "compensation/features.h"
+#include "compensation/input.h"
+#include "dataset/recording.h"
+
+namespace beamgyro {
+
+/// A file a compensator was trained on or held against.
+struct SourceFile {
+  std::string name;
+  std::string sha256;  // 64 hexadecimal digits
+
+  bool operator==(const SourceFile&) const = default;
+};
+
+/// Where a compensator comes from.
+struct Provenance {
+  std::vector<SourceFile> training;
+  std::vector<SourceFile> held_out;
+  std::string model_text;  // model file byte for byte as read
+  std::uint64_t seed = 0;
+  std::string stop_reason;
+  double in_sample_rms = 0.0;           // [deg/s], over the training rows
+  std::optional<double> held_out_rms;   // [deg/s], over the held-out rows
+  double baseline_in_sample_rms = 0.0;  // [deg/s]
+  std::optional<double> baseline_held_out_rms;  // [deg/s]
+
+  bool operator==(const Provenance&) const = default;
+};
+
+/// A trained compensator: compensated rate = rate - bias(inputs). Works in the
+/// units of the recording: temperatures in degC, rates in deg/s.
+struct Compensator {
+  std::vector<Input> inputs;
+  BiasModel bias;      // of `inputs`
+  BiasModel baseline;  // of the temperature: the cubic of equation (1)
+  TemperatureRange temperature_range;  // [degC], seen in training
+  Provenance provenance;
+};
+
+/// Compensated rate [deg/s] of every sample; NaN where unpowered.
+/// Throws std::invalid_argument naming an input the recording lacks, or the
+/// time of a powered sample whose input is not finite.
+std::vector<double> compensated_rate(const Compensator& compensator,
+                                     const Recording& recording);
+
+/// The same for the compensator's own baseline, the cubic of equation (1).
+std::vector<double> baseline_rate(const Compensator& compensator,
+                                  const Recording& recording);
+
+/// Number of powered samples whose measured temperature lies outside the range
+/// of the compensator, so that it was clamped.
+std::size_t clamped_samples(const Compensator& compensator,
+                            const Recording& recording);
+
+}  // namespace beamgyro

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "compensation/network_training.h"
+
+namespace beamgyro {
+
+/// The learning rate of the full-batch rule: a step after which the error is
+/// more than 1.05 times the old one is discarded and the rate multiplied by
+/// 0.70; any other step is kept, and when the error fell the rate is multiplied
+/// by 1.05.
+struct AdaptiveRate {
+  double rate;  // > 0
+
+  /// Updates the rate; true when the step is to be kept.
+  bool keep_step(double old_error, double new_error);
+};
+
+/// Sample by sample: after each row, in an order shuffled anew every epoch,
+///
+///   dw(t+1) = h dw(t) - eta dE/dw,   E = e^2 / 2,   w(t+1) = w(t) + dw(t+1)
+///
+/// which is equation (5) with the momentum h on the step: on the weight itself,
+/// as (5) is printed, h < 1 would shrink every weight at every sample.
+TrainSummary train_incremental(const ScaledRows& rows,
+                               const ScaledRows& held_out,
+                               const TrainOptions& options, RandomStream& order,
+                               BpNetwork& network);
+
+/// Full batch: the same rule once an epoch with E = mean(e^2) / 2 and the rate
+/// of AdaptiveRate, `error` being the sum of squares. A discarded step clears
+/// the momentum, or it would be tried again.
+TrainSummary train_gradient_adaptive(const ScaledRows& rows,
+                                     const ScaledRows& held_out,
+                                     const TrainOptions& options,
+                                     BpNetwork& network);
+
+}  // namespace beamgyro

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace beamgyro {
+
+enum class InputKind {
+  kColumn,              // a measured column as it is
+  kTemperatureLowpass,  // temperature_lowpass(TAU)
+  kSincePowerOn,        // since_power_on(TAU) = exp(-t / TAU)
+};
+
+/// One input of a compensator: something a sensor shows, never the truth.
+struct Input {
+  InputKind kind = InputKind::kColumn;
+  std::string column;          // measured column read; "" for since_power_on
+  double time_constant = 0.0;  // [s], > 0; 0 for kColumn
+
+  bool operator==(const Input&) const = default;
+};
+
+/// Reads "output", "temperature", "temperature_lowpass(100)",
+/// "since_power_on(300)", "drive_frequency", "drive_voltage", "quadrature" or
+/// "rate". Throws std::invalid_argument for anything else, with what there is.
+Input parse_input(std::string_view name);
+
+/// The name parse_input() reads back to the same input, to the last bit of the
+/// time constant.
+std::string input_name(const Input& input);
+
+std::vector<std::string> input_names(const std::vector<Input>& inputs);
+
+}  // namespace beamgyro

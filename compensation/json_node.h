@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace beamgyro {
+
+/// A value of a JSON file together with its place, "FILE: key.key[2]", for
+/// checked reading. Every error is one std::invalid_argument with that place,
+/// the value met and what would be right.
+class JsonNode {
+ public:
+  JsonNode(const nlohmann::ordered_json& value, std::string file,
+           std::string path = "")
+      : value_(&value), file_(std::move(file)), path_(std::move(path)) {}
+
+  JsonNode at(const std::string& key) const;      // member, must be there
+  std::vector<JsonNode> elements() const;         // of an array
+  double number() const;                          // finite
+  std::optional<double> optional_number() const;  // nothing where it is null
+  long integer(long low, long high) const;
+  std::uint64_t unsigned_integer() const;
+  std::string text() const;
+  std::vector<double> numbers() const;
+  std::vector<std::string> texts() const;
+
+  [[noreturn]] void fail(const std::string& message) const;
+
+ private:
+  [[noreturn]] void expected(const std::string& what) const;
+
+  const nlohmann::ordered_json* value_;
+  std::string file_;
+  std::string path_;  // "key.key[2]", empty for the whole file
+};
+
+}  // namespace beamgyro

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/network_training.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "compensation/gradient_trainer.h"
+#include "compensation/levenberg_marquardt.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr Eigen::Index kBlockRows = 1024;  // keeps a block in the cache
+
+}  // namespace
+
+std::string sentence(StopReason reason) {
+  switch (reason) {
+    case StopReason::kLeastSquares:
+      return "least squares: solved in one step";
+    case StopReason::kGoalReached:
+      return "the in-sample error reached its goal";
+    case StopReason::kGradientSmall:
+      return "the gradient vanished: a minimum of the in-sample error";
+    case StopReason::kStepSmall:
+      return "the steps became negligible against the weights";
+    case StopReason::kDampingLimit:
+      return "no step lowers the error any more: damping at its limit";
+    case StopReason::kRateSmall:
+      return "no step lowers the error any more: learning rate at its limit";
+    case StopReason::kHeldOutRising:
+      return "the held-out error no longer falls: stopped early";
+    case StopReason::kMaxEpochs:
+      break;
+  }
+  return "the largest number of epochs was reached";
+}
+
+double rms_error(const BpNetwork& network, const ScaledRows& rows) {
+  double sum = 0.0;
+  for (Eigen::Index first = 0; first < rows.size(); first += kBlockRows) {
+    const Eigen::Index count = std::min(kBlockRows, rows.size() - first);
+    sum += (network.predict(rows.inputs.middleRows(first, count)) -
+            rows.target.segment(first, count))
+               .square()
+               .sum();
+  }
+  return std::sqrt(sum / static_cast<double>(rows.size()));
+}
+
+bool BestWeights::stale_after(int epoch, const BpNetwork& network) {
+  if (held_out_.size() == 0) {
+    epoch_ = epoch;
+    weights_ = network.weights();
+    return false;
+  }
+  const double rms = rms_error(network, held_out_);
+  if (rms < rms_) {
+    rms_ = rms;
+    epoch_ = epoch;
+    weights_ = network.weights();
+  }
+  return epoch - epoch_ >= patience_;
+}
+
+void BestWeights::restore(const ScaledRows& rows, BpNetwork& network,
+                          TrainSummary& summary) const {
+  network.set_weights(weights_);
+  summary.best_epoch = epoch_;
+  summary.in_sample_rms = rms_error(network, rows);
+  if (held_out_.size() > 0) summary.held_out_rms = rms_;
+}
+
+TrainSummary train_network(const ScaledRows& rows, const ScaledRows& held_out,
+                           const TrainOptions& options, RandomStream& order,
+                           BpNetwork& network) {
+  switch (options.trainer) {
+    case Trainer::kIncremental:
+      return train_incremental(rows, held_out, options, order, network);
+    case Trainer::kGradientAdaptive:
+      return train_gradient_adaptive(rows, held_out, options, network);
+    case Trainer::kLevenbergMarquardt:
+      break;
+  }
+  return train_levenberg_marquardt(rows, held_out, options, network);
+}
+
+}  // namespace beamgyro

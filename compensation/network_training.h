@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "compensation/bp_network.h"
+
+namespace beamgyro {
+
+enum class Trainer { kIncremental, kGradientAdaptive, kLevenbergMarquardt };
+
+/// Defaults of the two gradient trainers, whose epochs are cheap and many.
+constexpr int kGradientMaxEpochs = 20000;
+constexpr int kGradientPatience = 2000;
+
+/// Why a training ended; sentence() says it in words.
+enum class StopReason {
+  kLeastSquares,   // no iteration: the normal equations have one solution
+  kGoalReached,    // in-sample rms <= goal
+  kGradientSmall,  // max |dF/dw| <= min_gradient
+  kStepSmall,      // |step| <= min_step (|w| + min_step)
+  kDampingLimit,   // damping > max_damping: no step lowers the error
+  kRateSmall,  // learning rate < min_learning_rate: no step lowers the error
+  kHeldOutRising,  // no new lowest held-out rms for `patience` epochs
+  kMaxEpochs,      // epochs = max_epochs
+};
+
+std::string sentence(StopReason reason);
+
+/// Errors are of scaled quantities (order one). F = mean(e^2) / 2 +
+/// weight_decay |w|^2 / 2.
+struct TrainOptions {
+  Trainer trainer = Trainer::kLevenbergMarquardt;
+  int restarts = 4;             // >= 1, from different initial weights
+  int max_epochs = 300;         // >= 1; passes over the rows
+  int patience = 60;            // [epochs], >= 1
+  double goal = 0.0;            // rms, >= 0
+  double weight_decay = 0.0;    // >= 0; levenberg_marquardt only
+  double learning_rate = 0.02;  // eta of equation (5), > 0; its first value
+  double momentum = 0.9;        // h of equation (5), in [0, 1)
+  double min_learning_rate = 1e-9;
+  double initial_damping = 1e-2;
+  double max_damping = 1e10;
+  double min_gradient = 1e-10;
+  double min_step = 1e-10;
+};
+
+/// Outcome of one training from one set of initial weights.
+struct TrainSummary {
+  StopReason stop_reason = StopReason::kMaxEpochs;
+  int epochs = 0;              // done
+  int best_epoch = 0;          // whose weights were kept
+  double in_sample_rms = 0.0;  // with the weights kept, in the rows' unit
+  std::optional<double> held_out_rms;
+};
+
+/// Rows of a training or held-out set, scaled to order one.
+struct ScaledRows {
+  Eigen::ArrayXXd inputs;  // one row per sample, one column per input
+  Eigen::ArrayXd target;   // one per sample
+
+  Eigen::Index size() const { return target.size(); }
+};
+
+double rms_error(const BpNetwork& network, const ScaledRows& rows);
+
+/// Keeps the weights with the lowest held-out rms met so far; without held-out
+/// rows, the last weights shown to it.
+class BestWeights {
+ public:
+  BestWeights(const ScaledRows& held_out, int patience)
+      : held_out_(held_out), patience_(patience) {}
+
+  /// Shows it the network after `epoch`; true when the lowest held-out rms is
+  /// `patience` or more epochs old.
+  bool stale_after(int epoch, const BpNetwork& network);
+
+  /// Puts the kept weights into `network` and writes the summary's scores.
+  void restore(const ScaledRows& rows, BpNetwork& network,
+               TrainSummary& summary) const;
+
+ private:
+  const ScaledRows& held_out_;
+  int patience_;
+  int epoch_ = 0;
+  double rms_ = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd weights_;
+};
+
+/// One training from the present weights of `network`, which ends with the
+/// best ones. `held_out` may be empty. `order` shuffles the rows of the
+/// incremental rule and is used by no other trainer.
+TrainSummary train_network(const ScaledRows& rows, const ScaledRows& held_out,
+                           const TrainOptions& options, RandomStream& order,
+                           BpNetwork& network);
+
+}  // namespace beamgyro

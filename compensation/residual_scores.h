@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "compensation/sample_ranges.h"
+
+namespace beamgyro {
+
+/// Scores of n block means r_i of a residual rate. The run was not trained on,
+/// so the variance divides by n.
+struct ResidualScores {
+  std::size_t blocks = 0;     // n
+  double mean = 0.0;          // [deg/s], of the r_i
+  double variance = 0.0;      // [(deg/s)^2], Σ (r_i - mean)^2 / n
+  double sigma = 0.0;         // [deg/s], sqrt(variance)
+  double rms = 0.0;           // [deg/s], sqrt(Σ r_i^2 / n), about zero
+  double peak_to_peak = 0.0;  // [deg/s], max r_i - min r_i
+  double largest = 0.0;       // [deg/s], max |r_i|
+};
+
+/// Means of rate - true_rate [deg/s] over each block; one that is not finite
+/// makes the mean of its block so.
+std::vector<double> block_residuals(std::span<const SampleRange> blocks,
+                                    std::span<const double> rate,
+                                    std::span<const double> true_rate);
+
+/// All NaN when a block is not finite: a missing answer is never scored as a
+/// good one. Throws std::invalid_argument without a block.
+ResidualScores residual_scores(std::span<const double> block_residuals);
+
+}  // namespace beamgyro

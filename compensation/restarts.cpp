@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/restarts.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <thread>
+
+namespace beamgyro {
+namespace {
+
+double score(const TrainSummary& summary) {
+  return summary.held_out_rms.value_or(summary.in_sample_rms);
+}
+
+}  // namespace
+
+Restarts train_from_restarts(const std::vector<int>& layer_sizes,
+                             const ScaledRows& rows, const ScaledRows& held_out,
+                             const TrainOptions& options, std::uint64_t seed) {
+  const auto count = static_cast<std::size_t>(options.restarts);
+  std::vector<BpNetwork> networks(count, BpNetwork(layer_sizes));
+  std::vector<TrainSummary> summaries(count);
+  std::vector<std::exception_ptr> failures(count);
+  const auto train_one = [&](std::size_t k) {
+    const auto run = static_cast<std::uint32_t>(k);
+    RandomStream initial(seed, 0, run, RandomPurpose::kInitialWeights);
+    RandomStream order(seed, 0, run, RandomPurpose::kSampleOrder);
+    networks[k].randomise(initial);
+    summaries[k] = train_network(rows, held_out, options, order, networks[k]);
+  };
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t k = next++; k < count; k = next++) {
+      try {
+        train_one(k);
+      } catch (...) {
+        failures[k] = std::current_exception();
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> threads;
+    const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+    for (std::size_t n = 1; n < std::min(cores, count); ++n)
+      threads.emplace_back(work);
+    work();
+  }
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
+  const auto best = std::min_element(
+      summaries.begin(), summaries.end(),
+      [](const auto& a, const auto& b) { return score(a) < score(b); });
+  const auto chosen = static_cast<std::size_t>(best - summaries.begin());
+  return {std::move(summaries), chosen, std::move(networks[chosen])};
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "dataset/recording.h"
+
+namespace beamgyro {
+
+/// Consecutive samples of a recording: indices begin <= k < end.
+struct SampleRange {
+  std::size_t begin;
+  std::size_t end;
+
+  std::size_t size() const { return end - begin; }
+  bool operator==(const SampleRange&) const = default;
+};
+
+constexpr double kScoreBlock = 60.0;       // [s]
+constexpr double kPlateauTolerance = 0.5;  // [K]
+
+/// The usual distance of two samples: the median of the steps of `time` [s]; 0
+/// with fewer than two samples.
+double usual_step(const Recording& recording);
+
+/// Every stretch of samples with power, from one power-on to the next loss of
+/// power. A gap in time does not end a stretch. Throws std::invalid_argument
+/// unless `status` has one entry per time.
+std::vector<SampleRange> powered_stretches(const Recording& recording);
+
+/// Blocks of `length` [s] counted from each power-on: sample k of a stretch
+/// that starts at t_0 belongs to block floor((t_k - t_0) / length). A block
+/// with less than half of its samples, mostly the last one of a stretch, is
+/// left out; a stretch in which no block is left is one block by itself.
+std::vector<SampleRange> score_blocks(const Recording& recording,
+                                      double length = kScoreBlock);
+
+/// Each powered stretch cut where the measured temperature has moved by
+/// kPlateauTolerance from the first sample of the piece; not cut when there is
+/// no column `temperature`.
+std::vector<SampleRange> temperature_plateaus(const Recording& recording);
+
+}  // namespace beamgyro

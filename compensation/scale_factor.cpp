@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/scale_factor.h"
+
+#include <fmt/core.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "compensation/sample_ranges.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr std::uint8_t kLeftOut = kUnpowered | kOutputSaturated;
+
+/// Samples of one plateau, one row each.
+struct Plateau {
+  std::vector<double> time;         // [s]
+  std::vector<double> temperature;  // [degC]
+  std::vector<double> truth;        // [deg/s]
+  std::vector<double> raw;          // [deg/s]
+  std::vector<double> compensated;  // [deg/s]
+};
+
+Eigen::VectorXd centred(const std::vector<double>& values) {
+  const Eigen::Map<const Eigen::VectorXd> all(
+      values.data(), static_cast<Eigen::Index>(values.size()));
+  return all.array() - all.mean();
+}
+
+/// Centred and divided by its largest value, which may be zero.
+Eigen::VectorXd to_unit(const Eigen::VectorXd& values) {
+  const Eigen::VectorXd about_mean = values.array() - values.mean();
+  const double largest = about_mean.cwiseAbs().maxCoeff();
+  return largest > 0.0 ? Eigen::VectorXd(about_mean / largest) : about_mean;
+}
+
+/// What the damped least-squares fit of `terms` leaves of `rate`; all centred.
+Eigen::VectorXd departure(const Eigen::VectorXd& rate,
+                          const Eigen::MatrixXd& terms) {
+  Eigen::MatrixXd normal = terms.transpose() * terms;
+  normal.diagonal().array() += kDriftDamping * static_cast<double>(rate.size());
+  return rate - terms * normal.ldlt().solve(terms.transpose() * rate);
+}
+
+SlopeSums sums_of(const Plateau& plateau) {
+  if (plateau.time.size() < 2) {
+    return {};
+  }
+  const Eigen::VectorXd truth = centred(plateau.truth);
+  const Eigen::VectorXd raw = centred(plateau.raw);
+  const Eigen::VectorXd compensated = centred(plateau.compensated);
+  const Eigen::VectorXd time = to_unit(centred(plateau.time));
+  Eigen::MatrixXd terms(truth.size(), 4);
+  terms.col(0) = to_unit(centred(plateau.temperature));
+  terms.col(1) = time;
+  terms.col(2) = to_unit(time.array().square());
+  terms.col(3) = to_unit(time.array().cube());
+  const Eigen::VectorXd w = departure(truth, terms.leftCols(1));
+  const Eigen::VectorXd v = departure(truth, terms);
+  return {.compensated = w.dot(compensated),
+          .raw = w.dot(raw),
+          .truth = w.dot(truth),
+          .compensated_without_drift = v.dot(compensated),
+          .raw_without_drift = v.dot(raw),
+          .largest_departure = w.cwiseAbs().maxCoeff(),
+          .samples = plateau.time.size()};
+}
+
+}  // namespace
+
+SlopeSums& SlopeSums::operator+=(const SlopeSums& other) {
+  compensated += other.compensated;
+  raw += other.raw;
+  truth += other.truth;
+  compensated_without_drift += other.compensated_without_drift;
+  raw_without_drift += other.raw_without_drift;
+  largest_departure = std::max(largest_departure, other.largest_departure);
+  samples += other.samples;
+  return *this;
+}
+
+SlopeSums slope_sums(const Recording& recording,
+                     std::span<const double> compensated, double largest_rate) {
+  const auto& time = recording.time;
+  const auto& truth = column_values(recording, "true_rate");
+  const auto& raw = column_values(recording, "rate");
+  const Column* temperature = find_column(recording, "temperature");
+  if (compensated.size() != time.size()) {
+    throw std::invalid_argument(fmt::format(
+        "compensated rate: {} values for {} times, must be one each",
+        compensated.size(), time.size()));
+  }
+  const double settling = kSettlingTime - 0.5 * usual_step(recording);
+  SlopeSums sums;
+  double last_large = -std::numeric_limits<double>::infinity();  // [s]
+  for (const SampleRange& range : temperature_plateaus(recording)) {
+    Plateau plateau;
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      if (std::abs(truth[k]) > largest_rate) {
+        last_large = time[k];
+        continue;
+      }
+      if (time[k] - last_large >= settling &&
+          (recording.status[k] & kLeftOut) == 0) {
+        plateau.time.push_back(time[k]);
+        plateau.temperature.push_back(temperature ? temperature->values[k]
+                                                  : 0.0);
+        plateau.truth.push_back(truth[k]);
+        plateau.raw.push_back(raw[k]);
+        plateau.compensated.push_back(compensated[k]);
+      }
+    }
+    sums += sums_of(plateau);
+  }
+  return sums;
+}
+
+std::optional<ScaleFactor> scale_factor(const SlopeSums& sums) {
+  if (sums.largest_departure < kLeastRateDeparture) {
+    return std::nullopt;
+  }
+  return ScaleFactor{
+      .retained = sums.compensated_without_drift / sums.raw_without_drift,
+      .slope = sums.compensated / sums.truth,
+      .raw_slope = sums.raw / sums.truth,
+      .largest_departure = sums.largest_departure};
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "dataset/recording.h"
+
+namespace beamgyro {
+
+constexpr double kSmallRate = 2.0;           // [deg/s]
+constexpr double kLeastRateDeparture = 0.1;  // [deg/s]
+constexpr double kSettlingTime = 1.0;        // [s]
+// Of the sum of squares of a drift term of amplitude one [-].
+constexpr double kDriftDamping = 1e-6;
+constexpr double kEveryRate = std::numeric_limits<double>::infinity();
+
+/// Sums from which slopes over the true rate Omega are made, of one run or, by
+/// addition, of many. The departure w of a sample is what a least-squares fit
+/// within the sample's own temperature plateau g leaves of its true rate:
+///
+///   w = Omega - (a_g + c_g T)                             for the slopes,
+///   v = Omega - (a_g + c_g T + p_g1 t + p_g2 t^2 + p_g3 t^3)  for what is
+///   kept,
+///
+/// T the measured temperature, t the time. Σ w y / Σ w Omega then is the slope
+/// of y over Omega with a bias and a temperature slope of its own for every
+/// plateau; Σ v y / Σ v Omega moreover with a smooth drift. So drift between
+/// and along plateaus, and the drift a compensator takes off, is not mistaken
+/// for scale factor. c and p are damped by kDriftDamping: a rate that itself is
+/// a polynomial in time is not explained away.
+struct SlopeSums {
+  double compensated = 0.0;                // [(deg/s)^2], Σ w compensated_rate
+  double raw = 0.0;                        // [(deg/s)^2], Σ w rate
+  double truth = 0.0;                      // [(deg/s)^2], Σ w Omega
+  double compensated_without_drift = 0.0;  // [(deg/s)^2], Σ v compensated_rate
+  double raw_without_drift = 0.0;          // [(deg/s)^2], Σ v rate
+  double largest_departure = 0.0;          // [deg/s], max |w|
+  std::size_t samples = 0;
+
+  SlopeSums& operator+=(const SlopeSums& other);
+};
+
+/// Over powered, unsaturated samples with |true_rate| <= `largest_rate` that
+/// have been so for kSettlingTime (an output filter still remembers a larger
+/// rate). Throws std::invalid_argument naming a column that is missing, or when
+/// `compensated` has not one entry per time.
+SlopeSums slope_sums(const Recording& recording,
+                     std::span<const double> compensated,
+                     double largest_rate = kEveryRate);
+
+struct ScaleFactor {
+  double retained;   // [-], Σ v compensated_rate / Σ v rate
+  double slope;      // [-], of compensated_rate over true_rate, absolute
+  double raw_slope;  // [-], of rate over true_rate
+  double largest_departure;  // [deg/s], of the true rate: SlopeSums
+};
+
+/// Nothing when the true rate nowhere departs by kLeastRateDeparture: a slope
+/// over a rate that does not vary is noise.
+std::optional<ScaleFactor> scale_factor(const SlopeSums& sums);
+
+}  // namespace beamgyro

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "config/document.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "config/document_state.h"
+#include "config/toml_parser.h"
+
+namespace beamgyro {
+namespace {
+
+std::string read_file(const std::filesystem::path& file) {
+  const auto reject = [&](const std::string& reason) {
+    throw std::invalid_argument(fmt::format(
+        "{}: cannot read: {}; expected a TOML file", file.string(), reason));
+  };
+  std::error_code status_error;
+  if (std::filesystem::is_directory(file, status_error))
+    reject("it is a directory");
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) reject(std::generic_category().message(errno));
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (stream.bad()) reject(std::generic_category().message(errno));
+  return text;
+}
+
+}  // namespace
+
+ConfigDocument::ConfigDocument(std::shared_ptr<DocumentState> state)
+    : state_(std::move(state)), root_(state_, state_->root, "", true) {}
+
+ConfigDocument ConfigDocument::read(const std::filesystem::path& file,
+                                    Overrides& overrides) {
+  return parse(read_file(file), file, overrides.state_);
+}
+
+ConfigDocument ConfigDocument::read(const std::filesystem::path& file) {
+  return parse(read_file(file), file, Overrides().state_);
+}
+
+ConfigDocument ConfigDocument::parse(std::string_view text,
+                                     const std::string& name,
+                                     Overrides& overrides) {
+  return parse(std::string(text), name, overrides.state_);
+}
+
+ConfigDocument ConfigDocument::parse(std::string_view text,
+                                     const std::string& name) {
+  return parse(std::string(text), name, Overrides().state_);
+}
+
+ConfigDocument ConfigDocument::parse(std::string text,
+                                     const std::filesystem::path& path,
+                                     const std::shared_ptr<OverrideSet>& sets) {
+  auto state = std::make_shared<DocumentState>();
+  state->path = path;
+  state->name = path.string();
+  state->text = std::move(text);
+  state->overrides = sets;
+  try {
+    state->root = parse_toml(state->text);
+  } catch (const TomlError& error) {
+    throw std::invalid_argument(
+        fmt::format("{}:{}:{}: not TOML: {}", state->name, error.position.line,
+                    error.position.column, error.what()));
+  }
+  for (std::size_t i = 0; i < sets->overrides.size(); ++i)
+    insert_override(sets->overrides[i], i, state->name, state->root);
+  return ConfigDocument(std::move(state));
+}
+
+const std::string& ConfigDocument::text() const { return state_->text; }
+
+const std::filesystem::path& ConfigDocument::path() const {
+  return state_->path;
+}
+
+void ConfigDocument::reject_unknown_keys() const {
+  state_->reject_unknown_keys();
+}
+
+}  // namespace beamgyro

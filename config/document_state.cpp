@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "config/document_state.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "config/suggestion.h"
+
+namespace beamgyro {
+namespace {
+
+struct UnknownKey {
+  const ConfigNode* node = nullptr;
+  std::string table;  // dotted path of the table it stands in
+};
+
+bool comes_before(const ConfigNode& a, const ConfigNode& b) {
+  if (a.origin != b.origin) return a.origin < b.origin;  // the file first
+  return a.key_position < b.key_position;
+}
+
+void find_first_unknown(const ConfigNode& table, const std::string& path,
+                        UnknownKey& first) {
+  for (const ConfigNode& child : table.children) {
+    // What another document's override put here is that document's business.
+    const bool put_here = child.bridge || child.origin != table.origin;
+    if (!child.known) {
+      if (!put_here &&
+          (first.node == nullptr || comes_before(child, *first.node)))
+        first = {&child, path};
+    } else if (child.kind == ConfigNode::Kind::kTable) {
+      find_first_unknown(child, joined(path, child.key), first);
+    }
+  }
+}
+
+/// What to write instead of the unknown `key` of the table `path`.
+std::string advice(const DocumentState& document, const std::string& path,
+                   const std::string& key) {
+  const std::vector<std::string> here = document.keys_asked_in(path);
+  const std::string near = suggestion(key, here);
+  if (!near.empty()) return fmt::format("did you mean '{}'?", near);
+  for (const std::string& other : document.asked) {
+    if (other.ends_with('.' + key))
+      return fmt::format("did you mean '{}'?", other);
+  }
+  const std::string place = path.empty() ? "this file" : '[' + path + ']';
+  if (here.empty()) return fmt::format("{} takes no keys here", place);
+  return fmt::format("{} takes {}", place, fmt::join(here, ", "));
+}
+
+}  // namespace
+
+std::string joined(const std::string& table, std::string_view key) {
+  return table.empty() ? std::string(key) : fmt::format("{}.{}", table, key);
+}
+
+void DocumentState::ask(const std::string& key_path) {
+  asked.insert(key_path);
+  overrides->asked.insert(key_path);
+}
+
+void DocumentState::mark_read(const ConfigNode& node) const {
+  node.known = true;
+  if (node.origin) overrides->overrides[*node.origin].used = true;
+}
+
+std::string DocumentState::place(const ConfigNode& node,
+                                 FilePosition position) const {
+  if (node.origin) {
+    return "--set " + printable(overrides->overrides[*node.origin].argument);
+  }
+  return fmt::format("{}:{}:{}", name, position.line, position.column);
+}
+
+std::vector<std::string> DocumentState::keys_asked_in(
+    const std::string& table) const {
+  const std::string start = table.empty() ? "" : table + '.';
+  std::vector<std::string> keys;
+  for (const std::string& key_path : asked) {
+    if (!key_path.starts_with(start)) continue;
+    std::string key = key_path.substr(start.size());
+    if (key.find('.') == std::string::npos) keys.push_back(std::move(key));
+  }
+  return keys;
+}
+
+void DocumentState::reject_unknown_keys() const {
+  UnknownKey first;
+  find_first_unknown(root, "", first);
+  if (first.node == nullptr) return;
+  const ConfigNode& node = *first.node;
+  const std::string key_path = joined(first.table, node.key);
+  const std::string at = place(node, node.key_position);
+  if (asked.contains(key_path)) {
+    throw std::invalid_argument(
+        fmt::format("{}: {}: not used together with the other keys given here; "
+                    "remove it",
+                    at, key_path));
+  }
+  throw std::invalid_argument(
+      fmt::format("{}: {}: unknown key; {}", at, printable(key_path),
+                  advice(*this, first.table, node.key)));
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/config_node.h"
+#include "config/override_set.h"
+
+namespace beamgyro {
+
+/// What a document and its tables share.
+struct DocumentState {
+  std::filesystem::path path;
+  std::string name;  // in messages
+  std::string text;  // byte for byte as read
+  ConfigNode root;
+  std::set<std::string> asked;  // dotted keys somebody asked for
+  std::shared_ptr<OverrideSet> overrides;
+
+  /// Notes that somebody asked for the key `path`.
+  void ask(const std::string& path);
+  /// Notes that somebody read `node`.
+  void mark_read(const ConfigNode& node) const;
+  /// "file:line:column", or "--set KEY=VALUE" for what came from an override.
+  std::string place(const ConfigNode& node, FilePosition position) const;
+  /// Keys asked for in the table `path`, without the path.
+  std::vector<std::string> keys_asked_in(const std::string& path) const;
+  /// Throws for the first key in file order nobody read.
+  void reject_unknown_keys() const;
+};
+
+std::string joined(const std::string& table, std::string_view key);
+
+}  // namespace beamgyro

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+#include "config/overrides.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string_view>
+
+#include "config/override_set.h"
+#include "config/suggestion.h"
+#include "config/toml_parser.h"
+
+namespace beamgyro {
+namespace {
+
+[[noreturn]] void reject(std::string_view argument,
+                         const std::string& message) {
+  throw std::invalid_argument(
+      fmt::format("--set {}: {}", printable(argument), message));
+}
+
+bool is_bare(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+         (c >= '0' && c <= '9') || c == '_' || c == '-';
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+std::vector<std::string> split_key(std::string_view key,
+                                   std::string_view argument) {
+  constexpr std::size_t kDeepest = 16;
+  if (key.empty()) reject(argument, "the key before '=' is missing");
+  std::vector<std::string> path(1);
+  for (const char c : key) {
+    if (c == '.') {
+      path.emplace_back();
+    } else if (is_bare(c)) {
+      path.back() += c;
+    } else {
+      reject(argument,
+             fmt::format("'{}' is not a key; expected letters, digits, '_' "
+                         "and '-' joined by dots, such as beam.length_m",
+                         printable(key)));
+    }
+  }
+  if (std::any_of(path.begin(), path.end(),
+                  [](const std::string& part) { return part.empty(); })) {
+    reject(argument, fmt::format("the key '{}' has an empty part beside a dot",
+                                 printable(key)));
+  }
+  if (path.size() > kDeepest) reject(argument, "the key has too many parts");
+  return path;
+}
+
+/// What to type instead of a value that is not TOML.
+std::string advice(std::string_view key, std::string_view value) {
+  std::string lower(value);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  if (lower == "true" || lower == "false")
+    return fmt::format("write {}={}", key, lower);
+  const bool word = std::all_of(value.begin(), value.end(), [](char c) {
+    return is_bare(c) || c == '.' || c == '/' || c == ' ' || c == '+';
+  });
+  if (word && value.find_first_not_of("+-.0123456789eE") != value.npos)
+    return fmt::format("a text needs quotes: {}=\"{}\"", key, value);
+  return "expected a TOML value after '='";
+}
+
+ConfigNode parse_value(std::string_view key, std::string_view value,
+                       std::string_view argument) {
+  if (value.empty())
+    reject(argument, "no value after '='; expected one in TOML syntax");
+  ConfigNode parsed;
+  std::string problem;
+  try {
+    parsed = parse_toml(fmt::format("v = {}", value));
+  } catch (const TomlError& error) {
+    problem = error.what();
+  }
+  if (problem.empty()) return std::move(parsed.children.front());
+  const std::string shown = printable(value);
+  const std::string help = advice(key, shown);
+  reject(argument,
+         help.starts_with("expected")
+             ? fmt::format("'{}' is not TOML ({}); {}", shown, problem, help)
+             : fmt::format("'{}' is not TOML; {}", shown, help));
+}
+
+Override parse_override(const std::string& argument) {
+  if (std::any_of(argument.begin(), argument.end(), [](char c) {
+        return static_cast<unsigned char>(c) < 0x20 && c != '\t';
+      })) {
+    reject(argument, "an override is one line without control characters");
+  }
+  const std::size_t equals = argument.find('=');
+  if (equals == std::string::npos) {
+    reject(argument,
+           "no '=' in it; expected KEY=VALUE such as "
+           "beam.length_m=0.038");
+  }
+  const std::string_view text = argument;
+  const std::string_view key = trimmed(text.substr(0, equals));
+  const std::string_view value = trimmed(text.substr(equals + 1));
+  Override set{argument, split_key(key, argument), {}};
+  set.value = parse_value(key, value, argument);
+  return set;
+}
+
+bool begins_with(const std::vector<std::string>& path,
+                 const std::vector<std::string>& start) {
+  return start.size() <= path.size() &&
+         std::equal(start.begin(), start.end(), path.begin());
+}
+
+void check_against_earlier(const Override& set, const Override& earlier) {
+  if (set.path == earlier.path) {
+    reject(set.argument, fmt::format("the key was set before, by --set {}",
+                                     printable(earlier.argument)));
+  }
+  if (begins_with(earlier.path, set.path)) {
+    reject(set.argument,
+           fmt::format("would replace the earlier --set {}; give the whole "
+                       "table first",
+                       printable(earlier.argument)));
+  }
+}
+
+void set_origin(ConfigNode& node, std::size_t origin) {
+  node.origin = origin;
+  for (ConfigNode& child : node.children) set_origin(child, origin);
+}
+
+std::string last_part(const std::string& path) {
+  return path.substr(path.rfind('.') + 1);  // npos + 1 is 0
+}
+
+}  // namespace
+
+void insert_override(const Override& set, std::size_t origin,
+                     const std::string& document, ConfigNode& root) {
+  ConfigNode* table = &root;
+  for (std::size_t i = 0;; ++i) {
+    ConfigNode* child = find_child(*table, set.path[i]);
+    const bool last = i + 1 == set.path.size();
+    if (child == nullptr) {
+      child = &table->children.emplace_back();
+      child->key = set.path[i];
+      child->bridge = !last;
+    } else if (!last && child->kind != ConfigNode::Kind::kTable) {
+      reject(set.argument, fmt::format("'{}' is {} in {}, not a table",
+                                       set.path[i], text_of(*child), document));
+    }
+    if (last) {
+      const ConfigNode replaced = std::move(*child);
+      *child = set.value;
+      child->key = set.path[i];
+      child->key_position = replaced.key_position;
+      set_origin(*child, origin);
+      return;
+    }
+    table = child;
+  }
+}
+
+Overrides::Overrides() : state_(std::make_shared<OverrideSet>()) {}
+
+Overrides::Overrides(const std::vector<std::string>& arguments) : Overrides() {
+  ConfigNode together;  // finds a path that runs through an earlier value
+  for (const std::string& argument : arguments) {
+    Override set = parse_override(argument);
+    for (const Override& earlier : state_->overrides)
+      check_against_earlier(set, earlier);
+    insert_override(set, state_->overrides.size(), "an earlier --set",
+                    together);
+    state_->overrides.push_back(std::move(set));
+  }
+}
+
+void Overrides::check_all_used() const {
+  const std::vector<std::string> asked(state_->asked.begin(),
+                                       state_->asked.end());
+  for (const Override& set : state_->overrides) {
+    if (set.used) continue;
+    const std::string key = fmt::format("{}", fmt::join(set.path, "."));
+    if (state_->asked.contains(key)) {
+      reject(set.argument, fmt::format("'{}' is not used together with the "
+                                       "other keys given",
+                                       key));
+    }
+    std::string near = suggestion(key, asked);
+    for (const std::string& path : asked) {  // right name, wrong table
+      if (last_part(path) == set.path.back()) near = path;
+    }
+    reject(set.argument,
+           fmt::format("no file of this command has a key '{}'{}", key,
+                       near.empty()
+                           ? "; expected a key of the scenario or the device"
+                           : fmt::format("; did you mean '{}'?", near)));
+  }
+}
+
+std::string Overrides::text() const {
+  std::string lines;
+  for (const Override& set : state_->overrides) lines += set.argument + '\n';
+  return lines;
+}
+
+}  // namespace beamgyro

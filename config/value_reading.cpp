@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "config/value_reading.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace beamgyro {
+namespace {
+
+[[noreturn]] void wrong_type(const ConfigValue& value,
+                             const std::string& expected) {
+  value.fail(fmt::format("{} is wrong here; expected {}", text_of(value.node),
+                         expected));
+}
+
+}  // namespace
+
+ConfigValue ConfigValue::element(std::size_t index) const {
+  return {document, node.children[index], fmt::format("{}[{}]", path, index)};
+}
+
+void ConfigValue::fail(const std::string& message) const {
+  throw std::invalid_argument(fmt::format(
+      "{}: {}: {}", document.place(node, node.position), path, message));
+}
+
+double read_number(const ConfigValue& value, const Range& range) {
+  const ConfigNode& node = value.node;
+  double number = node.number;
+  if (node.kind == ConfigNode::Kind::kInteger) {
+    number = static_cast<double>(node.integer);
+  } else if (node.kind != ConfigNode::Kind::kFloat) {
+    wrong_type(value, text_of(range));
+  }
+  if (!std::isfinite(number)) {
+    value.fail(
+        fmt::format("{} is not finite; expected {}", number, text_of(range)));
+  }
+  if (!range.contains(number)) {
+    value.fail(fmt::format("{} is out of range; expected {}", text_of(node),
+                           text_of(range)));
+  }
+  return number;
+}
+
+std::string text_of_integers(long low, long high) {
+  const bool below = low != std::numeric_limits<long>::min();
+  const bool above = high != std::numeric_limits<long>::max();
+  if (below && above) return fmt::format("an integer in [{}, {}]", low, high);
+  if (below) return fmt::format("an integer >= {}", low);
+  if (above) return fmt::format("an integer <= {}", high);
+  return "an integer";
+}
+
+long read_integer(const ConfigValue& value, long low, long high) {
+  const ConfigNode& node = value.node;
+  if (node.kind != ConfigNode::Kind::kInteger)
+    wrong_type(value, text_of_integers(low, high));
+  if (node.integer < low || node.integer > high) {
+    value.fail(fmt::format("{} is out of range; expected {}", node.integer,
+                           text_of_integers(low, high)));
+  }
+  return node.integer;
+}
+
+bool read_flag(const ConfigValue& value) {
+  if (value.node.kind != ConfigNode::Kind::kFlag)
+    wrong_type(value, "true or false");
+  return value.node.flag;
+}
+
+std::string read_text(const ConfigValue& value) {
+  if (value.node.kind != ConfigNode::Kind::kText)
+    wrong_type(value, "a text in quotes");
+  if (value.node.text.find('\0') != std::string::npos)
+    value.fail(text_of(value.node) + " holds a NUL character; remove it");
+  return value.node.text;
+}
+
+const ConfigNode& read_array(const ConfigValue& value,
+                             const std::string& expected) {
+  if (value.node.kind != ConfigNode::Kind::kArray) wrong_type(value, expected);
+  return value.node;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#include "dataset/hdf5_id.h"
+
+#include <fmt/format.h>
+
+namespace beamgyro {
+
+void check_hdf5(herr_t status, const std::string& action) {
+  if (status >= 0) return;
+  std::string cause;
+  const auto take_first = [](unsigned n, const H5E_error2_t* entry,
+                             void* text) -> herr_t {
+    if (n == 0 && entry->desc != nullptr)
+      *static_cast<std::string*>(text) = entry->desc;
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_first, &cause);
+  throw Hdf5Error(cause.empty() ? "cannot " + action
+                                : fmt::format("cannot {}: {}", action, cause));
+}
+
+H5Id property_list(hid_t kind) {
+  return {H5Pcreate(kind), H5Pclose, "create a property list"};
+}
+
+H5Id access_properties() {
+  H5Id access = property_list(H5P_FILE_ACCESS);
+  check_hdf5(H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V110),
+             "choose the file format");
+  check_hdf5(H5Pset_file_locking(access, true, true), "choose file locking");
+  return access;
+}
+
+}  // namespace beamgyro

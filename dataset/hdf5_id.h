@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <hdf5.h>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace beamgyro {
+
+inline constexpr const char* kRecordingFiletype = "beamgyro-recording";
+
+/// A call of the HDF5 library that failed, or a file it cannot be right about.
+struct Hdf5Error : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Keeps HDF5 from printing its error stack.
+class QuietHdf5 {
+ public:
+  QuietHdf5() {
+    H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~QuietHdf5() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
+  QuietHdf5(const QuietHdf5&) = delete;
+  QuietHdf5& operator=(const QuietHdf5&) = delete;
+
+ private:
+  H5E_auto2_t print_ = nullptr;
+  void* data_ = nullptr;
+};
+
+/// Throws Hdf5Error "cannot <action>: <cause>" with the innermost entry of the
+/// library's error stack when `status` is negative.
+void check_hdf5(herr_t status, const std::string& action);
+
+/// One owner for every HDF5 id; `release` is H5Fclose, H5Dclose, ...
+class H5Id {
+ public:
+  H5Id(hid_t id, herr_t (*release)(hid_t), const std::string& action)
+      : id_(id), release_(release) {
+    check_hdf5(id < 0 ? -1 : 0, action);
+  }
+  ~H5Id() {
+    if (id_ >= 0) release_(id_);
+  }
+  H5Id(H5Id&& other) noexcept
+      : id_(std::exchange(other.id_, -1)), release_(other.release_) {}
+  H5Id& operator=(H5Id&&) = delete;
+  operator hid_t() const { return id_; }
+  /// The checked end of an id that was written to.
+  void close(const std::string& action) {
+    check_hdf5(release_(std::exchange(id_, -1)), action);
+  }
+
+ private:
+  hid_t id_;
+  herr_t (*release_)(hid_t);
+};
+
+H5Id property_list(hid_t kind);
+
+/// How files are opened: in the format MATLAB releases of 2015 still read, and
+/// also where the file system has no locks.
+H5Id access_properties();
+
+}  // namespace beamgyro

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace beamgyro {
+
+/// What a stream of random numbers is for. Values are part of the data format:
+/// never renumber them.
+enum class RandomPurpose : std::uint32_t {
+  kWhiteNoise = 0,
+  kFlicker = 1,
+  kRateRandomWalk = 2,
+  kTurnOn = 3,
+  kTemperatureSensor = 4,
+  kRateProfile = 5,
+  kInitialWeights = 6,
+  kSampleOrder = 7,
+  kDeviceDraw = 8,
+};
+
+/// Inverse of the normal distribution function. Throws std::invalid_argument
+/// for a probability outside (0, 1). Method: Wichura, algorithm AS 241
+/// (PPND16), Applied Statistics 37 (1988) 477; relative error about 1e-15.
+double normal_quantile(double probability);
+
+/// Numbers from the counter-based generator Philox4x32-10 (Salmon et al., SC
+/// 2011): key = seed, counter = (block, purpose, device, run), two numbers a
+/// block. A stream depends on its four words only, never on the order or thread
+/// in which streams are drawn, and holds 2^33 numbers; std::runtime_error after
+/// those.
+class RandomStream {
+ public:
+  RandomStream(std::uint64_t seed, std::uint32_t device, std::uint32_t run,
+               RandomPurpose purpose);
+
+  /// The next number: an odd multiple of 2^-53, so in (0, 1), symmetric about
+  /// 1/2.
+  double uniform();
+
+  /// normal_quantile() of the next number: mean 0, variance 1, at most 8.21 in
+  /// magnitude.
+  double normal();
+
+  /// The numbers that as many calls of normal() would return, bit by bit, but
+  /// faster.
+  void fill_normal(std::span<double> values);
+
+ private:
+  std::array<std::uint64_t, 2> next_block();
+  std::uint64_t next_word();
+
+  std::array<std::uint32_t, 2> key_;
+  std::array<std::uint32_t, 3> stream_;  // purpose, device, run
+  std::uint64_t next_block_ = 0;
+  std::uint64_t spare_word_ = 0;  // second word of the last block drawn
+  bool has_spare_ = false;
+};
+
+}  // namespace beamgyro

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace beamgyro {
+
+/// What a compensator may see: `kMeasured` is what a sensor shows, `kTruth`
+/// what only a simulator knows, `kCompensated` what a compensator answered.
+enum class Role { kMeasured, kTruth, kCompensated };
+
+/// The role as files spell it: "measured", "truth", "compensated".
+std::string_view role_name(Role role);
+
+/// Bits of `Recording::status`.
+enum StatusBit : std::uint8_t {
+  kUnpowered = 1,
+  kOutputSaturated = 2,
+  kLoopNotLocked = 4,
+};
+
+struct Column {
+  std::string name;   // as in files: output, rate, temperature, true_rate, ...
+  std::string units;  // as in files: V, degree/s, degC, Hz
+  std::string long_name;
+  Role role = Role::kMeasured;
+  std::vector<double> values;  // one per time; NaN = measured while unpowered
+};
+
+/// One run of one gyro in memory, in the units of the file (docs/formats.md):
+/// columns over a common time axis. The contract between simulator and
+/// compensator.
+struct Recording {
+  std::vector<double> time;          // [s], strictly increasing
+  std::vector<std::uint8_t> status;  // StatusBit mask, one per time
+  std::vector<Column> columns;
+
+  std::string fidelity;  // "quasistatic", ...
+  std::uint64_t seed = 0;
+  std::string program_version;  // of the program that made the recording
+  std::string git_revision;
+  std::string scenario_text;  // both files byte for byte as read
+  std::string device_text;
+  std::string overrides_text;  // one KEY=VALUE per line
+};
+
+/// The column called `name`, or nullptr.
+const Column* find_column(const Recording& recording, std::string_view name);
+
+/// Values of the column called `name`. Throws std::invalid_argument that names
+/// the column and lists those there are.
+const std::vector<double>& column_values(const Recording& recording,
+                                         std::string_view name);
+
+/// Where files put `status` among the columns: before the column of this index,
+/// the first that is not measured.
+std::size_t status_position(const Recording& recording);
+
+}  // namespace beamgyro

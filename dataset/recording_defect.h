@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "dataset/recording.h"
+
+namespace beamgyro {
+
+/// What keeps `recording` from being a recording, as one line that names the
+/// variable and the sample, or an empty text. Whole is a recording with at
+/// least one sample; finite, strictly increasing times; one status and one
+/// value of every column per time; column names that are unique identifiers;
+/// finite values, except NaN in measured and compensated columns where the
+/// status says unpowered; and no NUL in any text.
+std::string recording_defect(const Recording& recording);
+
+}  // namespace beamgyro

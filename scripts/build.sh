@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Configures and builds one preset: build.sh dev|asan|release
+# Quiet while it goes well; a failure shows what the tools said.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+preset=${1:?usage: build.sh dev|asan|release}
+
+mkdir -p build
+log=build/$preset.log
+
+fail() {
+  grep -n -m 5 -E 'error|Error|FAILED' "$log" >&2 || true
+  tail -n 40 "$log" >&2
+  echo "build: $1 of preset '$preset' failed; the whole log is $log" >&2
+  exit 1
+}
+
+[ -e "build/$preset/build.ninja" ] ||
+  echo "build: preset '$preset', for the first time; takes some minutes" >&2
+cmake --preset "$preset" >"$log" 2>&1 || fail configuring
+cmake --build --preset "$preset" --parallel "$(nproc)" >>"$log" 2>&1 ||
+  fail building

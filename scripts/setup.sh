@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Installs the Debian packages that are missing: setup.sh demo|test
+# Asks apt only when something is missing, so it works offline afterwards.
+set -euo pipefail
+
+build=(g++ cmake ninja-build libeigen3-dev libsundials-dev libhdf5-dev
+       libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev
+       librandom123-dev python3 python3-matplotlib python3-h5py)
+tests=(libgtest-dev libbenchmark-dev clang-format clang-tidy netcdf-bin
+       python3-xarray python3-h5netcdf python3-netcdf4 python3-scipy)
+
+case "${1:-}" in
+  demo) wanted=("${build[@]}") ;;
+  test) wanted=("${build[@]}" "${tests[@]}") ;;
+  *) echo "usage: $0 demo|test" >&2; exit 2 ;;
+esac
+
+fail() {
+  echo "setup: $*" >&2
+  exit 1
+}
+
+for tool in dpkg-query apt-get; do
+  command -v "$tool" >/dev/null || fail "no $tool here: this script knows" \
+    "Debian 12 only; install the equivalents of: ${wanted[*]}"
+done
+
+missing=()
+for package in "${wanted[@]}"; do
+  status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) || true
+  [ "$status" = installed ] || missing+=("$package")
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || fail "neither root nor sudo; as root, run:" \
+    "apt-get install ${missing[*]}"
+  as_root=(sudo)
+fi
+
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+apt() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get -q -o Dpkg::Use-Pty=0 "$@" </dev/null >>"$log" 2>&1
+}
+
+echo "setup: installing ${#missing[@]} Debian packages: ${missing[*]}" >&2
+# Stale lists may still serve, so only the installation decides.
+apt update || echo "setup: apt-get update failed; trying the lists there are" >&2
+if ! apt install -y --no-install-recommends "${missing[@]}"; then
+  tail -n 20 "$log" >&2
+  fail "apt-get could not install: ${missing[*]} (is there a network?)"
+fi

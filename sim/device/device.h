@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "sim/signal/noise.h"
+#include "sim/signal/temperature_sensor.h"
+#include "sim/thermal/thermal_parameters.h"
+
+namespace beamgyro {
+
+/// Patches in the order of every per-patch array: drive on +x, feedback on -x,
+/// readout on +y, damping or rebalance on -y.
+enum Patch { kDrive, kFeedback, kReadout, kDamping, kPatchCount };
+
+template <class T>
+using PerPatch = std::array<T, kPatchCount>;
+
+struct BeamParameters {
+  double length;             // L [m]
+  double side;               // a [m]
+  double side_difference;    // eps_s: a_x = a (1 + eps_s/2), a_y = a (1 - ..)
+  double youngs_modulus;     // E_0 [Pa]
+  double density;            // rho [kg/m3]
+  double poisson_ratio;      // nu
+  double modulus_tc1;        // tec1 [1/K]
+  double modulus_tc2;        // tec2 [1/K2]
+  double thermal_expansion;  // cte [1/K]
+  double loss_factor;        // eta_m
+  double thermal_conductivity;         // k [W/(m K)]
+  double specific_heat;                // c [J/(kg K)]
+  std::optional<double> angular_gain;  // gamma; computed when absent
+};
+
+struct PatchParameters {
+  double length, width, thickness;  // l_p, w_p, t_p [m]
+  double youngs_modulus;            // 1/s11E [Pa]
+  double density;                   // [kg/m3]
+  double d31;                       // [C/N]
+  double relative_permittivity;     // eps33T / eps0
+  double loss_tangent;              // tan delta
+  double mechanical_loss_factor;    // eta_p
+  double modulus_tc;                // [1/K]
+  double d31_tc;                    // [1/K]
+  double permittivity_tc;           // [1/K]
+  double mechanical_loss_tc;        // [1/K]
+  PerPatch<double> offset;          // delta_p, lateral [m]
+};
+
+struct BondParameters {
+  PerPatch<double> thickness;   // t_b [m]
+  double shear_modulus;         // G_U, unrelaxed [Pa]
+  double beta_step;             // dG_b [Pa]
+  double beta_exponent;         // a_b
+  double beta_activation;       // E_b [J/mol]
+  double beta_temperature;      // T_1, peak at 1 Hz [K]
+  double alpha_step;            // dG_a [Pa]
+  double alpha_exponent;        // a_a
+  double glass_transition;      // T_g [K]
+  double alpha_low_activation;  // below T_g [J/mol]
+};
+
+struct MountParameters {
+  double glassy_stiffness_share;  // k_m, of the modal stiffness
+  double rubber_glass_ratio;
+  double exponent;          // a_m
+  double glass_transition;  // T_g [K]
+  double anisotropy;        // r_m
+  double axis_angle;        // th_m [rad]
+  double low_activation;    // below T_g [J/mol]
+  double pin_stiffness;     // k_pin, axial [N/m]
+};
+
+struct DriveParameters {
+  double amplitude;      // A_ref, tip [m]
+  double pll_phase;      // phi_pll [rad]
+  double voltage_limit;  // V_max [V]
+};
+
+enum class ReadoutMode { kOpenLoop };
+
+struct ReadoutParameters {
+  ReadoutMode mode;
+  double feedback_capacitance;   // C_f [F]
+  double feedthrough;            // C_ft [F]
+  double quadrature_trim;        // Q_0 at T_0 [rad/s]
+  double offset_trim;            // output at T_0 and rate 0 [rad/s]
+  double scale_factor;           // [V/(rad/s)]
+  double offset;                 // [V]
+  double full_scale;             // [rad/s]
+  double phase_tc, phase_tc2;    // [rad/K rad/K2]
+  double offset_tc, offset_tc2;  // [rad/s/K rad/s/K2]
+  double corner_frequency;       // of each of two real poles [rad/s]
+  int adc_bits;
+  double drive_frequency_resolution;  // [Hz]
+  double drive_voltage_resolution;    // [V]
+  double quadrature_resolution;       // [rad/s]
+};
+
+/// One unit, complete: what a device file holds, in SI units.
+struct Device {
+  BeamParameters beam;
+  PatchParameters patches;
+  BondParameters bond;
+  MountParameters mount;
+  double air_inverse_Q;
+  DriveParameters drive;
+  ReadoutParameters readout;
+  ThermalParameters thermal;
+  NoiseParameters noise;
+  TemperatureSensorParameters temperature_sensor;
+};
+
+/// Calibration temperature T_0 of every expansion and trim [K].
+inline constexpr double kCalibrationTemperature = 298.15;
+
+}  // namespace beamgyro

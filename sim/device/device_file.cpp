@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+#include "sim/device/device_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+#include "sim/thermal/thermal_file.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;  // [rad]
+constexpr double kZeroCelsius = 273.15;             // [K]
+
+constexpr Range kCelsius{-273.15, 1000, true, false};
+constexpr Range kExponent{0, 1, true, false};
+
+double kelvin(const ConfigTable& table, std::string_view key) {
+  return table.number(key, kCelsius) + kZeroCelsius;
+}
+
+PerPatch<double> per_patch(const ConfigTable& table, std::string_view key,
+                           const Range& range) {
+  const std::vector<double> values = table.numbers(key, kPatchCount, range);
+  PerPatch<double> result{};
+  std::copy(values.begin(), values.end(), result.begin());
+  return result;
+}
+
+BeamParameters read_beam(const ConfigTable& beam) {
+  return {
+      .length = beam.number("length_m", positive()),
+      .side = beam.number("side_m", positive()),
+      .side_difference = beam.number("side_difference", between(-0.5, 0.5)),
+      .youngs_modulus = beam.number("youngs_modulus_Pa", positive()),
+      .density = beam.number("density_kg_per_m3", positive()),
+      .poisson_ratio = beam.number("poisson_ratio", {-1, 0.5, true, false}),
+      .modulus_tc1 = beam.number("modulus_tc1_per_K", between(-0.01, 0.01)),
+      .modulus_tc2 = beam.number("modulus_tc2_per_K2", between(-1e-4, 1e-4)),
+      .thermal_expansion =
+          beam.number("thermal_expansion_per_K", between(-1e-3, 1e-3)),
+      .loss_factor = beam.number("loss_factor", {0, 1, false, true}),
+      .thermal_conductivity =
+          beam.number("thermal_conductivity_W_per_mK", positive()),
+      .specific_heat = beam.number("specific_heat_J_per_kgK", positive()),
+      .angular_gain = beam.optional_number("angular_gain", {0, 1, true, false}),
+  };
+}
+
+PatchParameters read_patches(const ConfigTable& patches,
+                             const BeamParameters& beam) {
+  const double half = beam.side / 2;
+  return {
+      .length = patches.number("length_m", {0, beam.length, true, true}),
+      .width = patches.number("width_m", {0, beam.side, true, false}),
+      .thickness = patches.number("thickness_m", {0, beam.side, true, false}),
+      .youngs_modulus = patches.number("youngs_modulus_Pa", positive()),
+      .density = patches.number("density_kg_per_m3", positive()),
+      .d31 = patches.number("d31_C_per_N", {-1e-8, 0, false, true}),
+      .relative_permittivity =
+          patches.number("relative_permittivity", positive()),
+      .loss_tangent = patches.number("loss_tangent", {0, 1, false, true}),
+      .mechanical_loss_factor =
+          patches.number("mechanical_loss_factor", {0, 1, false, true}),
+      .modulus_tc = patches.number("modulus_tc_per_K", between(-0.01, 0.01)),
+      .d31_tc = patches.number("d31_tc_per_K", between(-0.01, 0.01)),
+      .permittivity_tc =
+          patches.number("permittivity_tc_per_K", between(-0.01, 0.01)),
+      .mechanical_loss_tc =
+          patches.number("mechanical_loss_tc_per_K", between(-0.01, 0.01)),
+      .offset = per_patch(patches, "offset_m", between(-half, half)),
+  };
+}
+
+BondParameters read_bond(const ConfigTable& bond) {
+  const double G = bond.number("shear_modulus_Pa", positive());
+  const double beta = bond.number("beta_step_Pa", {0, G, false, true});
+  return {
+      .thickness = per_patch(bond, "thickness_m", {0, 1e-3, true, false}),
+      .shear_modulus = G,
+      .beta_step = beta,
+      .beta_exponent = bond.number("beta_exponent", kExponent),
+      .beta_activation = bond.number("beta_activation_J_per_mol", positive()),
+      .beta_temperature = kelvin(bond, "beta_1Hz_degC"),
+      .alpha_step = bond.number("alpha_step_Pa", {0, G - beta, false, true}),
+      .alpha_exponent = bond.number("alpha_exponent", kExponent),
+      .glass_transition = kelvin(bond, "glass_transition_degC"),
+      .alpha_low_activation =
+          bond.number("alpha_low_activation_J_per_mol", positive()),
+  };
+}
+
+MountParameters read_mount(const ConfigTable& mount) {
+  return {
+      .glassy_stiffness_share =
+          mount.number("glassy_stiffness_share", {0, 0.1, false, false}),
+      .rubber_glass_ratio =
+          mount.number("rubber_glass_ratio", {0, 1, true, false}),
+      .exponent = mount.number("exponent", kExponent),
+      .glass_transition = kelvin(mount, "glass_transition_degC"),
+      .anisotropy = mount.number("anisotropy", between(0, 10)),
+      .axis_angle =
+          mount.number("axis_angle_deg", between(-180, 180)) * kDegree,
+      .low_activation = mount.number("low_activation_J_per_mol", positive()),
+      .pin_stiffness = mount.number("pin_stiffness_N_per_m", non_negative()),
+  };
+}
+
+DriveParameters read_drive(const ConfigTable& drive) {
+  return {
+      .amplitude = drive.number("amplitude_m", {0, 1e-4, true, false}),
+      .pll_phase = drive.number("pll_phase_rad", between(-1, 1)),
+      .voltage_limit = drive.number("voltage_limit_V", positive()),
+  };
+}
+
+ReadoutParameters read_readout(const ConfigTable& readout) {
+  readout.choice("mode", {"open_loop"});
+  const auto rate = [&](std::string_view key) {
+    return readout.number(key, between(-1e4, 1e4)) * kDegree;
+  };
+  const auto resolution = [&](std::string_view key, double otherwise) {
+    return readout.number_or(key, otherwise, non_negative());
+  };
+  return {
+      .mode = ReadoutMode::kOpenLoop,
+      .feedback_capacitance =
+          readout.number("feedback_capacitance_F", positive()),
+      .feedthrough = readout.number("feedthrough_F", between(-1e-9, 1e-9)),
+      .quadrature_trim = rate("quadrature_trim_deg_per_s"),
+      .offset_trim = rate("offset_trim_deg_per_s"),
+      .scale_factor =
+          readout.number("scale_factor_V_per_deg_per_s", positive()) / kDegree,
+      .offset = readout.number("offset_V"),
+      .full_scale =
+          readout.number("full_scale_deg_per_s", {0, 1e4, true, false}) *
+          kDegree,
+      .phase_tc = readout.number("phase_tc_rad_per_K", between(-0.1, 0.1)),
+      .phase_tc2 = readout.number("phase_tc2_rad_per_K2", between(-0.1, 0.1)),
+      .offset_tc = rate("offset_tc_deg_per_s_per_K"),
+      .offset_tc2 = rate("offset_tc2_deg_per_s_per_K2"),
+      .corner_frequency = 2 * std::numbers::pi *
+                          readout.number("bandwidth_Hz", {0, 1e6, true, false}),
+      .adc_bits = static_cast<int>(readout.integer("adc_bits", 1, 32)),
+      .drive_frequency_resolution =
+          resolution("drive_frequency_resolution_Hz", 1e-3),
+      .drive_voltage_resolution =
+          resolution("drive_voltage_resolution_V", 1e-4),
+      .quadrature_resolution =
+          resolution("quadrature_resolution_deg_per_s", 0.01) * kDegree,
+  };
+}
+
+NoiseParameters read_noise(const ConfigTable& noise) {
+  const auto rate = [&](std::string_view key) {
+    return noise.number(key, non_negative()) * kDegree;
+  };
+  return {
+      .angle_random_walk = rate("angle_random_walk_deg_per_sqrt_s"),
+      .bias_instability = rate("bias_instability_deg_per_s"),
+      .rate_random_walk = rate("rate_random_walk_deg_per_s_per_sqrt_s"),
+      .turn_on = rate("turn_on_deg_per_s"),
+  };
+}
+
+}  // namespace
+
+Device read_device(const ConfigDocument& document) {
+  const ConfigTable& root = document.root();
+  const ConfigTable sensor = root.table("temperature_sensor");
+  const BeamParameters beam = read_beam(root.table("beam"));
+  return {
+      .beam = beam,
+      .patches = read_patches(root.table("patches"), beam),
+      .bond = read_bond(root.table("bond")),
+      .mount = read_mount(root.table("mount")),
+      .air_inverse_Q =
+          root.table("air").number("inverse_Q", {0, 1, false, true}),
+      .drive = read_drive(root.table("drive")),
+      .readout = read_readout(root.table("readout")),
+      .thermal = read_thermal(root.table("thermal")),
+      .noise = read_noise(root.table("noise")),
+      .temperature_sensor =
+          {
+              .noise = sensor.number("noise_K", non_negative()),
+              .resolution = sensor.number("resolution_K", non_negative()),
+              .offset = sensor.number("offset_K", between(-100, 100)),
+          },
+  };
+}
+
+}  // namespace beamgyro

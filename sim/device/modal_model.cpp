@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include "sim/device/modal_model.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <stdexcept>
+
+namespace beamgyro {
+namespace {
+
+using Eigen::Matrix2cd;
+using Eigen::Matrix2d;
+using Eigen::Vector2cd;
+using Eigen::Vector2d;
+
+constexpr double kAluminiumExpansion = 23e-6;  // housing [1/K]
+
+bool on_x_face(Patch patch) { return patch == kDrive || patch == kFeedback; }
+
+// r r^T + second moments of the patch's own section [m2].
+Matrix2d patch_second_moment(const Device& device, Patch patch) {
+  const Vector2d r = patch_position(device, patch);
+  Vector2d own(device.patches.thickness * device.patches.thickness / 12,
+               device.patches.width * device.patches.width / 12);
+  if (!on_x_face(patch)) own.reverseInPlace();
+  return r * r.transpose() + Matrix2d(own.asDiagonal());
+}
+
+}  // namespace
+
+Vector2d patch_position(const Device& device, Patch patch) {
+  const auto p = static_cast<std::size_t>(patch);
+  const double h = lever_arm(device, device.bond.thickness[p]);
+  const double delta = device.patches.offset[p];
+  switch (patch) {
+    case kDrive:
+      return {h, delta};
+    case kFeedback:
+      return {-h, delta};
+    case kReadout:
+      return {delta, h};
+    default:
+      return {delta, -h};
+  }
+}
+
+Matrix2cd complex_stiffness(const Device& device, const ProjectedBeam& beam,
+                            double T) {
+  const double omega = beam.timoshenko_frequency;
+  const double ax = device.beam.side * (1 + device.beam.side_difference / 2);
+  const double ay = device.beam.side * (1 - device.beam.side_difference / 2);
+  const Complex E_b = beam_modulus(device.beam, T, omega);
+  const Complex E_p = patch_modulus(device.patches, T);
+  const Complex G_b = bond_modulus(device.bond, T, omega);
+
+  Matrix2cd K = Matrix2cd::Zero();
+  const Complex metal = E_b * beam.curvature_squared / 12.0;
+  K(0, 0) = metal * (ax * ax * ax * ay);
+  K(1, 1) = metal * (ay * ay * ay * ax);
+  const double weight = device.patches.width * device.patches.thickness *
+                        beam.patch_curvature_squared;
+  for (int i = 0; i < kPatchCount; ++i) {
+    const auto patch = static_cast<Patch>(i);
+    const Complex S =
+        shear_lag(device.patches,
+                  device.bond.thickness[static_cast<std::size_t>(i)], G_b, E_p);
+    K += (E_p * S * weight) * patch_second_moment(device, patch);
+  }
+  K *= beam.stiffness_scale;
+
+  const double K0 = 0.5 * K.trace().real();
+  const double c = std::cos(device.mount.axis_angle);
+  const double s = std::sin(device.mount.axis_angle);
+  Matrix2d R;
+  R << c, -s, s, c;
+  K += (K0 * mount_share(device.mount, T, omega)) *
+       (R * Vector2d(1, device.mount.anisotropy).asDiagonal() * R.transpose());
+  K += Complex(0, K0 * device.air_inverse_Q) * Matrix2cd::Identity();
+
+  const Matrix2d loss = K.imag();
+  if (!(loss(0, 0) > 0 && loss.determinant() > 0)) {
+    throw std::runtime_error(fmt::format(
+        "complex stiffness at {:.2f} degC: its loss part is not positive "
+        "definite; a material or mount parameter creates energy",
+        T - 273.15));
+  }
+  return K;
+}
+
+Vector2cd patch_coupling(const Device& device, const ProjectedBeam& beam,
+                         Patch patch, double T) {
+  const Complex E_p = patch_modulus(device.patches, T);
+  const Complex G_b = bond_modulus(device.bond, T, beam.timoshenko_frequency);
+  const Complex S = shear_lag(
+      device.patches, device.bond.thickness[static_cast<std::size_t>(patch)],
+      G_b, E_p);
+  return (piezo_stress_constant(device.patches, T) * device.patches.width * S *
+          beam.patch_curvature) *
+         patch_position(device, patch);
+}
+
+double patch_capacitance(const PatchParameters& patches, double T) {
+  return clamped_permittivity(patches, T) * patches.length * patches.width /
+         patches.thickness;
+}
+
+ModalParameters modal_parameters(const Device& device,
+                                 const ProjectedBeam& beam, double T,
+                                 double stiffness_trim) {
+  const Matrix2cd K = complex_stiffness(device, beam, T);
+  ModalParameters modal;
+  modal.mass = beam.mass;
+  modal.coriolis_mass = beam.angular_gain * beam.mass;
+  modal.stiffness = K.real();
+  modal.stiffness(0, 1) += stiffness_trim;
+  modal.stiffness(1, 0) += stiffness_trim;
+  modal.damping = K.imag() / beam.timoshenko_frequency;
+
+  // Axial clamping by the pins against the housing, common to both modes.
+  const double dT = T - kCalibrationTemperature;
+  const double L = device.beam.length;
+  const double tension = device.mount.pin_stiffness *
+                         (kAluminiumExpansion - device.beam.thermal_expansion) *
+                         dT * (1 - 2 * kSupportPosition) * L;
+  modal.stiffness.diagonal().array() +=
+      beam.slope_squared_between_pins * tension;
+
+  for (int i = 0; i < kPatchCount; ++i) {
+    modal.coupling[static_cast<std::size_t>(i)] =
+        patch_coupling(device, beam, static_cast<Patch>(i), T);
+  }
+  return modal;
+}
+
+}  // namespace beamgyro

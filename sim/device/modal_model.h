@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+
+#include "sim/device/device.h"
+#include "sim/device/materials.h"
+#include "sim/device/projected_beam.h"
+
+namespace beamgyro {
+
+/// The two coupled modes at one temperature:
+///   m q'' + C q' + K q = sum_p Theta_p V_p + Coriolis...   (2.1)
+struct ModalParameters {
+  double mass;                          // m [kg]
+  double coriolis_mass;                 // m_g = gamma m [kg]
+  Eigen::Matrix2d stiffness;            // K = Re K* [N/m]
+  Eigen::Matrix2d damping;              // C = Im K* / w [N s/m]
+  PerPatch<Eigen::Vector2cd> coupling;  // Theta_p [N/V] = [C/m]
+};
+
+/// Centre of patch p in the cross section, r_p [m].
+Eigen::Vector2d patch_position(const Device& device, Patch patch);
+
+/// K*(T) [N/m], the complex stiffness matrix of (1.3) without the trim term.
+/// Throws std::runtime_error when its loss part is not positive definite, which
+/// no passive material can do.
+Eigen::Matrix2cd complex_stiffness(const Device& device,
+                                   const ProjectedBeam& beam, double T);
+
+/// Theta_p(T) [N/V], complex transducer coupling (1.1).
+Eigen::Vector2cd patch_coupling(const Device& device, const ProjectedBeam& beam,
+                                Patch patch, double T);
+
+/// C_p(T) [F], clamped capacitance of one patch (1.2).
+double patch_capacitance(const PatchParameters& patches, double T);
+
+/// All of (2.1) at beam temperature T [K]; `stiffness_trim` is k_trim of (1.3).
+ModalParameters modal_parameters(const Device& device,
+                                 const ProjectedBeam& beam, double T,
+                                 double stiffness_trim);
+
+}  // namespace beamgyro

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "sim/dynamics/gyro.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace beamgyro {
+namespace {
+
+Complex charge(const Gyro& gyro, const ModalParameters& modal,
+               const CaseRotation& rotation) {
+  return static_solution(modal, gyro.loop, gyro.device.readout.feedthrough,
+                         rotation)
+      .charge;
+}
+
+// The quadrature is linear in k_trim up to the shift of w_d: a secant from the
+// closed-form slope 1/(2 m g w_d) of (2.22) converges in two or three steps.
+double trimmed_stiffness(Gyro gyro) {
+  constexpr int kMaxIterations = 20;
+  constexpr double kTolerance = 1e-9;  // [rad/s], 6e-8 deg/s
+  const double target = gyro.device.readout.quadrature_trim;
+  ModalParameters modal =
+      modal_parameters(gyro.device, gyro.beam, kCalibrationTemperature, 0);
+  const double omega = std::sqrt(modal.stiffness(0, 0) / modal.mass);
+  const double slope = 1 / (2 * modal.coriolis_mass * omega);
+  const double untrimmed = modal.stiffness(0, 1);
+  double trim = 0;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    modal.stiffness(0, 1) = modal.stiffness(1, 0) = untrimmed + trim;
+    const double error = -zero_rate_terms(gyro, modal).imag() - target;
+    if (std::abs(error) <= kTolerance) return trim;
+    trim -= error / slope;
+  }
+  throw std::runtime_error(
+      fmt::format("quadrature trim: no stiffness trim brings the quadrature to "
+                  "{:.3f} rad/s",
+                  target));
+}
+
+}  // namespace
+
+Complex rate_response(const ModalParameters& modal, const DriveLoop& loop,
+                      double feedthrough) {
+  constexpr double kStep = 0.1;  // [rad/s]; cubic term 1e-8 of the slope
+  const auto at = [&](double z) {
+    CaseRotation rotation;
+    rotation.z = z;
+    return static_solution(modal, loop, feedthrough, rotation).charge;
+  };
+  return (at(kStep) - at(-kStep)) / (2 * kStep);
+}
+
+Complex zero_rate_terms(const Gyro& gyro, const ModalParameters& modal) {
+  return charge(gyro, modal, {}) /
+         rate_response(modal, gyro.loop, gyro.device.readout.feedthrough);
+}
+
+Gyro make_gyro(const Device& device) {
+  Gyro gyro;
+  gyro.device = device;
+  gyro.beam = project_beam(device);
+  const Eigen::Vector2cd feedback =
+      patch_coupling(device, gyro.beam, kFeedback, kCalibrationTemperature);
+  gyro.loop = {std::abs(feedback(0)) * device.drive.amplitude,
+               device.drive.pll_phase, device.drive.voltage_limit};
+  gyro.stiffness_trim = trimmed_stiffness(gyro);
+  const ModalParameters modal = modal_parameters(
+      device, gyro.beam, kCalibrationTemperature, gyro.stiffness_trim);
+  gyro.rate_axis = rate_response(modal, gyro.loop, device.readout.feedthrough);
+  gyro.offset = device.readout.offset_trim -
+                beam_signal(gyro, modal, {}).demodulated.real();
+  return gyro;
+}
+
+BeamSignal beam_signal(const Gyro& gyro, double T,
+                       const CaseRotation& rotation) {
+  return beam_signal(
+      gyro, modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim),
+      rotation);
+}
+
+BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
+                       const CaseRotation& rotation) {
+  const StaticSolution solution = static_solution(
+      modal, gyro.loop, gyro.device.readout.feedthrough, rotation);
+  return {solution.charge / gyro.rate_axis, solution.drive_frequency,
+          solution.drive_voltage, solution.amplitude_locked};
+}
+
+double rate_slope(const Gyro& gyro, const ModalParameters& modal, double T) {
+  const Complex slope =
+      rate_response(modal, gyro.loop, gyro.device.readout.feedthrough) /
+      gyro.rate_axis;
+  return (slope * electronics_at(gyro, T).turn).real();
+}
+
+Electronics electronics_at(const Gyro& gyro, double board_temperature) {
+  const ReadoutParameters& readout = gyro.device.readout;
+  const double dT = board_temperature - kCalibrationTemperature;
+  return {std::polar(1.0, (readout.phase_tc + readout.phase_tc2 * dT) * dT),
+          gyro.offset + (readout.offset_tc + readout.offset_tc2 * dT) * dT};
+}
+
+}  // namespace beamgyro

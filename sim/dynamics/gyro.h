@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <complex>
+
+#include "sim/device/modal_model.h"
+#include "sim/dynamics/static_solution.h"
+
+namespace beamgyro {
+
+/// One unit after the factory: the device, its projected beam, and the trims
+/// and references that are set once with board and beam at T_0 (2.4, 2.6).
+struct Gyro {
+  Device device;
+  ProjectedBeam beam;
+  double stiffness_trim = 0;  // k_trim [N/m]
+  DriveLoop loop{};
+  std::complex<double> rate_axis{};  // dr/dOmega of the charge [C/(rad/s)]
+  double offset = 0;                 // V_off/SF_0 at T_0 [rad/s]
+};
+
+/// Solves the beam and sets the trims: k_trim so that the input-referred
+/// quadrature at T_0 is `quadrature_trim`, the demodulation reference
+/// psi_d = arg dr/dOmega at T_0, and the output offset so that the zero-rate
+/// output at T_0 is `offset_trim`. Throws std::runtime_error when the drive
+/// loop cannot lock at T_0.
+Gyro make_gyro(const Device& device);
+
+/// Demodulated, input-referred signal r/(dr/dOmega at T_0) [rad/s] with the
+/// board at T_0: real part in phase with a rate, imaginary part minus the
+/// quadrature. Its phase turns with phi_el of the board.
+struct BeamSignal {
+  std::complex<double> demodulated;  // [rad/s]
+  double drive_frequency;            // w_d [rad/s]
+  double drive_voltage;              // [V]
+  bool amplitude_locked;
+};
+
+/// Exact static response at beam temperature T [K] (2.10), uncached.
+BeamSignal beam_signal(const Gyro& gyro, double T,
+                       const CaseRotation& rotation);
+BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
+                       const CaseRotation& rotation);
+
+/// Input-referred output and quadrature channel before filter, saturation and
+/// ADC [rad/s].
+struct Output {
+  double rate;
+  double quadrature;
+};
+
+/// The board at one temperature (2.23): it turns the demodulated signal by
+/// phi_el and adds V_off/SF_0.
+struct Electronics {
+  std::complex<double> turn;  // e^{i phi_el}
+  double offset;              // [rad/s]
+
+  Output output(std::complex<double> demodulated) const {
+    const std::complex<double> turned = demodulated * turn;
+    return {turned.real() + offset, -turned.imag()};
+  }
+};
+Electronics electronics_at(const Gyro& gyro, double board_temperature);
+
+/// Input-referred zero-rate terms B_0 - i Q_0 at one temperature, from the
+/// exact solution: r/(dr/dOmega) at rate 0 [rad/s].
+std::complex<double> zero_rate_terms(const Gyro& gyro,
+                                     const ModalParameters& modal);
+
+/// Slope of the output over rate at rate 0, board and beam at temperature T,
+/// over that of T_0: 1 at T_0.
+double rate_slope(const Gyro& gyro, const ModalParameters& modal, double T);
+
+/// dr/dOmega at rate 0 [C/(rad/s)], by a central difference of the exact
+/// solution that is exact for its quadratic part.
+std::complex<double> rate_response(const ModalParameters& modal,
+                                   const DriveLoop& loop, double feedthrough);
+
+}  // namespace beamgyro

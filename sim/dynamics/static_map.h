@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "sim/dynamics/gyro.h"
+
+namespace beamgyro {
+
+/// Static response of one gyro over a range of beam temperatures and rates,
+/// tabulated so that a sample costs some ten nanoseconds: Chebyshev polynomials
+/// in temperature on pieces that are halved until the table agrees with the
+/// exact solution (2.10), times one Chebyshev polynomial in rate.
+class StaticMap {
+ public:
+  /// Covers [low, high] [K] and rates up to +-`rate_limit` [rad/s]. The error
+  /// of the demodulated signal is below `tolerance` [rad/s], 1e-6 deg/s by
+  /// default.
+  StaticMap(const Gyro& gyro, double low, double high, double rate_limit,
+            double tolerance = 1.7e-8);
+
+  struct Signals {
+    BeamSignal at_rate;
+    std::complex<double> at_rest;  // demodulated, twin at rate 0 [rad/s]
+  };
+  /// T must lie in the tabulated range (to 1e-6 K), |rate| below its limit.
+  Signals at(double T, double rate) const;
+
+  int pieces() const { return static_cast<int>(pieces_.size()); }
+  int rate_degree() const { return rate_degree_; }
+
+ private:
+  // Re, Im of the demodulated signal, drive frequency, voltage.
+  static constexpr int kChannels = 4;
+  static constexpr int kTemperatureNodes = 8;
+  using Collapsed = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4 * 12, 1>;
+
+  struct Piece {
+    double low, high;              // [K]
+    Eigen::MatrixXd coefficients;  // (channel x rate degree) x temperature node
+  };
+
+  Eigen::Vector4d exact(const ModalParameters& modal, double rate) const;
+  Piece fitted(double low, double high) const;
+  double error(const Piece& piece) const;
+  void refine(double low, double high);
+  int needed_rate_degree(double low, double high) const;
+  Collapsed collapsed(const Piece& piece, double T) const;
+  Eigen::Vector4d evaluated(const Collapsed& in_rate, double rate) const;
+  const Piece& piece_at(double T) const;
+
+  Gyro gyro_;
+  double rate_limit_, tolerance_;
+  double voltage_limit_;
+  int rate_degree_ = 0;
+  std::vector<Piece> pieces_;
+};
+
+}  // namespace beamgyro

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+
+#include "sim/device/modal_model.h"
+
+namespace beamgyro {
+
+/// Inertial rotation of the case, components along x, y, z (the input axis).
+struct CaseRotation {
+  double x = 0, y = 0, z = 0;  // [rad/s]
+  double z_acceleration = 0;   // dOmega_z/dt, an independent input [rad/s2]
+};
+
+/// What the drive loop holds constant (2.1).
+struct DriveLoop {
+  double feedback_amplitude;  // |Theta_Fx(T_0)| A_ref [C]
+  double pll_phase;           // phi_pll [rad]
+  double voltage_limit;       // V_max [V]
+};
+
+/// Periodic state of the driven beam, q = Re[u e^{i theta}], drive voltage
+/// V_D cos(theta).
+struct StaticSolution {
+  double drive_frequency;       // w_d [rad/s]
+  double drive_voltage;         // V_D [V]
+  Eigen::Vector2cd amplitude;   // u = (X, Y) [m]
+  std::complex<double> charge;  // Theta_R^T u + C_ft V_D [C]
+  bool amplitude_locked;        // false when V_D stands at its limit
+};
+
+/// S(w) of (2.10): K + N - w^2 M + i w (C + G).
+Eigen::Matrix2cd dynamic_stiffness(const ModalParameters& modal, double omega,
+                                   const CaseRotation& rotation);
+
+/// Exact steady state with the drive loop closed: the frequency at which
+/// arg(-Theta_F^T u) = phi_pll - 90 deg, u = S^-1 Theta_D V_D, and the voltage
+/// at which |Theta_F^T u| has its set value (2.1, 2.10). Newton on the phase
+/// with its exact derivative. Throws std::runtime_error when the loop finds no
+/// frequency to lock to.
+StaticSolution static_solution(const ModalParameters& modal,
+                               const DriveLoop& loop, double feedthrough,
+                               const CaseRotation& rotation);
+
+}  // namespace beamgyro

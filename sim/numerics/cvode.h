@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <span>
+
+namespace beamgyro {
+
+/// dy/dt = f(t, y); must fill every entry of `dydt`. May throw.
+using OdeRhs =
+    std::function<void(double t, const Eigen::Ref<const Eigen::VectorXd>& y,
+                       Eigen::Ref<Eigen::VectorXd> dydt)>;
+
+/// J(i, j) = df_i/dy_j; must fill every entry of `df_dy`. May throw.
+using OdeJacobian =
+    std::function<void(double t, const Eigen::Ref<const Eigen::VectorXd>& y,
+                       Eigen::Ref<Eigen::MatrixXd> df_dy)>;
+
+enum class OdeMethod {
+  kAdams,  // non-stiff: resolved vibration
+  kBdf,    // stiff: heat flow and averaged envelopes
+};
+
+struct CvodeOptions {
+  OdeMethod method = OdeMethod::kBdf;
+  double relative_tolerance = 1e-8;
+  /// In the unit of y: one entry for each component, or one for all.
+  Eigen::VectorXd absolute_tolerance = Eigen::VectorXd::Constant(1, 1e-10);
+  OdeJacobian jacobian = {};  // empty: difference quotients
+  int max_order = 0;          // 0: 12 for Adams, 5 for BDF
+  /// BDF: lower the order where an eigenvalue near the imaginary axis lies
+  /// outside the stability region of orders 3 to 5.
+  bool stability_limit_detection = false;
+  double initial_step = 0;  // [s], after every restart; 0: estimated
+  double max_step = 0;      // [s]; 0: no limit
+  long max_steps_per_advance = 1000000;
+};
+
+struct CvodeStatistics {  // since construction, restarts included
+  long steps = 0;
+  long rhs_evaluations = 0;
+  long jacobians = 0;
+  long restarts = 0;
+};
+
+/// One internal step and its interpolant, which has the order of the step:
+///   y(t) = sum_k c_k s^k,  s = (t - centre) / size,  begin <= t <= end.
+struct OdeStep {
+  double begin, end;             // [s]
+  double centre, size;           // [s]
+  Eigen::Index order;            // highest power
+  Eigen::MatrixXd coefficients;  // c(i, k), columns 0 .. order
+
+  Eigen::VectorXd at(double t) const;
+
+  /// values[j] = y_component(times[j]); both spans are equally long.
+  void sample(Eigen::Index component, std::span<const double> times,
+              std::span<double> values) const;
+};
+
+/// Adaptive multistep integrator (SUNDIALS CVODE, modified Newton on a dense
+/// Jacobian). Each object owns its SUNDIALS context: objects in different
+/// threads do not touch each other. No SUNDIALS type leaves cvode.cpp.
+class Cvode {
+ public:
+  /// Throws std::invalid_argument for tolerances that do not fit `y0`.
+  Cvode(OdeRhs rhs, double t0, const Eigen::VectorXd& y0,
+        const CvodeOptions& options = {});
+  ~Cvode();
+  Cvode(Cvode&&) noexcept;
+  Cvode& operator=(Cvode&&) noexcept;
+
+  /// Integrates to exactly `t_end` >= time() and returns y there. Neither the
+  /// right-hand side nor the Jacobian is evaluated beyond `t_end`, so a
+  /// discontinuity may stand there. `on_step` sees every internal step; the
+  /// steps join without a gap and the last ends at `t_end`. Rethrows what a
+  /// callback threw; throws std::runtime_error for a right-hand side that is
+  /// not finite and when CVODE gives up.
+  const Eigen::VectorXd& advance_to(
+      double t_end, const std::function<void(const OdeStep&)>& on_step = {});
+
+  /// Discards the step history; call after a jump in the right-hand side.
+  void restart(double t, const Eigen::VectorXd& y);
+
+  double time() const;
+  const Eigen::VectorXd& state() const;
+  const CvodeStatistics& statistics() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;  // stable address: CVODE keeps a pointer to it
+};
+
+}  // namespace beamgyro

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "sim/scenario/rate_profile.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "dataset/random_stream.h"
+
+namespace beamgyro {
+namespace {
+
+// The pair of poles w is -3 dB where (1 + (2 pi f/w)^2)^2 = 2.
+const double kCornerPerBandwidth =
+    2 * std::numbers::pi / std::sqrt(std::sqrt(2.0) - 1);
+
+std::vector<double> sampled(const SineSignal& sine,
+                            std::span<const double> times) {
+  std::vector<double> values;
+  values.reserve(times.size());
+  for (const double t : times) {
+    values.push_back(
+        sine.offset +
+        sine.amplitude *
+            std::sin(2 * std::numbers::pi * sine.frequency * t + sine.phase));
+  }
+  return values;
+}
+
+}  // namespace
+
+PiecewiseLinear realised(const RandomRate& random, double duration,
+                         std::uint64_t seed, std::uint32_t device,
+                         std::uint32_t run) {
+  const double h = 1 / (16 * random.bandwidth);
+  const double w = kCornerPerBandwidth * random.bandwidth;
+  const double correlation = std::exp(-w * h) * (1 + w * h);
+  const double variance =
+      random.rms * random.rms * 3 / (2 + correlation);  // at grid points
+
+  // x1' = -w x1 + white noise, x2' = w (x1 - x2), stationary covariance P.
+  Eigen::Matrix2d P, step;
+  P << 2 * variance, variance, variance, variance;
+  step << 1, 0, w * h, 1;
+  step *= std::exp(-w * h);
+  const Eigen::Matrix2d root =
+      (P - step * P * step.transpose()).llt().matrixL();
+
+  RandomStream stream(seed, device, run, RandomPurpose::kRateProfile);
+  const auto draw = [&] {
+    Eigen::Vector2d n;
+    n(0) = stream.normal();
+    n(1) = stream.normal();
+    return n;
+  };
+  Eigen::Vector2d x = P.llt().matrixL() * draw();
+  const auto count = static_cast<std::size_t>(std::ceil(duration / h)) + 1;
+  std::vector<double> time(count), value(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    time[k] = static_cast<double>(k) * h;
+    value[k] = x(1);
+    x = step * x + root * draw();
+  }
+  return {std::move(time), std::move(value)};
+}
+
+SampledRate sampled_rate(const RateProfile& profile, const OutputFilter& filter,
+                         std::span<const double> times, double output_rate,
+                         double duration, std::uint64_t seed,
+                         std::uint32_t device, std::uint32_t run) {
+  if (const auto* sine = std::get_if<SineSignal>(&profile)) {
+    return {sampled(*sine, times),
+            filter.response(*sine, output_rate, times.size())};
+  }
+  const auto* random = std::get_if<RandomRate>(&profile);
+  const PiecewiseLinear points =
+      random ? realised(*random, duration, seed, device, run)
+             : std::get<PiecewiseLinear>(profile);
+  return {points.sample(times),
+          filter.response(points, output_rate, times.size())};
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#include "sim/scenario/scenario.h"
+
+#include <cmath>
+
+namespace beamgyro {
+
+std::size_t sample_count(const Scenario& scenario) {
+  // 0.3 s x 10 Hz is three samples, whatever the last bit of the product says.
+  constexpr double kRoundoff = 1e-9;
+  const double count = scenario.duration * scenario.output_rate;
+  return static_cast<std::size_t>(std::floor(count * (1 + kRoundoff)));
+}
+
+std::vector<double> sample_times(const Scenario& scenario) {
+  std::vector<double> times(sample_count(scenario));
+  for (std::size_t k = 0; k < times.size(); ++k)
+    times[k] = static_cast<double>(k) / scenario.output_rate;
+  return times;
+}
+
+double highest_output_rate(Fidelity fidelity) {
+  switch (fidelity) {
+    case Fidelity::kQuasistatic:
+      return 200;
+  }
+  return 0;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/numerics/piecewise_linear.h"
+#include "sim/scenario/rate_profile.h"
+#include "sim/thermal/thermal_run.h"
+
+namespace beamgyro {
+
+enum class Fidelity {
+  kQuasistatic,  // thermal network and static response at every sample
+};
+
+/// What happens to one gyro: power, surroundings and rotation over time.
+struct Scenario {
+  std::string name, description;
+  std::filesystem::path device_file;
+  Fidelity fidelity = Fidelity::kQuasistatic;
+  double duration = 0;     // [s]
+  double output_rate = 0;  // [Hz]
+  std::uint64_t seed = 0;
+  std::vector<PowerInterval> powered;
+  PiecewiseLinear ambient = PiecewiseLinear::constant(298.15);  // [K]
+  bool stirred = false;
+  RateProfile rate = PiecewiseLinear::constant(0);  // input axis [rad/s]
+  bool noise_enabled = true;
+};
+
+/// Number of samples, floor(duration x output_rate).
+std::size_t sample_count(const Scenario& scenario);
+
+/// time[k] = k / output_rate [s], k = 0 .. sample_count - 1.
+std::vector<double> sample_times(const Scenario& scenario);
+
+/// Highest output rate a fidelity allows [Hz].
+double highest_output_rate(Fidelity fidelity);
+
+}  // namespace beamgyro

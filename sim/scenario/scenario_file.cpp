@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "sim/scenario/scenario_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "sim/scenario/profile_keys.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;  // [rad]
+constexpr double kZeroCelsius = 273.15;             // [K]
+constexpr double kLargestRecording = 1e9;           // samples
+
+const ProfileUnit kAmbient{"temperature_degC", 1, kZeroCelsius,
+                           between(-150, 300)};
+const ProfileUnit kRate{"rate_deg_per_s", kDegree, 0,
+                        between(-1e4, 1e4)};
+
+std::vector<PowerInterval> read_power(const ConfigTable& power) {
+  if (!power.has("on_s") && !power.has("off_s")) return {{.on = 0}};
+  const std::vector<double> on = power.numbers("on_s");
+  const std::vector<double> off =
+      power.has("off_s") ? power.numbers("off_s") : std::vector<double>();
+  if (on.empty()) power.fail("on_s", "[] is empty; expected a time in s");
+  if (off.size() > on.size() || off.size() + 1 < on.size()) {
+    power.fail(off.empty() ? "on_s" : "off_s",
+               fmt::format("{} times off for {} times on; expected one off "
+                           "after each on, the last may be missing",
+                           off.size(), on.size()));
+  }
+  std::vector<PowerInterval> intervals;
+  for (std::size_t i = 0; i < on.size(); ++i) {
+    if (i > 0 && on[i] <= off[i - 1]) {
+      throw std::invalid_argument(fmt::format(
+          "{}: {} s does not come after off_s = {} s; expected on and off in "
+          "turn",
+          power.place("on_s", i), on[i], off[i - 1]));
+    }
+    if (i < off.size() && off[i] <= on[i]) {
+      throw std::invalid_argument(fmt::format(
+          "{}: {} s does not come after on_s = {} s; expected on and off in "
+          "turn",
+          power.place("off_s", i), off[i], on[i]));
+    }
+    intervals.push_back({on[i], i < off.size()
+                                    ? off[i]
+                                    : std::numeric_limits<double>::infinity()});
+  }
+  return intervals;
+}
+
+// Hold at each temperature, ramp to the next at a constant rate.
+PiecewiseLinear read_soaks(const ConfigTable& soaks) {
+  const std::vector<double> levels =
+      soaks.numbers("temperatures_degC", kAmbient.range);
+  if (levels.empty()) {
+    soaks.fail("temperatures_degC",
+               "[] is empty; expected at least one temperature in degC");
+  }
+  const double hold = soaks.number("hold_s", positive());
+  const double ramp = soaks.number("ramp_K_per_min", positive()) / 60;
+  std::vector<double> time, value;
+  double t = 0;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    if (i > 0) t += std::abs(levels[i] - levels[i - 1]) / ramp;
+    for (const double end : {t, t + hold}) {
+      // Two soaks at one temperature: the second starts where the first ends.
+      if (!time.empty() && end == time.back()) continue;
+      time.push_back(end);
+      value.push_back(levels[i] + kZeroCelsius);
+    }
+    t += hold;
+  }
+  return {std::move(time), std::move(value)};
+}
+
+PiecewiseLinear read_ambient(const ConfigTable& ambient,
+                             const std::filesystem::path& folder) {
+  const std::string form =
+      only_form(ambient, {"constant_degC", "points", "soaks", "file"});
+  if (form == "points") return read_points(ambient, kAmbient);
+  if (form == "soaks") return read_soaks(ambient.table("soaks"));
+  if (form == "file") return read_profile_file(ambient, kAmbient, folder);
+  return PiecewiseLinear::constant(ambient.number(form, kAmbient.range) +
+                                   kZeroCelsius);
+}
+
+SineSignal read_sine(const ConfigTable& sine) {
+  return {
+      .offset = sine.number_or("offset_deg_per_s", 0, kRate.range) * kDegree,
+      .amplitude = sine.number("amplitude_deg_per_s", kRate.range) * kDegree,
+      .frequency = sine.number("frequency_Hz", positive()),
+      .phase = sine.number_or("phase_rad", 0),
+  };
+}
+
+RandomRate read_random(const ConfigTable& random, double duration) {
+  const RandomRate rate{
+      .rms = random.number("rms_deg_per_s", {0, 1e4, true, false}) * kDegree,
+      .bandwidth = random.number("bandwidth_Hz", positive()),
+  };
+  if (16 * rate.bandwidth * duration > kLargestRecording / 10) {
+    random.fail("bandwidth_Hz",
+                fmt::format("{} Hz over {} s needs more than {:g} support "
+                            "points; expected a lower bandwidth",
+                            rate.bandwidth, duration, kLargestRecording / 10));
+  }
+  return rate;
+}
+
+RateProfile read_rate(const ConfigTable& root,
+                      const std::filesystem::path& folder, double duration) {
+  const auto rate = root.optional_table("rate");
+  if (!rate) return PiecewiseLinear::constant(0);
+  const std::string form = only_form(
+      *rate,
+      {"constant_deg_per_s", "points", "steps", "sine", "random", "file"});
+  if (form == "points") return read_points(*rate, kRate);
+  if (form == "steps") return read_steps(*rate, kRate);
+  if (form == "sine") return read_sine(rate->table("sine"));
+  if (form == "random") return read_random(rate->table("random"), duration);
+  if (form == "file") return read_profile_file(*rate, kRate, folder);
+  return PiecewiseLinear::constant(rate->number(form, kRate.range) * kDegree);
+}
+
+}  // namespace
+
+Scenario read_scenario(const ConfigDocument& document) {
+  const ConfigTable& root = document.root();
+  const std::filesystem::path folder = document.path().parent_path();
+  Scenario scenario;
+  scenario.name = root.text("name");
+  scenario.description = root.text_or("description", "");
+  scenario.device_file = folder / root.text("device");
+  root.choice("fidelity", {"quasistatic"});
+  scenario.duration = root.number("duration_s", positive());
+  scenario.output_rate =
+      root.number("output_rate_Hz",
+                  {0, highest_output_rate(scenario.fidelity), true, false});
+  const double samples = scenario.duration * scenario.output_rate;
+  if (sample_count(scenario) == 0 || samples > kLargestRecording) {
+    root.fail("duration_s",
+              fmt::format("{} s at {} Hz makes {:.6g} samples; expected 1 to "
+                          "{:g}",
+                          scenario.duration, scenario.output_rate,
+                          std::floor(samples), kLargestRecording));
+  }
+  scenario.seed = static_cast<std::uint64_t>(
+      root.integer("seed", 0, std::numeric_limits<long>::max()));
+  scenario.powered = read_power(root.table_or_empty("power"));
+  scenario.ambient = read_ambient(root.table("ambient"), folder);
+  scenario.stirred = root.table_or_empty("chamber").flag_or("stirred", false);
+  scenario.rate = read_rate(root, folder, scenario.duration);
+  scenario.noise_enabled =
+      root.table_or_empty("noise").flag_or("enabled", true);
+  return scenario;
+}
+
+}  // namespace beamgyro

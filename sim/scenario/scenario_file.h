@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "config/document.h"
+#include "sim/scenario/scenario.h"
+
+namespace beamgyro {
+
+/// Reads a scenario and checks every key (docs/formats.md). Files it names are
+/// found relative to its own folder; `device_file` is made so, too. Throws
+/// std::invalid_argument naming file, line, key and value. The caller rejects
+/// unknown keys once the device is read as well.
+Scenario read_scenario(const ConfigDocument& document);
+
+}  // namespace beamgyro

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "sim/signal/noise.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace beamgyro {
+namespace {
+
+void require_non_negative(double value, const char* name, const char* unit) {
+  if (!(value >= 0.0) || !std::isfinite(value))
+    throw std::invalid_argument(
+        fmt::format("{} is {} {}, must be 0 or more", name, value, unit));
+}
+
+void check(const NoiseParameters& p) {
+  require_non_negative(p.angle_random_walk, "angle random walk", "rad/sqrt(s)");
+  require_non_negative(p.bias_instability, "bias instability", "rad/s");
+  require_non_negative(p.rate_random_walk, "rate random walk", "rad/s/sqrt(s)");
+  require_non_negative(p.turn_on, "turn-on offset", "rad/s");
+}
+
+}  // namespace
+
+RateNoise::RateNoise(const NoiseParameters& parameters, double output_rate,
+                     std::uint64_t seed, std::uint32_t device,
+                     std::uint32_t run)
+    : white_sigma_(parameters.angle_random_walk * std::sqrt(output_rate)),
+      walk_sigma_(parameters.rate_random_walk / std::sqrt(output_rate)),
+      white_stream_(seed, device, run, RandomPurpose::kWhiteNoise),
+      walk_stream_(seed, device, run, RandomPurpose::kRateRandomWalk) {
+  check(parameters);
+  if (!(output_rate > 0.0) || !std::isfinite(output_rate))
+    throw std::invalid_argument(
+        fmt::format("output rate is {} Hz, must be above 0", output_rate));
+  if (parameters.bias_instability > 0.0)
+    flicker_.emplace(parameters.bias_instability, output_rate, seed, device,
+                     run);
+}
+
+void RateNoise::add_next(std::span<double> rate) {
+  if (flicker_) flicker_->add_next(rate);
+  std::array<double, 1024> normal;
+  while (!rate.empty()) {
+    const std::size_t count = std::min(rate.size(), normal.size());
+    const auto numbers = std::span(normal).first(count);
+    if (white_sigma_ > 0.0) {
+      white_stream_.fill_normal(numbers);
+      for (std::size_t i = 0; i < count; ++i)
+        rate[i] += white_sigma_ * numbers[i];
+    }
+    if (walk_sigma_ > 0.0) {
+      walk_stream_.fill_normal(numbers);
+      for (std::size_t i = 0; i < count; ++i) {
+        rate[i] += walk_;
+        walk_ += walk_sigma_ * numbers[i];
+      }
+    }
+    rate = rate.subspan(count);
+  }
+}
+
+std::vector<double> turn_on_offsets(const NoiseParameters& parameters,
+                                    std::size_t cycles, std::uint64_t seed,
+                                    std::uint32_t device, std::uint32_t run) {
+  check(parameters);
+  RandomStream stream(seed, device, run, RandomPurpose::kTurnOn);
+  std::vector<double> offsets(cycles);
+  stream.fill_normal(offsets);
+  for (double& offset : offsets) offset *= parameters.turn_on;
+  return offsets;
+}
+
+}  // namespace beamgyro

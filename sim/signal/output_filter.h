@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <vector>
+
+#include "sim/numerics/piecewise_linear.h"
+
+namespace beamgyro {
+
+/// offset + amplitude sin(2 pi frequency t + phase)
+struct SineSignal {
+  double offset = 0.0;
+  double amplitude = 0.0;
+  double frequency = 0.0;  // [Hz]
+  double phase = 0.0;      // [rad]
+};
+
+/// The readout's output filter, two equal real poles w_o:
+///   y_1' = w_o (u - y_1),   y_2' = w_o (y_1 - y_2),
+/// solved exactly. Responses are y_2 at the times k / output_rate, k = 0 ..
+/// count - 1, in the units of u.
+class OutputFilter {
+ public:
+  /// `corner` is w_o [rad/s] of each pole: the pair is -3 dB at 0.644 w_o.
+  /// Throws std::invalid_argument unless finite and above 0.
+  explicit OutputFilter(double corner);
+
+  /// H(i omega) = (1 + i omega / w_o)^-2, omega in [rad/s].
+  std::complex<double> gain(double omega) const;
+
+  /// Response to an input whose jumps and bends may lie anywhere between the
+  /// samples; at t = 0 the filter has settled on the input's value there. Costs
+  /// O(count) and a binary search per point of the input. Throws
+  /// std::invalid_argument for an output rate [Hz] that is not finite and > 0.
+  std::vector<double> response(const PiecewiseLinear& input, double output_rate,
+                               std::size_t count) const;
+
+  /// The periodic response to a sine that never started. Throws as above.
+  std::vector<double> response(const SineSignal& input, double output_rate,
+                               std::size_t count) const;
+
+ private:
+  double corner_;  // [rad/s]
+};
+
+}  // namespace beamgyro

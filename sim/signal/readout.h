@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace beamgyro {
+
+/// The multiple of `resolution` nearest to `value`, halves away from zero; a
+/// resolution of 0 leaves the value as it is. Both in the same unit. Throws
+/// std::invalid_argument for a resolution below 0 or not finite.
+double quantise(double value, double resolution);
+
+struct ReadoutSample {
+  double voltage;  // [V]
+  bool saturated;
+};
+
+/// The end of the readout: amplifier that clips at +-full scale, ADC over
+/// +-full scale, scaling to the pin's voltage
+///   code = round(clip(rate) / LSB), LSB = 2 full_scale / 2^bits, mid-tread,
+///   -2^(bits-1) <= code <= 2^(bits-1) - 1,
+///   V = offset + scale_factor LSB code.
+class Readout {
+ public:
+  /// full_scale [rad/s] > 0, adc_bits 1..32, scale_factor [V/(rad/s)] not 0,
+  /// offset [V]. Throws std::invalid_argument otherwise.
+  Readout(double full_scale, int adc_bits, double scale_factor, double offset);
+
+  /// What the pin shows at a rate-equivalent signal [rad/s]. Saturated: beyond
+  /// full scale, or the code was held at its limit. Not a number stays so.
+  ReadoutSample sample(double rate) const;
+
+  double lsb() const { return lsb_; }  // [rad/s]
+
+ private:
+  double full_scale_, lsb_;       // [rad/s]
+  double lowest_, highest_;       // codes
+  double scale_factor_, offset_;  // [V/(rad/s)] [V]
+};
+
+}  // namespace beamgyro

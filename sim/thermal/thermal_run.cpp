@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+#include "sim/thermal/thermal_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "sim/thermal/thermal_oven.h"
+
+namespace beamgyro {
+namespace {
+
+// Discontinuities closer than this are one: no node moves meanwhile.
+constexpr double kShortestPiece = 1e-6;  // [s]
+
+// A stretch of time without a discontinuity inside.
+struct Piece {
+  double start, end;                  // [s]
+  double ambient_start, ambient_end;  // [K]
+  bool powered;
+
+  double ambient(double t) const {
+    return std::lerp(ambient_start, ambient_end, (t - start) / (end - start));
+  }
+};
+
+[[noreturn]] void reject(const std::string& message) {
+  throw std::invalid_argument("thermal run: " + message);
+}
+
+void require_valid(const ThermalLoad& load, std::span<const double> times) {
+  double last = -std::numeric_limits<double>::infinity();
+  for (const PowerInterval& interval : load.powered) {
+    if (!(interval.on >= last && interval.off > interval.on)) {
+      reject(
+          fmt::format("power on at {} s and off at {} s after {} s; times "
+                      "must increase",
+                      interval.on, interval.off, last));
+    }
+    last = interval.off;
+  }
+  if (!(load.mechanical_power >= 0 && load.dielectric_power >= 0)) {
+    reject(fmt::format("heating powers {} W and {} W must be >= 0",
+                       load.mechanical_power, load.dielectric_power));
+  }
+  double before = -1;
+  for (const double t : times) {
+    if (!(std::isfinite(t) && t >= 0)) {
+      reject(fmt::format("time {} s must be finite and >= 0", t));
+    }
+    if (t <= before) {
+      reject(fmt::format("time {} s does not come after {} s", t, before));
+    }
+    before = t;
+  }
+}
+
+bool powered_at(const ThermalLoad& load, double t) {
+  return std::any_of(load.powered.begin(), load.powered.end(),
+                     [t](const PowerInterval& interval) {
+                       return interval.on <= t && t < interval.off;
+                     });
+}
+
+std::vector<Piece> pieces_until(double end, const ThermalLoad& load) {
+  std::vector<double> borders = load.ambient.breakpoints();
+  for (const PowerInterval& interval : load.powered) {
+    borders.push_back(interval.on);
+    borders.push_back(interval.off);
+  }
+  borders.push_back(0);
+  borders.push_back(end);
+  std::erase_if(borders, [&](double t) { return t < 0 || t > end; });
+  std::sort(borders.begin(), borders.end());
+
+  std::vector<Piece> pieces;
+  for (std::size_t i = 1; i < borders.size(); ++i) {
+    const double a = borders[i - 1], b = borders[i];
+    if (b - a < kShortestPiece) continue;
+    pieces.push_back({a, b, load.ambient.value(a), load.ambient.value_before(b),
+                      powered_at(load, a)});
+  }
+  return pieces;
+}
+
+// Node temperatures, followed by the integral of the oven if there is one.
+class ThermalOde {
+ public:
+  ThermalOde(const ThermalNetwork& network, const ThermalLoad& load)
+      : network_(network),
+        stirred_(load.stirred),
+        powered_heating_(network.powered_heating(load.mechanical_power,
+                                                 load.dielectric_power)) {}
+
+  void begin(const Piece& piece) { piece_ = piece; }
+
+  void rate(double t, const Eigen::Ref<const Eigen::VectorXd>& y,
+            Eigen::Ref<Eigen::VectorXd> dydt) const {
+    const NodeVector temperature = y.head<kThermalNodeCount>();
+    NodeVector power = NodeVector::Zero();
+    if (piece_.powered) power = powered_heating_;
+    if (has_oven()) {
+      const OvenAction action = oven(y);
+      power(kMount) += action.power;
+      dydt(kThermalNodeCount) = action.integral_rate;
+    }
+    dydt.head<kThermalNodeCount>() =
+        network_.heating_rate(temperature, power, surroundings(t));
+  }
+
+  void jacobian(double t, const Eigen::Ref<const Eigen::VectorXd>& y,
+                Eigen::Ref<Eigen::MatrixXd> slope) const {
+    slope.setZero();
+    slope.topLeftCorner<kThermalNodeCount, kThermalNodeCount>() =
+        network_.heating_rate_jacobian(y.head<kThermalNodeCount>(),
+                                       surroundings(t));
+    if (!has_oven()) return;
+    const OvenAction action = oven(y);
+    const double C = network_.heat_capacity()(kMount);
+    slope(kMount, kMount) += action.power_per_mount / C;
+    slope(kMount, kThermalNodeCount) = action.power_per_integral / C;
+    slope(kThermalNodeCount, kMount) = action.integral_rate_per_mount;
+    slope(kThermalNodeCount, kThermalNodeCount) =
+        action.integral_rate_per_integral;
+  }
+
+  bool has_oven() const { return network_.parameters().oven.has_value(); }
+
+ private:
+  ThermalSurroundings surroundings(double t) const {
+    return {piece_.ambient(t), stirred_};
+  }
+
+  OvenAction oven(const Eigen::Ref<const Eigen::VectorXd>& y) const {
+    if (!piece_.powered) return {};
+    return oven_action(*network_.parameters().oven, y(kMount),
+                       y(kThermalNodeCount));
+  }
+
+  const ThermalNetwork& network_;
+  bool stirred_;
+  NodeVector powered_heating_;  // [W]
+  Piece piece_{};
+};
+
+// Fills the columns of a history in order of time.
+class Recorder {
+ public:
+  Recorder(std::span<const double> times, Eigen::Index components)
+      : times_(times),
+        columns_(static_cast<std::size_t>(components),
+                 std::vector<double>(times.size())) {}
+
+  void record_until(double t, const Eigen::VectorXd& y) {
+    for (; next_ < times_.size() && times_[next_] <= t; ++next_) {
+      for (std::size_t i = 0; i < columns_.size(); ++i) {
+        columns_[i][next_] = y(static_cast<Eigen::Index>(i));
+      }
+    }
+  }
+
+  // Without the end of the step: a piece may begin there with another integral.
+  void record(const OdeStep& step) {
+    const auto begin = times_.begin() + static_cast<std::ptrdiff_t>(next_);
+    const auto count = static_cast<std::size_t>(
+        std::lower_bound(begin, times_.end(), step.end) - begin);
+    if (count == 0) return;
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      step.sample(static_cast<Eigen::Index>(i), times_.subspan(next_, count),
+                  std::span(columns_[i]).subspan(next_, count));
+    }
+    next_ += count;
+  }
+
+  std::vector<std::vector<double>>& columns() { return columns_; }
+
+ private:
+  std::span<const double> times_;
+  std::vector<std::vector<double>> columns_;
+  std::size_t next_ = 0;
+};
+
+std::vector<double> heater_power(const ThermalOven& oven,
+                                 const ThermalLoad& load,
+                                 std::span<const double> times,
+                                 const std::vector<double>& mount,
+                                 const std::vector<double>& integral) {
+  std::vector<double> power(times.size(), 0.0);
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (powered_at(load, times[k])) {
+      power[k] = oven_action(oven, mount[k], integral[k]).power;
+    }
+  }
+  return power;
+}
+
+}  // namespace
+
+ThermalHistory simulate_temperatures(const ThermalNetwork& network,
+                                     const ThermalLoad& load,
+                                     std::span<const double> times,
+                                     const ThermalRunOptions& options) {
+  require_valid(load, times);
+  ThermalHistory history;
+  if (times.empty()) return history;
+
+  ThermalOde ode(network, load);
+  const Eigen::Index size = kThermalNodeCount + (ode.has_oven() ? 1 : 0);
+  Eigen::VectorXd y = Eigen::VectorXd::Constant(size, load.ambient.value(0));
+  y.tail(size - kThermalNodeCount).setZero();
+
+  CvodeOptions cvode_options;
+  cvode_options.relative_tolerance = 0;
+  cvode_options.absolute_tolerance =
+      Eigen::VectorXd::Constant(1, options.tolerance);
+  cvode_options.jacobian = [&](double t, const auto& state, auto slope) {
+    ode.jacobian(t, state, slope);
+  };
+  Cvode cvode(
+      [&](double t, const auto& state, auto rate) { ode.rate(t, state, rate); },
+      0.0, y, cvode_options);
+  Recorder recorder(times, size);
+  bool powered = false;
+  for (const Piece& piece : pieces_until(times.back(), load)) {
+    if (piece.powered && !powered) y.tail(size - kThermalNodeCount).setZero();
+    powered = piece.powered;
+    ode.begin(piece);
+    recorder.record_until(piece.start, y);
+    cvode.restart(piece.start, y);
+    y = cvode.advance_to(piece.end,
+                         [&](const OdeStep& step) { recorder.record(step); });
+  }
+  recorder.record_until(times.back(), y);
+  if (network.parameters().oven) {
+    history.heater_power =
+        heater_power(*network.parameters().oven, load, times,
+                     recorder.columns()[kMount], recorder.columns().back());
+  }
+  for (std::size_t i = 0; i < kThermalNodeCount; ++i) {
+    history.temperature[i] = std::move(recorder.columns()[i]);
+  }
+  history.statistics = cvode.statistics();
+  return history;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/compensator_file.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+
+#include "tests/compensation/bias_curve.h"
+#include "tests/compensation/message_of.h"
+#include "tests/compensation/recorded_run.h"
+
+namespace beamgyro {
+namespace {
+
+const BiasModel kBaseline{
+    {{5.0, 45.0}}, {}, Polynomial{{1.0 / 3.0, 2e-300, -0.1}}};
+
+Provenance some_provenance() {
+  return {{{"a \"b\".h5", std::string(64, 'a')}},
+          {{"held.h5", std::string(64, 'b')}},
+          "# model\nkind = \"bp\"\n",
+          18446744073709551615u,
+          "the gradient vanished",
+          1.0 / 7.0,
+          2.0 / 7.0,
+          0.4,
+          std::nullopt};
+}
+
+Compensator network_compensator() {
+  RandomStream random(5, 0, 0, RandomPurpose::kInitialWeights);
+  BpNetwork network({3, 6, 4, 1});
+  network.randomise(random);
+  return {{parse_input("temperature"), parse_input("temperature_lowpass(0.1)"),
+           parse_input("since_power_on(300)")},
+          {{{20.1, 3.3}, {20.2, 3.7}, {0.5, 0.5}}, {0.1, 2.3}, network},
+          kBaseline,
+          {.lowest = 1.0 / 3.0, .highest = 50.7},
+          some_provenance()};
+}
+
+Compensator spline_compensator() {
+  const Eigen::ArrayXd knots = grid(-40.0, 50.0, 90.0 / 13.0);
+  return {
+      {parse_input("temperature")},
+      {{Scale{}},
+       {},
+       fit_cubic_spline(knots, bias_curve(knots), knots, SplineEnd::kNotAKnot)},
+      kBaseline,
+      {.lowest = -40.0, .highest = 50.0},
+      some_provenance()};
+}
+
+Compensator polynomial_compensator() {
+  Compensator c = spline_compensator();
+  c.bias = {{{5.0, 45.0}}, {}, Polynomial{{0.1, -0.7, 1e-17, 3.0}}};
+  return c;
+}
+
+std::vector<std::uint64_t> bits(const std::vector<double>& values) {
+  std::vector<std::uint64_t> result;
+  for (const double value : values)
+    result.push_back(std::bit_cast<std::uint64_t>(value));
+  return result;
+}
+
+std::string error_of(const std::string& text) {
+  return message_of([&] { parse_compensator(text, "mine.json"); });
+}
+
+// The text of a good file with the first `from` replaced.
+std::string with(const std::string& from, const std::string& to,
+                 const Compensator& c = network_compensator()) {
+  std::string text = compensator_text(c);
+  const std::size_t place = text.find(from);
+  EXPECT_NE(place, std::string::npos) << from;
+  return text.replace(place, from.size(), to);
+}
+
+TEST(CompensatorFile, LoadedCompensatorAnswersWithTheSameBits) {
+  RecordedRun run{.duration = 500.0, .step = 0.37};
+  run.temperature = [](double t) { return 20.0 + 15.0 * std::sin(0.01 * t); };
+  run.bias = [](double t) { return std::cos(0.003 * t); };
+  run.powered = [](double t) { return t < 200.0 || t > 230.0; };
+  const Recording recording = run.recording();
+  for (const Compensator& c : {network_compensator(), spline_compensator(),
+                               polynomial_compensator()}) {
+    const Compensator loaded =
+        parse_compensator(compensator_text(c), "mine.json");
+    EXPECT_EQ(kind_name(loaded.bias), kind_name(c.bias));
+    EXPECT_EQ(loaded.inputs, c.inputs);
+    EXPECT_EQ(loaded.temperature_range, c.temperature_range);
+    EXPECT_EQ(loaded.provenance, c.provenance);
+    EXPECT_EQ(bits(compensated_rate(loaded, recording)),
+              bits(compensated_rate(c, recording)));
+    EXPECT_EQ(bits(baseline_rate(loaded, recording)),
+              bits(baseline_rate(c, recording)));
+    EXPECT_EQ(compensator_text(loaded), compensator_text(c));
+  }
+}
+
+TEST(CompensatorFile, IsWrittenAndReadThroughAFile) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "compensator_file_test.json";
+  write_compensator(network_compensator(), file);
+  EXPECT_EQ(compensator_text(read_compensator(file)),
+            compensator_text(network_compensator()));
+  std::filesystem::remove(file);
+  EXPECT_NE(message_of([&] {
+              read_compensator(file);
+            }).find("compensator_file_test.json"),
+            std::string::npos);
+}
+
+TEST(CompensatorFile, AnyCutOffFileIsRejectedWithLineAndColumn) {
+  const std::string text = compensator_text(network_compensator());
+  // The last newline and brace: without the newline alone it is still whole.
+  for (std::size_t size = 0; size + 2 <= text.size(); size += 7) {
+    const std::string message = error_of(text.substr(0, size));
+    ASSERT_NE(message.find("mine.json: not a whole JSON file"),
+              std::string::npos)
+        << size << ": " << message;
+    ASSERT_NE(message.find("line "), std::string::npos) << message;
+  }
+}
+
+TEST(CompensatorFile, WrongTypeOrVersionIsNamed) {
+  EXPECT_EQ(error_of("{}"), "mine.json: \"filetype\" is missing");
+  EXPECT_NE(error_of("[1]").find("must be an object"), std::string::npos);
+  EXPECT_NE(error_of(with("beamgyro-compensator", "beamgyro-recording"))
+                .find("mine.json: filetype: \"beamgyro-recording\", must be"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("\"format_version\": 1", "\"format_version\": 2"))
+                .find("written by a newer program"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("\"kind\": \"bp\"", "\"kind\": \"rbf\""))
+                .find("kind: \"rbf\", must be"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("temperature_lowpass(0.1)", "true_bias"))
+                .find("inputs[1]: input \"true_bias\""),
+            std::string::npos);
+}
+
+TEST(CompensatorFile, WrongNumbersAreNamedByTheirKey) {
+  EXPECT_NE(error_of(with("20.1", "null"))
+                .find("input_scales[0].centre: null, must be a finite number"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("20.1", "1e999")).find("mine.json"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("20.1", "NaN")).find("line "), std::string::npos);
+  EXPECT_NE(error_of(with("\"half_width\": 3.3", "\"half_width\": 0"))
+                .find("input_scales[0].half_width: 0, must be positive"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("\"weights\"", "\"weighs\""))
+                .find("parameters: \"weights\" is missing"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("\"weights\": [", "\"weights\": [ 0.5,"))
+                .find("parameters.weights: bp network: 58 weights, its layers "
+                      "need 57"),
+            std::string::npos)
+      << error_of(with("\"weights\": [", "\"weights\": [ 0.5,"));
+  EXPECT_NE(error_of(with("\"knots_degC\": [", "\"knots_degC\": [ -50.0,",
+                          spline_compensator()))
+                .find("15 knots, 14 values"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("\"knots_degC\": [\n   -40.0",
+                          "\"knots_degC\": [\n   40.0", spline_compensator()))
+                .find("knots_degC: must increase"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("50.7", "-50.7")).find("[lowest, highest]"),
+            std::string::npos);
+}
+
+TEST(CompensatorFile, ParameterThatIsNotFiniteIsNotWritten) {
+  Compensator c = polynomial_compensator();
+  std::get<Polynomial>(c.bias.function).coefficients[1] = std::nan("");
+  EXPECT_THROW(compensator_text(c), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace beamgyro

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/compensator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/compensation/message_of.h"
+#include "tests/compensation/recorded_run.h"
+
+namespace beamgyro {
+namespace {
+
+// bias = 1 + 0.1 T, baseline = 2, between 0 and 40 degC
+Compensator linear_compensator() {
+  return {{parse_input("temperature")},
+          {{Scale{}}, {}, Polynomial{{1.0, 0.1}}},
+          {{Scale{}}, {}, Polynomial{{2.0}}},
+          {.lowest = 0.0, .highest = 40.0},
+          {}};
+}
+
+TEST(Compensator, TakesThePredictedBiasOffTheRate) {
+  RecordedRun run{.duration = 100.0, .step = 0.01};  // more than one block
+  run.temperature = [](double t) { return 0.4 * t; };
+  run.bias = [](double t) { return 1.0 + 0.04 * t; };
+  run.true_rate = [](double t) { return std::sin(t); };
+  const Recording recording = run.recording();
+  const std::vector<double> rate =
+      compensated_rate(linear_compensator(), recording);
+  const std::vector<double> baseline =
+      baseline_rate(linear_compensator(), recording);
+  for (std::size_t k = 0; k < rate.size(); ++k) {
+    const double t = recording.time[k];
+    ASSERT_NEAR(rate[k], std::sin(t), 1e-13);
+    ASSERT_NEAR(baseline[k], std::sin(t) + 1.0 + 0.04 * t - 2.0, 1e-13);
+  }
+}
+
+TEST(Compensator, ClampsTheTemperatureAndCountsTheSamples) {
+  RecordedRun run{.duration = 70.0, .step = 1.0};
+  run.temperature = [](double t) { return t - 10.0; };
+  run.powered = [](double t) { return t >= 5.0; };
+  const Recording recording = run.recording();
+  const std::vector<double> rate =
+      compensated_rate(linear_compensator(), recording);
+  EXPECT_TRUE(std::isnan(rate[4]));
+  EXPECT_EQ(rate[5], -1.0);                    // at -5 as at 0 degC
+  EXPECT_NEAR(rate[69], -(1.0 + 4.0), 1e-14);  // at 59 as at 40 degC
+  EXPECT_EQ(clamped_samples(linear_compensator(), recording), 5u + 19u);
+}
+
+TEST(Compensator, MissingInputIsNamed) {
+  Recording recording = RecordedRun{}.recording();
+  recording.columns.erase(recording.columns.begin() + 2);
+  EXPECT_NE(message_of([&] {
+              compensated_rate(linear_compensator(), recording);
+            }).find("input \"temperature\" needs the measured column"),
+            std::string::npos);
+}
+
+TEST(Compensator, RateOfABiasOnlyModelPassesExactly) {
+  RecordedRun run{.duration = 100.0, .step = 1.0};
+  run.temperature = [](double t) { return 0.4 * t; };
+  const std::vector<double> still =
+      compensated_rate(linear_compensator(), run.recording());
+  run.true_rate = [](double) { return 64.0; };
+  const std::vector<double> turning =
+      compensated_rate(linear_compensator(), run.recording());
+  for (std::size_t k = 0; k < still.size(); ++k)
+    EXPECT_NEAR(turning[k] - still[k], 64.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace beamgyro

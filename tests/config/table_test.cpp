@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+#include "config/table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "config/document.h"
+#include "tests/config/rejection.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr const char* kDevice = R"(name = "unit 7"
+
+[beam]
+length_m = 0.04
+count = 12
+tip = -0.04
+trimmed = true
+offset_m = [14e-6, -5e-6, 8, 0.0]
+points = [[0, 25], [10.5, -40.0]]
+inputs = ["temperature", "output"]
+sizes = [6, 3]
+mode = "open_lop"
+[beam.oven]
+power_W = 0
+)";
+
+class Table : public ::testing::Test {
+ protected:
+  ConfigDocument document = ConfigDocument::parse(kDevice, "nominal.toml");
+  ConfigTable beam = document.root().table("beam");
+};
+
+TEST_F(Table, ReadsEveryKindOfValue) {
+  EXPECT_EQ(document.root().text("name"), "unit 7");
+  EXPECT_EQ(beam.number("length_m"), 0.04);
+  EXPECT_EQ(beam.number("count"), 12.0);
+  EXPECT_EQ(beam.integer("count", 0, 20), 12);
+  EXPECT_TRUE(beam.flag("trimmed"));
+  EXPECT_EQ(beam.numbers("offset_m"),
+            (std::vector<double>{14e-6, -5e-6, 8.0, 0.0}));
+  EXPECT_EQ(beam.numbers("offset_m", 4),
+            (std::vector<double>{14e-6, -5e-6, 8.0, 0.0}));
+  EXPECT_EQ(beam.integers("sizes", 1, 9), (std::vector<long>{6, 3}));
+  EXPECT_EQ(beam.texts("inputs"),
+            (std::vector<std::string>{"temperature", "output"}));
+  EXPECT_EQ(beam.rows("points", 2),
+            (std::vector<std::vector<double>>{{0.0, 25.0}, {10.5, -40.0}}));
+  EXPECT_EQ(beam.table("oven").number("power_W"), 0.0);
+  EXPECT_EQ(beam.choice("mode", {"closed", "open_lop"}), "open_lop");
+}
+
+TEST_F(Table, TakesTheDefaultOfAnAbsentKeyOnly) {
+  EXPECT_EQ(beam.number_or("length_m", 7.0), 0.04);
+  EXPECT_EQ(beam.number_or("width_m", 7.0), 7.0);
+  EXPECT_EQ(beam.integer_or("count", 3, 0, 99), 12);
+  EXPECT_EQ(beam.integer_or("counts", 3, 0, 99), 3);
+  EXPECT_TRUE(beam.flag_or("trimmed", false));
+  EXPECT_TRUE(beam.flag_or("cut", true));
+  EXPECT_EQ(beam.text_or("mode", "x"), "open_lop");
+  EXPECT_EQ(beam.text_or("modus", "x"), "x");
+  EXPECT_EQ(beam.choice_or("modus", "closed", {"closed"}), "closed");
+  EXPECT_EQ(beam.optional_number("length_m"), 0.04);
+  EXPECT_EQ(beam.optional_number("width_m"), std::nullopt);
+  EXPECT_EQ(beam.optional_text("modus"), std::nullopt);
+  EXPECT_FALSE(beam.optional_table("heater").has_value());
+  EXPECT_EQ(beam.table_or_empty("heater").number_or("power_W", 2.0), 2.0);
+  EXPECT_EQ(beam.table_or_empty("oven").number_or("power_W", 2.0), 0.0);
+}
+
+TEST_F(Table, NamesFileLineColumnKeyValueAndRange) {
+  EXPECT_EQ(rejection([&] { beam.number("tip", positive()); }),
+            "nominal.toml:6:7: beam.tip: -0.04 is out of range; expected a "
+            "number > 0");
+  EXPECT_EQ(rejection([&] { beam.number_or("tip", 1.0, between(0, 1)); }),
+            "nominal.toml:6:7: beam.tip: -0.04 is out of range; expected a "
+            "number in [0, 1]");
+  EXPECT_EQ(rejection([&] { beam.optional_number("tip", non_negative()); }),
+            "nominal.toml:6:7: beam.tip: -0.04 is out of range; expected a "
+            "number >= 0");
+  EXPECT_EQ(rejection([&] { beam.integer("count", 1, 10); }),
+            "nominal.toml:5:9: beam.count: 12 is out of range; expected an "
+            "integer in [1, 10]");
+}
+
+TEST_F(Table, RangeEndsAreAllowedUnlessOpen) {
+  const double power = 0.0;  // as in the file
+  const ConfigTable oven = beam.table("oven");
+  EXPECT_EQ(oven.number("power_W", non_negative()), power);
+  EXPECT_EQ(oven.number("power_W", between(0.0, 1.0)), power);
+  EXPECT_EQ(oven.number("power_W", between(-1.0, 0.0)), power);
+  EXPECT_EQ(rejection([&] { oven.number("power_W", positive()); }),
+            "nominal.toml:14:11: beam.oven.power_W: 0 is out of range; "
+            "expected a number > 0");
+  EXPECT_EQ(rejection([&] {
+              oven.number("power_W", {0, 1, true, true});
+            }),
+            "nominal.toml:14:11: beam.oven.power_W: 0 is out of range; "
+            "expected a number in (0, 1)");
+}
+
+TEST_F(Table, SaysWhereAMissingKeyBelongs) {
+  EXPECT_EQ(rejection([&] { beam.number("width_m", positive()); }),
+            "nominal.toml:3:1: beam.width_m: missing; expected a number > 0");
+  EXPECT_EQ(rejection([&] { beam.text("label"); }),
+            "nominal.toml:3:1: beam.label: missing; expected a text in quotes");
+  EXPECT_EQ(rejection([&] { document.root().table("bond"); }),
+            "nominal.toml:1:1: bond: missing; expected a table [bond]");
+  EXPECT_EQ(rejection([&] { beam.table_or_empty("heater").number("power_W"); }),
+            "nominal.toml:3:1: beam.heater.power_W: missing; expected a finite "
+            "number");
+}
+
+TEST_F(Table, RejectsAnotherType) {
+  EXPECT_EQ(rejection([&] { beam.number("mode"); }),
+            "nominal.toml:12:8: beam.mode: \"open_lop\" is wrong here; "
+            "expected a finite number");
+  EXPECT_EQ(rejection([&] { beam.number("offset_m"); }),
+            "nominal.toml:8:12: beam.offset_m: an array of 4 is wrong here; "
+            "expected a finite number");
+  EXPECT_EQ(rejection([&] { beam.integer("length_m", 0, 9); }),
+            "nominal.toml:4:12: beam.length_m: 0.04 is wrong here; expected "
+            "an integer in [0, 9]");
+  EXPECT_EQ(rejection([&] { beam.flag_or("count", true); }),
+            "nominal.toml:5:9: beam.count: 12 is wrong here; expected true "
+            "or false");
+  EXPECT_EQ(rejection([&] { beam.text("trimmed"); }),
+            "nominal.toml:7:11: beam.trimmed: true is wrong here; expected a "
+            "text in quotes");
+  EXPECT_EQ(rejection([&] { beam.table("count"); }),
+            "nominal.toml:5:9: beam.count: 12 is wrong here; expected a table");
+  EXPECT_EQ(rejection([&] { beam.numbers("oven"); }),
+            "nominal.toml:13:1: beam.oven: a table is wrong here; expected "
+            "an array of numbers");
+}
+
+TEST_F(Table, NamesTheElementOfAnArray) {
+  EXPECT_EQ(rejection([&] { beam.numbers("offset_m", positive()); }),
+            "nominal.toml:8:20: beam.offset_m[1]: -5e-06 is out of range; "
+            "expected a number > 0");
+  EXPECT_EQ(rejection([&] { beam.numbers("inputs"); }),
+            "nominal.toml:10:11: beam.inputs[0]: \"temperature\" is wrong "
+            "here; expected a finite number");
+  EXPECT_EQ(rejection([&] { beam.texts("sizes"); }),
+            "nominal.toml:11:10: beam.sizes[0]: 6 is wrong here; expected a "
+            "text in quotes");
+  EXPECT_EQ(rejection([&] { beam.integers("sizes", 4, 9); }),
+            "nominal.toml:11:13: beam.sizes[1]: 3 is out of range; expected "
+            "an integer in [4, 9]");
+}
+
+TEST_F(Table, RejectsAnotherCountOfNumbers) {
+  EXPECT_EQ(rejection([&] { beam.numbers("offset_m", 3); }),
+            "nominal.toml:8:12: beam.offset_m: an array of 4 is wrong here; "
+            "expected an array of 3 numbers");
+  EXPECT_EQ(rejection([&] { beam.rows("points", 3); }),
+            "nominal.toml:9:11: beam.points[0]: an array of 2 is wrong here; "
+            "expected an array of 3 numbers");
+  EXPECT_EQ(rejection([&] { beam.rows("sizes", 2); }),
+            "nominal.toml:11:10: beam.sizes[0]: 6 is wrong here; expected an "
+            "array of 2 numbers");
+}
+
+TEST_F(Table, SuggestsTheNearestChoice) {
+  EXPECT_EQ(
+      rejection([&] {
+        beam.choice("mode", {"open_loop", "force_rebalance"});
+      }),
+      "nominal.toml:12:8: beam.mode: \"open_lop\" is not known; did you mean "
+      "\"open_loop\"? expected one of \"open_loop\", \"force_rebalance\"");
+  EXPECT_EQ(rejection([&] {
+              beam.choice_or("mode", "a", {"a", "b"});
+            }),
+            "nominal.toml:12:8: beam.mode: \"open_lop\" is not known; "
+            "expected one of \"a\", \"b\"");
+}
+
+TEST_F(Table, GivesThePlaceForErrorsOfTheReader) {
+  EXPECT_EQ(beam.place("count"), "nominal.toml:5:9: beam.count");
+  EXPECT_EQ(beam.place("points", 1), "nominal.toml:9:20: beam.points[1]");
+  EXPECT_EQ(rejection([&] { beam.fail("count", "12 is not a power of 2"); }),
+            "nominal.toml:5:9: beam.count: 12 is not a power of 2");
+}
+
+TEST(Numbers, NanAndInfinityAreRejectedWhereverTheyStand) {
+  const ConfigDocument document = ConfigDocument::parse(
+      "[a]\nx = nan\ny = -inf\nz = [1, +inf]\nw = [[0, nan]]\n", "scn.toml");
+  const ConfigTable a = document.root().table("a");
+  EXPECT_EQ(rejection([&] { a.number("x"); }),
+            "scn.toml:2:5: a.x: nan is not finite; expected a finite number");
+  EXPECT_EQ(rejection([&] { a.number_or("y", 0.0, between(-1, 1)); }),
+            "scn.toml:3:5: a.y: -inf is not finite; expected a number in [-1, "
+            "1]");
+  EXPECT_EQ(
+      rejection([&] { a.numbers("z"); }),
+      "scn.toml:4:9: a.z[1]: inf is not finite; expected a finite number");
+  EXPECT_EQ(
+      rejection([&] { a.rows("w", 2); }),
+      "scn.toml:5:10: a.w[0][1]: nan is not finite; expected a finite number");
+}
+
+}  // namespace
+}  // namespace beamgyro

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+"""Help, version, exit statuses and where the program prints."""
+
+import signal
+import subprocess
+import time
+import unittest
+
+from program import PROGRAM, SCENARIO, ProgramTest
+
+COMMANDS = ["characterise", "run", "train", "compensate", "validate", "allan",
+            "info"]
+
+
+class CommandLine(ProgramTest):
+    def test_help_at_every_level(self):
+        overview = self.ok("--help")
+        self.assertEqual(overview, self.ok("-h"))
+        for command in COMMANDS:
+            with self.subTest(command):
+                self.assertIn(command, overview)
+                text = self.ok(command, "--help")
+                self.assertIn(command, text)
+                self.assertGreater(len(text.splitlines()), 4)
+
+    def test_help_names_no_command_that_does_not_exist(self):
+        overview = self.ok("--help")
+        for command in ["generate", "import", "export", "verify"]:
+            with self.subTest(command):
+                exists = self.beamgyro(command, "--help").returncode == 0
+                named = any(line.split()[:1] == [command]
+                            for line in overview.splitlines())
+                self.assertEqual(named, exists)
+
+    def test_version_names_revision_and_libraries(self):
+        text = self.ok("--version").lower()
+        for part in ["beamgyro 0.1.0", "sundials", "hdf5", "eigen"]:
+            self.assertIn(part, text)
+
+    def test_unknown_command_is_answered_with_the_nearest(self):
+        self.rejected("trian", says=["trian", "train"])
+
+    def test_no_command_unknown_option_missing_argument(self):
+        self.rejected()
+        self.write("s.toml", SCENARIO)
+        self.rejected("run", "s.toml", "-o", "a.h5", "--frobnicate",
+                      says="--frobnicate")
+        self.rejected("run", "s.toml")
+        self.rejected("run", "s.toml", "-o", "a.h5", "--seed", "many",
+                      says="many")
+
+    def test_progress_and_messages_never_reach_stdout(self):
+        self.write("s.toml", SCENARIO)
+        answer = self.beamgyro("run", "s.toml", "-o", "a.h5")
+        self.assertEqual((answer.returncode, answer.stdout), (0, ""))
+        self.assertNotIn("\x1b", answer.stderr)
+
+    def test_quiet_is_silent_but_for_errors(self):
+        self.write("s.toml", SCENARIO)
+        answer = self.beamgyro("run", "s.toml", "-o", "a.h5", "--quiet")
+        self.assertEqual((answer.returncode, answer.stdout, answer.stderr),
+                         (0, "", ""))
+        self.rejected("run", "missing.toml", "-o", "b.h5", "--quiet",
+                      says="missing.toml")
+
+    def test_interrupted_run_leaves_no_file_and_keeps_the_old_one(self):
+        long = SCENARIO.replace("duration_s = 600", "duration_s = 400000") \
+            .replace("output_rate_Hz = 2", "output_rate_Hz = 200")
+        self.write("long.toml", long)
+        self.write("old.h5", "precious")
+        before = self.files()
+        for name, status in [(signal.SIGINT, 130), (signal.SIGTERM, 143)]:
+            with self.subTest(name.name):
+                process = subprocess.Popen(
+                    [PROGRAM, "run", "long.toml", "-o", "old.h5"], cwd=self.dir,
+                    stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                time.sleep(0.7)
+                process.send_signal(name)
+                process.communicate(timeout=30)
+                self.assertEqual(process.returncode, status)
+                self.assertEqual(self.files(), before)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: MIT
+"""The demo end to end, and the figures the project promises from it."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+from program import PROGRAM, ROOT
+
+METHODS = {"cubic", "spline", "bp", "output_and_temperature", "recommended"}
+
+
+class Demo(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="a demo ")
+        cls.addClassCleanup(folder.cleanup)
+        cls.out = pathlib.Path(folder.name)
+        start = time.monotonic()
+        cls.answer = subprocess.run(
+            [sys.executable, ROOT / "scripts/demo.py", "--program", PROGRAM,
+             "--out", cls.out], cwd=cls.out, capture_output=True, text=True,
+            check=False)
+        cls.seconds = time.monotonic() - start
+        if cls.answer.returncode != 0:
+            raise AssertionError(cls.answer.stderr)
+        rows = json.loads((cls.out / "table.json").read_text())["rows"]
+        cls.quiet = {row["method"]: row for row in rows if not row["noise"]}
+        cls.noisy = {row["method"]: row for row in rows if row["noise"]}
+
+    def test_takes_less_than_two_minutes(self):
+        self.assertLess(self.seconds, 120)
+
+    def test_compensators_table_and_pictures_are_there(self):
+        self.assertEqual({path.stem for path in self.out.glob("*.json")},
+                         METHODS | {"table"})
+        for suffix, start in [("png", b"\x89PNG"), ("svg", b"<?xml")]:
+            pictures = list(self.out.glob(f"*.{suffix}"))
+            self.assertEqual(len(pictures), 5)
+            for picture in pictures:
+                self.assertTrue(picture.read_bytes().startswith(start))
+        for picture in self.out.glob("*.png"):
+            self.assertIn(str(picture), self.answer.stdout)
+        self.assertEqual(set(self.quiet), METHODS)
+        self.assertEqual(set(self.noisy), METHODS)
+
+    def test_the_network_leaves_two_percent_of_the_cubic(self):
+        self.assertLessEqual(self.quiet["bp"]["percent_of_cubic"], 2)
+
+    def test_the_recommended_network_holds_on_ramps_and_warm_ups(self):
+        motion = self.quiet["recommended"]["ramps_and_warm_ups"]
+        self.assertLessEqual(motion["rms_deg_per_s"], 0.03)
+        self.assertLessEqual(motion["max_deg_per_s"], 0.15)
+        cubic = self.quiet["cubic"]["ramps_and_warm_ups"]
+        self.assertGreaterEqual(cubic["rms_deg_per_s"],
+                                10 * motion["rms_deg_per_s"])
+
+    def test_bias_only_compensators_keep_the_rate(self):
+        for method in METHODS - {"output_and_temperature"}:
+            with self.subTest(method):
+                row = self.quiet[method]
+                self.assertEqual(row["verdict"], "keeps the rate")
+                self.assertLess(
+                    abs(row["scale_factor_within_120_deg_per_s"] - 1), 1e-3)
+
+    def test_the_network_that_sees_the_output_at_rest_cancels_the_rate(self):
+        for rows in (self.quiet, self.noisy):
+            row = rows["output_and_temperature"]
+            self.assertEqual(row["verdict"], "cancels the rate")
+            self.assertLess(row["scale_factor_within_2_deg_per_s"], 0.1)
+            self.assertGreater(row["scale_factor_within_120_deg_per_s"], 0.5)
+
+
+if __name__ == "__main__":
+    unittest.main()

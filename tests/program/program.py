@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+"""What the tests of the shipped program share: the program and small inputs."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCENARIOS = ROOT / "scenarios"
+PROGRAM = pathlib.Path(
+    os.environ.get("BEAMGYRO", ROOT / "build/release/beamgyro")).resolve()
+
+SCENARIO = """\
+name = "short"
+description = "ten minutes at rest"
+device = "device.toml"
+fidelity = "quasistatic"
+duration_s = 600
+output_rate_Hz = 2
+seed = 7
+
+[ambient]
+constant_degC = 25
+"""
+
+CUBIC = """\
+kind = "polynomial"
+inputs = ["temperature"]
+
+[polynomial]
+degree = 3
+"""
+
+NETWORK = """\
+kind = "bp"
+inputs = ["temperature"]
+
+[bp]
+hidden = [2]
+trainer = "levenberg_marquardt"
+restarts = 1
+max_epochs = 30
+"""
+
+
+class ProgramTest(unittest.TestCase):
+    """A test in a directory of its own that holds the nominal device."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.dir = pathlib.Path(folder.name)
+        shutil.copy(SCENARIOS / "devices/nominal.toml", self.dir / "device.toml")
+
+    def write(self, name, text):
+        data = text if isinstance(text, bytes) else text.encode()
+        (self.dir / name).write_bytes(data)
+        return name
+
+    def beamgyro(self, *arguments, **options):
+        return subprocess.run(
+            [str(PROGRAM), *map(str, arguments)], cwd=self.dir, text=True,
+            stdin=subprocess.DEVNULL, capture_output=True, check=False,
+            timeout=120, **options)
+
+    def ok(self, *arguments):
+        """Output of a command that must succeed."""
+        answer = self.beamgyro(*arguments)
+        self.assertEqual(answer.returncode, 0,
+                         f"{arguments}: {answer.stderr}{answer.stdout}")
+        return answer.stdout
+
+    def files(self):
+        return {path.relative_to(self.dir): path.read_bytes()
+                for path in self.dir.rglob("*") if path.is_file()}
+
+    def rejected(self, *arguments, says=()):
+        """The one message of a command refused with exit status 2, after which
+        every file is as it was and no other has come."""
+        before = self.files()
+        answer = self.beamgyro(*arguments)
+        self.assertEqual(answer.returncode, 2,
+                         f"{arguments}: {answer.stderr}{answer.stdout}")
+        self.assertEqual(answer.stdout, "")
+        self.assertEqual(len(answer.stderr.strip().splitlines()), 1,
+                         answer.stderr)
+        for part in [says] if isinstance(says, str) else says:
+            self.assertIn(part, answer.stderr)
+        self.assertEqual(self.files(), before)
+        return answer.stderr
+
+    def run_scenario(self, name, *arguments, text=SCENARIO):
+        """Recording NAME.h5 of a scenario text."""
+        scenario = self.write(f"{name}.toml", text)
+        self.ok("run", scenario, "-o", f"{name}.h5", *arguments)
+        return self.dir / f"{name}.h5"
+
+
+def ramp(seconds=4000, low=-30, high=40, rate_Hz=1, seed=3):
+    """Scenario text of a temperature ramp long enough to fit a curve to."""
+    return SCENARIO.replace("duration_s = 600", f"duration_s = {seconds}") \
+        .replace("output_rate_Hz = 2", f"output_rate_Hz = {rate_Hz}") \
+        .replace("seed = 7", f"seed = {seed}") \
+        .replace("constant_degC = 25",
+                 f"points = [[0, {low}], [{seconds}, {high}]]")

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "sim/numerics/piecewise_linear.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace beamgyro {
+namespace {
+
+std::string rejection(std::vector<double> time, std::vector<double> value) {
+  try {
+    const PiecewiseLinear profile(std::move(time), std::move(value));
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(PiecewiseLinear, IsLinearBetweenItsPointsAndHeldOutside) {
+  const PiecewiseLinear profile({10, 20, 40}, {1, 3, -1});
+  EXPECT_EQ(profile.value(-5), 1);
+  EXPECT_EQ(profile.value(10), 1);
+  EXPECT_EQ(profile.value(15), 2);
+  EXPECT_EQ(profile.value(20), 3);
+  EXPECT_EQ(profile.value(35), 0);
+  EXPECT_EQ(profile.value(40), -1);
+  EXPECT_EQ(profile.value(1e9), -1);
+}
+
+TEST(PiecewiseLinear, HasBothLimitsAtAJump) {
+  const PiecewiseLinear profile({0, 5, 5, 10}, {0, 10, 20, 30});
+  EXPECT_EQ(profile.value_before(5), 10);
+  EXPECT_EQ(profile.value(5), 20);
+  EXPECT_EQ(profile.value(2.5), 5);
+  EXPECT_EQ(profile.value(7.5), 25);
+}
+
+TEST(PiecewiseLinear, HasBothLimitsAtAJumpAtEitherEnd) {
+  const PiecewiseLinear profile({0, 0, 1, 1}, {1, 2, 3, 4});
+  EXPECT_EQ(profile.value_before(0), 1);
+  EXPECT_EQ(profile.value(0), 2);
+  EXPECT_EQ(profile.value_before(1), 3);
+  EXPECT_EQ(profile.value(1), 4);
+}
+
+TEST(PiecewiseLinear, LimitsAgreeWhereNothingJumps) {
+  const PiecewiseLinear profile({0, 1, 3}, {0.1, 0.7, -0.2});
+  for (const double t : {-1.0, 0.0, 0.3, 1.0, 1.9, 3.0, 4.0}) {
+    EXPECT_EQ(profile.value(t), profile.value_before(t)) << "t = " << t;
+  }
+}
+
+TEST(PiecewiseLinear, SamplesAsItEvaluates) {
+  const PiecewiseLinear profile({0, 1, 1, 2.5}, {0.3, 0.7, -1.1, 4.0});
+  std::vector<double> times;
+  for (int k = -10; k < 40; ++k) times.push_back(0.1 * k);
+  times.insert(times.begin() + 20, 1.0);
+  std::sort(times.begin(), times.end());
+  const std::vector<double> values = profile.sample(times);
+  ASSERT_EQ(values.size(), times.size());
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    EXPECT_EQ(values[k], profile.value(times[k])) << "t = " << times[k];
+  }
+}
+
+TEST(PiecewiseLinear, NamesEachBreakpointOnce) {
+  const PiecewiseLinear profile({0, 1, 1, 2}, {0, 1, 2, 3});
+  EXPECT_EQ(profile.breakpoints(), (std::vector<double>{0, 1, 2}));
+  EXPECT_EQ(PiecewiseLinear::constant(7).value(123), 7);
+}
+
+TEST(PiecewiseLinear, RejectsWhatIsNoProfile) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(contains(rejection({}, {}), "at least one point"));
+  EXPECT_TRUE(contains(rejection({0, 1}, {0}), "2 times and 1 values"));
+  EXPECT_TRUE(contains(rejection({0, nan}, {0, 1}), "point 2"));
+  EXPECT_TRUE(contains(rejection({0, 1}, {INFINITY, 1}), "point 1"));
+  EXPECT_TRUE(contains(rejection({0, 2, 1}, {0, 1, 2}), "1 s at point 3"));
+  EXPECT_TRUE(contains(rejection({0, 2, 2, 2}, {0, 1, 2, 3}), "three points"));
+}
+
+}  // namespace
+}  // namespace beamgyro

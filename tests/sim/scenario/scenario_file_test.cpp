@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "sim/scenario/scenario_file.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "tests/sim/scenario/scenario_text.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr double kZeroCelsius = 273.15;  // [K]
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+TEST(ScenarioFile, SoaksHoldAndRampInTurn) {
+  const Scenario scenario = scenario_from(
+      "",
+      "[ambient.soaks]\ntemperatures_degC = [-40, 50, 20]\nhold_s = 600\n"
+      "ramp_K_per_min = 2\n");
+  const auto celsius = [&](double t) {
+    return scenario.ambient.value(t) - kZeroCelsius;
+  };
+  EXPECT_NEAR(celsius(0), -40, 1e-9);
+  EXPECT_NEAR(celsius(600), -40, 1e-9);
+  EXPECT_NEAR(celsius(600 + 60), -38, 1e-9);   // up at 2 K/min
+  EXPECT_NEAR(celsius(600 + 2700), 50, 1e-9);  // 90 K take 2700 s
+  EXPECT_NEAR(celsius(3900), 50, 1e-9);
+  EXPECT_NEAR(celsius(3900 + 450), 35, 1e-9);  // down
+  EXPECT_NEAR(celsius(3900 + 900), 20, 1e-9);
+  EXPECT_NEAR(celsius(1e6), 20, 1e-9);
+}
+
+TEST(ScenarioFile, StepsAreHeldAndPointsAreJoined) {
+  const auto rate = [](const std::string& text, double t) {
+    const Scenario scenario = scenario_from(text);
+    return std::get<PiecewiseLinear>(scenario.rate).value(t) / kDegree;
+  };
+  const std::string steps = "[rate]\nsteps = [[10, 5], [20, -3]]\n";
+  EXPECT_DOUBLE_EQ(rate(steps, 0), 5);  // the first value before its time
+  EXPECT_DOUBLE_EQ(rate(steps, 19.999), 5);
+  EXPECT_DOUBLE_EQ(rate(steps, 20), -3);
+  EXPECT_DOUBLE_EQ(rate(steps, 1000), -3);
+  const std::string points = "[rate]\npoints = [[10, 5], [20, -3]]\n";
+  EXPECT_DOUBLE_EQ(rate(points, 0), 5);
+  EXPECT_DOUBLE_EQ(rate(points, 15), 1);
+  EXPECT_DOUBLE_EQ(rate(points, 1000), -3);
+}
+
+TEST(ScenarioFile, WithoutRateAndPowerItRestsAndIsOnFromTheStart) {
+  const Scenario scenario = scenario_from("");
+  EXPECT_EQ(std::get<PiecewiseLinear>(scenario.rate).value(50), 0);
+  ASSERT_EQ(scenario.powered.size(), 1u);
+  EXPECT_EQ(scenario.powered[0].on, 0);
+  EXPECT_EQ(scenario.powered[0].off, std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(scenario.noise_enabled);
+  EXPECT_FALSE(scenario.stirred);
+}
+
+TEST(ScenarioFile, CountsSamplesAsDurationTimesRate) {
+  EXPECT_EQ(sample_count(
+                scenario_from("", "[ambient]\nconstant_degC=0\n", "0.3", "10")),
+            3u);
+  EXPECT_EQ(sample_count(scenario_from("", "[ambient]\nconstant_degC=0\n",
+                                       "10.99", "0.1")),
+            1u);
+  EXPECT_EQ(sample_times(scenario_from("")).back(), 99.9);
+}
+
+struct BadScenario {
+  const char* ambient;
+  const char* extra;
+  const char* expected;  // part of the message
+};
+
+class ScenarioFileRejects : public testing::TestWithParam<BadScenario> {};
+
+TEST_P(ScenarioFileRejects, NamesTheKeyAndThePlace) {
+  try {
+    scenario_from(GetParam().extra, GetParam().ambient);
+    FAIL() << "accepted " << GetParam().ambient << GetParam().extra;
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find(GetParam().expected),
+              std::string::npos)
+        << error.what();
+    EXPECT_NE(std::string(error.what()).find("test.toml:"), std::string::npos)
+        << error.what();
+  }
+}
+
+constexpr const char* kAmbient = "[ambient]\nconstant_degC = 25\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    EveryTable, ScenarioFileRejects,
+    testing::Values(
+        BadScenario{"[ambient]\n", "", "expected one of"},
+        BadScenario{"[ambient]\nconstant_degC=1\nfile=\"a.csv\"\n", "",
+                    "expected only one of"},
+        BadScenario{"[ambient]\npoints=[]\n", "", "empty"},
+        BadScenario{"[ambient]\npoints=[[0,1],[0,2]]\n", "", "increasing"},
+        BadScenario{"[ambient]\npoints=[[0,1],[5,999]]\n", "", "out of range"},
+        BadScenario{"[ambient]\nfile=\"no_such.csv\"\n", "", "no_such.csv"},
+        BadScenario{"[ambient.soaks]\ntemperatures_degC=[]\nhold_s=1\n"
+                    "ramp_K_per_min=1\n",
+                    "", "temperatures_degC"},
+        BadScenario{"[ambient.soaks]\ntemperatures_degC=[1]\nhold_s=0\n"
+                    "ramp_K_per_min=1\n",
+                    "", "hold_s"},
+        BadScenario{kAmbient, "[rate]\nsteps=[[5,1],[4,1]]\n", "rate.steps"},
+        BadScenario{kAmbient,
+                    "[rate.sine]\namplitude_deg_per_s=1\nfrequency_Hz=0\n",
+                    "frequency_Hz"},
+        BadScenario{kAmbient,
+                    "[rate.random]\nrms_deg_per_s=1\nbandwidth_Hz=1e9\n",
+                    "bandwidth_Hz"},
+        BadScenario{kAmbient, "[rate]\nconstant_degps=3\n", "expected one of"},
+        BadScenario{kAmbient, "[power]\non_s=[0, 10]\noff_s=[20]\n", "in turn"},
+        BadScenario{kAmbient, "[power]\non_s=[0, 10]\n", "one off"},
+        BadScenario{kAmbient, "[power]\non_s=[5]\noff_s=[2]\n", "in turn"},
+        BadScenario{kAmbient, "[noise]\nenabled=1\n", "noise.enabled"},
+        BadScenario{kAmbient, "[chamber]\nstirred=\"yes\"\n",
+                    "chamber.stirred"},
+        BadScenario{kAmbient, "[chamber]\nstired=true\n", "stirred"}));
+
+}  // namespace
+}  // namespace beamgyro

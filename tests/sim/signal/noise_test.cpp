@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "sim/signal/noise.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "sim/signal/readout.h"
+#include "tests/sim/signal/allan_deviation.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr double kN = 2e-4, kB = 1e-4, kK = 3e-6, kOn = 5e-4;
+constexpr NoiseParameters kAll = {.angle_random_walk = kN,
+                                  .bias_instability = kB,
+                                  .rate_random_walk = kK,
+                                  .turn_on = kOn};
+
+std::vector<double> noise(const NoiseParameters& parameters, double output_rate,
+                          std::size_t count, std::uint32_t run = 0) {
+  std::vector<double> rate(count, 0.0);
+  RateNoise(parameters, output_rate, 11, 0, run).add_next(rate);
+  return rate;
+}
+
+TEST(Verification, V40WhiteNoiseHasTheAngleRandomWalk) {
+  constexpr double kRate = 10.0;
+  const auto rate = noise({.angle_random_walk = kN}, kRate, 1000000);
+  for (std::size_t m : {1u, 10u, 100u, 1000u}) {
+    const AllanDeviation adev = allan_deviation(rate, m);
+    const double tau = static_cast<double>(m) / kRate;
+    EXPECT_NEAR(adev.value, kN / std::sqrt(tau), adev.three_sigma) << tau;
+  }
+}
+
+TEST(Verification, V40RateRandomWalkGrowsWithTheRootOfTime) {
+  constexpr double kRate = 10.0;
+  const auto rate = noise({.rate_random_walk = kK}, kRate, 1000000);
+  for (std::size_t m : {10u, 100u, 1000u}) {
+    const AllanDeviation adev = allan_deviation(rate, m);
+    const double tau = static_cast<double>(m) / kRate;
+    EXPECT_NEAR(adev.value, kK * std::sqrt(tau / 3.0), adev.three_sigma) << tau;
+  }
+}
+
+TEST(Verification, V40AngleQuantumFallsWithTime) {
+  constexpr double kLsb = 1e-3, kRate = 10.0;  // [rad] [Hz]
+  constexpr std::size_t kCount = 300000;
+  const double Q = kLsb / std::sqrt(12.0);
+  // Steps of many quanta, so that the rounding errors are independent.
+  RandomStream stream(2, 0, 0, RandomPurpose::kRateProfile);
+  std::vector<double> rate(kCount);
+  double angle = 0.0, error = 0.0;
+  for (double& r : rate) {
+    angle += 100.0 * kLsb * stream.normal();
+    const double next_error = quantise(angle, kLsb) - angle;
+    r = (next_error - error) * kRate;
+    error = next_error;
+  }
+  for (std::size_t m : {1u, 10u, 100u}) {
+    const AllanDeviation adev = allan_deviation(rate, m);
+    const double tau = static_cast<double>(m) / kRate;
+    EXPECT_NEAR(adev.value, std::sqrt(3.0) * Q / tau, adev.three_sigma) << tau;
+  }
+}
+
+TEST(RateNoise, WhiteVarianceIsTheSquareOfNTimesTheOutputRate) {
+  constexpr std::size_t kCount = 400000;
+  for (double output_rate : {0.1, 10.0, 200.0, 50000.0}) {
+    double variance = 0.0;
+    for (double r : noise({.angle_random_walk = kN}, output_rate, kCount))
+      variance += r * r / kCount;
+    EXPECT_NEAR(variance / (kN * kN * output_rate), 1.0,
+                3.0 * std::sqrt(2.0 / kCount))
+        << output_rate;
+  }
+}
+
+TEST(RateNoise, RateRandomWalkStartsAtZeroWithStepsOfItsVariance) {
+  constexpr double kRate = 4.0;
+  const auto rate = noise({.rate_random_walk = kK}, kRate, 200000);
+  EXPECT_EQ(rate[0], 0.0);
+  const double steps = static_cast<double>(rate.size() - 1);
+  double variance = 0.0;
+  for (std::size_t i = 1; i < rate.size(); ++i)
+    variance += (rate[i] - rate[i - 1]) * (rate[i] - rate[i - 1]) / steps;
+  EXPECT_NEAR(variance / (kK * kK / kRate), 1.0, 3.0 * std::sqrt(2.0 / steps));
+}
+
+TEST(RateNoise, PartsAreIndependentAndAddUp) {
+  const auto all = noise(kAll, 10.0, 1000);
+  const auto white = noise({.angle_random_walk = kN}, 10.0, 1000);
+  const auto flicker = noise({.bias_instability = kB}, 10.0, 1000);
+  const auto walk = noise({.rate_random_walk = kK}, 10.0, 1000);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    EXPECT_NEAR(all[i], white[i] + flicker[i] + walk[i], 1e-18);
+}
+
+TEST(RateNoise, WithoutParametersChangesNothing) {
+  std::vector<double> rate(100, 0.25);
+  RateNoise({}, 10.0, 1, 0, 0).add_next(rate);
+  EXPECT_EQ(rate, std::vector<double>(100, 0.25));
+}
+
+TEST(RateNoise, DoesNotDependOnHowTheRunIsCut) {
+  const auto whole = noise(kAll, 10.0, 5000);
+  std::vector<double> cut(5000, 0.0);
+  RateNoise noise(kAll, 10.0, 11, 0, 0);
+  for (std::size_t i = 0; i < cut.size();) {
+    const std::size_t piece = std::min<std::size_t>(i / 3 + 1, 5000 - i);
+    noise.add_next(std::span(cut).subspan(i, piece));
+    i += piece;
+  }
+  EXPECT_EQ(whole, cut);
+}
+
+TEST(Verification, V47NoiseHasTheSameBitsFromTwoThreads) {
+  constexpr std::uint32_t kRuns = 8;
+  std::vector<std::vector<double>> one(kRuns), two(kRuns);
+  for (std::uint32_t run = 0; run < kRuns; ++run)
+    one[run] = noise(kAll, 10.0, 20000, run);
+  const auto half = [&two](std::uint32_t first) {
+    for (std::uint32_t run = first; run < kRuns; run += 2)
+      two[run] = noise(kAll, 10.0, 20000, run);
+  };
+  std::thread other(half, 1);
+  half(0);
+  other.join();
+  EXPECT_EQ(one, two);
+  EXPECT_NE(one[0], one[1]);
+}
+
+TEST(TurnOnOffsets, OneCycleKeepsItsValueWhateverFollows) {
+  const auto few = turn_on_offsets(kAll, 2, 1, 0, 0);
+  const auto many = turn_on_offsets(kAll, 500, 1, 0, 0);
+  ASSERT_EQ(few.size(), 2u);
+  EXPECT_EQ(few[0], many[0]);
+  EXPECT_EQ(few[1], many[1]);
+  EXPECT_NE(few[0], few[1]);
+}
+
+TEST(TurnOnOffsets, HaveTheirSigma) {
+  constexpr std::size_t kCycles = 20000;
+  double variance = 0.0;
+  for (double offset : turn_on_offsets(kAll, kCycles, 1, 0, 0))
+    variance += offset * offset / kCycles;
+  EXPECT_NEAR(variance / (kOn * kOn), 1.0, 3.0 * std::sqrt(2.0 / kCycles));
+}
+
+std::string rejection(const NoiseParameters& parameters, double output_rate) {
+  try {
+    RateNoise(parameters, output_rate, 0, 0, 0);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(RateNoise, RejectsBadParameters) {
+  EXPECT_EQ(rejection({.angle_random_walk = -1.0}, 10.0),
+            "angle random walk is -1 rad/sqrt(s), must be 0 or more");
+  EXPECT_EQ(rejection({.bias_instability = INFINITY}, 10.0),
+            "bias instability is inf rad/s, must be 0 or more");
+  EXPECT_EQ(rejection({.rate_random_walk = NAN}, 10.0),
+            "rate random walk is nan rad/s/sqrt(s), must be 0 or more");
+  EXPECT_EQ(rejection({.turn_on = -2.0}, 10.0),
+            "turn-on offset is -2 rad/s, must be 0 or more");
+  EXPECT_EQ(rejection({}, -10.0), "output rate is -10 Hz, must be above 0");
+  EXPECT_EQ(rejection({}, NAN), "output rate is nan Hz, must be above 0");
+  EXPECT_THROW(turn_on_offsets({.turn_on = NAN}, 1, 0, 0, 0),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace beamgyro

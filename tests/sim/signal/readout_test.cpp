@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "sim/signal/readout.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace beamgyro {
+namespace {
+
+TEST(Quantise, GivesTheNearestMultipleWithHalvesAwayFromZero) {
+  EXPECT_EQ(quantise(1.124, 0.25), 1.0);
+  EXPECT_EQ(quantise(1.126, 0.25), 1.25);
+  EXPECT_EQ(quantise(1.125, 0.25), 1.25);
+  EXPECT_EQ(quantise(-1.125, 0.25), -1.25);
+  EXPECT_EQ(quantise(0.1, 0.25), 0.0);
+  EXPECT_EQ(quantise(1.0 / 3.0, 0.0), 1.0 / 3.0);
+  EXPECT_TRUE(std::isnan(quantise(NAN, 0.25)));
+}
+
+TEST(Quantise, RejectsABadResolution) {
+  EXPECT_THROW(quantise(1.0, -0.1), std::invalid_argument);
+  EXPECT_THROW(quantise(1.0, NAN), std::invalid_argument);
+  EXPECT_THROW(quantise(1.0, INFINITY), std::invalid_argument);
+}
+
+// 3 bits over +-4 rad/s: LSB 1 rad/s, codes -4 .. 3; 2 V/(rad/s) about 5 V.
+TEST(Readout, ThreeBitsHaveEightCodes) {
+  const Readout readout(4.0, 3, 2.0, 5.0);
+  EXPECT_EQ(readout.lsb(), 1.0);
+  const struct {
+    double rate;
+    int code;
+    bool saturated;
+  } cases[] = {{0.0, 0, false},    {0.49, 0, false},   {-0.49, 0, false},
+               {0.51, 1, false},   {2.6, 3, false},    {3.4, 3, false},
+               {3.6, 3, true},     {4.0, 3, true},     {17.0, 3, true},
+               {-3.6, -4, false},  {-4.0, -4, false},  {-4.01, -4, true},
+               {-1e300, -4, true}, {INFINITY, 3, true}};
+  for (const auto& c : cases) {
+    const ReadoutSample sample = readout.sample(c.rate);
+    EXPECT_EQ(sample.voltage, 5.0 + 2.0 * c.code) << c.rate;
+    EXPECT_EQ(sample.saturated, c.saturated) << c.rate;
+  }
+}
+
+TEST(Readout, StaysWithinHalfAnLsbBelowFullScale) {
+  const double full_scale = 2.6, scale_factor = 0.7;
+  for (int bits : {8, 12, 16, 24}) {
+    const Readout readout(full_scale, bits, scale_factor, 2.5);
+    EXPECT_DOUBLE_EQ(readout.lsb(), 2.0 * full_scale / std::pow(2.0, bits));
+    for (double rate = -2.6; rate < 2.58; rate += 0.00137) {
+      const ReadoutSample sample = readout.sample(rate);
+      const double shown = (sample.voltage - 2.5) / scale_factor;
+      ASSERT_NEAR(shown, rate, 0.5 * readout.lsb() + 1e-14) << bits;
+      ASSERT_FALSE(sample.saturated);
+    }
+  }
+}
+
+TEST(Readout, ErrorOverManyCodesHasTheVarianceOfAUniformOne) {
+  const Readout readout(2.6, 16, 1.0, 0.0);
+  double variance = 0.0;
+  constexpr int kCount = 200000;
+  for (int i = 0; i < kCount; ++i) {
+    const double rate = -2.0 + 4.0 * i / kCount;
+    const double error = readout.sample(rate).voltage - rate;
+    variance += error * error / kCount;
+  }
+  EXPECT_NEAR(variance / (readout.lsb() * readout.lsb() / 12.0), 1.0, 0.01);
+}
+
+TEST(Readout, NeverRepairsNotANumber) {
+  EXPECT_TRUE(std::isnan(Readout(1.0, 16, 1.0, 0.0).sample(NAN).voltage));
+}
+
+std::string rejection(double full_scale, int bits, double scale,
+                      double offset) {
+  try {
+    Readout(full_scale, bits, scale, offset);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Readout, RejectsBadParameters) {
+  EXPECT_EQ(rejection(0.0, 16, 1.0, 0.0),
+            "full scale is 0 rad/s, must be above 0");
+  EXPECT_EQ(rejection(1.0, 0, 1.0, 0.0), "ADC has 0 bits, must be 1 to 32");
+  EXPECT_EQ(rejection(1.0, 33, 1.0, 0.0), "ADC has 33 bits, must be 1 to 32");
+  EXPECT_EQ(rejection(1.0, 16, 0.0, 0.0),
+            "scale factor is 0 V/(rad/s), must not be 0");
+  EXPECT_EQ(rejection(1.0, 16, 1.0, NAN),
+            "output offset is nan V, must be finite");
+}
+
+}  // namespace
+}  // namespace beamgyro
