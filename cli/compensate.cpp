@@ -20,6 +20,14 @@ struct CompensateArguments {
   std::string compensator, run, output;
 };
 
+std::vector<double> answers(const Compensator& compensator,
+                            const Recording& recording,
+                            const std::string& file) try {
+  return compensated_rate(compensator, recording);
+} catch (const std::invalid_argument& error) {
+  throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
+}
+
 int compensate(const CompensateArguments& arguments) {
   const Compensator compensator = read_compensator(arguments.compensator);
   Recording recording = read_recording(arguments.run);
@@ -29,7 +37,7 @@ int compensate(const CompensateArguments& arguments) {
         "{}: holds a {} already; expected a recording that was not compensated",
         arguments.run, kColumn));
   }
-  std::vector<double> rate = compensated_rate(compensator, recording);
+  std::vector<double> rate = answers(compensator, recording, arguments.run);
   if (const std::size_t clamped = clamped_samples(compensator, recording)) {
     print_warning(fmt::format(
         "{}: {} of {} samples lie outside {:g} to {:g} degC, the temperatures "

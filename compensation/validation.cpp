@@ -152,23 +152,34 @@ Validation validate(const std::string& method,
   return validation;
 }
 
+namespace {
+
+AnsweredRun answered_run(const Compensator& compensator,
+                         const NamedRecording& named) try {
+  const Recording& recording = *named.recording;
+  const auto estimator = [&compensator](const Recording& any) {
+    return compensated_rate(compensator, any);
+  };
+  AnsweredRun run{.name = named.name,
+                  .recording = &recording,
+                  .compensated = estimator(recording),
+                  .baseline = baseline_rate(compensator, recording)};
+  if (!scale_factor(slope_sums(recording, run.compensated))) {
+    run.injected_scale_factor = injected_scale_factor(estimator, recording);
+  }
+  return run;
+} catch (const std::invalid_argument& error) {
+  throw std::invalid_argument(fmt::format("{}: {}", named.name, error.what()));
+}
+
+}  // namespace
+
 Validation validate(const Compensator& compensator, const std::string& method,
                     const std::vector<NamedRecording>& runs,
                     const Specification& specification) {
-  const auto estimator = [&compensator](const Recording& recording) {
-    return compensated_rate(compensator, recording);
-  };
   std::vector<AnsweredRun> answered;
-  for (const auto& [name, recording] : runs) {
-    AnsweredRun run{.name = name,
-                    .recording = recording,
-                    .compensated = estimator(*recording),
-                    .baseline = baseline_rate(compensator, *recording)};
-    if (!scale_factor(slope_sums(*recording, run.compensated))) {
-      run.injected_scale_factor = injected_scale_factor(estimator, *recording);
-    }
-    answered.push_back(std::move(run));
-  }
+  for (const NamedRecording& run : runs)
+    answered.push_back(answered_run(compensator, run));
   return validate(method, answered, specification);
 }
 

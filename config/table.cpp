@@ -71,10 +71,28 @@ std::optional<ConfigValue> ConfigTable::find(std::string_view key) const {
   return ConfigValue{*document_, *node, path_of(key)};
 }
 
+// A required key is most often missing because it is misspelt.
+void ConfigTable::fail_missing(std::string_view key,
+                               const std::string& expected) const {
+  std::vector<std::string> unread;
+  if (present_) {
+    for (const ConfigNode& child : node_->children) {
+      if (!child.known && !child.origin) unread.push_back(child.key);
+    }
+  }
+  const std::string near = suggestion(key, unread);
+  if (near.empty()) fail(key, "missing; expected " + expected);
+  const ConfigNode& child = *find_child(*node_, near);
+  throw std::invalid_argument(
+      fmt::format("{}: {}: unknown key; did you mean '{}'?",
+                  document_->place(child, child.key_position),
+                  printable(path_of(near)), key));
+}
+
 ConfigValue ConfigTable::require(std::string_view key,
                                  const std::string& expected) const {
   const std::optional<ConfigValue> value = find(key);
-  if (!value) fail(key, "missing; expected " + expected);
+  if (!value) fail_missing(key, expected);
   return *value;
 }
 
@@ -194,8 +212,7 @@ std::vector<std::vector<double>> ConfigTable::rows(std::string_view key,
 
 ConfigTable ConfigTable::table(std::string_view key) const {
   std::optional<ConfigTable> table = optional_table(key);
-  if (!table)
-    fail(key, fmt::format("missing; expected a table [{}]", path_of(key)));
+  if (!table) fail_missing(key, fmt::format("a table [{}]", path_of(key)));
   return *std::move(table);
 }
 

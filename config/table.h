@@ -82,6 +82,8 @@ class ConfigTable {
   const ConfigNode* peek(std::string_view key) const;
   std::optional<ConfigValue> find(std::string_view key) const;
   ConfigValue require(std::string_view key, const std::string& expected) const;
+  [[noreturn]] void fail_missing(std::string_view key,
+                                 const std::string& expected) const;
 
   std::shared_ptr<DocumentState> document_;
   const ConfigNode* node_;  // of an absent table: the nearest one above it

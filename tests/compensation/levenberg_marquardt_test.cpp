@@ -124,6 +124,8 @@ TEST(Restarts, ChoosesTheLowestHeldOutErrorAndRepeatsItself) {
   ASSERT_EQ(a.summaries.size(), 7u);
   for (const TrainSummary& summary : a.summaries)
     EXPECT_LE(*a.summaries[a.chosen].held_out_rms, *summary.held_out_rms);
+  for (std::size_t k = 1; k < 7; ++k)  // no two from the same weights
+    EXPECT_NE(*a.summaries[k].held_out_rms, *a.summaries[0].held_out_rms);
   EXPECT_EQ(rms_error(a.network, held_out),
             *a.summaries[a.chosen].held_out_rms);
   const Restarts other =

@@ -112,6 +112,29 @@ TEST(Train, SummaryAndProvenanceSayWhatHappened) {
   EXPECT_GT(*p.baseline_held_out_rms, 0.3);
 }
 
+TEST(Train, EveryRestartIsScoredInDegreesPerSecond) {
+  const TrainResult result =
+      train(network_spec({"temperature"}, 6), kSoaks, kOffGrid, 42);
+  for (const TrainSummary& restart : result.restarts)
+    EXPECT_GE(*restart.held_out_rms, *result.summary().held_out_rms);
+}
+
+TEST(Train, GoalIsInDegreesPerSecond) {
+  ModelSpec spec = network_spec({"temperature"}, 6);
+  BpSpec& bp = std::get<BpSpec>(spec.kind);
+  // Slow enough that the error stops just below its goal.
+  bp.training.trainer = Trainer::kGradientAdaptive;
+  bp.training.max_epochs = bp.training.patience = 20000;
+  bp.training.restarts = 1;
+  for (const double goal : {0.2, 0.1, 0.05}) {  // [deg/s]
+    bp.goal_deg_per_s = goal;
+    const TrainSummary summary = train(spec, kSoaks, kOffGrid, 1).summary();
+    EXPECT_EQ(summary.stop_reason, StopReason::kGoalReached);
+    EXPECT_LE(summary.in_sample_rms, goal);
+    EXPECT_GT(summary.in_sample_rms, 0.6 * goal);
+  }
+}
+
 TEST(Train, SameSeedGivesTheSameFile) {
   const ModelSpec spec = network_spec({"temperature"}, 6);
   const auto text = [&](std::uint64_t seed) {

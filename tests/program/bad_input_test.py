@@ -210,12 +210,15 @@ class BadData(ProgramTest):
 
     def test_a_recording_without_the_inputs(self):
         self.run_scenario("run", text=ramp())
-        self.write("m.toml", CUBIC.replace(
+        self.run_scenario("held_out", text=ramp(seed=9))
+        self.write("m.toml", NETWORK.replace(
             '["temperature"]', '["temperature", "quadrature"]'))
-        self.ok("train", "run.h5", "--model", "m.toml", "-o", "c.json")
+        self.ok("train", "run.h5", "--model", "m.toml", "--held-out",
+                "held_out.h5", "-o", "c.json")
         with h5py.File(self.dir / "run.h5", "a") as file:
             del file["quadrature"]
-        for command in [["train", "run.h5", "--model", "m.toml", "-o", "d.json"],
+        for command in [["train", "run.h5", "--model", "m.toml", "--held-out",
+                         "held_out.h5", "-o", "d.json"],
                         ["compensate", "c.json", "run.h5", "-o", "out.h5"],
                         ["validate", "c.json", "run.h5"]]:
             with self.subTest(command[0]):

@@ -118,8 +118,9 @@ class Compensation(ProgramTest):
         turning = ramp(seed=6) + "[rate]\nsteps = [" + ", ".join(
             f"[{60 * k}, {(k % 5) - 2}]" for k in range(66)) + "]\n"
         self.run_scenario("turning", text=turning)
-        text = self.ok("validate", "cancel.json", "turning.h5")
-        self.assertIn("cancels the rate", text)
+        answer = self.beamgyro("validate", "cancel.json", "turning.h5")
+        self.assertEqual(answer.returncode, 3, answer.stderr)
+        self.assertIn("cancels the rate", answer.stdout)
         text = self.ok("validate", "bp.json", "turning.h5")
         self.assertNotIn("cancels the rate", text)
 
