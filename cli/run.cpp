@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
+#include "cli/progress.h"
 #include "cli/version.h"
 #include "dataset/atomic_file.h"
 #include "dataset/csv_file.h"
@@ -44,6 +45,7 @@ int run(const RunArguments& arguments) {
   LoadedScenario input = load_scenario(arguments.scenario, overrides);
   require_writable(arguments.output);
 
+  const Progress progress("simulating " + arguments.scenario);
   Recording recording = simulate_quasistatic(input.scenario, input.device);
   recording.program_version = kProgramVersion;
   recording.git_revision = kGitRevision;

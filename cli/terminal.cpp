@@ -51,4 +51,11 @@ void print_error(std::string_view text) {
   print_line("beamgyro: ", "31", text);
 }
 
+bool shows_progress() { return !is_quiet && isatty(STDERR_FILENO) == 1; }
+
+void print_progress(std::string_view text) {
+  const std::string line = fmt::format("\r\033[K{}", text);
+  std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
 }  // namespace beamgyro

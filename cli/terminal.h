@@ -17,4 +17,10 @@ void print_note(std::string_view text);
 void print_warning(std::string_view text);
 void print_error(std::string_view text);
 
+/// Whether a line that changes may be drawn: standard error is a terminal.
+bool shows_progress();
+
+/// Replaces the line of progress on standard error; an empty text clears it.
+void print_progress(std::string_view text);
+
 }  // namespace beamgyro

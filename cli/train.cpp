@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "cli/commands.h"
+#include "cli/progress.h"
 #include "cli/terminal.h"
 #include "compensation/compensator_file.h"
 #include "dataset/atomic_file.h"
@@ -79,10 +81,12 @@ std::string report(const TrainResult& result) {
 int run_training(const TrainArguments& arguments) {
   const ModelSpec spec = read_model(arguments.model);
   require_writable(arguments.output);
+  std::optional<Progress> progress("training " + arguments.output);
   const TrainResult result =
       train(spec, read_runs(arguments.runs), read_runs(arguments.held_out),
             arguments.seed);
   write_compensator(result.compensator, arguments.output);
+  progress.reset();
   print_result(report(result));
   return 0;
 }

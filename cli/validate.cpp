@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.h"
+#include "cli/progress.h"
 #include "cli/terminal.h"
 #include "compensation/compensator_file.h"
 #include "compensation/validation_report.h"
@@ -25,6 +27,7 @@ struct ValidateArguments {
 
 int run_validation(const ValidateArguments& arguments) {
   const Compensator compensator = read_compensator(arguments.compensator);
+  std::optional<Progress> progress("validating " + arguments.compensator);
   std::deque<Recording> recordings;  // stable addresses
   std::vector<NamedRecording> runs;
   std::size_t clamped = 0;
@@ -42,6 +45,7 @@ int run_validation(const ValidateArguments& arguments) {
   if (!arguments.json.empty()) {
     write_text_file(arguments.json, to_json(validation).dump(2) + "\n");
   }
+  progress.reset();
   if (clamped > 0) {
     print_warning(fmt::format(
         "{} samples lie outside {:g} to {:g} degC, the temperatures seen in "

@@ -83,10 +83,8 @@ void ConfigTable::fail_missing(std::string_view key,
   const std::string near = suggestion(key, unread);
   if (near.empty()) fail(key, "missing; expected " + expected);
   const ConfigNode& child = *find_child(*node_, near);
-  throw std::invalid_argument(
-      fmt::format("{}: {}: unknown key; did you mean '{}'?",
-                  document_->place(child, child.key_position),
-                  printable(path_of(near)), key));
+  fail(key, fmt::format("missing; expected {}; there is a '{}' in line {}",
+                        expected, near, child.key_position.line));
 }
 
 ConfigValue ConfigTable::require(std::string_view key,

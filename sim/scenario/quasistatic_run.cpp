@@ -48,7 +48,8 @@ void add_drive_heating(const Gyro& gyro, ThermalLoad& load) {
   const double velocity = w * gyro.device.drive.amplitude;
   load.mechanical_power = 0.5 * modal.damping(0, 0) * velocity * velocity;
   load.dielectric_power =
-      0.5 * w * patch_capacitance(gyro.device.patches, kCalibrationTemperature) *
+      0.5 * w *
+      patch_capacitance(gyro.device.patches, kCalibrationTemperature) *
       signal.drive_voltage * signal.drive_voltage *
       gyro.device.patches.loss_tangent;
 }

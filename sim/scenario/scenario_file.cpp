@@ -15,12 +15,11 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;  // [rad]
 constexpr double kZeroCelsius = 273.15;             // [K]
-constexpr double kLargestRecording = 1e9;           // samples
+constexpr double kLargestRecording = 5e7;           // samples, 12 GB at work
 
 const ProfileUnit kAmbient{"temperature_degC", 1, kZeroCelsius,
                            between(-150, 300)};
-const ProfileUnit kRate{"rate_deg_per_s", kDegree, 0,
-                        between(-1e4, 1e4)};
+const ProfileUnit kRate{"rate_deg_per_s", kDegree, 0, between(-1e4, 1e4)};
 
 std::vector<PowerInterval> read_power(const ConfigTable& power) {
   if (!power.has("on_s") && !power.has("off_s")) return {{.on = 0}};

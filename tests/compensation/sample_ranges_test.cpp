@@ -26,6 +26,15 @@ TEST(SampleRanges, BlocksOfSixtySecondsHoldTheSamplesOfSixtySeconds) {
   EXPECT_THAT(sizes(score_blocks(run)), ElementsAre(600, 600, 600));
 }
 
+TEST(SampleRanges, BlocksDoNotFeelTheRoundingOfTheTimeAxis) {
+  Recording run = RecordedRun{.duration = 180.0, .step = 0.1}.recording();
+  for (std::size_t k = 1; k < run.time.size(); ++k) {
+    run.time[k] = run.time[k - 1] + 0.1;
+  }
+  ASSERT_NE(run.time[600], 60.0);
+  EXPECT_THAT(sizes(score_blocks(run)), ElementsAre(600, 600, 600));
+}
+
 TEST(SampleRanges, ARemainderCountsFromHalfABlockOn) {
   const Recording half = RecordedRun{.duration = 90.0, .step = 0.1}.recording();
   EXPECT_THAT(sizes(score_blocks(half)), ElementsAre(600, 300));

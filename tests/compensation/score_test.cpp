@@ -92,8 +92,10 @@ TEST(Score, TogetherKeepsTheWorstReplay) {
   EXPECT_EQ(score_together({score_run(good), score_run(bad), score_run(good)})
                 .injected_scale_factor,
             0.1);
-  EXPECT_TRUE(std::isnan(*score_together({score_run(missing), score_run(bad)})
-                              .injected_scale_factor));
+  for (const auto& runs : {std::vector{score_run(missing), score_run(bad)},
+                           std::vector{score_run(bad), score_run(missing)}}) {
+    EXPECT_TRUE(std::isnan(*score_together(runs).injected_scale_factor));
+  }
 }
 
 TEST(Score, UnpoweredSamplesAreSkippedAndSaturatedOnesScored) {

@@ -64,7 +64,7 @@ class CommandLine(ProgramTest):
                       says="missing.toml")
 
     def test_interrupted_run_leaves_no_file_and_keeps_the_old_one(self):
-        long = SCENARIO.replace("duration_s = 600", "duration_s = 400000") \
+        long = SCENARIO.replace("duration_s = 600", "duration_s = 45000") \
             .replace("output_rate_Hz = 2", "output_rate_Hz = 200")
         self.write("long.toml", long)
         self.write("old.h5", "precious")
@@ -74,7 +74,7 @@ class CommandLine(ProgramTest):
                 process = subprocess.Popen(
                     [PROGRAM, "run", "long.toml", "-o", "old.h5"], cwd=self.dir,
                     stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-                time.sleep(0.7)
+                time.sleep(0.4)
                 process.send_signal(name)
                 process.communicate(timeout=30)
                 self.assertEqual(process.returncode, status)

@@ -54,8 +54,8 @@ struct IdealGyro {
     const double shown = (exact * std::polar(1.0, delta)).real();
     const double shown_expected = expected.in_phase * std::cos(delta) +
                                   expected.quadrature * std::sin(delta);
-    const double shown_size = std::max(std::abs(shown_expected),
-                                       size * std::sin(std::abs(delta)));
+    const double shown_size =
+        std::max(std::abs(shown_expected), size * std::sin(std::abs(delta)));
     EXPECT_NEAR(shown, shown_expected, 0.005 * shown_size + 1e-6 * size);
   }
 };

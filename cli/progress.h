@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace beamgyro {
+
+/// While it lives, and once two seconds have passed, a line on standard error
+/// tells what is going on and for how long; gone at the end. Only on a terminal
+/// and not when quiet.
+class Progress {
+ public:
+  explicit Progress(std::string activity);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+ private:
+  void show();
+
+  std::string activity_;
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool over_ = false;
+  std::thread thread_;  // last: starts when everything else is there
+};
+
+}  // namespace beamgyro

@@ -1,0 +1,120 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Holds docs/formats.md against what the program reads and writes."""
+
+import json
+import re
+import tomllib
+import unittest
+
+import h5py
+
+from program import CUBIC, ROOT, ProgramTest, ramp
+
+PAGE = (ROOT / "docs/formats.md").read_text()
+
+
+def section(title):
+    return PAGE.split(f"\n## {title}\n")[1].split("\n## ")[0]
+
+
+def rows(text):
+    """Name in backticks and further cells of every table row."""
+    return {match[1]: match[2] for match in
+            re.finditer(r"^\| `([^`]+)` \| (.*) \|$", text, re.MULTILINE)}
+
+
+def keys(table, prefix=""):
+    """Dotted keys of a TOML table."""
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from keys(value, f"{prefix}{key}.")
+        else:
+            yield prefix + key
+
+
+def shipped(pattern):
+    for path in sorted((ROOT / "scenarios").glob(pattern)):
+        yield path, tomllib.loads(path.read_text())
+
+
+class Formats(ProgramTest):
+    def test_every_shipped_key_is_documented(self):
+        for pattern, title in [("*.toml", "Scenario file"),
+                               ("devices/*.toml", "Device file"),
+                               ("models/*.toml", "Model file")]:
+            documented = rows(section(title))
+            for path, table in shipped(pattern):
+                for key in keys(table):
+                    with self.subTest(f"{path.name}: {key}"):
+                        self.assertIn(key, documented)
+
+    def test_every_device_key_without_a_default_is_required(self):
+        text = (ROOT / "scenarios/devices/nominal.toml").read_text()
+        optional = {name for name, rest in rows(section("Device file")).items()
+                    if "default" in rest or "optional" in rest}
+        table = None
+        for line in text.splitlines():
+            if match := re.match(r"\[(.+)\]", line):
+                table = match[1]
+            elif match := re.match(r"(\w+) =", line):
+                key = f"{table}.{match[1]}"
+                self.write("d.toml", text.replace(line + "\n", "", 1)
+                           if text.count(line + "\n") == 1 else
+                           self.without(text, table, line))
+                with self.subTest(key):
+                    if key in optional:
+                        self.ok("characterise", "d.toml", "-o", "c.csv",
+                                "--beam-temperature", 25)
+                    else:
+                        self.rejected("characterise", "d.toml", "-o", "e.csv",
+                                      says=key)
+
+    def without(self, text, table, line):
+        head, tail = text.split(f"[{table}]", 1)
+        return f"{head}[{table}]" + tail.replace(line + "\n", "", 1)
+
+    def test_optional_device_keys_are_accepted(self):
+        self.ok("characterise", ROOT / "scenarios/devices/nominal.toml", "-o",
+                "c.csv", "--beam-temperature", 25, "--set",
+                "beam.angular_gain=0.9", "--set",
+                "thermal.oven={set_point_degC=65, max_power_W=3, "
+                "proportional_W_per_K=1, integral_time_s=60}")
+
+    def test_scenario_keys_are_known_to_the_program(self):
+        scenario = ROOT / "scenarios/warm_up.toml"
+        for key in rows(section("Scenario file")):
+            with self.subTest(key):
+                answer = self.beamgyro("run", scenario, "-o", "r.h5", "--set",
+                                       f"{key}=[]")
+                self.assertEqual(answer.returncode, 2)
+                self.assertNotIn("unknown key", answer.stderr)
+
+    def test_the_recording_holds_what_the_page_lists(self):
+        self.run_scenario("run", text=ramp())
+        self.write("m.toml", CUBIC)
+        self.ok("train", "run.h5", "--model", "m.toml", "-o", "c.json")
+        self.ok("compensate", "c.json", "run.h5", "-o", "out.h5")
+        documented = rows(section("Recording"))
+        with h5py.File(self.dir / "out.h5") as file:
+            found = set(file) - {"meta"} | set(file.attrs)
+            self.assertEqual(found, set(documented))
+            self.assertEqual(set(file["meta"]),
+                             {"scenario", "device", "overrides"})
+            for name, variable in file.items():
+                if name == "meta":
+                    continue
+                units, role = documented[name].split(" |")[:2]
+                self.assertEqual(variable.attrs["units"].decode(), units)
+                self.assertEqual(variable.attrs["role"].decode(), role.strip())
+
+    def test_the_compensator_holds_what_the_page_lists(self):
+        self.run_scenario("run", text=ramp())
+        self.write("m.toml", CUBIC)
+        self.ok("train", "run.h5", "--model", "m.toml", "-o", "c.json")
+        answer = json.loads((self.dir / "c.json").read_text())
+        self.assertEqual(set(answer), set(rows(section("Compensator file"))))
+
+
+if __name__ == "__main__":
+    unittest.main()
