@@ -3,12 +3,13 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
+#include "compensation/rate_departure.h"
 #include "compensation/sample_ranges.h"
 
 namespace beamgyro {
@@ -31,36 +32,21 @@ Eigen::VectorXd centred(const std::vector<double>& values) {
   return all.array() - all.mean();
 }
 
-/// Centred and divided by its largest value, which may be zero.
-Eigen::VectorXd to_unit(const Eigen::VectorXd& values) {
-  const Eigen::VectorXd about_mean = values.array() - values.mean();
-  const double largest = about_mean.cwiseAbs().maxCoeff();
-  return largest > 0.0 ? Eigen::VectorXd(about_mean / largest) : about_mean;
-}
-
-/// What the damped least-squares fit of `terms` leaves of `rate`; all centred.
-Eigen::VectorXd departure(const Eigen::VectorXd& rate,
-                          const Eigen::MatrixXd& terms) {
-  Eigen::MatrixXd normal = terms.transpose() * terms;
-  normal.diagonal().array() += kDriftDamping * static_cast<double>(rate.size());
-  return rate - terms * normal.ldlt().solve(terms.transpose() * rate);
-}
-
 SlopeSums sums_of(const Plateau& plateau) {
-  if (plateau.time.size() < 2) {
-    return {};
+  SlopeSums none;
+  none.samples = plateau.time.size();
+  if (plateau.time.empty()) {
+    return none;
   }
   const Eigen::VectorXd truth = centred(plateau.truth);
+  if (truth.isZero(0.0)) {
+    return none;
+  }
   const Eigen::VectorXd raw = centred(plateau.raw);
   const Eigen::VectorXd compensated = centred(plateau.compensated);
-  const Eigen::VectorXd time = to_unit(centred(plateau.time));
-  Eigen::MatrixXd terms(truth.size(), 4);
-  terms.col(0) = to_unit(centred(plateau.temperature));
-  terms.col(1) = time;
-  terms.col(2) = to_unit(time.array().square());
-  terms.col(3) = to_unit(time.array().cube());
-  const Eigen::VectorXd w = departure(truth, terms.leftCols(1));
-  const Eigen::VectorXd v = departure(truth, terms);
+  const Eigen::VectorXd temperature = centred(plateau.temperature);
+  const Eigen::VectorXd w = without_temperature(truth, temperature);
+  const Eigen::VectorXd v = without_drift(truth, temperature, plateau.time);
   return {.compensated = w.dot(compensated),
           .raw = w.dot(raw),
           .truth = w.dot(truth),

@@ -13,24 +13,15 @@ namespace beamgyro {
 constexpr double kSmallRate = 2.0;           // [deg/s]
 constexpr double kLeastRateDeparture = 0.1;  // [deg/s]
 constexpr double kSettlingTime = 1.0;        // [s]
-// Of the sum of squares of a drift term of amplitude one [-].
-constexpr double kDriftDamping = 1e-6;
 constexpr double kEveryRate = std::numeric_limits<double>::infinity();
 
 /// Sums from which slopes over the true rate Omega are made, of one run or, by
-/// addition, of many. The departure w of a sample is what a least-squares fit
-/// within the sample's own temperature plateau g leaves of its true rate:
-///
-///   w = Omega - (a_g + c_g T)                             for the slopes,
-///   v = Omega - (a_g + c_g T + p_g1 t + p_g2 t^2 + p_g3 t^3)  for what is
-///   kept,
-///
-/// T the measured temperature, t the time. Σ w y / Σ w Omega then is the slope
-/// of y over Omega with a bias and a temperature slope of its own for every
-/// plateau; Σ v y / Σ v Omega moreover with a smooth drift. So drift between
-/// and along plateaus, and the drift a compensator takes off, is not mistaken
-/// for scale factor. c and p are damped by kDriftDamping: a rate that itself is
-/// a polynomial in time is not explained away.
+/// addition, of many. Within each temperature plateau, w is what the measured
+/// temperature leaves of the rate and v what temperature and drift leave of it
+/// (without_temperature(), without_drift()). Σ w y / Σ w Omega then is the
+/// slope of y over Omega with a bias and a temperature slope of its own for
+/// every plateau, Σ v y / Σ v Omega moreover with a smooth drift: what drifts,
+/// or what a compensator takes off a drift, is not mistaken for scale factor.
 struct SlopeSums {
   double compensated = 0.0;                // [(deg/s)^2], Σ w compensated_rate
   double raw = 0.0;                        // [(deg/s)^2], Σ w rate

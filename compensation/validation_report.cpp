@@ -133,7 +133,7 @@ std::string notes(const Validation& validation) {
                         *overall.injected_scale_factor);
   }
   if (overall.white_noise) {
-    text += fmt::format("white noise at 1 s: {:.3f} of the raw rate's\n",
+    text += fmt::format("white noise at 1 s: {:.3g} of the raw rate's\n",
                         *overall.white_noise);
   }
   if (overall.saturated > 0) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "compensation/rate_departure.h"
 #include "tests/compensation/recorded_run.h"
 
 namespace beamgyro {
@@ -57,6 +58,41 @@ TEST(ScaleFactor, DoesNotTakeDriftWithTemperatureForScaleFactor) {
   // The damping of the fit leaves its own share of the drift.
   EXPECT_NEAR(found->raw_slope, 1.0, kDriftDamping);
   EXPECT_NEAR(found->retained, 1.0, kDriftDamping);
+}
+
+TEST(ScaleFactor, KeptIsNotMovedByADriftTakenOffAtOneTemperature) {
+  // 0.4 deg/s of drift during one sweep of +-2 deg/s: 11 % of its slope.
+  RecordedRun sweep = kTable;
+  sweep.duration = 330.0;
+  sweep.true_rate = rate_table(2.0, 11, 30.0);
+  sweep.bias = [](double t) { return 0.4 * t / 330.0; };
+  const Recording run = sweep.recording();
+  const auto found =
+      scale_factor(slope_sums(run, column_values(run, "true_rate")));
+  EXPECT_GT(found->raw_slope, 1.08);
+  EXPECT_NEAR(found->retained, 1.0, 1e-4);
+}
+
+TEST(ScaleFactor, KeptIsNotMovedByAWarmUpLongBeforeTheSweep) {
+  // The drift dies away with 300 s; the rates come after half an hour.
+  RecordedRun sweep = kTable;
+  const auto table = rate_table(2.0, 11, 60.0);
+  sweep.duration = 2460.0;
+  sweep.true_rate = [=](double t) {
+    return t < 1800.0 ? 0.0 : table(t - 1800.0);
+  };
+  sweep.bias = [](double t) { return std::exp(-t / 300.0); };
+  const Recording run = sweep.recording();
+  const auto found =
+      scale_factor(slope_sums(run, column_values(run, "true_rate")));
+  EXPECT_NEAR(found->retained, 1.0, 1e-3);
+}
+
+TEST(ScaleFactor, OfARateThatRampsIsNotExplainedAwayAsDrift) {
+  RecordedRun ramp{.true_rate = [](double t) { return 0.4 * t - 120.0; }};
+  const Recording run = ramp.recording();
+  const auto answer = scaled(column_values(run, "rate"), 0.5);
+  EXPECT_NEAR(scale_factor(slope_sums(run, answer))->retained, 0.5, 1e-9);
 }
 
 TEST(ScaleFactor, OfRunsTogetherDoesNotSeeTheirDifferentBias) {

@@ -9,7 +9,7 @@ namespace {
 
 /// Reads what a small device file may hold.
 void read_device(const ConfigDocument& document) {
-  const ConfigTable root = document.root();
+  const ConfigTable& root = document.root();
   root.text_or("name", "");
   const ConfigTable beam = root.table_or_empty("beam");
   beam.number_or("length_m", 0.0);
