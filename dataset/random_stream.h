@@ -20,6 +20,12 @@ enum class RandomPurpose : std::uint32_t {
   kInitialWeights = 6,
   kSampleOrder = 7,
   kDeviceDraw = 8,
+  kMechanicalNoise = 9,
+  kCrossRateX = 10,
+  kCrossRateY = 11,
+  kAccelerationX = 12,
+  kAccelerationY = 13,
+  kAccelerationZ = 14,
 };
 
 /// Inverse of the normal distribution function. Throws std::invalid_argument

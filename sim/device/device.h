@@ -71,20 +71,31 @@ struct MountParameters {
   double axis_angle;        // th_m [rad]
   double low_activation;    // below T_g [J/mol]
   double pin_stiffness;     // k_pin, axial [N/m]
+  // Rate-equivalent in-phase term of an acceleration a, b_g . a + r |a|^2.
+  std::array<double, 3> g_sensitivity;  // b_g along x, y, z [(rad/s)/(m/s2)]
+  double rectification;                 // r [(rad/s)/(m/s2)^2]
 };
 
 struct DriveParameters {
-  double amplitude;      // A_ref, tip [m]
-  double pll_phase;      // phi_pll [rad]
-  double voltage_limit;  // V_max [V]
+  double amplitude;            // A_ref, tip [m]
+  double pll_phase;            // phi_pll [rad]
+  double voltage_limit;        // V_max [V]
+  double demodulator_corner;   // w_f, of each of two poles [rad/s]
+  double pll_bandwidth;        // K_p [rad/s]
+  double pll_integral_corner;  // sqrt(K_i) [rad/s]
+  double agc_bandwidth;        // K_pA / tau_x [rad/s]
+  double agc_integral_corner;  // K_iA / K_pA [rad/s]
 };
 
-enum class ReadoutMode { kOpenLoop };
+enum class ReadoutMode { kOpenLoop, kForceRebalance };
 
 struct ReadoutParameters {
   ReadoutMode mode;
   double feedback_capacitance;   // C_f [F]
   double feedthrough;            // C_ft [F]
+  double rebalance_bandwidth;    // k_I, force rebalance only [rad/s]
+  double amplifier_noise;        // e_n, one-sided [V/sqrt(Hz)]
+  double input_capacitance;      // C_in of the amplifier [F]
   double quadrature_trim;        // Q_0 at T_0 [rad/s]
   double offset_trim;            // output at T_0 and rate 0 [rad/s]
   double scale_factor;           // [V/(rad/s)]

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;  // [rad]
 constexpr double kZeroCelsius = 273.15;             // [K]
+constexpr double kStandardGravity = 9.80665;        // [m/s2]
 
 constexpr Range kCelsius{-273.15, 1000, true, false};
 constexpr Range kExponent{0, 1, true, false};
@@ -93,6 +95,18 @@ BondParameters read_bond(const ConfigTable& bond) {
   };
 }
 
+std::array<double, 3> read_g_sensitivity(const ConfigTable& mount) {
+  constexpr std::string_view kKey = "g_sensitivity_deg_per_s_per_g";
+  std::array<double, 3> result = {0.02, 0.02, 0.005};
+  if (mount.has(kKey)) {
+    const std::vector<double> values =
+        mount.numbers(kKey, result.size(), between(-10, 10));
+    std::copy(values.begin(), values.end(), result.begin());
+  }
+  for (double& value : result) value *= kDegree / kStandardGravity;
+  return result;
+}
+
 MountParameters read_mount(const ConfigTable& mount) {
   return {
       .glassy_stiffness_share =
@@ -106,19 +120,34 @@ MountParameters read_mount(const ConfigTable& mount) {
           mount.number("axis_angle_deg", between(-180, 180)) * kDegree,
       .low_activation = mount.number("low_activation_J_per_mol", positive()),
       .pin_stiffness = mount.number("pin_stiffness_N_per_m", non_negative()),
+      .g_sensitivity = read_g_sensitivity(mount),
+      .rectification = mount.number_or("rectification_deg_per_s_per_g2", 0.002,
+                                       between(-10, 10)) *
+                       kDegree / (kStandardGravity * kStandardGravity),
   };
 }
 
 DriveParameters read_drive(const ConfigTable& drive) {
+  const auto corner = [&](std::string_view key, double otherwise) {
+    return 2 * std::numbers::pi *
+           drive.number_or(key, otherwise, {0, 1e3, true, false});
+  };
   return {
       .amplitude = drive.number("amplitude_m", {0, 1e-4, true, false}),
       .pll_phase = drive.number("pll_phase_rad", between(-1, 1)),
       .voltage_limit = drive.number("voltage_limit_V", positive()),
+      .demodulator_corner = corner("demodulator_corner_Hz", 300),
+      .pll_bandwidth = corner("pll_bandwidth_Hz", 30),
+      .pll_integral_corner = corner("pll_integral_corner_Hz", 10),
+      .agc_bandwidth = corner("agc_bandwidth_Hz", 20),
+      .agc_integral_corner = corner("agc_integral_corner_Hz", 3),
   };
 }
 
 ReadoutParameters read_readout(const ConfigTable& readout) {
-  readout.choice("mode", {"open_loop"});
+  const bool rebalance =
+      readout.choice("mode", {"open_loop", "force_rebalance"}) ==
+      "force_rebalance";
   const auto rate = [&](std::string_view key) {
     return readout.number(key, between(-1e4, 1e4)) * kDegree;
   };
@@ -126,10 +155,17 @@ ReadoutParameters read_readout(const ConfigTable& readout) {
     return readout.number_or(key, otherwise, non_negative());
   };
   return {
-      .mode = ReadoutMode::kOpenLoop,
+      .mode = rebalance ? ReadoutMode::kForceRebalance : ReadoutMode::kOpenLoop,
       .feedback_capacitance =
           readout.number("feedback_capacitance_F", positive()),
       .feedthrough = readout.number("feedthrough_F", between(-1e-9, 1e-9)),
+      .rebalance_bandwidth = 2 * std::numbers::pi *
+                             readout.number_or("rebalance_bandwidth_Hz", 20,
+                                               {0, 100, true, false}),
+      .amplifier_noise = readout.number_or("amplifier_noise_V_per_sqrt_Hz",
+                                           5e-9, non_negative()),
+      .input_capacitance =
+          readout.number_or("input_capacitance_F", 50e-12, non_negative()),
       .quadrature_trim = rate("quadrature_trim_deg_per_s"),
       .offset_trim = rate("offset_trim_deg_per_s"),
       .scale_factor =

@@ -9,11 +9,11 @@
 namespace beamgyro {
 namespace {
 
-Complex charge(const Gyro& gyro, const ModalParameters& modal,
-               const CaseRotation& rotation) {
+Complex signal(const Gyro& gyro, const ModalParameters& modal,
+               const CaseMotion& motion) {
   return static_solution(modal, gyro.loop, gyro.device.readout.feedthrough,
-                         rotation)
-      .charge;
+                         motion)
+      .signal;
 }
 
 // The quadrature is linear in k_trim up to the shift of w_d: a secant from the
@@ -46,15 +46,15 @@ Complex rate_response(const ModalParameters& modal, const DriveLoop& loop,
                       double feedthrough) {
   constexpr double kStep = 0.1;  // [rad/s]; cubic term 1e-8 of the slope
   const auto at = [&](double z) {
-    CaseRotation rotation;
-    rotation.z = z;
-    return static_solution(modal, loop, feedthrough, rotation).charge;
+    CaseMotion motion;
+    motion.z = z;
+    return static_solution(modal, loop, feedthrough, motion).signal;
   };
   return (at(kStep) - at(-kStep)) / (2 * kStep);
 }
 
 Complex zero_rate_terms(const Gyro& gyro, const ModalParameters& modal) {
-  return charge(gyro, modal, {}) /
+  return signal(gyro, modal, {}) /
          rate_response(modal, gyro.loop, gyro.device.readout.feedthrough);
 }
 
@@ -65,7 +65,8 @@ Gyro make_gyro(const Device& device) {
   const Eigen::Vector2cd feedback =
       patch_coupling(device, gyro.beam, kFeedback, kCalibrationTemperature);
   gyro.loop = {std::abs(feedback(0)) * device.drive.amplitude,
-               device.drive.pll_phase, device.drive.voltage_limit};
+               device.drive.pll_phase, device.drive.voltage_limit,
+               device.readout.mode};
   gyro.stiffness_trim = trimmed_stiffness(gyro);
   const ModalParameters modal = modal_parameters(
       device, gyro.beam, kCalibrationTemperature, gyro.stiffness_trim);
@@ -75,19 +76,40 @@ Gyro make_gyro(const Device& device) {
   return gyro;
 }
 
-BeamSignal beam_signal(const Gyro& gyro, double T,
-                       const CaseRotation& rotation) {
+BeamSignal beam_signal(const Gyro& gyro, double T, const CaseMotion& motion) {
   return beam_signal(
       gyro, modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim),
-      rotation);
+      motion);
 }
 
 BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
-                       const CaseRotation& rotation) {
+                       const CaseMotion& motion) {
   const StaticSolution solution = static_solution(
-      modal, gyro.loop, gyro.device.readout.feedthrough, rotation);
-  return {solution.charge / gyro.rate_axis, solution.drive_frequency,
+      modal, gyro.loop, gyro.device.readout.feedthrough, motion);
+  return {solution.signal / gyro.rate_axis, solution.drive_frequency,
           solution.drive_voltage, solution.amplitude_locked};
+}
+
+DriveHeating drive_heating(const Gyro& gyro) {
+  const ModalParameters modal = modal_parameters(
+      gyro.device, gyro.beam, kCalibrationTemperature, gyro.stiffness_trim);
+  const BeamSignal signal = beam_signal(gyro, modal, {});
+  const double w = signal.drive_frequency, V = signal.drive_voltage;
+  const double velocity = w * gyro.device.drive.amplitude;
+  const double C =
+      patch_capacitance(gyro.device.patches, kCalibrationTemperature);
+  return {0.5 * modal.damping(0, 0) * velocity * velocity,
+          0.5 * w * C * V * V * gyro.device.patches.loss_tangent};
+}
+
+double in_phase_rate(const MountParameters& mount,
+                     const std::array<double, 3>& a) {
+  double sum = 0, square = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += mount.g_sensitivity[i] * a[i];
+    square += a[i] * a[i];
+  }
+  return sum + mount.rectification * square;
 }
 
 double rate_slope(const Gyro& gyro, const ModalParameters& modal, double T) {

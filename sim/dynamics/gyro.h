@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <complex>
 
 #include "sim/device/modal_model.h"
@@ -15,8 +16,10 @@ struct Gyro {
   ProjectedBeam beam;
   double stiffness_trim = 0;  // k_trim [N/m]
   DriveLoop loop{};
-  std::complex<double> rate_axis{};  // dr/dOmega of the charge [C/(rad/s)]
-  double offset = 0;                 // V_off/SF_0 at T_0 [rad/s]
+  // d signal / dOmega at T_0: of the charge [C/(rad/s)], or, with force
+  // rebalance, of the voltage on the damping patch [V/(rad/s)].
+  std::complex<double> rate_axis{};
+  double offset = 0;  // V_off/SF_0 at T_0 [rad/s]
 };
 
 /// Solves the beam and sets the trims: k_trim so that the input-referred
@@ -37,10 +40,9 @@ struct BeamSignal {
 };
 
 /// Exact static response at beam temperature T [K] (2.10), uncached.
-BeamSignal beam_signal(const Gyro& gyro, double T,
-                       const CaseRotation& rotation);
+BeamSignal beam_signal(const Gyro& gyro, double T, const CaseMotion& motion);
 BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
-                       const CaseRotation& rotation);
+                       const CaseMotion& motion);
 
 /// Input-referred output and quadrature channel before filter, saturation and
 /// ADC [rad/s].
@@ -71,8 +73,20 @@ std::complex<double> zero_rate_terms(const Gyro& gyro,
 /// over that of T_0: 1 at T_0.
 double rate_slope(const Gyro& gyro, const ModalParameters& modal, double T);
 
-/// dr/dOmega at rate 0 [C/(rad/s)], by a central difference of the exact
-/// solution that is exact for its quadratic part.
+/// Heat the drive makes at T_0 [W]: 1/2 c w^2 A^2 in the beam and
+/// 1/2 w C V^2 tan(delta) in the driven patch.
+struct DriveHeating {
+  double mechanical, dielectric;
+};
+DriveHeating drive_heating(const Gyro& gyro);
+
+/// What an acceleration a [m/s2] of the case adds to the in-phase term,
+/// b_g . a + r |a|^2 [rad/s] (2.1).
+double in_phase_rate(const MountParameters& mount,
+                     const std::array<double, 3>& a);
+
+/// d signal / dOmega at rate 0, in the unit of rate_axis, by a central
+/// difference of the exact solution that is exact for its quadratic part.
 std::complex<double> rate_response(const ModalParameters& modal,
                                    const DriveLoop& loop, double feedthrough);
 

@@ -64,9 +64,9 @@ StaticMap::StaticMap(const Gyro& gyro, double low, double high,
 
 Eigen::Vector4d StaticMap::exact(const ModalParameters& modal,
                                  double rate) const {
-  CaseRotation rotation;
-  rotation.z = rate;
-  const BeamSignal signal = beam_signal(gyro_, modal, rotation);
+  CaseMotion motion;
+  motion.z = rate;
+  const BeamSignal signal = beam_signal(gyro_, modal, motion);
   return {signal.demodulated.real(), signal.demodulated.imag(),
           signal.drive_frequency, signal.drive_voltage};
 }

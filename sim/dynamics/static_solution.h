@@ -5,43 +5,43 @@
 #include <complex>
 
 #include "sim/device/modal_model.h"
+#include "sim/dynamics/mode_forces.h"
 
 namespace beamgyro {
 
-/// Inertial rotation of the case, components along x, y, z (the input axis).
-struct CaseRotation {
-  double x = 0, y = 0, z = 0;  // [rad/s]
-  double z_acceleration = 0;   // dOmega_z/dt, an independent input [rad/s2]
-};
-
-/// What the drive loop holds constant (2.1).
+/// What the loops hold constant (2.1, 2.5).
 struct DriveLoop {
   double feedback_amplitude;  // |Theta_Fx(T_0)| A_ref [C]
   double pll_phase;           // phi_pll [rad]
   double voltage_limit;       // V_max [V]
+  ReadoutMode mode = ReadoutMode::kOpenLoop;
 };
 
 /// Periodic state of the driven beam, q = Re[u e^{i theta}], drive voltage
 /// V_D cos(theta).
 struct StaticSolution {
-  double drive_frequency;       // w_d [rad/s]
-  double drive_voltage;         // V_D [V]
-  Eigen::Vector2cd amplitude;   // u = (X, Y) [m]
-  std::complex<double> charge;  // Theta_R^T u + C_ft V_D [C]
-  bool amplitude_locked;        // false when V_D stands at its limit
+  double drive_frequency;      // w_d [rad/s]
+  double drive_voltage;        // V_D [V]
+  Eigen::Vector2cd amplitude;  // u = (X, Y) [m]
+  /// Open loop: the charge Theta_R^T u + C_ft V_D [C]. Force rebalance: the
+  /// voltage V_B on the damping patch that keeps that charge at zero [V].
+  std::complex<double> signal;
+  bool amplitude_locked;  // false when V_D stands at its limit
 };
 
-/// S(w) of (2.10): K + N - w^2 M + i w (C + G).
+/// S(w) of (2.10): K + N - w^2 M + i w (C + G), with the
+/// forces of mode_forces() and euler_force().
 Eigen::Matrix2cd dynamic_stiffness(const ModalParameters& modal, double omega,
-                                   const CaseRotation& rotation);
+                                   const CaseMotion& motion);
 
 /// Exact steady state with the drive loop closed: the frequency at which
 /// arg(-Theta_F^T u) = phi_pll - 90 deg, u = S^-1 Theta_D V_D, and the voltage
-/// at which |Theta_F^T u| has its set value (2.1, 2.10). Newton on the phase
+/// at which |Theta_F^T u| has its set value (2.1, 2.10). With force rebalance
+/// V_B is part of the solution (2.5). Newton on the phase
 /// with its exact derivative. Throws std::runtime_error when the loop finds no
 /// frequency to lock to.
 StaticSolution static_solution(const ModalParameters& modal,
                                const DriveLoop& loop, double feedthrough,
-                               const CaseRotation& rotation);
+                               const CaseMotion& motion);
 
 }  // namespace beamgyro

@@ -2,74 +2,24 @@
 #include "sim/numerics/cvode.h"
 
 #include <cvode/cvode.h>
-#include <nvector/nvector_serial.h>
-#include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include <algorithm>
 #include <cassert>
-#include <exception>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <utility>
+
+#include "sim/numerics/sundials_objects.h"
 
 namespace beamgyro {
 namespace {
 
-static_assert(std::is_same_v<sunrealtype, double>);
-
 constexpr Eigen::Index kHighestOrder = 12;  // of CVODE's Adams formulas
 
-struct FreeContext {
-  void operator()(SUNContext context) const { SUNContext_Free(&context); }
-};
-struct FreeVector {
-  void operator()(N_Vector vector) const { N_VDestroy(vector); }
-};
-struct FreeMatrix {
-  void operator()(SUNMatrix matrix) const { SUNMatDestroy(matrix); }
-};
-struct FreeSolver {
-  void operator()(SUNLinearSolver solver) const { SUNLinSolFree(solver); }
-};
 struct FreeCvode {
   void operator()(void* memory) const { CVodeFree(&memory); }
 };
-
-template <class Handle, class Free>  // every SUNDIALS handle is a pointer
-using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Free>;
-
-template <class Handle>
-Handle created(Handle handle, const char* call) {
-  if (!handle) throw std::runtime_error(std::string(call) + " failed");
-  return handle;
-}
-
-SUNContext create_context() {
-  SUNContext context = nullptr;
-  SUNContext_Create(nullptr, &context);
-  return context;
-}
-
-void require_finite(bool finite, const char* what, double t) {
-  if (!finite) {
-    throw std::runtime_error(std::string(what) + " is not finite at t = " +
-                             std::to_string(t) + " s");
-  }
-}
-
-void require_tolerances(const CvodeOptions& options, Eigen::Index size) {
-  const Eigen::VectorXd& absolute = options.absolute_tolerance;
-  if (absolute.size() != 1 && absolute.size() != size) {
-    throw std::invalid_argument(
-        "absolute_tolerance has " + std::to_string(absolute.size()) +
-        " entries for " + std::to_string(size) + " components");
-  }
-  if (!(options.relative_tolerance >= 0) || !(absolute.array() >= 0).all()) {
-    throw std::invalid_argument("a tolerance is negative or not a number");
-  }
-}
 
 }  // namespace
 
@@ -82,15 +32,14 @@ struct Cvode::Impl {
   Eigen::VectorXd derivative;  // the same through `nv_derivative`
   OdeStep step;
   CvodeStatistics statistics;
-  std::exception_ptr callback_error;
-  std::string message;
+  CallErrors errors;
 
   // Destroyed bottom-up: the context must outlive everything created from it.
-  Owned<SUNContext, FreeContext> context;
-  Owned<N_Vector, FreeVector> nv_y;
-  Owned<N_Vector, FreeVector> nv_derivative;
-  Owned<SUNMatrix, FreeMatrix> matrix;
-  Owned<SUNLinearSolver, FreeSolver> linear_solver;
+  OwnedContext context;
+  OwnedVector nv_y;
+  OwnedVector nv_derivative;
+  OwnedMatrix matrix;
+  OwnedSolver linear_solver;
   Owned<void*, FreeCvode> memory;
 
   Impl(OdeRhs f, double t0, const Eigen::VectorXd& y0,
@@ -102,29 +51,21 @@ struct Cvode::Impl {
         y(y0),
         derivative(y0.size()),
         step{t0, t0, t0, 0, 0, Eigen::MatrixXd(y0.size(), kHighestOrder + 1)},
-        context(created(create_context(), "SUNContext_Create")),
-        nv_y(wrap(y)),
-        nv_derivative(wrap(derivative)),
-        matrix(created(SUNDenseMatrix(y.size(), y.size(), context.get()),
-                       "SUNDenseMatrix")),
-        linear_solver(
-            created(SUNLinSol_Dense(nv_y.get(), matrix.get(), context.get()),
-                    "SUNLinSol_Dense")),
-        memory(created(
+        context(make_context()),
+        nv_y(make_vector(y, context.get())),
+        nv_derivative(make_vector(derivative, context.get())),
+        matrix(make_dense_matrix(y.size(), context.get())),
+        linear_solver(make_dense_solver(y.size(), context.get())),
+        memory(
             CVodeCreate(options.method == OdeMethod::kBdf ? CV_BDF : CV_ADAMS,
-                        context.get()),
-            "CVodeCreate")) {
+                        context.get())) {
+    if (!memory) throw std::runtime_error("CVodeCreate failed");
     configure(options);
-  }
-
-  N_Vector wrap(Eigen::VectorXd& values) const {
-    return created(N_VMake_Serial(values.size(), values.data(), context.get()),
-                   "N_VMake_Serial");
   }
 
   void configure(const CvodeOptions& options) {
     void* mem = memory.get();
-    check(CVodeSetErrHandlerFn(mem, &Impl::on_error, this),
+    check(CVodeSetErrHandlerFn(mem, &CallErrors::on_error, &errors),
           "CVodeSetErrHandlerFn");
     check(CVodeInit(mem, &Impl::call_rhs, time, nv_y.get()), "CVodeInit");
     check(CVodeSetUserData(mem, this), "CVodeSetUserData");
@@ -145,29 +86,15 @@ struct Cvode::Impl {
   }
 
   void set_tolerances(const CvodeOptions& options) {
-    require_tolerances(options, y.size());
-    Eigen::VectorXd absolute = options.absolute_tolerance;
-    if (absolute.size() == 1) {
-      check(CVodeSStolerances(memory.get(), options.relative_tolerance,
-                              absolute(0)),
-            "CVodeSStolerances");
-      return;
-    }
-    const Owned<N_Vector, FreeVector> nv_absolute(wrap(absolute));
+    Eigen::VectorXd absolute = full_tolerances(
+        options.relative_tolerance, options.absolute_tolerance, y.size());
+    const OwnedVector nv_absolute = make_vector(absolute, context.get());
     check(CVodeSVtolerances(memory.get(), options.relative_tolerance,
                             nv_absolute.get()),
           "CVodeSVtolerances");
   }
 
-  void check(int flag, const char* call) {
-    if (callback_error) {
-      std::rethrow_exception(std::exchange(callback_error, nullptr));
-    }
-    if (flag < 0) {
-      throw std::runtime_error(std::string(call) + " failed (flag " +
-                               std::to_string(flag) + "): " + message);
-    }
-  }
+  void check(int flag, const char* call) { errors.check(flag, call); }
 
   void take_step(double t_end) {
     void* mem = memory.get();
@@ -195,21 +122,9 @@ struct Cvode::Impl {
     }
   }
 
-  // C callbacks: an exception must not unwind through CVODE's C frames.
-  template <class Work>
-  int guarded(const Work& work) {
-    try {
-      work();
-      return 0;
-    } catch (...) {
-      callback_error = std::current_exception();
-      return -1;  // unrecoverable: CVODE stops and check() rethrows
-    }
-  }
-
   static int call_rhs(double t, N_Vector y, N_Vector dydt, void* user) {
     Impl& self = *static_cast<Impl*>(user);
-    return self.guarded([&] {
+    return self.errors.guarded([&] {
       const Eigen::Index n = self.y.size();
       Eigen::Map<Eigen::VectorXd> rate(N_VGetArrayPointer(dydt), n);
       ++self.statistics.rhs_evaluations;
@@ -222,7 +137,7 @@ struct Cvode::Impl {
   static int call_jacobian(double t, N_Vector y, N_Vector, SUNMatrix df_dy,
                            void* user, N_Vector, N_Vector, N_Vector) {
     Impl& self = *static_cast<Impl*>(user);
-    return self.guarded([&] {
+    return self.errors.guarded([&] {
       const Eigen::Index n = self.y.size();
       Eigen::Map<Eigen::MatrixXd> slope(SUNDenseMatrix_Data(df_dy), n, n);
       ++self.statistics.jacobians;
@@ -231,10 +146,6 @@ struct Cvode::Impl {
                     slope);
       require_finite(slope.allFinite(), "Jacobian", t);
     });
-  }
-
-  static void on_error(int, const char*, const char*, char* text, void* user) {
-    static_cast<Impl*>(user)->message = text;
   }
 };
 

@@ -6,17 +6,9 @@
 #include <memory>
 #include <span>
 
+#include "sim/numerics/ode.h"
+
 namespace beamgyro {
-
-/// dy/dt = f(t, y); must fill every entry of `dydt`. May throw.
-using OdeRhs =
-    std::function<void(double t, const Eigen::Ref<const Eigen::VectorXd>& y,
-                       Eigen::Ref<Eigen::VectorXd> dydt)>;
-
-/// J(i, j) = df_i/dy_j; must fill every entry of `df_dy`. May throw.
-using OdeJacobian =
-    std::function<void(double t, const Eigen::Ref<const Eigen::VectorXd>& y,
-                       Eigen::Ref<Eigen::MatrixXd> df_dy)>;
 
 enum class OdeMethod {
   kAdams,  // non-stiff: resolved vibration

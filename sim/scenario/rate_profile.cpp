@@ -3,11 +3,10 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
-
-#include "dataset/random_stream.h"
 
 namespace beamgyro {
 namespace {
@@ -16,8 +15,22 @@ namespace {
 const double kCornerPerBandwidth =
     2 * std::numbers::pi / std::sqrt(std::sqrt(2.0) - 1);
 
-std::vector<double> sampled(const SineSignal& sine,
-                            std::span<const double> times) {
+}  // namespace
+
+bool moves(const RateProfile& profile) {
+  if (const auto* sine = std::get_if<SineSignal>(&profile))
+    return sine->amplitude != 0 || sine->offset != 0;
+  if (const auto* random = std::get_if<RandomRate>(&profile))
+    return random->rms != 0;
+  const auto& points = std::get<PiecewiseLinear>(profile);
+  const std::vector<double> times = points.breakpoints();
+  return std::any_of(times.begin(), times.end(), [&](double t) {
+    return points.value(t) != 0 || points.value_before(t) != 0;
+  });
+}
+
+std::vector<double> sine_values(const SineSignal& sine,
+                                std::span<const double> times) {
   std::vector<double> values;
   values.reserve(times.size());
   for (const double t : times) {
@@ -29,11 +42,9 @@ std::vector<double> sampled(const SineSignal& sine,
   return values;
 }
 
-}  // namespace
-
 PiecewiseLinear realised(const RandomRate& random, double duration,
                          std::uint64_t seed, std::uint32_t device,
-                         std::uint32_t run) {
+                         std::uint32_t run, RandomPurpose purpose) {
   const double h = 1 / (16 * random.bandwidth);
   const double w = kCornerPerBandwidth * random.bandwidth;
   const double correlation = std::exp(-w * h) * (1 + w * h);
@@ -48,7 +59,7 @@ PiecewiseLinear realised(const RandomRate& random, double duration,
   const Eigen::Matrix2d root =
       (P - step * P * step.transpose()).llt().matrixL();
 
-  RandomStream stream(seed, device, run, RandomPurpose::kRateProfile);
+  RandomStream stream(seed, device, run, purpose);
   const auto draw = [&] {
     Eigen::Vector2d n;
     n(0) = stream.normal();
@@ -69,14 +80,15 @@ PiecewiseLinear realised(const RandomRate& random, double duration,
 SampledRate sampled_rate(const RateProfile& profile, const OutputFilter& filter,
                          std::span<const double> times, double output_rate,
                          double duration, std::uint64_t seed,
-                         std::uint32_t device, std::uint32_t run) {
+                         std::uint32_t device, std::uint32_t run,
+                         RandomPurpose purpose) {
   if (const auto* sine = std::get_if<SineSignal>(&profile)) {
-    return {sampled(*sine, times),
+    return {sine_values(*sine, times),
             filter.response(*sine, output_rate, times.size())};
   }
   const auto* random = std::get_if<RandomRate>(&profile);
   const PiecewiseLinear points =
-      random ? realised(*random, duration, seed, device, run)
+      random ? realised(*random, duration, seed, device, run, purpose)
              : std::get<PiecewiseLinear>(profile);
   return {points.sample(times),
           filter.response(points, output_rate, times.size())};

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <variant>
 #include <vector>
 
+#include "dataset/random_stream.h"
 #include "sim/numerics/piecewise_linear.h"
 #include "sim/signal/output_filter.h"
 
@@ -18,17 +20,33 @@ struct RandomRate {
   double bandwidth;  // [Hz]
 };
 
-/// Rate about an axis over time [rad/s]. A sine runs from time 0 on, with
-/// phase `phase` there.
+/// Rate about an axis over time [rad/s], or acceleration along it [m/s2]. A
+/// sine runs from time 0 on, with phase `phase` there.
 using RateProfile = std::variant<PiecewiseLinear, SineSignal, RandomRate>;
+
+/// Whether a profile ever differs from zero.
+bool moves(const RateProfile& profile);
+
+/// Streams of the random profiles of the cross axes x, y and of acceleration
+/// along x, y, z.
+inline constexpr std::array<RandomPurpose, 2> kCrossPurposes = {
+    RandomPurpose::kCrossRateX, RandomPurpose::kCrossRateY};
+inline constexpr std::array<RandomPurpose, 3> kAccelerationPurposes = {
+    RandomPurpose::kAccelerationX, RandomPurpose::kAccelerationY,
+    RandomPurpose::kAccelerationZ};
+
+/// A sine at the sample times.
+std::vector<double> sine_values(const SineSignal& sine,
+                                std::span<const double> times);
 
 /// One realisation of a random rate over [0, duration]: exact samples of the
 /// process on a grid of 1/(16 bandwidth), linear between, scaled so that the
 /// mean square of the interpolated signal is rms^2. Numbers from the stream
-/// kRateProfile of (seed, device, run).
+/// `purpose` of (seed, device, run).
 PiecewiseLinear realised(const RandomRate& random, double duration,
                          std::uint64_t seed, std::uint32_t device,
-                         std::uint32_t run);
+                         std::uint32_t run,
+                         RandomPurpose purpose = RandomPurpose::kRateProfile);
 
 /// The rate and what the output filter makes of it at the sample times.
 struct SampledRate {
@@ -38,6 +56,7 @@ struct SampledRate {
 SampledRate sampled_rate(const RateProfile& profile, const OutputFilter& filter,
                          std::span<const double> times, double output_rate,
                          double duration, std::uint64_t seed,
-                         std::uint32_t device, std::uint32_t run);
+                         std::uint32_t device, std::uint32_t run,
+                         RandomPurpose purpose = RandomPurpose::kRateProfile);
 
 }  // namespace beamgyro

@@ -23,6 +23,10 @@ double highest_output_rate(Fidelity fidelity) {
   switch (fidelity) {
     case Fidelity::kQuasistatic:
       return 200;
+    case Fidelity::kEnvelope:
+      return 2000;
+    case Fidelity::kCarrier:
+      return 1e5;  // a quarter of the drive frequency, which the run checks
   }
   return 0;
 }

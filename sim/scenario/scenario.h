@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -15,6 +16,8 @@ namespace beamgyro {
 
 enum class Fidelity {
   kQuasistatic,  // thermal network and static response at every sample
+  kEnvelope,     // amplitudes, loops and thermal network over time
+  kCarrier,      // every vibration
 };
 
 /// What happens to one gyro: power, surroundings and rotation over time.
@@ -29,6 +32,11 @@ struct Scenario {
   PiecewiseLinear ambient = PiecewiseLinear::constant(298.15);  // [K]
   bool stirred = false;
   RateProfile rate = PiecewiseLinear::constant(0);  // input axis [rad/s]
+  std::array<RateProfile, 2> cross_rate = {         // about x, y [rad/s]
+      PiecewiseLinear::constant(0), PiecewiseLinear::constant(0)};
+  std::array<RateProfile, 3> acceleration = {  // along x, y, z [m/s2]
+      PiecewiseLinear::constant(0), PiecewiseLinear::constant(0),
+      PiecewiseLinear::constant(0)};
   bool noise_enabled = true;
 };
 

@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "sim/scenario/profile_keys.h"
 
@@ -19,7 +22,25 @@ constexpr double kLargestRecording = 5e7;           // samples, 12 GB at work
 
 const ProfileUnit kAmbient{"temperature_degC", 1, kZeroCelsius,
                            between(-150, 300)};
-const ProfileUnit kRate{"rate_deg_per_s", kDegree, 0, between(-1e4, 1e4)};
+constexpr double kStandardGravity = 9.80665;  // [m/s2]
+
+// How the motion about or along one axis is written.
+struct MotionKeys {
+  ProfileUnit unit;
+  std::string suffix;  // of constant_, amplitude_, offset_, rms_
+};
+const MotionKeys kRate{{"rate_deg_per_s", kDegree, 0, between(-1e4, 1e4)},
+                       "deg_per_s"};
+const MotionKeys kAcceleration{
+    {"acceleration_g", kStandardGravity, 0, between(-1e3, 1e3)}, "g"};
+
+Fidelity read_fidelity(const ConfigTable& root) {
+  const std::string name =
+      root.choice("fidelity", {"quasistatic", "envelope", "carrier"});
+  if (name == "envelope") return Fidelity::kEnvelope;
+  if (name == "carrier") return Fidelity::kCarrier;
+  return Fidelity::kQuasistatic;
+}
 
 std::vector<PowerInterval> read_power(const ConfigTable& power) {
   if (!power.has("on_s") && !power.has("off_s")) return {{.on = 0}};
@@ -90,18 +111,22 @@ PiecewiseLinear read_ambient(const ConfigTable& ambient,
                                    kZeroCelsius);
 }
 
-SineSignal read_sine(const ConfigTable& sine) {
+SineSignal read_sine(const ConfigTable& sine, const MotionKeys& keys) {
+  const auto& [column, factor, zero, range] = keys.unit;
   return {
-      .offset = sine.number_or("offset_deg_per_s", 0, kRate.range) * kDegree,
-      .amplitude = sine.number("amplitude_deg_per_s", kRate.range) * kDegree,
+      .offset = sine.number_or("offset_" + keys.suffix, 0, range) * factor,
+      .amplitude = sine.number("amplitude_" + keys.suffix, range) * factor,
       .frequency = sine.number("frequency_Hz", positive()),
       .phase = sine.number_or("phase_rad", 0),
   };
 }
 
-RandomRate read_random(const ConfigTable& random, double duration) {
+RandomRate read_random(const ConfigTable& random, const MotionKeys& keys,
+                       double duration) {
   const RandomRate rate{
-      .rms = random.number("rms_deg_per_s", {0, 1e4, true, false}) * kDegree,
+      .rms = random.number("rms_" + keys.suffix,
+                           {0, keys.unit.range.high, true, false}) *
+             keys.unit.factor,
       .bandwidth = random.number("bandwidth_Hz", positive()),
   };
   if (16 * rate.bandwidth * duration > kLargestRecording / 10) {
@@ -113,19 +138,32 @@ RandomRate read_random(const ConfigTable& random, double duration) {
   return rate;
 }
 
-RateProfile read_rate(const ConfigTable& root,
-                      const std::filesystem::path& folder, double duration) {
-  const auto rate = root.optional_table("rate");
-  if (!rate) return PiecewiseLinear::constant(0);
-  const std::string form = only_form(
-      *rate,
-      {"constant_deg_per_s", "points", "steps", "sine", "random", "file"});
-  if (form == "points") return read_points(*rate, kRate);
-  if (form == "steps") return read_steps(*rate, kRate);
-  if (form == "sine") return read_sine(rate->table("sine"));
-  if (form == "random") return read_random(rate->table("random"), duration);
-  if (form == "file") return read_profile_file(*rate, kRate, folder);
-  return PiecewiseLinear::constant(rate->number(form, kRate.range) * kDegree);
+RateProfile read_motion(const std::optional<ConfigTable>& axis,
+                        const MotionKeys& keys,
+                        const std::filesystem::path& folder, double duration) {
+  if (!axis) return PiecewiseLinear::constant(0);
+  const std::string constant = "constant_" + keys.suffix;
+  const std::string form =
+      only_form(*axis, {constant, "points", "steps", "sine", "random", "file"});
+  if (form == "points") return read_points(*axis, keys.unit);
+  if (form == "steps") return read_steps(*axis, keys.unit);
+  if (form == "sine") return read_sine(axis->table("sine"), keys);
+  if (form == "random")
+    return read_random(axis->table("random"), keys, duration);
+  if (form == "file") return read_profile_file(*axis, keys.unit, folder);
+  return PiecewiseLinear::constant(axis->number(form, keys.unit.range) *
+                                   keys.unit.factor);
+}
+
+template <std::size_t kAxes>
+void read_axes(const ConfigTable& table, const MotionKeys& keys,
+               const std::filesystem::path& folder, double duration,
+               std::array<RateProfile, kAxes>& axes) {
+  constexpr std::array<std::string_view, 3> kNames = {"x", "y", "z"};
+  for (std::size_t i = 0; i < kAxes; ++i) {
+    axes[i] =
+        read_motion(table.optional_table(kNames[i]), keys, folder, duration);
+  }
 }
 
 }  // namespace
@@ -137,7 +175,7 @@ Scenario read_scenario(const ConfigDocument& document) {
   scenario.name = root.text("name");
   scenario.description = root.text_or("description", "");
   scenario.device_file = folder / root.text("device");
-  root.choice("fidelity", {"quasistatic"});
+  scenario.fidelity = read_fidelity(root);
   scenario.duration = root.number("duration_s", positive());
   scenario.output_rate =
       root.number("output_rate_Hz",
@@ -155,7 +193,12 @@ Scenario read_scenario(const ConfigDocument& document) {
   scenario.powered = read_power(root.table_or_empty("power"));
   scenario.ambient = read_ambient(root.table("ambient"), folder);
   scenario.stirred = root.table_or_empty("chamber").flag_or("stirred", false);
-  scenario.rate = read_rate(root, folder, scenario.duration);
+  scenario.rate = read_motion(root.optional_table("rate"), kRate, folder,
+                              scenario.duration);
+  read_axes(root.table_or_empty("cross_rate"), kRate, folder, scenario.duration,
+            scenario.cross_rate);
+  read_axes(root.table_or_empty("acceleration"), kAcceleration, folder,
+            scenario.duration, scenario.acceleration);
   scenario.noise_enabled =
       root.table_or_empty("noise").flag_or("enabled", true);
   return scenario;

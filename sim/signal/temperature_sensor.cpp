@@ -6,15 +6,15 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "dataset/random_stream.h"
 #include "sim/signal/readout.h"
 
 namespace beamgyro {
 
-std::vector<double> temperature_readings(
+TemperatureSensor::TemperatureSensor(
     const TemperatureSensorParameters& parameters, bool noise_enabled,
-    std::span<const double> temperature, std::uint64_t seed,
-    std::uint32_t device, std::uint32_t run) {
+    std::uint64_t seed, std::uint32_t device, std::uint32_t run)
+    : parameters_(parameters),
+      stream_(seed, device, run, RandomPurpose::kTemperatureSensor) {
   if (!(parameters.noise >= 0.0) || !std::isfinite(parameters.noise))
     throw std::invalid_argument(
         fmt::format("temperature sensor noise is {} K, must be 0 or more",
@@ -23,16 +23,20 @@ std::vector<double> temperature_readings(
     throw std::invalid_argument(
         fmt::format("temperature sensor offset is {} K, must be finite",
                     parameters.offset));
+  quantise(0.0, parameters.resolution);
+  if (!noise_enabled) parameters_.noise = 0.0;
+}
+
+std::vector<double> TemperatureSensor::readings(
+    std::span<const double> temperature) {
   constexpr double kZeroCelsius = 273.15;  // [K]
   std::vector<double> readings(temperature.size(), 0.0);
-  const double noise = noise_enabled ? parameters.noise : 0.0;
-  if (noise > 0.0)
-    RandomStream(seed, device, run, RandomPurpose::kTemperatureSensor)
-        .fill_normal(readings);
+  if (parameters_.noise > 0.0) stream_.fill_normal(readings);
   for (std::size_t i = 0; i < readings.size(); ++i)
-    readings[i] = quantise((temperature[i] - kZeroCelsius) + parameters.offset +
-                               noise * readings[i],
-                           parameters.resolution);
+    readings[i] =
+        quantise((temperature[i] - kZeroCelsius) + parameters_.offset +
+                     parameters_.noise * readings[i],
+                 parameters_.resolution);
   return readings;
 }
 

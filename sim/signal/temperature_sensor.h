@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "dataset/random_stream.h"
+
 namespace beamgyro {
 
 struct TemperatureSensorParameters {
@@ -16,11 +18,22 @@ struct TemperatureSensorParameters {
 /// What the temperature sensor shows [degC], one reading per temperature [K] of
 /// its node: the multiple of `resolution` on the Celsius scale nearest to
 ///   temperature + offset + noise n,  n from the stream kTemperatureSensor.
-/// Without noise, offset and resolution stay. Throws std::invalid_argument for
-/// noise or resolution below 0, or a parameter that is not finite.
-std::vector<double> temperature_readings(
-    const TemperatureSensorParameters& parameters, bool noise_enabled,
-    std::span<const double> temperature, std::uint64_t seed,
-    std::uint32_t device, std::uint32_t run);
+/// Without noise, offset and resolution stay. The readings do not depend on how
+/// a run is cut into calls.
+class TemperatureSensor {
+ public:
+  /// Throws std::invalid_argument for noise or resolution below 0, or a
+  /// parameter that is not finite.
+  TemperatureSensor(const TemperatureSensorParameters& parameters,
+                    bool noise_enabled, std::uint64_t seed,
+                    std::uint32_t device, std::uint32_t run);
+
+  /// Readings of the next temperature.size() samples.
+  std::vector<double> readings(std::span<const double> temperature);
+
+ private:
+  TemperatureSensorParameters parameters_;
+  RandomStream stream_;
+};
 
 }  // namespace beamgyro

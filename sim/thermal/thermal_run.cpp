@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "sim/thermal/thermal_oven.h"
+#include "sim/thermal/thermal_ode.h"
 
 namespace beamgyro {
 namespace {
@@ -87,66 +87,6 @@ std::vector<Piece> pieces_until(double end, const ThermalLoad& load) {
   return pieces;
 }
 
-// Node temperatures, followed by the integral of the oven if there is one.
-class ThermalOde {
- public:
-  ThermalOde(const ThermalNetwork& network, const ThermalLoad& load)
-      : network_(network),
-        stirred_(load.stirred),
-        powered_heating_(network.powered_heating(load.mechanical_power,
-                                                 load.dielectric_power)) {}
-
-  void begin(const Piece& piece) { piece_ = piece; }
-
-  void rate(double t, const Eigen::Ref<const Eigen::VectorXd>& y,
-            Eigen::Ref<Eigen::VectorXd> dydt) const {
-    const NodeVector temperature = y.head<kThermalNodeCount>();
-    NodeVector power = NodeVector::Zero();
-    if (piece_.powered) power = powered_heating_;
-    if (has_oven()) {
-      const OvenAction action = oven(y);
-      power(kMount) += action.power;
-      dydt(kThermalNodeCount) = action.integral_rate;
-    }
-    dydt.head<kThermalNodeCount>() =
-        network_.heating_rate(temperature, power, surroundings(t));
-  }
-
-  void jacobian(double t, const Eigen::Ref<const Eigen::VectorXd>& y,
-                Eigen::Ref<Eigen::MatrixXd> slope) const {
-    slope.setZero();
-    slope.topLeftCorner<kThermalNodeCount, kThermalNodeCount>() =
-        network_.heating_rate_jacobian(y.head<kThermalNodeCount>(),
-                                       surroundings(t));
-    if (!has_oven()) return;
-    const OvenAction action = oven(y);
-    const double C = network_.heat_capacity()(kMount);
-    slope(kMount, kMount) += action.power_per_mount / C;
-    slope(kMount, kThermalNodeCount) = action.power_per_integral / C;
-    slope(kThermalNodeCount, kMount) = action.integral_rate_per_mount;
-    slope(kThermalNodeCount, kThermalNodeCount) =
-        action.integral_rate_per_integral;
-  }
-
-  bool has_oven() const { return network_.parameters().oven.has_value(); }
-
- private:
-  ThermalSurroundings surroundings(double t) const {
-    return {piece_.ambient(t), stirred_};
-  }
-
-  OvenAction oven(const Eigen::Ref<const Eigen::VectorXd>& y) const {
-    if (!piece_.powered) return {};
-    return oven_action(*network_.parameters().oven, y(kMount),
-                       y(kThermalNodeCount));
-  }
-
-  const ThermalNetwork& network_;
-  bool stirred_;
-  NodeVector powered_heating_;  // [W]
-  Piece piece_{};
-};
-
 // Fills the columns of a history in order of time.
 class Recorder {
  public:
@@ -208,8 +148,12 @@ ThermalHistory simulate_temperatures(const ThermalNetwork& network,
   ThermalHistory history;
   if (times.empty()) return history;
 
-  ThermalOde ode(network, load);
-  const Eigen::Index size = kThermalNodeCount + (ode.has_oven() ? 1 : 0);
+  const ThermalOde ode(network, load.mechanical_power, load.dielectric_power);
+  const Eigen::Index size = ode.size();
+  Piece now{};
+  const auto surroundings = [&](double t) -> ThermalSurroundings {
+    return {now.ambient(t), load.stirred};
+  };
   Eigen::VectorXd y = Eigen::VectorXd::Constant(size, load.ambient.value(0));
   y.tail(size - kThermalNodeCount).setZero();
 
@@ -218,17 +162,19 @@ ThermalHistory simulate_temperatures(const ThermalNetwork& network,
   cvode_options.absolute_tolerance =
       Eigen::VectorXd::Constant(1, options.tolerance);
   cvode_options.jacobian = [&](double t, const auto& state, auto slope) {
-    ode.jacobian(t, state, slope);
+    ode.jacobian(surroundings(t), now.powered, state, slope);
   };
   Cvode cvode(
-      [&](double t, const auto& state, auto rate) { ode.rate(t, state, rate); },
+      [&](double t, const auto& state, auto rate) {
+        ode.rate(surroundings(t), now.powered, state, rate);
+      },
       0.0, y, cvode_options);
   Recorder recorder(times, size);
   bool powered = false;
   for (const Piece& piece : pieces_until(times.back(), load)) {
     if (piece.powered && !powered) y.tail(size - kThermalNodeCount).setZero();
     powered = piece.powered;
-    ode.begin(piece);
+    now = piece;
     recorder.record_until(piece.start, y);
     cvode.restart(piece.start, y);
     y = cvode.advance_to(piece.end,

@@ -125,18 +125,46 @@ class BadScenario(ProgramTest):
                                        "output_rate_Hz = 201"),
                           ["output_rate_Hz", "201", "200"])
 
-    def test_what_is_not_built_yet(self):
-        for fidelity in ["envelope", "carrier"]:
-            with self.subTest(fidelity):
-                self.run_rejected(self.changed("quasistatic", fidelity),
-                                  ["fidelity", fidelity, "quasistatic"])
-                self.write("s.toml", SCENARIO)
-                self.rejected("run", "s.toml", "-o", "out.h5", "--fidelity",
-                              fidelity, says=fidelity)
+    def test_fidelities_and_modes(self):
         self.run_rejected(self.changed("quasistatic", "quasi"), "quasistatic")
         self.rejected("characterise", "device.toml", "-o", "out.csv", "--set",
-                      'readout.mode="force_rebalance"',
-                      says=["mode", "force_rebalance"])
+                      'readout.mode="whole_angle"', says=["mode", "open_loop"])
+        self.run_rejected(
+            self.changed("quasistatic", "envelope").replace(
+                "output_rate_Hz = 2", "output_rate_Hz = 2001"),
+            ["output_rate_Hz", "2001", "2000"])
+        self.run_rejected(
+            self.changed("quasistatic", "carrier").replace(
+                "output_rate_Hz = 2", "output_rate_Hz = 2500"),
+            ["output_rate_Hz", "2500", "quarter"], place=False)
+
+    def test_a_carrier_run_of_hours_wants_consent(self):
+        self.run_rejected(
+            self.changed("quasistatic", "carrier").replace("= 600", "= 9000"),
+            ["9000 s", "--yes"], place=False)
+
+    def test_motion_of_the_other_axes(self):
+        for lines, says in [
+                ("[cross_rate]\nz = { constant_deg_per_s = 1 }",
+                 "cross_rate.z"),
+                ("[cross_rate]\nx = { constant_g = 1 }",
+                 "constant_deg_per_s"),
+                ("[acceleration]\nx = 9.81", "acceleration.x"),
+                ("[acceleration]\ny = { sine = { amplitude_g = 1 } }",
+                 "frequency_Hz"),
+                ("[acceleration]\nz = { constant_g = inf }", "constant_g")]:
+            with self.subTest(lines):
+                self.run_rejected(SCENARIO + "\n" + lines + "\n", says)
+
+    def test_a_drive_that_cannot_hold_its_amplitude(self):
+        for fidelity in ["envelope", "carrier"]:
+            with self.subTest(fidelity):
+                text = self.changed("quasistatic", fidelity).replace(
+                    "= 600", "= 2")
+                self.write("s.toml", text)
+                self.rejected("run", "s.toml", "-o", "out.h5", "--set",
+                              "drive.voltage_limit_V=0.4", status=1,
+                              says=["not locked", "its limit"])
 
     def test_overrides(self):
         self.write("s.toml", SCENARIO)

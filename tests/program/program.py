@@ -77,12 +77,12 @@ class ProgramTest(unittest.TestCase):
         return {path.relative_to(self.dir): path.read_bytes()
                 for path in self.dir.rglob("*") if path.is_file()}
 
-    def rejected(self, *arguments, says=()):
-        """The one message of a command refused with exit status 2, after which
+    def rejected(self, *arguments, says=(), status=2):
+        """The one message of a command refused with an exit status, after which
         every file is as it was and no other has come."""
         before = self.files()
         answer = self.beamgyro(*arguments)
-        self.assertEqual(answer.returncode, 2,
+        self.assertEqual(answer.returncode, status,
                          f"{arguments}: {answer.stderr}{answer.stdout}")
         self.assertEqual(answer.stdout, "")
         self.assertEqual(len(answer.stderr.strip().splitlines()), 1,

@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "mount.glass_transition_degC"},
         BadValue{"air.inverse_Q=-1e-5", "air.inverse_Q"},
         BadValue{"drive.voltage_limit_V=0", "drive.voltage_limit_V"},
-        BadValue{"readout.mode=\"force_rebalance\"", "open_loop"},
+        BadValue{"readout.mode=\"whole_angle\"", "open_loop"},
         BadValue{"readout.adc_bits=12.5", "readout.adc_bits"},
         BadValue{"readout.full_scale_deg_per_s=inf", "full_scale_deg_per_s"},
         BadValue{"noise.turn_on_deg_per_s=\"small\"", "noise.turn_on"},

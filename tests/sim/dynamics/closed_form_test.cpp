@@ -37,14 +37,14 @@ struct IdealGyro {
   // Exact B_0 - i Q_0 [rad/s] against (2.21), (2.22), to 0.5 %, and what a
   // board makes of it that is off in phase by `delta` against (2.23).
   void expect_closed_form(double feedthrough = 0, double delta = 0) const {
-    CaseRotation slow;
+    CaseMotion slow;
     slow.z = 1e-3;
     const StaticSolution at_rest =
         static_solution(modal, loop, feedthrough, {});
     const StaticSolution turning =
         static_solution(modal, loop, feedthrough, slow);
     const Complex exact =
-        at_rest.charge / ((turning.charge - at_rest.charge) / slow.z);
+        at_rest.signal / ((turning.signal - at_rest.signal) / slow.z);
     const ClosedForm expected =
         closed_form(modal, loop, feedthrough, at_rest.drive_frequency);
     const double size = std::hypot(expected.in_phase, expected.quadrature);

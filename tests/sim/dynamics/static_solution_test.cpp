@@ -23,7 +23,7 @@ struct NominalModes {
   double feedthrough = gyro.device.readout.feedthrough;
 
   StaticSolution at(double rate) const {
-    CaseRotation rotation;
+    CaseMotion rotation;
     rotation.z = rate;
     return static_solution(modal, gyro.loop, feedthrough, rotation);
   }
@@ -31,7 +31,7 @@ struct NominalModes {
 
 TEST(StaticSolution, SatisfiesTheEquationsOfMotionAndTheLoopConditions) {
   const NominalModes modes;
-  CaseRotation rotation{0.3, -0.2, 2, 0};
+  CaseMotion rotation{0.3, -0.2, 2, 0};
   const StaticSolution s = static_solution(modes.modal, modes.gyro.loop,
                                            modes.feedthrough, rotation);
   const Eigen::Vector2cd force = modes.modal.coupling[kDrive] * s.drive_voltage;
@@ -65,9 +65,9 @@ TEST(Verification, V25TurningModesAndTransducersTogetherChangesNothing) {
   turned.damping = R * turned.damping * R.transpose();
   for (Eigen::Vector2cd& coupling : turned.coupling) coupling = R * coupling;
   for (const double rate : {0.0, 1.0, -3.0}) {
-    CaseRotation rotation{0.5, -0.4, rate, 0};
+    CaseMotion rotation{0.5, -0.4, rate, 0};
     // The cross rates turn with the modes.
-    CaseRotation turned_rotation = rotation;
+    CaseMotion turned_rotation = rotation;
     const Eigen::Vector2d cross = R * Eigen::Vector2d(rotation.x, rotation.y);
     turned_rotation.x = cross(0);
     turned_rotation.y = cross(1);
@@ -75,7 +75,7 @@ TEST(Verification, V25TurningModesAndTransducersTogetherChangesNothing) {
                                              modes.feedthrough, rotation);
     const StaticSolution b = static_solution(
         turned, modes.gyro.loop, modes.feedthrough, turned_rotation);
-    EXPECT_NEAR(std::abs(a.charge / b.charge - 1.0), 0, 1e-10);
+    EXPECT_NEAR(std::abs(a.signal / b.signal - 1.0), 0, 1e-10);
     EXPECT_NEAR(a.drive_frequency / b.drive_frequency, 1, 1e-10);
     EXPECT_NEAR(a.drive_voltage / b.drive_voltage, 1, 1e-10);
   }
@@ -85,7 +85,7 @@ TEST(Verification, V26ScaleFactorNonlinearityAt300DegPerS) {
   const NominalModes modes;
   const double rate = 300 * kDegree;
   const auto slope = [&](double step) {
-    return ((modes.at(step).charge - modes.at(-step).charge) /
+    return ((modes.at(step).signal - modes.at(-step).signal) /
             (2 * step * modes.gyro.rate_axis))
         .real();
   };
@@ -94,11 +94,11 @@ TEST(Verification, V26ScaleFactorNonlinearityAt300DegPerS) {
 
 TEST(StaticSolution, CrossAxisRatesMakeQuadratureOnly) {
   const NominalModes modes;
-  const CaseRotation rotation{5, 5, 0, 0};
+  const CaseMotion rotation{5, 5, 0, 0};
   const Complex turned =
       static_solution(modes.modal, modes.gyro.loop, modes.feedthrough, rotation)
-          .charge;
-  const Complex change = (turned - modes.at(0).charge) / modes.gyro.rate_axis;
+          .signal;
+  const Complex change = (turned - modes.at(0).signal) / modes.gyro.rate_axis;
   const double expected = 25 / (2 * modes.at(0).drive_frequency);
   EXPECT_NEAR(-change.imag() / expected, 1, 0.05);
 }
@@ -108,14 +108,14 @@ TEST(StaticSolution, AVoltageAtItsLimitScalesTheMotionAndSaysSo) {
   const StaticSolution free = modes.at(0.5);
   DriveLoop weak = modes.gyro.loop;
   weak.voltage_limit = 0.5 * free.drive_voltage;
-  CaseRotation rotation;
+  CaseMotion rotation;
   rotation.z = 0.5;
   const StaticSolution held =
       static_solution(modes.modal, weak, modes.feedthrough, rotation);
   EXPECT_TRUE(free.amplitude_locked);
   EXPECT_FALSE(held.amplitude_locked);
   EXPECT_EQ(held.drive_frequency, free.drive_frequency);
-  EXPECT_NEAR(std::abs(held.charge / free.charge), 0.5, 1e-12);
+  EXPECT_NEAR(std::abs(held.signal / free.signal), 0.5, 1e-12);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ TEST(TemperatureSensor, WithNoiseOffKeepsItsOffsetAndItsCelsiusScale) {
   silent.noise = 10.0;  // would show in every reading
   const std::vector<double> temperature = {298.15, 298.17, 298.18, 243.16};
   const auto reading =
-      temperature_readings(silent, false, temperature, 1, 0, 0);
+      TemperatureSensor(silent, false, 1, 0, 0).readings(temperature);
   EXPECT_DOUBLE_EQ(reading[0], 25.30);
   EXPECT_DOUBLE_EQ(reading[1], 25.30);
   EXPECT_DOUBLE_EQ(reading[2], 25.35);
@@ -27,7 +27,8 @@ TEST(TemperatureSensor, WithNoiseOffKeepsItsOffsetAndItsCelsiusScale) {
 
 TEST(TemperatureSensor, IdealOneShowsTheTemperature) {
   const std::vector<double> temperature = {300.0, 233.333};
-  const auto reading = temperature_readings({}, true, temperature, 1, 0, 0);
+  const auto reading =
+      TemperatureSensor({}, true, 1, 0, 0).readings(temperature);
   EXPECT_EQ(reading[0], 300.0 - 273.15);
   EXPECT_EQ(reading[1], 233.333 - 273.15);
 }
@@ -36,7 +37,7 @@ TEST(TemperatureSensor, NoiseIsWhiteWithItsSigma) {
   constexpr std::size_t kCount = 200000;
   const std::vector<double> temperature(kCount, 298.15);
   const auto reading =
-      temperature_readings({.noise = 0.01}, true, temperature, 1, 0, 0);
+      TemperatureSensor({.noise = 0.01}, true, 1, 0, 0).readings(temperature);
   double variance = 0.0, next = 0.0;
   for (std::size_t i = 0; i + 1 < kCount; ++i) {
     variance += std::pow(reading[i] - 25.0, 2) / kCount;
@@ -51,7 +52,7 @@ TEST(TemperatureSensor, ReadingsWithNoiseAreMultiplesOfTheResolution) {
   const std::vector<double> temperature(1000, 298.16);
   int changes = 0;
   for (double reading :
-       temperature_readings(kSensor, true, temperature, 1, 0, 0)) {
+       TemperatureSensor(kSensor, true, 1, 0, 0).readings(temperature)) {
     EXPECT_NEAR(std::remainder(reading, 0.05), 0.0, 1e-12);
     changes += std::abs(reading - 25.30) > 0.01 ? 1 : 0;
   }
@@ -61,17 +62,22 @@ TEST(TemperatureSensor, ReadingsWithNoiseAreMultiplesOfTheResolution) {
 TEST(TemperatureSensor, EveryRunHasItsOwnNoise) {
   const std::vector<double> temperature(100, 298.15);
   const TemperatureSensorParameters noisy = {.noise = 0.01};
-  const auto first = temperature_readings(noisy, true, temperature, 1, 0, 0);
-  EXPECT_EQ(first, temperature_readings(noisy, true, temperature, 1, 0, 0));
-  EXPECT_NE(first, temperature_readings(noisy, true, temperature, 1, 0, 1));
-  EXPECT_NE(first, temperature_readings(noisy, true, temperature, 1, 1, 0));
-  EXPECT_NE(first, temperature_readings(noisy, true, temperature, 2, 0, 0));
+  const auto first =
+      TemperatureSensor(noisy, true, 1, 0, 0).readings(temperature);
+  EXPECT_EQ(first,
+            TemperatureSensor(noisy, true, 1, 0, 0).readings(temperature));
+  EXPECT_NE(first,
+            TemperatureSensor(noisy, true, 1, 0, 1).readings(temperature));
+  EXPECT_NE(first,
+            TemperatureSensor(noisy, true, 1, 1, 0).readings(temperature));
+  EXPECT_NE(first,
+            TemperatureSensor(noisy, true, 2, 0, 0).readings(temperature));
 }
 
 std::string rejection(const TemperatureSensorParameters& parameters) {
   try {
     const std::vector<double> temperature = {300.0};
-    temperature_readings(parameters, true, temperature, 0, 0, 0);
+    TemperatureSensor(parameters, true, 0, 0, 0).readings(temperature);
   } catch (const std::invalid_argument& error) {
     return error.what();
   }

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+
+#include "sim/dynamics/loop_electronics.h"
+#include "sim/dynamics/modal_table.h"
+#include "sim/dynamics/mode_forces.h"
+
+namespace beamgyro {
+
+/// Places of the carrier's state, those of the electronics as in
+/// EnvelopeState. Positions are relative to A_ref, velocities to w_nom A_ref.
+enum CarrierState {
+  kPosition = 0,       // x, y
+  kVelocity = 2,       // x', y'
+  kCarrierPhase = 20,  // theta - w_nom t [rad]
+  kCarrierStates = 21
+};
+
+/// The two modes as they vibrate (2.1), with every term, and the loops of
+/// loop_electronics.h working on the vibration itself: forces
+/// Re[Theta_p V_p e^{i theta}], demodulation by 2 e^{-i theta}, ripple at twice
+/// the carrier included. Beam and board temperature stay as set_temperatures()
+/// left them. Time counts from begin_window(), which keeps the phase exact over
+/// hours.
+class CarrierOde {
+ public:
+  explicit CarrierOde(const Gyro& gyro);
+
+  void set_temperatures(double beam, double board);  // [K]
+
+  /// Time 0 is now: `y`, at time `elapsed` of the window before, keeps its
+  /// meaning.
+  void begin_window(double elapsed);
+
+  static Eigen::VectorXd at_rest() {
+    return Eigen::VectorXd::Zero(kCarrierStates);
+  }
+
+  /// dy/dt at `t` [s] of the window.
+  void rate(double t, const CaseMotion& motion,
+            const Eigen::Ref<const Eigen::VectorXd>& y,
+            Eigen::Ref<Eigen::VectorXd> dydt) const;
+
+  const LoopElectronics& loops() const { return loops_; }
+
+ private:
+  LoopElectronics loops_;
+  ModalTable table_;
+  double angular_gain_;
+  double amplitude_;       // A_ref [m]
+  double mass_amplitude_;  // m A_ref [kg m]
+  double phase_tc_, phase_tc2_;
+  double window_phase_ = 0;  // theta - residual at time 0 of the window [rad]
+
+  // Of the temperatures set last.
+  Eigen::Matrix2d stiffness_, damping_;     // per mass
+  Eigen::Vector2cd drive_, damping_patch_;  // per mass and A_ref [1/(s2 V)]
+  Eigen::RowVector2cd feedback_, readout_;  // per A_ref
+  std::complex<double> turn_;               // e^{i phi_el}
+};
+
+}  // namespace beamgyro

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "sim/dynamics/envelope.h"
+
+#include <cmath>
+
+namespace beamgyro {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix2d;
+using Eigen::Vector2cd;
+using State = Eigen::Ref<const Eigen::VectorXd>;
+
+Complex complex_at(const State& y, Index i) { return {y(i), y(i + 1)}; }
+
+template <class Vector>
+void put(Vector& y, Index i, Complex value) {
+  y(i) = value.real();
+  y(i + 1) = value.imag();
+}
+
+}  // namespace
+
+EnvelopeOde::EnvelopeOde(const Gyro& gyro, const DriveHeating& heating)
+    : loops_(loop_electronics(gyro)),
+      table_(gyro),
+      thermal_(ThermalNetwork(gyro.device.thermal), heating.mechanical,
+               heating.dielectric),
+      phase_tc_(gyro.device.readout.phase_tc),
+      phase_tc2_(gyro.device.readout.phase_tc2),
+      angular_gain_(gyro.beam.angular_gain),
+      amplitude_(gyro.device.drive.amplitude),
+      mass_amplitude_(gyro.beam.mass * gyro.device.drive.amplitude) {}
+
+Eigen::VectorXd EnvelopeOde::at_rest(double temperature) const {
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(size());
+  y.segment<kThermalNodeCount>(kEnvelopeNodes).setConstant(temperature);
+  return y;
+}
+
+EnvelopeCouplings EnvelopeOde::couplings(const ModalChannels& modal) const {
+  const auto along = [&](Patch patch) -> Vector2cd {
+    return coupling_of(modal, patch) *
+           table_.direction()[patch].cast<Complex>();
+  };
+  const double to_feedback = -mass_amplitude_ / loops_.feedback_scale;
+  return {along(kDrive) / amplitude_, along(kDamping) / amplitude_,
+          along(kFeedback).transpose() * to_feedback,
+          along(kReadout).transpose() * mass_amplitude_};
+}
+
+EnvelopeCoefficients EnvelopeOde::coefficients(const ModalChannels& modal,
+                                               const CaseMotion& motion,
+                                               double board_temperature) const {
+  const auto [stiffness, velocity] = mode_forces(
+      stiffness_of(modal), damping_of(modal), angular_gain_, motion);
+  const double dT = board_temperature - kCalibrationTemperature;
+  return {couplings(modal), stiffness, velocity,
+          std::polar(1.0, (phase_tc_ + phase_tc2_ * dT) * dT),
+          phase_tc_ + 2 * phase_tc2_ * dT};
+}
+
+EnvelopeMoment EnvelopeOde::moment(const EnvelopeCoefficients& now,
+                                   const State& y) const {
+  EnvelopeMoment m{};
+  m.U = {complex_at(y, kAmplitude), complex_at(y, kAmplitude + 2)};
+  m.i1 = y(kFeedback1), m.q1 = y(kFeedback1 + 1);
+  m.i2 = y(kFeedback2), m.q2 = y(kFeedback2 + 1);
+  m.drive = drive_signals(loops_, m.i2, m.q2, y(kPllIntegral), y(kAgcIntegral));
+  const double wf = loops_.demodulator_corner, a = m.drive.amplitude;
+  m.error_rate = a > kNoAmplitude
+                     ? -wf * (m.i2 * (m.i1 - m.i2) + m.q2 * (m.q1 - m.q2)) / a
+                     : 0;
+  m.voltage_rate = m.drive.limited
+                       ? 0
+                       : loops_.nominal_voltage *
+                             (loops_.agc_proportional * m.error_rate +
+                              loops_.agc_integral * m.drive.amplitude_error());
+  m.r1 = complex_at(y, kReadout1);
+  m.r2 = complex_at(y, kReadout2);
+  m.force = now.couplings.drive * m.drive.voltage;
+  m.force_rate = now.couplings.drive * m.voltage_rate;
+  m.z = m.r2;
+  if (loops_.rebalance) {
+    const double kI = loops_.rebalance_integral;
+    const Complex kP = loops_.rebalance_proportional;
+    const Complex axis = loops_.voltage_axis * std::conj(now.turn);
+    m.z = -(kI * complex_at(y, kRebalance) + kP * m.r2);
+    m.V_B = axis * m.z;
+    m.V_B_rate = -axis * (kI * m.r2 + kP * wf * (m.r1 - m.r2));
+    m.force += now.couplings.damping * m.V_B;
+    m.force_rate += now.couplings.damping * m.V_B_rate;
+  }
+  return m;
+}
+
+void EnvelopeOde::rate(const EnvelopeInputs& inputs, const State& y,
+                       Eigen::Ref<Eigen::VectorXd> dydt) {
+  const auto nodes = y.tail(thermal_.size());
+  thermal_.rate(inputs.surroundings, inputs.powered, nodes,
+                dydt.tail(thermal_.size()));
+  if (!inputs.powered) {
+    dydt.head<kEnvelopeNodes>().setZero();
+    return;
+  }
+  const EnvelopeCoefficients now =
+      coefficients(table_.at(nodes(kBeam)).value, inputs.motion, nodes(kBoard));
+  const EnvelopeMoment m = moment(now, y);
+  const EnvelopePlant plant(now.stiffness, now.velocity, m.drive.frequency);
+  const Vector2cd dU =
+      plant.A() * m.U + plant.B() * m.force - plant.D() * m.force_rate;
+  put(dydt, kAmplitude, dU(0));
+  put(dydt, kAmplitude + 2, dU(1));
+
+  const double wf = loops_.demodulator_corner, wo = loops_.output_corner;
+  const Complex U_F = now.couplings.feedback * m.U;
+  dydt(kFeedback1) = wf * (U_F.real() - m.i1);
+  dydt(kFeedback1 + 1) = wf * (-U_F.imag() - m.q1);
+  dydt(kFeedback2) = wf * (m.i1 - m.i2);
+  dydt(kFeedback2 + 1) = wf * (m.q1 - m.q2);
+  dydt(kPllIntegral) = loops_.pll_integral * m.drive.phase_error();
+  dydt(kAgcIntegral) = loops_.agc_integral * m.drive.amplitude_error();
+
+  const Complex charge = now.couplings.readout * m.U;
+  const Complex r = (charge + loops_.feedthrough * m.drive.voltage) * now.turn /
+                    loops_.charge_axis;
+  put(dydt, kReadout1, wf * (r - m.r1));
+  put(dydt, kReadout2, wf * (m.r1 - m.r2));
+  const Complex o1 = complex_at(y, kOutput1), o2 = complex_at(y, kOutput2);
+  put(dydt, kOutput1, wo * (m.z - o1));
+  put(dydt, kOutput2, wo * (o1 - o2));
+  put(dydt, kRebalance, loops_.rebalance ? m.r2 : Complex(0));
+}
+
+}  // namespace beamgyro

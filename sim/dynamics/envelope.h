@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+
+#include "sim/dynamics/envelope_moment.h"
+#include "sim/dynamics/envelope_plant.h"
+#include "sim/thermal/thermal_ode.h"
+
+namespace beamgyro {
+
+/// Places of the envelope's state. Complex numbers take two places, real part
+/// first. Amplitudes are relative to A_ref, signals are rates [rad/s].
+enum EnvelopeState {
+  kAmplitude = 0,      // U = u/A_ref, complex X then Y
+  kFeedback1 = 4,      // i_1, q_1
+  kFeedback2 = 6,      // i_2, q_2
+  kPllIntegral = 8,    // xi [rad/s]
+  kAgcIntegral = 9,    // eta
+  kReadout1 = 10,      // r after one pole w_f [rad/s]
+  kReadout2 = 12,      // r after both
+  kOutput1 = 14,       // z after one pole w_o
+  kOutput2 = 16,       // z after both: rate and minus the quadrature
+  kRebalance = 18,     // int r dt [rad], stays 0 in open loop
+  kEnvelopeNodes = 20  // the state of ThermalOde
+};
+
+/// What acts on the gyro at one moment.
+struct EnvelopeInputs {
+  CaseMotion motion;
+  ThermalSurroundings surroundings;
+  bool powered = false;
+};
+
+/// Amplitudes of both modes on their slow manifold (2.13, see EnvelopePlant),
+/// the loops of loop_electronics.h and the thermal network (4.1) as one system;
+/// f = (Theta_D V_D + Theta_B V_B)/(m A_ref). Without power the amplitudes and
+/// the electronics rest. Not safe for use by two threads at once.
+class EnvelopeOde {
+ public:
+  EnvelopeOde(const Gyro& gyro, const DriveHeating& heating);
+
+  Eigen::Index size() const { return kEnvelopeNodes + thermal_.size(); }
+
+  /// Every node at `temperature` [K], everything else at rest.
+  Eigen::VectorXd at_rest(double temperature) const;
+
+  void rate(const EnvelopeInputs& inputs,
+            const Eigen::Ref<const Eigen::VectorXd>& y,
+            Eigen::Ref<Eigen::VectorXd> dydt);
+
+  /// d(dy/dt)_i / dy_j.
+  void jacobian(const EnvelopeInputs& inputs,
+                const Eigen::Ref<const Eigen::VectorXd>& y,
+                Eigen::Ref<Eigen::MatrixXd> slope);
+
+  const LoopElectronics& loops() const { return loops_; }
+
+ private:
+  EnvelopeCouplings couplings(const ModalChannels& modal) const;
+  EnvelopeCoefficients coefficients(const ModalChannels& modal,
+                                    const CaseMotion& motion,
+                                    double board_temperature) const;
+  EnvelopeMoment moment(const EnvelopeCoefficients& now,
+                        const Eigen::Ref<const Eigen::VectorXd>& y) const;
+
+  void add_loop_slopes(const EnvelopeCoefficients& now, const EnvelopeMoment& m,
+                       const EnvelopePlant& plant,
+                       Eigen::Ref<Eigen::MatrixXd> slope) const;
+  void add_readout_slopes(const EnvelopeCoefficients& now,
+                          Eigen::Ref<Eigen::MatrixXd> slope) const;
+  void add_rebalance_slopes(const EnvelopeCoefficients& now,
+                            const EnvelopePlant& plant,
+                            Eigen::Ref<Eigen::MatrixXd> slope) const;
+  void add_temperature_slopes(const ModalChannels& modal_slope,
+                              const EnvelopeCoefficients& now,
+                              const EnvelopeMoment& m,
+                              const EnvelopePlant& plant,
+                              Eigen::Ref<Eigen::MatrixXd> slope) const;
+
+  LoopElectronics loops_;
+  ModalTable table_;
+  ThermalOde thermal_;
+  double phase_tc_, phase_tc2_;
+  double angular_gain_;
+  double amplitude_;       // A_ref [m]
+  double mass_amplitude_;  // m A_ref [kg m]
+};
+
+}  // namespace beamgyro

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+
+namespace beamgyro {
+
+/// The slow manifold of two modes, second order (2.13), per mass:
+///
+///   U' = A U + B f - D f',   q = Re[U e^{i theta}], force Re[f e^{i theta}],
+///   P = 2 i w + V,  S_0 = K - w^2 + i w V,  R = P^-1,
+///   B = (1 + R R S_0) R,  A = -B S_0,  D = R R.
+///
+/// K [1/s2] is the stiffness with the centrifugal terms, without the Euler
+/// force; V [1/s] the force per velocity, damping and Coriolis; w = theta'.
+class EnvelopePlant {
+ public:
+  EnvelopePlant(const Eigen::Matrix2d& stiffness,
+                const Eigen::Matrix2d& velocity, double omega);
+
+  const Eigen::Matrix2cd& A() const { return a_; }
+  const Eigen::Matrix2cd& B() const { return b_; }
+  const Eigen::Matrix2cd& D() const { return d_; }
+
+  /// Derivatives of A, B, D.
+  struct Slope {
+    Eigen::Matrix2cd A, B, D;
+  };
+  Slope by_frequency() const;
+  /// By any parameter that moves stiffness and velocity at these rates.
+  Slope by(const Eigen::Matrix2d& stiffness,
+           const Eigen::Matrix2d& velocity) const;
+
+ private:
+  Slope slope(const Eigen::Matrix2cd& dP, const Eigen::Matrix2cd& dS) const;
+
+  double omega_;
+  Eigen::Matrix2d velocity_;
+  Eigen::Matrix2cd r_, s_, a_, b_, d_;
+};
+
+}  // namespace beamgyro

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "sim/dynamics/modal_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace beamgyro {
+
+Eigen::Matrix2d stiffness_of(const ModalChannels& channels) {
+  Eigen::Matrix2d K;
+  K << channels(kStiffnessXx), channels(kStiffnessXy), channels(kStiffnessXy),
+      channels(kStiffnessYy);
+  return K;
+}
+
+Eigen::Matrix2d damping_of(const ModalChannels& channels) {
+  Eigen::Matrix2d C;
+  C << channels(kDampingXx), channels(kDampingXy), channels(kDampingXy),
+      channels(kDampingYy);
+  return C;
+}
+
+Complex coupling_of(const ModalChannels& channels, Patch patch) {
+  const Eigen::Index i = kCouplings + 2 * Eigen::Index{patch};
+  return {channels(i), channels(i + 1)};
+}
+
+ModalTable::ModalTable(const Gyro& gyro) : gyro_(gyro) {
+  mass_ = gyro.beam.mass;
+  coriolis_mass_ = gyro.beam.mass * gyro.beam.angular_gain;
+  for (std::size_t p = 0; p < direction_.size(); ++p) {
+    direction_[p] =
+        patch_position(gyro.device, static_cast<Patch>(p)).normalized();
+  }
+  const auto cells =
+      static_cast<std::size_t>((kHottestBeam - kColdestBeam) / kModalGrid);
+  cells_.resize(cells);
+}
+
+ModalChannels ModalTable::exact(double T) const {
+  const ModalParameters modal =
+      modal_parameters(gyro_.device, gyro_.beam, T, gyro_.stiffness_trim);
+  ModalChannels c;
+  c.head<kCouplings>() << modal.stiffness(0, 0), modal.stiffness(0, 1),
+      modal.stiffness(1, 1), modal.damping(0, 0), modal.damping(0, 1),
+      modal.damping(1, 1);
+  for (std::size_t p = 0; p < direction_.size(); ++p) {
+    const Complex along =
+        direction_[p].cast<Complex>().transpose() * modal.coupling[p];
+    const auto i = kCouplings + 2 * static_cast<Eigen::Index>(p);
+    c(i) = along.real();
+    c(i + 1) = along.imag();
+  }
+  return c / mass_;
+}
+
+// Through both ends and the inner Chebyshev-Lobatto points at 1/4 and 3/4.
+ModalTable::Cubic ModalTable::cubic(double left, double right) const {
+  const auto at = [&](double s) { return exact(std::lerp(left, right, s)); };
+  const ModalChannels a = at(0), b = at(0.25), c = at(0.75), d = at(1);
+  return {a, (-19 * a + 24 * b - 8 * c + 3 * d) / 3,
+          (32 * a - 56 * b + 40 * c - 16 * d) / 3,
+          (-16 * a + 32 * b - 32 * c + 16 * d) / 3};
+}
+
+// Against the exact parameters where a cubic through those points is worst. A
+// stiffness or damping force of 1e-6 of k is worth 1.6 deg/s.
+bool ModalTable::accurate(const Cubic& cubic, double left, double right) const {
+  constexpr double kForce = 1e-13, kCoupling = 1e-9;  // relative
+  for (const double s : {0.1, 0.5, 0.9}) {
+    const ModalChannels want = exact(std::lerp(left, right, s));
+    const ModalChannels error =
+        (cubic[0] + s * (cubic[1] + s * (cubic[2] + s * cubic[3])) - want)
+            .abs();
+    const double stiffness = kForce * want(kStiffnessXx);
+    const double damping = stiffness / std::sqrt(want(kStiffnessXx));
+    if (error.segment<3>(kStiffnessXx).maxCoeff() > stiffness ||
+        error.segment<3>(kDampingXx).maxCoeff() > damping ||
+        (error.tail(2 * kPatchCount) >
+         kCoupling * want.tail(2 * kPatchCount).abs().maxCoeff())
+            .any()) {
+      return false;
+    }
+  }
+  return true;
+}
+
+const std::vector<ModalTable::Cubic>& ModalTable::cell(std::size_t i) {
+  constexpr std::size_t kMostParts = 256;  // 1 mK: what a kink is resolved to
+  std::vector<Cubic>& parts = cells_[i];
+  bool good = !parts.empty();
+  for (std::size_t count = 1; !good; count *= 2) {
+    const double left = kColdestBeam + kModalGrid * static_cast<double>(i);
+    const double width = kModalGrid / static_cast<double>(count);
+    parts.clear();
+    good = true;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double a = left + width * static_cast<double>(k), b = a + width;
+      parts.push_back(cubic(a, b));
+      good = good && (count == kMostParts || accurate(parts.back(), a, b));
+      if (!good) break;
+    }
+  }
+  return parts;
+}
+
+ModalTable::Point ModalTable::at(double T) {
+  const double place = (T - kColdestBeam) / kModalGrid;
+  if (!(place >= 0) || !(place < static_cast<double>(cells_.size()))) {
+    throw std::runtime_error(
+        fmt::format("beam temperature {:.2f} degC is outside the model's "
+                    "{:.0f} to {:.0f} degC",
+                    T - 273.15, kColdestBeam - 273.15, kHottestBeam - 273.15));
+  }
+  const auto i = static_cast<std::size_t>(place);
+  const std::vector<Cubic>& parts = cell(i);
+  const auto count = static_cast<double>(parts.size());
+  const double along = (place - static_cast<double>(i)) * count;
+  const std::size_t part =
+      std::min(static_cast<std::size_t>(along), parts.size() - 1);
+  const double s = along - static_cast<double>(part);
+  const Cubic& c = parts[part];
+  return {c[0] + s * (c[1] + s * (c[2] + s * c[3])),
+          (c[1] + s * (2 * c[2] + 3 * s * c[3])) * (count / kModalGrid)};
+}
+
+ModalParameters ModalTable::parameters(const ModalChannels& channels) const {
+  const ModalChannels c = channels * mass_;
+  ModalParameters modal;
+  modal.mass = mass_;
+  modal.coriolis_mass = coriolis_mass_;
+  modal.stiffness = stiffness_of(c);
+  modal.damping = damping_of(c);
+  for (std::size_t p = 0; p < direction_.size(); ++p) {
+    const auto i = kCouplings + 2 * static_cast<Eigen::Index>(p);
+    modal.coupling[p] = Complex(c(i), c(i + 1)) * direction_[p].cast<Complex>();
+  }
+  return modal;
+}
+
+}  // namespace beamgyro

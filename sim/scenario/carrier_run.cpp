@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+#include "sim/scenario/carrier_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "sim/dynamics/carrier.h"
+#include "sim/dynamics/envelope.h"
+#include "sim/numerics/explicit_rk.h"
+#include "sim/scenario/drive_lock.h"
+#include "sim/scenario/motion.h"
+#include "sim/scenario/run_temperatures.h"
+
+namespace beamgyro {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double kWindow = 1.0;          // [s], phases are exact over one
+constexpr double kTolerance = 1e-7;      // local, in the output [rad/s]
+constexpr double kThermalStep = 0.1;     // [s], temperatures linear between
+constexpr double kCostPerSecond = 0.45;  // [s], measured
+
+// Local error of each state that matters as much as one of 1 rad/s in the
+// output.
+VectorXd error_weights() {
+  VectorXd weights = VectorXd::Ones(kCarrierStates);
+  for (const Eigen::Index i : {kPosition, kVelocity}) {
+    weights(i) = 0.3;
+    weights(i + 1) = 2e-3;
+  }
+  weights.segment<4>(kFeedback1).setConstant(0.3);
+  weights(kPllIntegral) = 100;
+  weights(kAgcIntegral) = 0.3;
+  weights(kCarrierPhase) = 0.3;
+  return weights;
+}
+
+// One trajectory in order of time, from tick to tick.
+class CarrierTrajectory {
+ public:
+  CarrierTrajectory(const Scenario& scenario, const Gyro& gyro,
+                    const Motion& motion, const RunTemperatures& temperatures,
+                    bool at_rest)
+      : scenario_(scenario),
+        motion_(motion),
+        temperatures_(temperatures),
+        at_rest_(at_rest),
+        ode_(gyro) {
+    ExplicitRkOptions options;
+    options.absolute_tolerance = kTolerance * error_weights();
+    rk_ = std::make_unique<ExplicitRk>(
+        [this](double t, const auto& y, auto dydt) {
+          ode_.rate(t, moving(t), y, dydt);
+        },
+        0.0, CarrierOde::at_rest(), options);
+    borders_ = motion.breakpoints();
+    for (const PowerInterval& interval : scenario.powered) {
+      borders_.insert(borders_.end(),
+                      {interval.on, interval.on + kLockTime, interval.off});
+    }
+    borders_.push_back(scenario.duration);
+    std::erase_if(borders_,
+                  [&](double t) { return !(t > 0) || t > scenario.duration; });
+    std::sort(borders_.begin(), borders_.end());
+    borders_.erase(std::unique(borders_.begin(), borders_.end()),
+                   borders_.end());
+    begin(0);
+  }
+
+  const LoopElectronics& loops() const { return ode_.loops(); }
+
+  // The state at `t` [s], later than all before.
+  const VectorXd& at(double t) {
+    while (time_ < t) step(t);
+    return rk_->state();
+  }
+
+ private:
+  CaseMotion moving(double t) const {
+    const double now = window_ + t;
+    return at_rest_ ? segment_->at_rest(now) : segment_->at(now);
+  }
+
+  // What holds from border `next_border_` - 1 to the next.
+  void begin(double t) {
+    segment_ = motion_.segment(t, borders_[next_border_]);
+    const bool powered = powered_at(scenario_, t);
+    if (powered != powered_) {
+      powered_ = powered;
+      start_window(CarrierOde::at_rest());
+    }
+  }
+
+  void start_window(const VectorXd& y) {
+    ode_.begin_window(time_ - window_);
+    window_ = time_;
+    rk_->restart(0, y);
+  }
+
+  void step(double t) {
+    const double border = borders_[next_border_];
+    const double end = std::min({t, border, time_ + kCarrierTick});
+    if (powered_) {
+      if (time_ - window_ >= kWindow) start_window(rk_->state());
+      const double middle = 0.5 * (time_ + end);
+      ode_.set_temperatures(temperatures_.at(kBeam, middle),
+                            temperatures_.at(kBoard, middle));
+      rk_->advance_to(end - window_);
+    }
+    time_ = end;
+    if (end == border && next_border_ + 1 < borders_.size()) {
+      require_lock();
+      ++next_border_;
+      begin(end);
+    }
+  }
+
+  void require_lock() const {
+    if (!lock_is_due(scenario_, time_)) return;
+    const VectorXd& y = rk_->state();
+    require_locked(drive_signals(ode_.loops(), y(kFeedback2), y(kFeedback2 + 1),
+                                 y(kPllIntegral), y(kAgcIntegral)),
+                   time_, temperatures_.at(kBeam, time_));
+  }
+
+  const Scenario& scenario_;
+  const Motion& motion_;
+  const RunTemperatures& temperatures_;
+  bool at_rest_;
+  CarrierOde ode_;
+  std::unique_ptr<ExplicitRk> rk_;
+  std::vector<double> borders_;
+  std::size_t next_border_ = 0;
+  std::optional<MotionSegment> segment_;
+  bool powered_ = false;
+  double time_ = 0;    // [s]
+  double window_ = 0;  // start of the window [s]
+};
+
+double shown_rate(const Gyro& gyro, const VectorXd& y, double board) {
+  return y(kOutput2) + electronics_at(gyro, board).offset;
+}
+
+RunSamples samples_at(std::span<const double> times, const Gyro& gyro,
+                      const RunTemperatures& temperatures,
+                      CarrierTrajectory& trajectory, CarrierTrajectory* twin) {
+  RunSamples s;
+  s.time.assign(times.begin(), times.end());
+  for (std::size_t node = 0; node < kThermalNodeCount; ++node) {
+    for (const double t : times)
+      s.temperature[node].push_back(
+          temperatures.at(static_cast<ThermalNode>(node), t));
+  }
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const double board = s.temperature[kBoard][k];
+    const VectorXd& y = trajectory.at(times[k]);
+    const DriveSignals drive =
+        drive_signals(trajectory.loops(), y(kFeedback2), y(kFeedback2 + 1),
+                      y(kPllIntegral), y(kAgcIntegral));
+    s.output.push_back(shown_rate(gyro, y, board));
+    s.quadrature.push_back(-y(kOutput2 + 1));
+    s.drive_frequency.push_back(drive.frequency / (2 * std::numbers::pi));
+    s.drive_voltage.push_back(drive.voltage);
+    s.locked.push_back(is_locked(drive));
+    s.bias.push_back(twin ? shown_rate(gyro, twin->at(times[k]), board)
+                          : s.output.back());
+  }
+  return s;
+}
+
+void require_rate(const Scenario& scenario, const Gyro& gyro) {
+  const double drive =
+      loop_electronics(gyro).nominal_frequency / (2 * std::numbers::pi);
+  if (scenario.output_rate <= drive / 4) return;
+  throw std::invalid_argument(
+      fmt::format("output_rate_Hz: {:g} is above what the carrier fidelity "
+                  "allows; expected at most {:.1f}, a quarter of the drive "
+                  "frequency",
+                  scenario.output_rate, drive / 4));
+}
+
+}  // namespace
+
+double carrier_cost(const Scenario& scenario) {
+  double powered = 0;
+  for (const PowerInterval& interval : scenario.powered) {
+    powered +=
+        std::max(0.0, std::min(interval.off, scenario.duration) - interval.on);
+  }
+  return powered * kCostPerSecond * (moves(scenario.rate) ? 2 : 1);
+}
+
+void simulate_carrier(const Scenario& scenario, const Device& device,
+                      const RunKey& key, const BlockSink& on_block) {
+  const Gyro gyro = make_gyro(device);
+  require_rate(scenario, gyro);
+  const Motion motion(scenario, gyro, key);
+  const RunTemperatures temperatures(scenario, gyro, kThermalStep);
+  CarrierTrajectory trajectory(scenario, gyro, motion, temperatures, false);
+  std::optional<CarrierTrajectory> twin;
+  if (!motion.rate_is_zero())
+    twin.emplace(scenario, gyro, motion, temperatures, true);
+  RunRecorder recorder(scenario, device, key);
+  const std::vector<double> times = sample_times(scenario);
+  for (std::size_t k = 0; k < times.size(); k += kBlockSamples) {
+    const auto block =
+        std::span(times).subspan(k, std::min(kBlockSamples, times.size() - k));
+    RunSamples samples = samples_at(block, gyro, temperatures, trajectory,
+                                    twin ? &*twin : nullptr);
+    motion.show(samples);
+    on_block(recorder.block(std::move(samples)));
+  }
+}
+
+}  // namespace beamgyro

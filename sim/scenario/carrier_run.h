@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "sim/device/device.h"
+#include "sim/scenario/run_recorder.h"
+#include "sim/scenario/scenario.h"
+
+namespace beamgyro {
+
+/// Carrier run (L3): every vibration (CarrierOde), Fehlberg's method of order 8
+/// at an error below 1e-4 deg/s. The temperatures come from the thermal network
+/// as in a quasi-static run and are held over kCarrierTick. Otherwise as
+/// simulate_envelope(). Throws std::invalid_argument for an output rate above a
+/// quarter of the drive frequency.
+void simulate_carrier(const Scenario& scenario, const Device& device,
+                      const RunKey& key, const BlockSink& on_block);
+
+inline constexpr double kCarrierTick = 1e-3;  // [s]
+
+/// What simulate_carrier() costs [s of processor time], by the measured cost of
+/// a second with power (bench/README.md).
+double carrier_cost(const Scenario& scenario);
+
+}  // namespace beamgyro

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#include "sim/scenario/envelope_run.h"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "sim/scenario/envelope_trajectory.h"
+#include "sim/scenario/motion.h"
+
+namespace beamgyro {
+
+void simulate_envelope(const Scenario& scenario, const Device& device,
+                       const RunKey& key, const BlockSink& on_block) {
+  const Gyro gyro = make_gyro(device);
+  const Motion motion(scenario, gyro, key);
+  EnvelopeTrajectory trajectory(scenario, gyro, motion, false);
+  std::optional<EnvelopeTrajectory> twin;
+  if (!motion.rate_is_zero()) twin.emplace(scenario, gyro, motion, true);
+  RunRecorder recorder(scenario, device, key);
+
+  const std::vector<double> times = sample_times(scenario);
+  for (std::size_t k = 0; k < times.size(); k += kBlockSamples) {
+    const auto block =
+        std::span(times).subspan(k, std::min(kBlockSamples, times.size() - k));
+    RunSamples samples = trajectory.advance(block);
+    samples.bias = twin ? twin->advance(block).output : samples.output;
+    motion.show(samples);
+    on_block(recorder.block(std::move(samples)));
+  }
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+#include "sim/scenario/envelope_trajectory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sim/scenario/drive_lock.h"
+
+namespace beamgyro {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// Borders closer than this are one: nothing moves meanwhile.
+constexpr double kShortestPiece = 1e-9;  // [s]
+
+// Local error of each state that matters as much as one of 1 rad/s in the
+// output: 1e-6 of the drive amplitude moves the output of a unit with a
+// quadrature of some 100 deg/s by 2e-6 rad/s, and so on.
+VectorXd error_weights(Index size) {
+  VectorXd weights = VectorXd::Ones(size);
+  weights.segment<2>(kAmplitude).setConstant(0.3);
+  weights.segment<2>(kAmplitude + 2).setConstant(2e-3);
+  weights.segment<4>(kFeedback1).setConstant(0.3);
+  weights(kPllIntegral) = 100;
+  weights(kAgcIntegral) = 0.3;
+  weights.tail(size - kEnvelopeNodes).setConstant(50);
+  return weights;
+}
+
+// What a sample needs of the state.
+constexpr std::array<Index, 12> kShown = {
+    kFeedback2,         kFeedback2 + 1,     kPllIntegral,
+    kAgcIntegral,       kOutput2,           kOutput2 + 1,
+    kEnvelopeNodes + 0, kEnvelopeNodes + 1, kEnvelopeNodes + 2,
+    kEnvelopeNodes + 3, kEnvelopeNodes + 4, kEnvelopeNodes + 5};
+constexpr std::size_t kFirstNode = 6;
+
+RunSamples shown(const std::array<std::vector<double>, kShown.size()>& c,
+                 const LoopElectronics& loops, const Gyro& gyro) {
+  const std::size_t count = c[0].size();
+  RunSamples s;
+  s.output.resize(count);
+  s.quadrature.resize(count);
+  s.drive_frequency.resize(count);
+  s.drive_voltage.resize(count);
+  s.locked.resize(count);
+  for (std::size_t node = 0; node < kThermalNodeCount; ++node)
+    s.temperature[node] = c[kFirstNode + node];
+  for (std::size_t k = 0; k < count; ++k) {
+    const DriveSignals drive =
+        drive_signals(loops, c[0][k], c[1][k], c[2][k], c[3][k]);
+    s.output[k] =
+        c[4][k] + electronics_at(gyro, s.temperature[kBoard][k]).offset;
+    s.quadrature[k] = -c[5][k];
+    s.drive_frequency[k] = drive.frequency / (2 * std::numbers::pi);
+    s.drive_voltage[k] = drive.voltage;
+    s.locked[k] = is_locked(drive);
+  }
+  return s;
+}
+
+}  // namespace
+
+// The shown states at the sample times, filled in order of time.
+class EnvelopeTrajectory::Sampler {
+ public:
+  explicit Sampler(std::span<const double> times) : times_(times) {
+    for (auto& column : columns_) column.resize(times.size());
+  }
+
+  double next_time() const { return times_[next_]; }
+  bool complete() const { return next_ == times_.size(); }
+
+  // Without the end of the step: an input may jump there.
+  void take(const OdeStep& step) {
+    const auto begin = times_.begin() + static_cast<std::ptrdiff_t>(next_);
+    const auto count = static_cast<std::size_t>(
+        std::lower_bound(begin, times_.end(), step.end) - begin);
+    for (std::size_t i = 0; i < kShown.size() && count > 0; ++i) {
+      step.sample(kShown[i], times_.subspan(next_, count),
+                  std::span(columns_[i]).subspan(next_, count));
+    }
+    next_ += count;
+  }
+
+  void take_until(double t, const VectorXd& y) {
+    for (; next_ < times_.size() && times_[next_] <= t; ++next_) {
+      for (std::size_t i = 0; i < kShown.size(); ++i)
+        columns_[i][next_] = y(kShown[i]);
+    }
+  }
+
+  const std::array<std::vector<double>, kShown.size()>& columns() const {
+    return columns_;
+  }
+
+ private:
+  std::span<const double> times_;
+  std::array<std::vector<double>, kShown.size()> columns_;
+  std::size_t next_ = 0;
+};
+
+EnvelopeTrajectory::EnvelopeTrajectory(const Scenario& scenario,
+                                       const Gyro& gyro, const Motion& motion,
+                                       bool at_rest, double tolerance)
+    : scenario_(scenario),
+      gyro_(gyro),
+      motion_(motion),
+      at_rest_(at_rest),
+      ode_(gyro, drive_heating(gyro)),
+      pieces_(pieces()) {
+  const auto rhs = [this](double t, const auto& y, auto dydt) {
+    ode_.rate(inputs(t), y, dydt);
+  };
+  const VectorXd start = ode_.at_rest(scenario.ambient.value(0));
+  const VectorXd absolute = tolerance * error_weights(ode_.size());
+  if (is_lively(scenario, motion)) {
+    ExplicitRkOptions options;
+    options.table = RkTable::kDormandPrince;
+    options.absolute_tolerance = absolute;
+    lively_ = std::make_unique<ExplicitRk>(rhs, 0.0, start, options);
+  } else {
+    CvodeOptions options;
+    options.relative_tolerance = 0;
+    options.absolute_tolerance = absolute;
+    options.stability_limit_detection = true;
+    options.max_steps_per_advance = 100'000'000;
+    options.jacobian = [this](double t, const auto& y, auto slope) {
+      ode_.jacobian(inputs(t), y, slope);
+    };
+    quiet_ = std::make_unique<Cvode>(rhs, 0.0, start, options);
+  }
+  begin(0);
+}
+
+std::vector<EnvelopeTrajectory::Piece> EnvelopeTrajectory::pieces() const {
+  std::vector<double> borders = scenario_.ambient.breakpoints();
+  borders.insert(borders.end(), motion_.breakpoints().begin(),
+                 motion_.breakpoints().end());
+  for (const PowerInterval& interval : scenario_.powered) {
+    borders.insert(borders.end(),
+                   {interval.on, interval.on + kLockTime, interval.off});
+  }
+  borders.insert(borders.end(), {0, scenario_.duration});
+  std::erase_if(borders,
+                [&](double t) { return t < 0 || t > scenario_.duration; });
+  std::sort(borders.begin(), borders.end());
+
+  std::vector<Piece> pieces;
+  double start = 0;
+  for (const double end : borders) {
+    if (end - start < kShortestPiece) continue;
+    const bool powered = powered_at(scenario_, start);
+    const bool switched = !pieces.empty() && pieces.back().powered != powered;
+    pieces.push_back({start, end, scenario_.ambient.value(start),
+                      scenario_.ambient.value_before(end), powered,
+                      switched || motion_.jumps_at(start) ||
+                          scenario_.ambient.value(start) !=
+                              scenario_.ambient.value_before(start)});
+    start = end;
+  }
+  return pieces;
+}
+
+EnvelopeInputs EnvelopeTrajectory::inputs(double t) const {
+  const Piece& p = pieces_[piece_];
+  const double share = (t - p.start) / (p.end - p.start);
+  return {.motion = at_rest_ ? segment_->at_rest(t) : segment_->at(t),
+          .surroundings = {std::lerp(p.ambient_start, p.ambient_end, share),
+                           scenario_.stirred},
+          .powered = p.powered};
+}
+
+void EnvelopeTrajectory::begin(std::size_t piece) {
+  const bool was_powered = piece > 0 && pieces_[piece - 1].powered;
+  piece_ = piece;
+  const Piece& p = pieces_[piece];
+  segment_ = motion_.segment(p.start, p.end);
+  if (!p.jump && piece > 0) return;
+  VectorXd y = state();
+  if (p.powered != was_powered) {
+    // What still rings when the power goes is gone within a second; the loops
+    // and an oven start from nothing.
+    y.head<kEnvelopeNodes>().setZero();
+    y.tail(y.size() - kEnvelopeNodes - kThermalNodeCount).setZero();
+  }
+  if (lively_) {
+    lively_->restart(p.start, y);
+  } else {
+    quiet_->restart(p.start, y);
+  }
+}
+
+void EnvelopeTrajectory::require_lock() const {
+  if (!lock_is_due(scenario_, time())) return;
+  const VectorXd& y = state();
+  require_locked(drive_signals(ode_.loops(), y(kFeedback2), y(kFeedback2 + 1),
+                               y(kPllIntegral), y(kAgcIntegral)),
+                 time(), y(kEnvelopeNodes + Index{kBeam}));
+}
+
+bool EnvelopeTrajectory::is_lively(const Scenario& scenario,
+                                   const Motion& motion) {
+  constexpr double kBends = 50;  // [1/s]
+  return static_cast<double>(motion.breakpoints().size()) >
+         kBends * scenario.duration;
+}
+
+double EnvelopeTrajectory::time() const {
+  return lively_ ? lively_->time() : quiet_->time();
+}
+
+const VectorXd& EnvelopeTrajectory::state() const {
+  return lively_ ? lively_->state() : quiet_->state();
+}
+
+long EnvelopeTrajectory::steps() const {
+  return lively_ ? lively_->steps() : quiet_->statistics().steps;
+}
+
+long EnvelopeTrajectory::rhs_evaluations() const {
+  return lively_ ? lively_->rhs_evaluations()
+                 : quiet_->statistics().rhs_evaluations;
+}
+
+void EnvelopeTrajectory::advance_to(double t_end, Sampler& sampler) {
+  if (quiet_) {
+    quiet_->advance_to(t_end, [&](const OdeStep& step) { sampler.take(step); });
+    return;
+  }
+  while (!sampler.complete() && sampler.next_time() < t_end) {
+    const double t = sampler.next_time();
+    sampler.take_until(t, lively_->advance_to(t));
+  }
+  lively_->advance_to(t_end);
+}
+
+RunSamples EnvelopeTrajectory::advance(std::span<const double> times) {
+  Sampler sampler(times);
+  while (!sampler.complete()) {
+    const Piece& piece = pieces_[piece_];
+    const double end = std::min(piece.end, times.back());
+    advance_to(end, sampler);
+    if (end == piece.end && piece_ + 1 < pieces_.size()) {
+      require_lock();
+      begin(piece_ + 1);
+    }
+    sampler.take_until(time(), state());
+  }
+  RunSamples samples = shown(sampler.columns(), ode_.loops(), gyro_);
+  samples.time.assign(times.begin(), times.end());
+  return samples;
+}
+
+}  // namespace beamgyro

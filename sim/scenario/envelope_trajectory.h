@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sim/dynamics/envelope.h"
+#include "sim/numerics/cvode.h"
+#include "sim/numerics/explicit_rk.h"
+#include "sim/scenario/motion.h"
+#include "sim/scenario/run_recorder.h"
+#include "sim/scenario/scenario.h"
+
+namespace beamgyro {
+
+/// One gyro in one scenario as its envelope, integrated in order of time from
+/// rest at 0, restarted at every jump of an input.
+///
+/// Quiet runs: CVODE's BDF with stability-limit detection. The split mode's
+/// beat lies outside the stability region of orders 3 to 5 at small steps, and
+/// at order 2 alone such a run takes five times the steps. Runs whose motion
+/// bends all the time (EnvelopeTrajectory::is_lively()): Dormand-Prince, which
+/// starts again at every bend without losing its order.
+class EnvelopeTrajectory {
+ public:
+  /// `at_rest`: the twin, whose rate about z is zero. The scenario, gyro and
+  /// motion must outlive the trajectory. `tolerance` is the local error of a
+  /// step in the output [rad/s], other states in proportion.
+  EnvelopeTrajectory(const Scenario& scenario, const Gyro& gyro,
+                     const Motion& motion, bool at_rest,
+                     double tolerance = 1e-8);
+
+  /// What the gyro shows at increasing times [s] that follow those of the call
+  /// before; bias and motion are left empty.
+  /// Throws std::runtime_error when the loops have not locked kLockTime after a
+  /// power-on, and as Cvode.
+  RunSamples advance(std::span<const double> times);
+
+  long steps() const;
+  long rhs_evaluations() const;
+
+  /// Whether the motion bends more than 50 times a second on average: where
+  /// the explicit method is the faster one.
+  static bool is_lively(const Scenario& scenario, const Motion& motion);
+
+ private:
+  // A stretch of time in which every input is smooth.
+  struct Piece {
+    double start, end;                  // [s]
+    double ambient_start, ambient_end;  // [K]
+    bool powered;
+    bool jump;  // an input jumps at its start
+  };
+
+  class Sampler;
+
+  std::vector<Piece> pieces() const;
+  EnvelopeInputs inputs(double t) const;
+  void begin(std::size_t piece);
+  void require_lock() const;
+  void advance_to(double t_end, Sampler& sampler);
+  double time() const;
+  const Eigen::VectorXd& state() const;
+
+  const Scenario& scenario_;
+  const Gyro& gyro_;
+  const Motion& motion_;
+  bool at_rest_;
+  EnvelopeOde ode_;
+  std::vector<Piece> pieces_;
+  std::size_t piece_ = 0;
+  std::optional<MotionSegment> segment_;
+  std::unique_ptr<Cvode> quiet_;  // one of the two
+  std::unique_ptr<ExplicitRk> lively_;
+};
+
+}  // namespace beamgyro

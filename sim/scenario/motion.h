@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "sim/dynamics/gyro.h"
+#include "sim/scenario/run_recorder.h"
+#include "sim/scenario/scenario.h"
+
+namespace beamgyro {
+
+/// a + b (t - start) + amplitude sin(omega t + phase)
+struct AxisSegment {
+  double a = 0, b = 0;
+  double amplitude = 0, omega = 0, phase = 0;
+};
+
+/// The motion of the case between two breakpoints, smooth up to both ends.
+class MotionSegment {
+ public:
+  /// `rate` about x, y, z [rad/s], `acceleration` along x, y, z [m/s2].
+  MotionSegment(double start, const std::array<AxisSegment, 3>& rate,
+                const std::array<AxisSegment, 3>& acceleration,
+                const MountParameters& mount);
+
+  CaseMotion at(double t) const;
+  /// The rate-0 twin: the same but for the rate about z and its derivative.
+  CaseMotion at_rest(double t) const;
+
+  bool is_constant() const;  // at() does not depend on t
+
+ private:
+  double start_;
+  std::array<AxisSegment, 3> rate_, acceleration_;
+  bool accelerated_;
+  MountParameters mount_;
+};
+
+/// The motion of the case over a whole run, random rates realised.
+class Motion {
+ public:
+  Motion(const Scenario& scenario, const Gyro& gyro, const RunKey& key);
+
+  /// Where a value or a slope jumps, inside (0, duration), increasing.
+  const std::vector<double>& breakpoints() const { return breakpoints_; }
+  bool jumps_at(double t) const;  // a value jumps at this breakpoint
+  /// The twin, whose rate about z is zero, is the run itself.
+  bool rate_is_zero() const { return !rate_moves_; }
+
+  /// Between two times with no breakpoint inside: the right-hand limits at
+  /// `start`, the left-hand limits at `end`.
+  MotionSegment segment(double start, double end) const;
+
+  /// Fills the motion of the case in `samples` at its times.
+  void show(RunSamples& samples) const;
+
+ private:
+  using Axis = std::variant<SineSignal, PiecewiseLinear>;
+  std::array<Axis, 3> rate_, acceleration_;
+  std::array<bool, 2> cross_moves_{};
+  std::array<bool, 3> acceleration_moves_{};
+  bool rate_moves_;
+  MountParameters mount_;
+  std::vector<double> breakpoints_;
+};
+
+}  // namespace beamgyro

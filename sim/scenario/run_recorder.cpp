@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "sim/scenario/run_recorder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+namespace beamgyro {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;  // [rad]
+constexpr double kZeroCelsius = 273.15;             // [K]
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
+
+using Samples = std::vector<double>;
+
+std::string_view fidelity_name(Fidelity fidelity) {
+  switch (fidelity) {
+    case Fidelity::kQuasistatic:
+      return "quasistatic";
+    case Fidelity::kEnvelope:
+      return "envelope";
+    case Fidelity::kCarrier:
+      return "carrier";
+  }
+  return "";
+}
+
+// Power cycle of every sample, -1 while unpowered.
+std::vector<int> power_cycles(const Scenario& scenario, const Samples& times) {
+  std::vector<int> cycle(times.size(), -1);
+  for (std::size_t i = 0; i < scenario.powered.size(); ++i) {
+    const PowerInterval& interval = scenario.powered[i];
+    const auto first =
+        std::lower_bound(times.begin(), times.end(), interval.on);
+    const auto last = std::lower_bound(first, times.end(), interval.off);
+    std::fill(cycle.begin() + (first - times.begin()),
+              cycle.begin() + (last - times.begin()), static_cast<int>(i));
+  }
+  return cycle;
+}
+
+Samples scaled(Samples values, double factor, double offset = 0) {
+  for (double& v : values) v = v * factor + offset;
+  return values;
+}
+
+Samples quantised(Samples values, double factor, double resolution) {
+  for (double& v : values) v = quantise(v * factor, resolution);
+  return values;
+}
+
+// Appends a measured column with the unpowered samples blanked.
+void add_column(Recording& block, const char* name, const char* units,
+                const char* long_name, Samples values) {
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (block.status[k] & kUnpowered) values[k] = kNaN;
+  }
+  block.columns.push_back(
+      {name, units, long_name, Role::kMeasured, std::move(values)});
+}
+
+}  // namespace
+
+RunRecorder::RunRecorder(const Scenario& scenario, const Device& device,
+                         const RunKey& key)
+    : scenario_(scenario),
+      device_(device),
+      noise_(device.noise, scenario.output_rate, scenario.seed, key.device,
+             key.run),
+      turn_on_(turn_on_offsets(device.noise, scenario.powered.size(),
+                               scenario.seed, key.device, key.run)),
+      sensor_(device.temperature_sensor, scenario.noise_enabled, scenario.seed,
+              key.device, key.run),
+      readout_(device.readout.full_scale, device.readout.adc_bits,
+               device.readout.scale_factor, device.readout.offset) {}
+
+Recording RunRecorder::block(RunSamples&& samples) {
+  Recording block;
+  block.fidelity = fidelity_name(scenario_.fidelity);
+  block.seed = scenario_.seed;
+  block.time = std::move(samples.time);
+  const std::vector<int> cycle = power_cycles(scenario_, block.time);
+  if (scenario_.noise_enabled) add_noise(cycle, samples.output);
+  block.status.assign(cycle.size(), 0);
+  for (std::size_t k = 0; k < cycle.size(); ++k) {
+    if (cycle[k] < 0) block.status[k] = kUnpowered;
+  }
+  add_measured(block, std::move(samples));
+  add_truth(block, std::move(samples));
+  return block;
+}
+
+void RunRecorder::add_noise(const std::vector<int>& cycle, Samples& output) {
+  noise_.add_next(output);
+  for (std::size_t k = 0; k < output.size(); ++k) {
+    if (cycle[k] >= 0)
+      output[k] += turn_on_[static_cast<std::size_t>(cycle[k])];
+  }
+}
+
+void RunRecorder::add_measured(Recording& block, RunSamples&& samples) {
+  const ReadoutParameters& readout = device_.readout;
+  Samples output(block.time.size()), rate(block.time.size());
+  for (std::size_t k = 0; k < output.size(); ++k) {
+    const ReadoutSample sample = readout_.sample(samples.output[k]);
+    output[k] = sample.voltage;
+    rate[k] =
+        (sample.voltage - readout.offset) / (readout.scale_factor * kDegree);
+    if (block.status[k] & kUnpowered) continue;
+    if (sample.saturated) block.status[k] |= kOutputSaturated;
+    if (!samples.locked[k]) block.status[k] |= kLoopNotLocked;
+  }
+  add_column(block, "output", "V", "voltage at the gyro's pin",
+             std::move(output));
+  add_column(block, "rate", "degree/s", "uncompensated rate", std::move(rate));
+  add_column(block, "temperature", "degC", "temperature sensor",
+             sensor_.readings(samples.temperature[kSensor]));
+  add_column(block, "drive_frequency", "Hz", "drive loop frequency",
+             quantised(std::move(samples.drive_frequency), 1,
+                       readout.drive_frequency_resolution));
+  add_column(block, "drive_voltage", "V", "drive voltage amplitude",
+             quantised(std::move(samples.drive_voltage), 1,
+                       readout.drive_voltage_resolution));
+  add_column(block, "quadrature", "degree/s",
+             "quadrature channel, rate-equivalent",
+             quantised(std::move(samples.quadrature), 1 / kDegree,
+                       readout.quadrature_resolution / kDegree));
+}
+
+void RunRecorder::add_truth(Recording& block, RunSamples&& samples) const {
+  const auto add = [&](std::string name, const char* units,
+                       std::string long_name, Samples values) {
+    block.columns.push_back({std::move(name), units, std::move(long_name),
+                             Role::kTruth, std::move(values)});
+  };
+  add("true_rate", "degree/s", "rate about the input axis",
+      scaled(std::move(samples.rate), 1 / kDegree));
+  add("true_bias", "degree/s", "zero-rate output of the noise-free twin",
+      scaled(std::move(samples.bias), 1 / kDegree));
+  for (std::size_t i = 0; i < samples.cross_rate.size(); ++i) {
+    if (samples.cross_rate[i].empty()) continue;
+    add(fmt::format("true_cross_rate_{}", kAxes[i]), "degree/s",
+        fmt::format("rate about the {} axis", kAxes[i]),
+        scaled(std::move(samples.cross_rate[i]), 1 / kDegree));
+  }
+  for (std::size_t i = 0; i < samples.acceleration.size(); ++i) {
+    if (samples.acceleration[i].empty()) continue;
+    add(fmt::format("true_acceleration_{}", kAxes[i]), "m/s2",
+        fmt::format("acceleration along the {} axis", kAxes[i]),
+        std::move(samples.acceleration[i]));
+  }
+  for (std::size_t node = 0; node < kThermalNodeCount; ++node) {
+    add(fmt::format("true_{}_temperature", kThermalNodeNames[node]), "degC",
+        fmt::format("temperature of the {}", kThermalNodeNames[node]),
+        scaled(std::move(samples.temperature[node]), 1, -kZeroCelsius));
+  }
+  add("true_ambient_temperature", "degC", "temperature of air and fixture",
+      scaled(scenario_.ambient.sample(block.time), 1, -kZeroCelsius));
+}
+
+Recording joined(const std::function<void(const BlockSink&)>& run) {
+  Recording whole;
+  run([&](Recording&& block) {
+    if (whole.columns.empty()) {
+      whole = std::move(block);
+      return;
+    }
+    whole.time.insert(whole.time.end(), block.time.begin(), block.time.end());
+    whole.status.insert(whole.status.end(), block.status.begin(),
+                        block.status.end());
+    for (std::size_t i = 0; i < block.columns.size(); ++i) {
+      const Samples& values = block.columns[i].values;
+      Samples& all = whole.columns[i].values;
+      all.insert(all.end(), values.begin(), values.end());
+    }
+  });
+  return whole;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include "sim/scenario/run_temperatures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace beamgyro {
+
+ThermalHistory run_temperatures(const Scenario& scenario, const Gyro& gyro,
+                                std::span<const double> times) {
+  const DriveHeating heating = drive_heating(gyro);
+  return simulate_temperatures(ThermalNetwork(gyro.device.thermal),
+                               {.ambient = scenario.ambient,
+                                .stirred = scenario.stirred,
+                                .powered = scenario.powered,
+                                .mechanical_power = heating.mechanical,
+                                .dielectric_power = heating.dielectric},
+                               times);
+}
+
+RunTemperatures::RunTemperatures(const Scenario& scenario, const Gyro& gyro,
+                                 double step)
+    : step_(step) {
+  std::vector<double> times;
+  for (std::size_t k = 0;; ++k) {
+    times.push_back(static_cast<double>(k) * step);
+    if (times.back() >= scenario.duration) break;
+  }
+  history_ = run_temperatures(scenario, gyro, times);
+}
+
+double RunTemperatures::at(ThermalNode node, double t) const {
+  const std::vector<double>& values = history_.temperature[node];
+  const double place = t / step_;
+  const auto left = std::min(static_cast<std::size_t>(place),
+                             std::max<std::size_t>(values.size(), 2) - 2);
+  return std::lerp(values[left], values[left + 1],
+                   place - static_cast<double>(left));
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "sim/dynamics/envelope.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/sim/device/nominal_device.h"
+
+namespace beamgyro {
+namespace {
+
+const std::string kRebalanceMode = "readout.mode=\"force_rebalance\"";
+
+EnvelopeInputs turning(double rate) {
+  return {.motion = {0.4, -0.3, rate, 0, 0.01},
+          .surroundings = {.ambient = 298.15},
+          .powered = true};
+}
+
+// The state in which the loops stand at beam and board temperature T.
+Eigen::VectorXd settled(const Gyro& gyro, const EnvelopeOde& ode,
+                        const CaseMotion& motion, double T) {
+  ModalTable table(gyro);
+  const ModalParameters modal = table.parameters(table.at(T).value);
+  const StaticSolution s = static_solution(
+      modal, gyro.loop, gyro.device.readout.feedthrough, motion);
+  const LoopElectronics& loops = ode.loops();
+  Eigen::VectorXd y = ode.at_rest(T);
+  const auto put = [&](Eigen::Index i, Complex z) {
+    y(i) = z.real();
+    y(i + 1) = z.imag();
+  };
+  put(kAmplitude, s.amplitude(0) / gyro.device.drive.amplitude);
+  put(kAmplitude + 2, s.amplitude(1) / gyro.device.drive.amplitude);
+  const Complex feedback(std::sin(loops.pll_phase), std::cos(loops.pll_phase));
+  put(kFeedback1, feedback);
+  put(kFeedback2, feedback);
+  y(kPllIntegral) = s.drive_frequency - loops.nominal_frequency;
+  y(kAgcIntegral) = s.drive_voltage / loops.nominal_voltage;
+  const Complex z = s.signal / gyro.rate_axis * electronics_at(gyro, T).turn;
+  if (loops.rebalance) {
+    put(kRebalance, -z / loops.rebalance_integral);
+  } else {
+    put(kReadout1, z);
+    put(kReadout2, z);
+  }
+  put(kOutput1, z);
+  put(kOutput2, z);
+  return y;
+}
+
+class Envelope : public testing::TestWithParam<std::string> {
+ protected:
+  Gyro gyro = make_gyro(nominal_device({GetParam()}));
+  EnvelopeOde ode{gyro, drive_heating(gyro)};
+
+  // In open loop the integral of the rebalance is no part of the loops.
+  Eigen::Index loops_and_readout() const {
+    return ode.loops().rebalance ? kEnvelopeNodes : kRebalance;
+  }
+};
+
+TEST_P(Envelope, JacobianAgreesWithDifferences) {
+  const EnvelopeInputs inputs = turning(2.0);
+  Eigen::VectorXd y = settled(gyro, ode, inputs.motion, 281.3);
+  // Off the settled state, so that no slope is zero by accident.
+  for (Eigen::Index i = 0; i < kEnvelopeNodes; ++i)
+    y(i) += 0.02 * std::sin(3.0 * static_cast<double>(i) + 1);
+  y(kEnvelopeNodes + 0) = 283.07;
+  y(kEnvelopeNodes + 4) = 290.2;
+  const Eigen::Index n = ode.size();
+  Eigen::MatrixXd J(n, n);
+  ode.jacobian(inputs, y, J);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double h = 1e-4 * std::max(1.0, 0.02 * std::abs(y(j)));
+    Eigen::VectorXd up(n), down(n), up2(n), down2(n);
+    const auto at = [&](double step, Eigen::VectorXd& dydt) {
+      Eigen::VectorXd moved = y;
+      moved(j) += step;
+      ode.rate(inputs, moved, dydt);
+    };
+    at(h, up), at(-h, down), at(2 * h, up2), at(-2 * h, down2);
+    const Eigen::VectorXd slope = (8 * (up - down) - (up2 - down2)) / (12 * h);
+    const double scale = slope.cwiseAbs().maxCoeff();
+    EXPECT_LE((J.col(j) - slope).cwiseAbs().maxCoeff(), 1e-6 * scale)
+        << "column " << j;
+  }
+}
+
+TEST_P(Envelope, V20FixedPointIsTheAlgebraicSolution) {
+  for (const double T : {240.0, 298.15, 320.0}) {
+    for (const double rate : {0.0, 1.0}) {
+      const EnvelopeInputs inputs = turning(rate);
+      const Eigen::VectorXd y = settled(gyro, ode, inputs.motion, T);
+      Eigen::VectorXd dydt(y.size());
+      Eigen::MatrixXd J(y.size(), y.size());
+      ode.rate(inputs, y, dydt);
+      ode.jacobian(inputs, y, J);
+      const Eigen::Index n = loops_and_readout();
+      const Eigen::VectorXd distance =
+          J.topLeftCorner(n, n).partialPivLu().solve(dydt.head(n));
+      EXPECT_LT(distance.head(kPllIntegral).cwiseAbs().maxCoeff(), 1e-10);
+      EXPECT_LT(distance.tail(n - kReadout1).cwiseAbs().maxCoeff(), 1e-10);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Readout, Envelope,
+    testing::Values(std::string("readout.mode=\"open_loop\""), kRebalanceMode));
+
+}  // namespace
+}  // namespace beamgyro
