@@ -40,6 +40,15 @@ double trimmed_stiffness(Gyro gyro) {
                   target));
 }
 
+// The modulator's reference is the drive mode's velocity: V_B per rate is
+// 2 i w_d m_g X / Theta_By (2.5). Taken there, and not from dV_B/dOmega, the
+// quadrature does not leak into the bias by the products of two misalignments.
+Complex rebalance_reference(const Gyro& gyro, const ModalParameters& modal) {
+  const StaticSolution s =
+      static_solution(modal, gyro.loop, gyro.device.readout.feedthrough, {});
+  return Complex(0, 1) * s.amplitude(0) / modal.coupling[kDamping](1);
+}
+
 }  // namespace
 
 Complex rate_response(const ModalParameters& modal, const DriveLoop& loop,
@@ -71,6 +80,10 @@ Gyro make_gyro(const Device& device) {
   const ModalParameters modal = modal_parameters(
       device, gyro.beam, kCalibrationTemperature, gyro.stiffness_trim);
   gyro.rate_axis = rate_response(modal, gyro.loop, device.readout.feedthrough);
+  if (gyro.loop.mode == ReadoutMode::kForceRebalance) {
+    gyro.rate_axis = std::polar(std::abs(gyro.rate_axis),
+                                std::arg(rebalance_reference(gyro, modal)));
+  }
   gyro.offset = device.readout.offset_trim -
                 beam_signal(gyro, modal, {}).demodulated.real();
   return gyro;

@@ -16,6 +16,7 @@
 #include "sim/scenario/drive_lock.h"
 #include "sim/scenario/motion.h"
 #include "sim/scenario/run_temperatures.h"
+#include "sim/scenario/sensing_noise.h"
 
 namespace beamgyro {
 namespace {
@@ -208,6 +209,8 @@ void simulate_carrier(const Scenario& scenario, const Device& device,
   if (!motion.rate_is_zero())
     twin.emplace(scenario, gyro, motion, temperatures, true);
   RunRecorder recorder(scenario, device, key);
+  std::optional<SensingNoise> noise;
+  if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
   const std::vector<double> times = sample_times(scenario);
   for (std::size_t k = 0; k < times.size(); k += kBlockSamples) {
     const auto block =
@@ -215,6 +218,7 @@ void simulate_carrier(const Scenario& scenario, const Device& device,
     RunSamples samples = samples_at(block, gyro, temperatures, trajectory,
                                     twin ? &*twin : nullptr);
     motion.show(samples);
+    if (noise) noise->add_next(samples);
     on_block(recorder.block(std::move(samples)));
   }
 }

@@ -8,6 +8,7 @@
 
 #include "sim/scenario/envelope_trajectory.h"
 #include "sim/scenario/motion.h"
+#include "sim/scenario/sensing_noise.h"
 
 namespace beamgyro {
 
@@ -19,6 +20,8 @@ void simulate_envelope(const Scenario& scenario, const Device& device,
   std::optional<EnvelopeTrajectory> twin;
   if (!motion.rate_is_zero()) twin.emplace(scenario, gyro, motion, true);
   RunRecorder recorder(scenario, device, key);
+  std::optional<SensingNoise> noise;
+  if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
 
   const std::vector<double> times = sample_times(scenario);
   for (std::size_t k = 0; k < times.size(); k += kBlockSamples) {
@@ -27,6 +30,7 @@ void simulate_envelope(const Scenario& scenario, const Device& device,
     RunSamples samples = trajectory.advance(block);
     samples.bias = twin ? twin->advance(block).output : samples.output;
     motion.show(samples);
+    if (noise) noise->add_next(samples);
     on_block(recorder.block(std::move(samples)));
   }
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "sim/dynamics/mechanical_noise.h"
 #include "sim/dynamics/static_map.h"
 #include "sim/scenario/run_temperatures.h"
 
@@ -121,7 +122,13 @@ Recording simulate_quasistatic(const Scenario& scenario, const Device& device,
   } else {
     show_rate(gyro, filtered.rate, samples);
   }
-  return RunRecorder(scenario, device, key).block(std::move(samples));
+  const double sensing_noise =
+      low_frequency_noise(gyro, kCalibrationTemperature,
+                          kCalibrationTemperature)
+          .total() /
+      std::numbers::sqrt2;
+  return RunRecorder(scenario, device, key, sensing_noise)
+      .block(std::move(samples));
 }
 
 }  // namespace beamgyro

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <string_view>
@@ -45,6 +46,11 @@ std::vector<int> power_cycles(const Scenario& scenario, const Samples& times) {
   return cycle;
 }
 
+NoiseParameters with(NoiseParameters noise, double sensing_noise) {
+  noise.angle_random_walk = std::hypot(noise.angle_random_walk, sensing_noise);
+  return noise;
+}
+
 Samples scaled(Samples values, double factor, double offset = 0) {
   for (double& v : values) v = v * factor + offset;
   return values;
@@ -68,11 +74,11 @@ void add_column(Recording& block, const char* name, const char* units,
 }  // namespace
 
 RunRecorder::RunRecorder(const Scenario& scenario, const Device& device,
-                         const RunKey& key)
+                         const RunKey& key, double sensing_noise)
     : scenario_(scenario),
       device_(device),
-      noise_(device.noise, scenario.output_rate, scenario.seed, key.device,
-             key.run),
+      noise_(with(device.noise, sensing_noise), scenario.output_rate,
+             scenario.seed, key.device, key.run),
       turn_on_(turn_on_offsets(device.noise, scenario.powered.size(),
                                scenario.seed, key.device, key.run)),
       sensor_(device.temperature_sensor, scenario.noise_enabled, scenario.seed,

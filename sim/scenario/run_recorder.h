@@ -50,9 +50,11 @@ struct RunSamples {
 /// depend on how the run is cut into blocks.
 class RunRecorder {
  public:
-  /// `device` and `scenario` must outlive the recorder.
-  RunRecorder(const Scenario& scenario, const Device& device,
-              const RunKey& key);
+  /// `device` and `scenario` must outlive the recorder. `sensing_noise` is
+  /// white noise in front of the output stage [rad/sqrt(s)], where a run does
+  /// not simulate it.
+  RunRecorder(const Scenario& scenario, const Device& device, const RunKey& key,
+              double sensing_noise = 0);
 
   /// The next samples, with every column (docs/formats.md).
   Recording block(RunSamples&& samples);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/dynamics/loop_noise.h"
 #include "tests/sim/device/nominal_device.h"
 
 namespace beamgyro {
@@ -21,36 +22,9 @@ EnvelopeInputs turning(double rate) {
           .powered = true};
 }
 
-// The state in which the loops stand at beam and board temperature T.
 Eigen::VectorXd settled(const Gyro& gyro, const EnvelopeOde& ode,
                         const CaseMotion& motion, double T) {
-  ModalTable table(gyro);
-  const ModalParameters modal = table.parameters(table.at(T).value);
-  const StaticSolution s = static_solution(
-      modal, gyro.loop, gyro.device.readout.feedthrough, motion);
-  const LoopElectronics& loops = ode.loops();
-  Eigen::VectorXd y = ode.at_rest(T);
-  const auto put = [&](Eigen::Index i, Complex z) {
-    y(i) = z.real();
-    y(i + 1) = z.imag();
-  };
-  put(kAmplitude, s.amplitude(0) / gyro.device.drive.amplitude);
-  put(kAmplitude + 2, s.amplitude(1) / gyro.device.drive.amplitude);
-  const Complex feedback(std::sin(loops.pll_phase), std::cos(loops.pll_phase));
-  put(kFeedback1, feedback);
-  put(kFeedback2, feedback);
-  y(kPllIntegral) = s.drive_frequency - loops.nominal_frequency;
-  y(kAgcIntegral) = s.drive_voltage / loops.nominal_voltage;
-  const Complex z = s.signal / gyro.rate_axis * electronics_at(gyro, T).turn;
-  if (loops.rebalance) {
-    put(kRebalance, -z / loops.rebalance_integral);
-  } else {
-    put(kReadout1, z);
-    put(kReadout2, z);
-  }
-  put(kOutput1, z);
-  put(kOutput2, z);
-  return y;
+  return settled_state(gyro, ode, motion, T, T);
 }
 
 class Envelope : public testing::TestWithParam<std::string> {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/dynamics/envelope.h"
+#include "sim/dynamics/loop_noise.h"
 #include "sim/signal/linear_noise.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/signal/allan_deviation.h"
@@ -28,15 +28,6 @@ using Eigen::MatrixXd;
 using Eigen::Vector2cd;
 
 constexpr double kT0 = kCalibrationTemperature;
-
-Matrix4d real_form(const Matrix2cd& matrix) {
-  Matrix4d real;
-  for (Index i = 0; i < 2; ++i)
-    for (Index j = 0; j < 2; ++j)
-      real.block<2, 2>(2 * i, 2 * j) << matrix(i, j).real(),
-          -matrix(i, j).imag(), matrix(i, j).imag(), matrix(i, j).real();
-  return real;
-}
 
 // The nominal unit at rest at one temperature.
 struct Modes {
@@ -221,102 +212,29 @@ TEST(LowFrequencyNoise, WeighsNoiseWithTheScaleFactorOfTheUnit) {
   EXPECT_NEAR(b.amplifier / a.amplifier, 2, 1e-5);
 }
 
-// The loops and the readout of the envelope model, linear about its settled
-// state, with the noise of every source.
-struct LoopedEnvelope {
-  MatrixXd A, brownian, charge;  // charge: per sqrt(C2/Hz)
+// One-sided density of the output at frequency 0 of the sources in columns
+// `first` .. of the noise of the loops.
+double low_frequency(const NoiseSystem& system, Index first, Index count) {
+  const MatrixXd gain =
+      system.A.partialPivLu().solve(system.B.middleCols(first, count));
+  return std::sqrt(2) * gain.row(kOutput2).norm();
+}
 
-  explicit LoopedEnvelope(const Modes& modes, double T) {
-    const Gyro& gyro = modes.gyro;
-    EnvelopeOde ode(gyro, drive_heating(gyro));
-    const LoopElectronics& loops = ode.loops();
-    const Index n = loops.rebalance ? kEnvelopeNodes : kRebalance;
-    const Complex turn = electronics_at(gyro, T).turn;
-    MatrixXd J(ode.size(), ode.size());
-    ode.jacobian(
-        {.motion = {}, .surroundings = {.ambient = T}, .powered = true},
-        settled(modes, ode, T), J);
-    A = J.topLeftCorner(n, n);
-
-    const double reference = gyro.device.drive.amplitude;
-    const double corner = loops.demodulator_corner;
-    const BrownianInput force = modes.brownian();
-    brownian = MatrixXd::Zero(n, 4);
-    brownian.middleRows(kAmplitude, 4) = force.input / reference;
-    const Vector2cd readout =
-        modes.modal.coupling[kReadout] * (turn / loops.charge_axis);
-    const Vector2cd feedback =
-        -modes.modal.coupling[kFeedback] / loops.feedback_scale;
-    const Eigen::Matrix2d conjugate = Eigen::Vector2d(1, -1).asDiagonal();
-    brownian.middleRows(kReadout1, 2) =
-        corner * row_form(readout) * force.direct;
-    brownian.middleRows(kFeedback1, 2) =
-        corner * conjugate * row_form(feedback) * force.direct;
-
-    charge = MatrixXd::Zero(n, 4);
-    charge.block(kReadout1, 0, 2, 2) =
-        corner / std::abs(loops.charge_axis) * Matrix2d::Identity();
-    charge.block(kFeedback1, 2, 2, 2) =
-        corner / loops.feedback_scale * Matrix2d::Identity();
-  }
-
-  // One-sided density of the output at frequency 0.
-  double low_frequency(const MatrixXd& B) const {
-    const MatrixXd gain = A.partialPivLu().solve(B);
-    return std::sqrt(2) * gain.row(kOutput2).norm();
-  }
-
- private:
-  static Eigen::Matrix<double, 2, 4> row_form(const Vector2cd& row) {
-    Matrix2cd matrix = Matrix2cd::Zero();
-    matrix.row(0) = row.transpose();
-    return real_form(matrix).topRows<2>();
-  }
-
-  static Eigen::VectorXd settled(const Modes& modes, const EnvelopeOde& ode,
-                                 double T) {
-    const Gyro& gyro = modes.gyro;
-    const LoopElectronics& loops = ode.loops();
-    Eigen::VectorXd y = ode.at_rest(T);
-    const auto put = [&](Index i, Complex z) {
-      y(i) = z.real();
-      y(i + 1) = z.imag();
-    };
-    const StaticSolution& s = modes.solution;
-    put(kAmplitude, s.amplitude(0) / gyro.device.drive.amplitude);
-    put(kAmplitude + 2, s.amplitude(1) / gyro.device.drive.amplitude);
-    put(kFeedback1, {std::sin(loops.pll_phase), std::cos(loops.pll_phase)});
-    put(kFeedback2, {std::sin(loops.pll_phase), std::cos(loops.pll_phase)});
-    y(kPllIntegral) = s.drive_frequency - loops.nominal_frequency;
-    y(kAgcIntegral) = s.drive_voltage / loops.nominal_voltage;
-    const Complex z = s.signal / gyro.rate_axis * electronics_at(gyro, T).turn;
-    if (loops.rebalance) {
-      put(kRebalance, -z / loops.rebalance_integral);
-    } else {
-      put(kReadout1, z);
-      put(kReadout2, z);
-    }
-    put(kOutput1, z);
-    put(kOutput2, z);
-    return y;
-  }
-};
+NoiseSystem looped(const Modes& modes, double T) {
+  EnvelopeOde ode(modes.gyro, drive_heating(modes.gyro));
+  return loop_noise(modes.gyro, ode, T, T);
+}
 
 class LoopedNoise : public testing::TestWithParam<std::string> {};
 
 TEST_P(LoopedNoise, OfTheEnvelopeIsTheStaticOneAtLowFrequencies) {
   for (const double T : {240.0, kT0, 320.0}) {
     const Modes modes(T, {GetParam()});
-    const LoopedEnvelope envelope(modes, T);
+    const NoiseSystem system = looped(modes, T);
     const RateNoiseDensity noise = low_frequency_noise(modes.gyro, T, T);
-    EXPECT_NEAR(envelope.low_frequency(envelope.brownian) / noise.brownian, 1,
-                1e-3)
-        << T;
-    const double charge = envelope.low_frequency(envelope.charge);
-    EXPECT_NEAR(charge * std::sqrt(modes.density.dielectric) / noise.dielectric,
-                1, 1e-5)
-        << T;
-    EXPECT_NEAR(charge * std::sqrt(modes.density.amplifier) / noise.amplifier,
+    EXPECT_NEAR(low_frequency(system, 0, 4) / noise.brownian, 1, 1e-3) << T;
+    EXPECT_NEAR(low_frequency(system, 4, 4) /
+                    std::hypot(noise.dielectric, noise.amplifier),
                 1, 1e-5)
         << T;
   }
@@ -326,11 +244,7 @@ TEST_P(LoopedNoise, SampledHasTheAllanDeviationOfTheStaticOne) {
   constexpr double kInterval = 2e-3;
   constexpr std::size_t kSamples = 1000000;
   const Modes modes(kT0, {GetParam()});
-  const LoopedEnvelope envelope(modes, kT0);
-  MatrixXd B(envelope.A.rows(), 8);
-  B << envelope.brownian, envelope.charge * std::sqrt(modes.density.dielectric +
-                                                      modes.density.amplifier);
-  LinearNoise noise({envelope.A, B}, kInterval,
+  LinearNoise noise(looped(modes, kT0), kInterval,
                     {3, 0, 0, RandomPurpose::kMechanicalNoise});
   std::vector<double> rate(kSamples);
   for (double& r : rate) {

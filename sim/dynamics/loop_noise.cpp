@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "sim/dynamics/loop_noise.h"
+
+#include <cmath>
+
+#include "sim/dynamics/mechanical_noise.h"
+
+namespace beamgyro {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix2cd;
+using Eigen::Matrix2d;
+using Eigen::MatrixXd;
+using Eigen::Vector2cd;
+
+ModalParameters modal_at(const Gyro& gyro, double T) {
+  return modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim);
+}
+
+Eigen::Matrix<double, 2, 4> real_row(const Vector2cd& row) {
+  Matrix2cd matrix = Matrix2cd::Zero();
+  matrix.row(0) = row.transpose();
+  return real_form(matrix).topRows<2>();
+}
+
+}  // namespace
+
+Eigen::Matrix4d real_form(const Matrix2cd& matrix) {
+  Eigen::Matrix4d real;
+  for (Index i = 0; i < 2; ++i) {
+    for (Index j = 0; j < 2; ++j) {
+      const Complex z = matrix(i, j);
+      real.block<2, 2>(2 * i, 2 * j) << z.real(), -z.imag(), z.imag(), z.real();
+    }
+  }
+  return real;
+}
+
+Eigen::VectorXd settled_state(const Gyro& gyro, const EnvelopeOde& ode,
+                              const CaseMotion& motion, double T_beam,
+                              double T_board) {
+  const StaticSolution s =
+      static_solution(modal_at(gyro, T_beam), gyro.loop,
+                      gyro.device.readout.feedthrough, motion);
+  const LoopElectronics& loops = ode.loops();
+  Eigen::VectorXd y = ode.at_rest(T_beam);
+  y(kEnvelopeNodes + Index{kBoard}) = T_board;
+  const auto put = [&](Index i, Complex z) {
+    y(i) = z.real();
+    y(i + 1) = z.imag();
+  };
+  put(kAmplitude, s.amplitude(0) / gyro.device.drive.amplitude);
+  put(kAmplitude + 2, s.amplitude(1) / gyro.device.drive.amplitude);
+  const Complex feedback(std::sin(loops.pll_phase), std::cos(loops.pll_phase));
+  put(kFeedback1, feedback);
+  put(kFeedback2, feedback);
+  y(kPllIntegral) = s.drive_frequency - loops.nominal_frequency;
+  y(kAgcIntegral) = s.drive_voltage / loops.nominal_voltage;
+  const Complex z =
+      s.signal / gyro.rate_axis * electronics_at(gyro, T_board).turn;
+  if (loops.rebalance) {
+    put(kRebalance, -z / loops.rebalance_integral);
+  } else {
+    put(kReadout1, z);
+    put(kReadout2, z);
+  }
+  put(kOutput1, z);
+  put(kOutput2, z);
+  return y;
+}
+
+NoiseSystem loop_noise(const Gyro& gyro, EnvelopeOde& ode, double T_beam,
+                       double T_board) {
+  const LoopElectronics& loops = ode.loops();
+  const Eigen::VectorXd y = settled_state(gyro, ode, {}, T_beam, T_board);
+  MatrixXd slope(y.size(), y.size());
+  ode.jacobian({.motion = {}, .surroundings = {T_beam}, .powered = true}, y,
+               slope);
+  const Index n = loops.rebalance ? kEnvelopeNodes : kRebalance;
+  NoiseSystem system{slope.topLeftCorner(n, n), MatrixXd::Zero(n, 8)};
+
+  const ModalParameters modal = modal_at(gyro, T_beam);
+  const double w = loops.nominal_frequency + y(kPllIntegral);
+  const NoiseDensities density = noise_densities(gyro.device, modal, T_beam, w);
+  const BrownianInput force =
+      brownian_input(density.force, modal.mass, modal.damping / modal.mass,
+                     slope.topLeftCorner<4, 4>(), w);
+  const double wf = loops.demodulator_corner;
+  const Complex turn = electronics_at(gyro, T_board).turn;
+  const Matrix2d conjugate = Eigen::Vector2d(1, -1).asDiagonal();
+  auto brownian = system.B.leftCols<4>();
+  brownian.middleRows<4>(kAmplitude) =
+      force.input / gyro.device.drive.amplitude;
+  brownian.middleRows<2>(kReadout1) =
+      wf * real_row(modal.coupling[kReadout] * (turn / loops.charge_axis)) *
+      force.direct;
+  brownian.middleRows<2>(kFeedback1) =
+      wf * conjugate *
+      real_row(-modal.coupling[kFeedback] / loops.feedback_scale) *
+      force.direct;
+
+  const double charge = std::sqrt(density.dielectric + density.amplifier);
+  system.B.block<2, 2>(kReadout1, 4) =
+      wf * charge / std::abs(loops.charge_axis) * Matrix2d::Identity();
+  system.B.block<2, 2>(kFeedback1, 6) =
+      wf * charge / loops.feedback_scale * Matrix2d::Identity();
+  return system;
+}
+
+}  // namespace beamgyro

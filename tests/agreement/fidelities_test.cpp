@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// One scenario at two fidelities. Outputs are compared in front of noise; an
+// ADC of 32 bits resolves 7e-8 deg/s.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sim/dynamics/gyro.h"
+#include "sim/scenario/carrier_run.h"
+#include "sim/scenario/envelope_run.h"
+#include "sim/scenario/quasistatic_run.h"
+#include "tests/sim/device/nominal_device.h"
+#include "tests/sim/scenario/scenario_text.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr double kT0 = kCalibrationTemperature;
+const std::string kRebalance = "readout.mode=\"force_rebalance\"";
+
+Device fine_device(std::vector<std::string> overrides = {}) {
+  overrides.emplace_back("readout.adc_bits=32");
+  return nominal_device(overrides);
+}
+
+Recording simulated(Scenario scenario, Fidelity fidelity,
+                    const Device& device) {
+  scenario.fidelity = fidelity;
+  scenario.noise_enabled = false;
+  if (fidelity == Fidelity::kQuasistatic)
+    return simulate_quasistatic(scenario, device, {});
+  return joined([&](const BlockSink& sink) {
+    if (fidelity == Fidelity::kEnvelope) {
+      simulate_envelope(scenario, device, {}, sink);
+    } else {
+      simulate_carrier(scenario, device, {}, sink);
+    }
+  });
+}
+
+// Largest difference of a column between two times [s].
+double difference(const Recording& a, const Recording& b,
+                  const std::string& column, double from, double to) {
+  const std::vector<double>& x = column_values(a, column);
+  const std::vector<double>& y = column_values(b, column);
+  double largest = 0;
+  for (std::size_t k = 0; k < a.time.size(); ++k) {
+    if (a.time[k] >= from && a.time[k] <= to)
+      largest = std::max(largest, std::abs(x[k] - y[k]));
+  }
+  return largest;
+}
+
+std::string constant_ambient(double celsius) {
+  return "[ambient]\nconstant_degC = " + std::to_string(celsius) + "\n";
+}
+
+TEST(Agreement, QuasistaticAndEnvelopeOverAWarmUpOfAnHour) {
+  const Device device = fine_device();
+  for (const double celsius : {25.0, -30.0}) {
+    const Scenario scenario =
+        scenario_from("", constant_ambient(celsius), "3600", "1");
+    const Recording slow = simulated(scenario, Fidelity::kQuasistatic, device);
+    const Recording fast = simulated(scenario, Fidelity::kEnvelope, device);
+    EXPECT_LT(difference(slow, fast, "true_bias", 1, 3600), 1e-4) << celsius;
+    EXPECT_LT(difference(slow, fast, "rate", 1, 3600), 1e-4) << celsius;
+    EXPECT_LT(difference(slow, fast, "quadrature", 1, 3600), 0.011);
+    EXPECT_LT(difference(slow, fast, "drive_frequency", 1, 3600), 1.1e-3);
+    EXPECT_LT(difference(slow, fast, "drive_voltage", 1, 3600), 1.1e-4);
+    EXPECT_LT(difference(slow, fast, "true_beam_temperature", 1, 3600), 1e-4);
+  }
+}
+
+TEST(Agreement, QuasistaticAndEnvelopeOverARampOfAKelvinAMinute) {
+  const Scenario scenario = scenario_from(
+      "[chamber]\nstirred = true\n",
+      "[ambient]\npoints = [[0, -40], [600, -40], [6000, 50]]\n", "6600", "1");
+  for (const std::vector<std::string>& overrides :
+       {std::vector<std::string>{}, std::vector<std::string>{kRebalance}}) {
+    const Device device = fine_device(overrides);
+    const Recording slow = simulated(scenario, Fidelity::kQuasistatic, device);
+    const Recording fast = simulated(scenario, Fidelity::kEnvelope, device);
+    EXPECT_LT(difference(slow, fast, "true_bias", 1, 6600), 2e-3);
+  }
+}
+
+TEST(Agreement, QuasistaticAndEnvelopeUnderRateCrossRatesAndAcceleration) {
+  const Scenario scenario = scenario_from(
+      "[rate]\nsine = { amplitude_deg_per_s = 50, frequency_Hz = 0.02 }\n"
+      "[cross_rate]\nx = { constant_deg_per_s = 200 }\n"
+      "y = { sine = { amplitude_deg_per_s = 100, frequency_Hz = 0.05 } }\n"
+      "[acceleration]\nx = { constant_g = 5 }\nz = { constant_g = -3 }\n");
+  const Device device = fine_device();
+  const Recording slow = simulated(scenario, Fidelity::kQuasistatic, device);
+  const Recording fast = simulated(scenario, Fidelity::kEnvelope, device);
+  EXPECT_LT(difference(slow, fast, "true_bias", 1, 100), 1e-3);
+  // At 0.02 Hz the loops' and demodulators' delay is worth 6e-3 deg/s.
+  EXPECT_LT(difference(slow, fast, "rate", 1, 100), 0.02);
+  // 5 g along x, -3 g along z: 0.1 - 0.015 + 0.002 x 34 deg/s.
+  const Recording still =
+      simulated(scenario_from(""), Fidelity::kEnvelope, device);
+  EXPECT_NEAR(column_values(fast, "true_bias")[500] -
+                  column_values(still, "true_bias")[500],
+              0.153, 0.01);
+}
+
+// Start-up at rest, then a step of 10 deg/s.
+Scenario step_at(double celsius) {
+  Scenario scenario = scenario_from("[rate]\nsteps = [[0, 0], [0.40025, 10]]\n",
+                                    constant_ambient(celsius), "0.7", "200");
+  scenario.output_rate = 2000;
+  return scenario;
+}
+
+class AtTemperature : public testing::TestWithParam<double> {};
+
+TEST_P(AtTemperature, V22CarrierAndEnvelopeOverStartUpAndStep) {
+  const Device device = fine_device();
+  const Scenario scenario = step_at(GetParam());
+  const Recording envelope = simulated(scenario, Fidelity::kEnvelope, device);
+  const Recording carrier = simulated(scenario, Fidelity::kCarrier, device);
+  EXPECT_LT(difference(envelope, carrier, "rate", 0.05, 0.4), 0.03);
+  EXPECT_LT(difference(envelope, carrier, "rate", 0.4005, 0.7), 0.03);
+  EXPECT_LT(difference(envelope, carrier, "rate", 0.65, 0.7), 1e-4);
+  EXPECT_LT(difference(envelope, carrier, "true_bias", 0.65, 0.7), 1e-4);
+}
+
+TEST_P(AtTemperature, StaticSolutionIsWhereEnvelopeAndCarrierComeToRest) {
+  const double T = GetParam() + kZeroCelsius;
+  Scenario scenario =
+      scenario_from("", constant_ambient(GetParam()), "0.9", "100");
+  // A board without mass or power keeps every node at ambient.
+  const Device device = fine_device({"thermal.electronics_power_W=0"});
+  const Gyro gyro = make_gyro(device);
+  for (const Fidelity fidelity : {Fidelity::kEnvelope, Fidelity::kCarrier}) {
+    const Recording run = simulated(scenario, fidelity, device);
+    const double beam =
+        column_values(run, "true_beam_temperature").back() + kZeroCelsius;
+    EXPECT_NEAR(beam, T, 1e-3);
+    const double bias = electronics_at(gyro, T)
+                            .output(beam_signal(gyro, beam, {}).demodulated)
+                            .rate;
+    EXPECT_NEAR(column_values(run, "true_bias").back(), bias / kDegree, 1e-4);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Temperatures, AtTemperature,
+                         testing::Values(-40.0, -15.0, 10.0, 25.0, 50.0));
+
+TEST(Agreement, V22CarrierAndEnvelopeWithForceRebalance) {
+  const Device device = fine_device({kRebalance});
+  const Recording envelope =
+      simulated(step_at(25), Fidelity::kEnvelope, device);
+  const Recording carrier = simulated(step_at(25), Fidelity::kCarrier, device);
+  EXPECT_LT(difference(envelope, carrier, "rate", 0.4005, 0.7), 0.03);
+  EXPECT_LT(difference(envelope, carrier, "rate", 0.65, 0.7), 1e-4);
+  EXPECT_NEAR(column_values(envelope, "rate").back() -
+                  column_values(envelope, "true_bias").back(),
+              10, 0.01);
+}
+
+TEST(Agreement, NoiseOfEnvelopeAndQuasistaticAreOneAtLowFrequencies) {
+  // Without the output stage's own noise: what comes through the mechanics.
+  const Device device = fine_device(
+      {"noise={angle_random_walk_deg_per_sqrt_s=0,bias_instability_deg_per_s="
+       "0,rate_random_walk_deg_per_s_per_sqrt_s=0,turn_on_deg_per_s=0}"});
+  Scenario scenario = scenario_from("", constant_ambient(25), "2000", "100");
+  const auto deviation = [&](const Recording& run) {
+    const std::vector<double>& rate = column_values(run, "rate");
+    const std::vector<double>& bias = column_values(run, "true_bias");
+    constexpr std::size_t kMean = 200;  // 2 s
+    double sum = 0, before = 0;
+    std::size_t count = 0;
+    for (std::size_t k = kMean; k + kMean <= rate.size(); k += kMean) {
+      double mean = 0;
+      for (std::size_t i = k; i < k + kMean; ++i)
+        mean += (rate[i] - bias[i]) / kMean;
+      if (count > 0) sum += (mean - before) * (mean - before);
+      before = mean;
+      ++count;
+    }
+    return std::sqrt(sum / (2.0 * static_cast<double>(count - 1)));
+  };
+  scenario.noise_enabled = true;
+  const double slow = deviation(simulate_quasistatic(scenario, device, {}));
+  const double fast = deviation(joined([&](const BlockSink& sink) {
+    simulate_envelope(scenario, device, {}, sink);
+  }));
+  // 999 means: 3 sigma of an Allan deviation are 8 %, of a ratio 11 %.
+  EXPECT_NEAR(fast / slow, 1, 0.11);
+  EXPECT_NEAR(slow * std::sqrt(2.0), 5.9e-5, 0.08 * 5.9e-5);
+}
+
+}  // namespace
+}  // namespace beamgyro
