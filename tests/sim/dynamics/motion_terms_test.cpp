@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// What the motion of the case does besides the rate about the input axis.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/dynamics/gyro.h"
+#include "tests/sim/device/nominal_device.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr double kT0 = kCalibrationTemperature;
+
+// Change of rate and quadrature by a motion.
+Output change_by(const Gyro& gyro, const CaseMotion& motion) {
+  const Complex change = beam_signal(gyro, kT0, motion).demodulated -
+                         beam_signal(gyro, kT0, {}).demodulated;
+  return {change.real(), -change.imag()};
+}
+
+double drive_frequency(const Gyro& gyro) {
+  return beam_signal(gyro, kT0, {}).drive_frequency;
+}
+
+TEST(Verification, V29EulerForceShowsAsQuadrature) {
+  const Gyro gyro = make_gyro(verification_device());
+  CaseMotion motion;
+  motion.z_acceleration = 1000;  // [rad/s2]
+  const double expected = 1000 / (2 * drive_frequency(gyro));
+  EXPECT_NEAR(expected, 8.76e-3, 0.01e-3);
+  EXPECT_NEAR(std::abs(change_by(gyro, motion).quadrature) / expected, 1, 0.02);
+}
+
+TEST(Verification, V30CrossAxisRatesShowAsQuadratureOnly) {
+  const Gyro gyro = make_gyro(verification_device());
+  const double expected = 5.0 * 5.0 / (2 * drive_frequency(gyro));
+  EXPECT_NEAR(expected, 2.2e-4, 0.01e-4);
+  const Output both = change_by(gyro, {.x = 5, .y = 5});
+  // What one rate alone does is centrifugal and belongs to neither.
+  const Output x = change_by(gyro, {.x = 5}), y = change_by(gyro, {.y = 5});
+  EXPECT_NEAR(
+      std::abs(both.quadrature - x.quadrature - y.quadrature) / expected, 1,
+      0.05);
+  EXPECT_NEAR((both.rate - x.rate - y.rate) / expected, 0, 0.05);
+}
+
+TEST(InPhaseRate, IsLinearInAccelerationWithARectifiedPart) {
+  const Gyro gyro = make_gyro(nominal_device());
+  constexpr double g = 9.80665;
+  const MountParameters& mount = gyro.device.mount;
+  EXPECT_NEAR(in_phase_rate(mount, {g, 0, 0}) / kDegree, 0.02 + 0.002, 1e-12);
+  EXPECT_NEAR(in_phase_rate(mount, {0, -g, 0}) / kDegree, -0.02 + 0.002, 1e-12);
+  EXPECT_NEAR(in_phase_rate(mount, {0, 0, 2 * g}) / kDegree, 0.01 + 0.008,
+              1e-12);
+}
+
+TEST(InPhaseRate, ShowsInTheOutputAsARateDoes) {
+  const Gyro gyro = make_gyro(nominal_device());
+  CaseMotion accelerated, turning;
+  accelerated.in_phase = turning.z = 0.1 * kDegree;
+  EXPECT_NEAR(change_by(gyro, accelerated).rate / change_by(gyro, turning).rate,
+              1, 0.01);
+}
+
+}  // namespace
+}  // namespace beamgyro
