@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "bench/shipped_device.h"
-#include "dataset/hdf5_file.h"
+#include "dataset/recording_file.h"
 #include "sim/scenario/quasistatic_run.h"
 
 namespace beamgyro {

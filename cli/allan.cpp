@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "cli/commands.h"
+#include "cli/inputs.h"
 #include "cli/terminal.h"
 #include "compensation/allan_deviation.h"
 #include "compensation/noise_coefficients.h"
@@ -64,11 +65,25 @@ GaplessSeries series_of(const AllanArguments& arguments) {
   return series;
 }
 
+constexpr const char* kRateUnit = "deg/s";
+
+// Unit of the series; a CSV series is one of rates.
+std::string unit_of(const AllanArguments& arguments) {
+  if (std::filesystem::path(arguments.file).extension() == ".csv")
+    return kRateUnit;
+  const Recording recording = read_recording(arguments.file);
+  const Column* column =
+      find_column(recording, arguments.dataset.value_or("rate"));
+  if (column == nullptr || column->units == "degree/s") return kRateUnit;
+  return column->units;
+}
+
 std::string allan_table(const std::vector<AllanPoint>& plain,
-                        const std::vector<AllanPoint>& overlapping) {
+                        const std::vector<AllanPoint>& overlapping,
+                        const std::string& unit) {
   std::string text =
-      fmt::format("{:>12} {:>14} {:>14} {:>10} {:>8}\n", "tau s", "adev deg/s",
-                  "oadev deg/s", "clusters", "+-%");
+      fmt::format("{:>12} {:>14} {:>14} {:>10} {:>8}\n", "tau s",
+                  "adev " + unit, "oadev " + unit, "clusters", "+-%");
   for (std::size_t i = 0; i < plain.size(); ++i) {
     const bool known = plain[i].clusters > 1;
     fmt::format_to(
@@ -83,26 +98,28 @@ std::string allan_table(const std::vector<AllanPoint>& plain,
 
 int allan(const AllanArguments& arguments) {
   const GaplessSeries series = series_of(arguments);
-  if (!arguments.json.empty()) require_writable(arguments.json);
+  if (!arguments.json.empty()) require_output(arguments.json, {arguments.file});
   const std::vector<double> taus =
       octave_taus(series.rates.size(), series.interval);
   const std::vector<AllanPoint> plain =
       adev(series.rates, series.interval, taus);
   const std::vector<AllanPoint> overlapping =
       oadev(series.rates, series.interval, taus);
-  if (!arguments.json.empty()) {
-    write_text_file(arguments.json, to_json(plain, overlapping).dump(2) + "\n");
-  }
   if (series.left_out > 0) {
     print_warning(fmt::format(
         "{}: {} samples left out; the longest gapless powered stretch has {}",
         arguments.file, series.left_out, series.rates.size()));
   }
-  std::string text = allan_table(plain, overlapping);
-  // Fewer points than the coefficients need leave the curve itself.
-  if (series.rates.size() >= 144) {
+  const std::string unit = unit_of(arguments);
+  std::string text = allan_table(plain, overlapping, unit);
+  // Fewer points than the coefficients need leave the curve itself, and only
+  // those of a rate have names.
+  if (unit == kRateUnit && has_noise_coefficients(overlapping)) {
     text += '\n';
     text += table(noise_coefficients(overlapping));
+  }
+  if (!arguments.json.empty()) {
+    write_text_file(arguments.json, to_json(plain, overlapping).dump(2) + "\n");
   }
   print_result(text);
   return 0;

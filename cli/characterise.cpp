@@ -86,7 +86,7 @@ void append_row(std::string& csv, const Gyro& gyro, double celsius) {
 int characterise(const CharacteriseArguments& arguments) {
   const std::vector<double> grid = temperature_grid(arguments.temperatures);
   const LoadedDevice input = load_device(arguments.device, arguments.overrides);
-  require_writable(arguments.output);
+  require_output(arguments.output, {arguments.device});
 
   const Gyro gyro = make_gyro(input.device);
   std::string csv =

@@ -6,10 +6,12 @@
 #include <utility>
 
 #include "cli/commands.h"
+#include "cli/inputs.h"
 #include "cli/terminal.h"
 #include "compensation/compensator_file.h"
 #include "dataset/atomic_file.h"
 #include "dataset/hdf5_file.h"
+#include "dataset/recording_file.h"
 
 namespace beamgyro {
 namespace {
@@ -31,7 +33,7 @@ std::vector<double> answers(const Compensator& compensator,
 int compensate(const CompensateArguments& arguments) {
   const Compensator compensator = read_compensator(arguments.compensator);
   Recording recording = read_recording(arguments.run);
-  require_writable(arguments.output);
+  require_output(arguments.output, {arguments.compensator, arguments.run});
   if (find_column(recording, kColumn)) {
     throw std::invalid_argument(fmt::format(
         "{}: holds a {} already; expected a recording that was not compensated",

@@ -1,11 +1,30 @@
 // SPDX-License-Identifier: MIT
 #include "cli/inputs.h"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
 #include "config/document.h"
+#include "dataset/atomic_file.h"
 #include "sim/device/device_file.h"
 #include "sim/scenario/scenario_file.h"
 
 namespace beamgyro {
+
+void require_output(const std::filesystem::path& output,
+                    const std::vector<std::filesystem::path>& inputs) {
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code ignored;
+    if (std::filesystem::equivalent(output, input, ignored)) {
+      throw std::invalid_argument(
+          fmt::format("{}: is read by this command; expected another name for "
+                      "what it writes",
+                      output.string()));
+    }
+  }
+  require_writable(output);
+}
 
 LoadedDevice load_device(const std::filesystem::path& path,
                          const std::vector<std::string>& overrides) {

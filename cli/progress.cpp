@@ -10,6 +10,16 @@
 
 namespace beamgyro {
 
+namespace {
+
+std::string line(const std::string& activity, double share, double elapsed) {
+  if (share <= 0) return fmt::format("{}, {:.0f} s", activity, elapsed);
+  return fmt::format("{}, {:.0f} %, {:.0f} s, {:.0f} s left", activity,
+                     100 * share, elapsed, elapsed * (1 - share) / share);
+}
+
+}  // namespace
+
 Progress::Progress(std::string activity) : activity_(std::move(activity)) {
   if (shows_progress()) thread_ = std::thread([this] { show(); });
 }
@@ -34,7 +44,7 @@ void Progress::show() {
   bool shown = false;
   while (!ended_.wait_for(lock, wait, [this] { return over_; })) {
     const std::chrono::duration<double> elapsed = Clock::now() - start;
-    print_progress(fmt::format("{}, {:.0f} s", activity_, elapsed.count()));
+    print_progress(line(activity_, share_, elapsed.count()));
     shown = true;
     wait = kStep;
   }

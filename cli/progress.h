@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <string>
@@ -15,6 +16,10 @@ class Progress {
  public:
   explicit Progress(std::string activity);
   ~Progress();
+
+  /// How much of the work is done, 0 .. 1; shown with what is left.
+  void set_share(double share) { share_ = share; }
+
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
@@ -22,6 +27,7 @@ class Progress {
   void show();
 
   std::string activity_;
+  std::atomic<double> share_ = 0;
   std::mutex mutex_;
   std::condition_variable ended_;
   bool over_ = false;

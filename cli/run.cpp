@@ -10,8 +10,7 @@
 #include "cli/progress.h"
 #include "cli/version.h"
 #include "dataset/atomic_file.h"
-#include "dataset/csv_file.h"
-#include "dataset/hdf5_file.h"
+#include "dataset/recording_file.h"
 #include "sim/scenario/carrier_run.h"
 #include "sim/scenario/envelope_run.h"
 #include "sim/scenario/quasistatic_run.h"
@@ -22,12 +21,12 @@ namespace {
 struct RunArguments {
   std::string scenario, output;
   std::vector<std::string> overrides;
-  std::optional<std::uint64_t> seed;
+  std::optional<std::int64_t> seed;
   std::optional<std::string> fidelity;
   bool yes = false;
 };
 
-bool is_csv(const std::filesystem::path& path) {
+void require_known_ending(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
   if (extension != ".h5" && extension != ".csv") {
     throw std::invalid_argument(
@@ -35,7 +34,6 @@ bool is_csv(const std::filesystem::path& path) {
                     "ends in .h5 or .csv",
                     path.string(), extension));
   }
-  return extension == ".csv";
 }
 
 // Above this a run says what it costs before it starts [s].
@@ -51,45 +49,49 @@ void require_consent(const Scenario& scenario, bool yes) {
       scenario.duration, cost / 3600));
 }
 
-Recording simulate(const Scenario& scenario, const Device& device) {
+void simulate(const Scenario& scenario, const Device& device,
+              const BlockSink& on_block) {
   switch (scenario.fidelity) {
-    case Fidelity::kEnvelope:
-      return joined([&](const BlockSink& sink) {
-        simulate_envelope(scenario, device, {}, sink);
-      });
-    case Fidelity::kCarrier:
-      return joined([&](const BlockSink& sink) {
-        simulate_carrier(scenario, device, {}, sink);
-      });
     case Fidelity::kQuasistatic:
-      break;
+      return on_block(simulate_quasistatic(scenario, device));
+    case Fidelity::kEnvelope:
+      return simulate_envelope(scenario, device, {}, on_block);
+    case Fidelity::kCarrier:
+      return simulate_carrier(scenario, device, {}, on_block);
   }
-  return simulate_quasistatic(scenario, device);
 }
 
 int run(const RunArguments& arguments) {
-  const bool csv = is_csv(arguments.output);
+  require_known_ending(arguments.output);
   std::vector<std::string> overrides = arguments.overrides;
   if (arguments.seed)
     overrides.push_back(fmt::format("seed={}", *arguments.seed));
   if (arguments.fidelity)
     overrides.push_back(fmt::format("fidelity=\"{}\"", *arguments.fidelity));
-  LoadedScenario input = load_scenario(arguments.scenario, overrides);
-  require_writable(arguments.output);
+  const LoadedScenario input = load_scenario(arguments.scenario, overrides);
+  require_output(arguments.output,
+                 {arguments.scenario, input.scenario.device_file});
   require_consent(input.scenario, arguments.yes);
 
-  const Progress progress("simulating " + arguments.scenario);
-  Recording recording = simulate(input.scenario, input.device);
-  recording.program_version = kProgramVersion;
-  recording.git_revision = kGitRevision;
-  recording.scenario_text = std::move(input.scenario_text);
-  recording.device_text = std::move(input.device_text);
-  recording.overrides_text = std::move(input.overrides_text);
-  if (csv) {
-    write_recording_csv(recording, arguments.output);
-  } else {
-    write_recording(recording, arguments.output);
-  }
+  const std::size_t samples = sample_count(input.scenario);
+  std::size_t done = 0;
+  Progress progress("simulating " + arguments.scenario);
+  std::optional<RecordingFile> file;
+  simulate(input.scenario, input.device, [&](Recording&& block) {
+    if (!file) {
+      block.program_version = kProgramVersion;
+      block.git_revision = kGitRevision;
+      block.scenario_text = input.scenario_text;
+      block.device_text = input.device_text;
+      block.overrides_text = input.overrides_text;
+      file.emplace(block, samples, arguments.output);
+    }
+    file->append(block);
+    done += block.time.size();
+    progress.set_share(static_cast<double>(done) /
+                       static_cast<double>(samples));
+  });
+  file->finish();
   return 0;
 }
 
@@ -108,7 +110,8 @@ void add_run(CLI::App& program, Action& action) {
                    "KEY=VALUE, overrides a key of the scenario or its device; "
                    "may be repeated")
       ->allow_extra_args(false);
-  command->add_option("--seed", arguments->seed, "overrides the seed");
+  command->add_option("--seed", arguments->seed, "overrides the seed")
+      ->check(CLI::NonNegativeNumber);
   command->add_option(
       "--fidelity", arguments->fidelity,
       "overrides the fidelity: quasistatic, envelope or carrier");

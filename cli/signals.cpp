@@ -23,8 +23,11 @@ void handle_interrupts() {
   sigfillset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  // A closed pipe is reported by the failed write instead.
+  sigaction(SIGHUP, &action, nullptr);
+  // A closed pipe and a limit on the size of files are reported by the failed
+  // write instead.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 }  // namespace beamgyro

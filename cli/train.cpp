@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "cli/commands.h"
+#include "cli/inputs.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
 #include "compensation/compensator_file.h"
@@ -23,7 +24,7 @@ namespace {
 struct TrainArguments {
   std::vector<std::string> runs, held_out;
   std::string model, output;
-  std::uint64_t seed = 0;
+  std::int64_t seed = 0;
 };
 
 std::vector<TrainingRun> read_runs(const std::vector<std::string>& paths) {
@@ -80,11 +81,15 @@ std::string report(const TrainResult& result) {
 
 int run_training(const TrainArguments& arguments) {
   const ModelSpec spec = read_model(arguments.model);
-  require_writable(arguments.output);
+  std::vector<std::filesystem::path> inputs = {arguments.model};
+  inputs.insert(inputs.end(), arguments.runs.begin(), arguments.runs.end());
+  inputs.insert(inputs.end(), arguments.held_out.begin(),
+                arguments.held_out.end());
+  require_output(arguments.output, inputs);
   std::optional<Progress> progress("training " + arguments.output);
   const TrainResult result =
       train(spec, read_runs(arguments.runs), read_runs(arguments.held_out),
-            arguments.seed);
+            static_cast<std::uint64_t>(arguments.seed));
   write_compensator(result.compensator, arguments.output);
   progress.reset();
   print_result(report(result));
@@ -105,6 +110,7 @@ void add_train(CLI::App& program, Action& action) {
   command->add_option("-o,--output", arguments->output, "COMPENSATOR.json")
       ->required();
   command->add_option("--seed", arguments->seed, "of the initial weights")
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->callback([arguments, &action] {
     action = [arguments] { return run_training(*arguments); };

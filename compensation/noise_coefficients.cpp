@@ -63,6 +63,10 @@ Fit non_negative_fit(const Eigen::MatrixXd& terms,
   return best;
 }
 
+bool is_usable(const AllanPoint& point) {
+  return point.clusters >= kLeastClusters && point.deviation > 0.0;
+}
+
 std::vector<AllanPoint> usable(const std::vector<AllanPoint>& points) {
   std::vector<AllanPoint> used;
   for (const AllanPoint& point : points) {
@@ -70,7 +74,7 @@ std::vector<AllanPoint> usable(const std::vector<AllanPoint>& points) {
       throw std::invalid_argument(fmt::format(
           "deviation at {} s: {}, must be finite", point.tau, point.deviation));
     }
-    if (point.clusters >= kLeastClusters && point.deviation > 0.0) {
+    if (is_usable(point)) {
       used.push_back(point);
     }
   }
@@ -91,6 +95,11 @@ std::optional<double> lowest_deviation(const std::vector<AllanPoint>& used) {
 }
 
 }  // namespace
+
+bool has_noise_coefficients(const std::vector<AllanPoint>& points) {
+  return std::ranges::count_if(points, is_usable) >=
+         static_cast<std::ptrdiff_t>(kLeastPoints);
+}
 
 NoiseCoefficients noise_coefficients(const std::vector<AllanPoint>& points) {
   const std::vector<AllanPoint> used = usable(points);

@@ -33,6 +33,9 @@ struct NoiseCoefficients {
 /// is not finite.
 NoiseCoefficients noise_coefficients(const std::vector<AllanPoint>& points);
 
+/// Whether there are enough points for noise_coefficients().
+bool has_noise_coefficients(const std::vector<AllanPoint>& points);
+
 /// One line each, with unit: "angle random walk N   0.600 deg/sqrt(h)".
 std::string table(const NoiseCoefficients& coefficients);
 

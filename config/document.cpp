@@ -22,8 +22,10 @@ std::string read_file(const std::filesystem::path& file) {
         "{}: cannot read: {}; expected a TOML file", file.string(), reason));
   };
   std::error_code status_error;
-  if (std::filesystem::is_directory(file, status_error))
-    reject("it is a directory");
+  const auto kind = std::filesystem::status(file, status_error);
+  if (std::filesystem::is_directory(kind)) reject("it is a directory");
+  if (std::filesystem::exists(kind) && !std::filesystem::is_regular_file(kind))
+    reject("it is a device or pipe");
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) reject(std::generic_category().message(errno));

@@ -33,10 +33,4 @@ CsvTable read_csv(const std::filesystem::path& path);
 /// The same for a text already in memory, called `path` in messages.
 CsvTable parse_csv(std::string_view text, const std::filesystem::path& path);
 
-/// Writes the columns of the HDF5 file, in its order, under a line of names;
-/// time in s, numbers in the shortest form that reads back to the same bits,
-/// `nan` where unpowered. Throws as write_recording().
-void write_recording_csv(const Recording& recording,
-                         const std::filesystem::path& path);
-
 }  // namespace beamgyro

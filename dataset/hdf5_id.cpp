@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string_view>
+
 namespace beamgyro {
 
 void check_hdf5(herr_t status, const std::string& action) {
@@ -15,6 +18,12 @@ void check_hdf5(herr_t status, const std::string& action) {
     return 0;
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_first, &cause);
+  // Of a failed write the library tells time, names and addresses, too.
+  constexpr std::string_view kSystem = "error message = '";
+  if (const auto at = cause.find(kSystem); at != std::string::npos) {
+    cause.erase(0, at + kSystem.size());
+    cause.erase(std::min(cause.find('\''), cause.size()));
+  }
   throw Hdf5Error(cause.empty() ? "cannot " + action
                                 : fmt::format("cannot {}: {}", action, cause));
 }

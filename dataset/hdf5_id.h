@@ -16,10 +16,17 @@ struct Hdf5Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Keeps HDF5 from printing its error stack.
+/// Throws Hdf5Error "cannot <action>: <cause>" with the innermost entry of the
+/// library's error stack when `status` is negative.
+void check_hdf5(herr_t status, const std::string& action);
+
+/// Keeps HDF5 from printing its error stack, and from tidying up at the end of
+/// the process, where 1.10 crashes after a full disk.
 class QuietHdf5 {
  public:
   QuietHdf5() {
+    static const herr_t no_exit_handler = H5dont_atexit();
+    check_hdf5(no_exit_handler, "start HDF5");
     H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }
@@ -31,10 +38,6 @@ class QuietHdf5 {
   H5E_auto2_t print_ = nullptr;
   void* data_ = nullptr;
 };
-
-/// Throws Hdf5Error "cannot <action>: <cause>" with the innermost entry of the
-/// library's error stack when `status` is negative.
-void check_hdf5(herr_t status, const std::string& action);
 
 /// One owner for every HDF5 id; `release` is H5Fclose, H5Dclose, ...
 class H5Id {

@@ -5,17 +5,14 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 
-#include "dataset/atomic_file.h"
 #include "dataset/hdf5_file.h"
 #include "dataset/hdf5_id.h"
-#include "dataset/recording_defect.h"
+#include "dataset/hdf5_layout.h"
 
 namespace beamgyro {
 namespace {
@@ -76,11 +73,11 @@ void write_meta(hid_t file, const Recording& recording) {
   group.close("close /meta");
 }
 
-/// Writes variables over one time axis, contiguous: deflate would be the
-/// slowest part of a run by far.
-class VariableWriter {
+/// Makes variables over one time axis, contiguous and without their values:
+/// deflate would be the slowest part of a run by far.
+class VariableMaker {
  public:
-  VariableWriter(hid_t file, hsize_t length)
+  VariableMaker(hid_t file, hsize_t length)
       : file_(file),
         space_(H5Screate_simple(1, &length, nullptr), H5Sclose,
                "create a dimension"),
@@ -89,11 +86,14 @@ class VariableWriter {
                "switch off time stamps");
     check_hdf5(H5Pset_attr_creation_order(properties_, kCreationOrder),
                "order attributes");
+    check_hdf5(H5Pset_alloc_time(properties_, H5D_ALLOC_TIME_EARLY),
+               "place values");
+    check_hdf5(H5Pset_fill_time(properties_, H5D_FILL_TIME_NEVER),
+               "leave values open");
   }
 
   /// Without `time` the variable becomes the time axis itself.
-  H5Id write(const Column& about, hid_t type, hid_t memory_type,
-             const void* values, const H5Id* time) const {
+  H5Id make(const Column& about, hid_t type, const H5Id* time) const {
     const std::string action = "write " + about.name;
     H5Id variable(H5Dcreate2(file_, about.name.c_str(), type, space_,
                              H5P_DEFAULT, properties_, H5P_DEFAULT),
@@ -106,9 +106,6 @@ class VariableWriter {
     write_text(variable, "units", about.units);
     write_text(variable, "long_name", about.long_name);
     write_text(variable, "role", role_name(about.role));
-    check_hdf5(
-        H5Dwrite(variable, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values),
-        action);
     return variable;
   }
 
@@ -117,11 +114,16 @@ class VariableWriter {
   H5Id space_, properties_;
 };
 
-void write_status(const VariableWriter& writer, const Recording& recording,
-                  const H5Id& time) {
-  H5Id status = writer.write(
-      {"status", "1", "state of the gyro", Role::kMeasured, {}}, H5T_STD_U8LE,
-      H5T_NATIVE_UINT8, recording.status.data(), &time);
+std::uint64_t place_of(const H5Id& variable, const std::string& name) {
+  const haddr_t place = H5Dget_offset(variable);
+  check_hdf5(place == HADDR_UNDEF ? -1 : 0, "place " + name);
+  return place;
+}
+
+H5Id make_status(const VariableMaker& maker, const H5Id& time) {
+  H5Id status =
+      maker.make({"status", "1", "state of the gyro", Role::kMeasured, {}},
+                 H5T_STD_U8LE, &time);
   constexpr std::array<std::uint8_t, 3> kMasks = {kUnpowered, kOutputSaturated,
                                                   kLoopNotLocked};
   const hsize_t count = kMasks.size();
@@ -130,88 +132,64 @@ void write_status(const VariableWriter& writer, const Recording& recording,
   write_attribute(status, "flag_masks", H5T_STD_U8LE, space, kMasks.data());
   write_text(status, "flag_meanings",
              "unpowered output_saturated loop_not_locked");
-  status.close("write status");
+  return status;
 }
 
-void write_variables(hid_t file, const Recording& recording) {
-  const VariableWriter writer(file, recording.time.size());
-  H5Id time =
-      writer.write({"time", "s", "time", Role::kMeasured, {}}, H5T_IEEE_F64LE,
-                   H5T_NATIVE_DOUBLE, recording.time.data(), nullptr);
-  const std::size_t status_at = status_position(recording);
-  for (std::size_t i = 0; i <= recording.columns.size(); ++i) {
-    if (i == status_at) write_status(writer, recording, time);
-    if (i == recording.columns.size()) break;
-    const Column& column = recording.columns[i];
-    H5Id variable = writer.write(column, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
-                                 column.values.data(), &time);
+Hdf5Layout make_variables(hid_t file, const Recording& head,
+                          std::size_t samples) {
+  const VariableMaker maker(file, samples);
+  H5Id time = maker.make({"time", "s", "time", Role::kMeasured, {}},
+                         H5T_IEEE_F64LE, nullptr);
+  Hdf5Layout layout;
+  layout.time = place_of(time, "time");
+  const std::size_t status_at = status_position(head);
+  for (std::size_t i = 0; i <= head.columns.size(); ++i) {
+    if (i == status_at) {
+      H5Id status = make_status(maker, time);
+      layout.status = place_of(status, "status");
+      status.close("write status");
+    }
+    if (i == head.columns.size()) break;
+    const Column& column = head.columns[i];
+    H5Id variable = maker.make(column, H5T_IEEE_F64LE, &time);
+    layout.columns.push_back(place_of(variable, column.name));
     variable.close("write " + column.name);
   }
   time.close("write time");
+  return layout;
 }
 
-/// The bytes of the open file `id`.
-std::string image_of(hid_t id) {
-  const ssize_t size = H5Fget_file_image(id, nullptr, 0);
-  check_hdf5(size < 0 ? -1 : 0, "size the file");
-  std::string bytes(static_cast<std::size_t>(size), '\0');
-  check_hdf5(H5Fget_file_image(id, bytes.data(), bytes.size()) < 0 ? -1 : 0,
-             "copy the file");
-  return bytes;
-}
-
-/// The whole file, made in memory: HDF5 1.10 never sees a disk that fails,
-/// after which it would crash at the end of the process.
-std::string file_image(const Recording& recording) {
+Hdf5Layout make_file(const Recording& head, std::size_t samples,
+                     const std::filesystem::path& path) {
   const H5Id create = property_list(H5P_FILE_CREATE);
   check_hdf5(H5Pset_link_creation_order(create, kCreationOrder),
              "order variables");
   check_hdf5(H5Pset_attr_creation_order(create, kCreationOrder),
              "order attributes");
   check_hdf5(H5Pset_obj_track_times(create, false), "switch off time stamps");
-  const H5Id access = access_properties();
-  constexpr std::size_t kGrowth = std::size_t{4} << 20;  // [bytes]
-  check_hdf5(H5Pset_fapl_core(access, kGrowth, false), "work in memory");
-  // HDF5 tells files in memory apart by their name.
-  static std::atomic<unsigned long> count = 0;
-  const std::string name = fmt::format("recording {}", ++count);
-  H5Id file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, create, access), H5Fclose,
-            "create the file");
+  H5Id file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, create, access_properties()),
+            H5Fclose, "create the file");
   write_text(file, "Conventions", "CF-1.10");
   write_text(file, "filetype", kRecordingFiletype);
   const std::int32_t version = kRecordingFormatVersion;
   write_attribute(file, "format_version", H5T_STD_I32LE, scalar_space(),
                   &version);
-  write_text(file, "beamgyro_version", recording.program_version);
-  write_text(file, "git_revision", recording.git_revision);
-  write_attribute(file, "seed", H5T_STD_U64LE, scalar_space(), &recording.seed);
-  write_text(file, "fidelity", recording.fidelity);
-  write_variables(file, recording);
-  write_meta(file, recording);
-  check_hdf5(H5Fflush(file, H5F_SCOPE_GLOBAL), "write the file");
-  std::string bytes = image_of(file);
+  write_text(file, "beamgyro_version", head.program_version);
+  write_text(file, "git_revision", head.git_revision);
+  write_attribute(file, "seed", H5T_STD_U64LE, scalar_space(), &head.seed);
+  write_text(file, "fidelity", head.fidelity);
+  Hdf5Layout layout = make_variables(file, head, samples);
+  write_meta(file, head);
   file.close("close the file");
-  return bytes;
+  return layout;
 }
 
 }  // namespace
 
-void write_recording(const Recording& recording,
-                     const std::filesystem::path& path) {
-  const std::string defect = recording_defect(recording);
-  if (!defect.empty()) {
-    throw std::runtime_error(
-        fmt::format("{}: not written: {}", path.string(), defect));
-  }
-  std::string bytes;
+Hdf5Layout make_hdf5_file(const Recording& head, std::size_t samples,
+                          const std::filesystem::path& path) {
   const QuietHdf5 quiet;
-  try {
-    bytes = file_image(recording);
-  } catch (const Hdf5Error& error) {
-    throw std::runtime_error(
-        fmt::format("{}: {}", path.string(), error.what()));
-  }
-  write_text_file(path, bytes);
+  return make_file(head, samples, path);
 }
 
 }  // namespace beamgyro

@@ -21,15 +21,15 @@ bool is_identifier(std::string_view name) {
          });
 }
 
-std::string defect_of_time(const std::vector<double>& time) {
+std::string defect_of_time(const std::vector<double>& time, std::size_t first) {
   if (time.empty()) return "time: no samples; expected at least one";
   for (std::size_t k = 0; k < time.size(); ++k) {
     if (!std::isfinite(time[k]))
-      return fmt::format("time: sample {} is {}; expected a finite time", k,
-                         time[k]);
+      return fmt::format("time: sample {} is {}; expected a finite time",
+                         first + k, time[k]);
     if (k > 0 && !(time[k] > time[k - 1]))
-      return fmt::format("time: sample {} is {} s, not after {} s before it", k,
-                         time[k], time[k - 1]);
+      return fmt::format("time: sample {} is {} s, not after {} s before it",
+                         first + k, time[k], time[k - 1]);
   }
   return {};
 }
@@ -66,7 +66,8 @@ std::string defect_of_texts(const Recording& recording) {
 }
 
 std::string defect_of_values(const Column& column,
-                             const std::vector<std::uint8_t>& status) {
+                             const std::vector<std::uint8_t>& status,
+                             std::size_t first) {
   const std::vector<double>& values = column.values;
   if (values.size() != status.size())
     return fmt::format("{}: {} values for {} times", column.name, values.size(),
@@ -75,33 +76,41 @@ std::string defect_of_values(const Column& column,
     if (std::isfinite(values[k])) continue;
     if (column.role == Role::kTruth)
       return fmt::format("{}: sample {} is {}; a truth is always finite",
-                         column.name, k, values[k]);
+                         column.name, first + k, values[k]);
     if ((status[k] & kUnpowered) == 0)
       return fmt::format(
           "{}: sample {} is {} while powered; expected a finite "
           "value",
-          column.name, k, values[k]);
+          column.name, first + k, values[k]);
     if (!std::isnan(values[k]))
       return fmt::format("{}: sample {} is {} while unpowered; expected nan",
-                         column.name, k, values[k]);
+                         column.name, first + k, values[k]);
   }
   return {};
 }
 
 }  // namespace
 
-std::string recording_defect(const Recording& recording) {
-  std::string defect = defect_of_time(recording.time);
+std::string head_defect(const Recording& recording) {
+  const std::string defect = defect_of_names(recording);
+  return defect.empty() ? defect_of_texts(recording) : defect;
+}
+
+std::string samples_defect(const Recording& recording, std::size_t first) {
+  std::string defect = defect_of_time(recording.time, first);
   if (defect.empty() && recording.status.size() != recording.time.size())
     defect = fmt::format("status: {} values for {} times",
                          recording.status.size(), recording.time.size());
-  if (defect.empty()) defect = defect_of_names(recording);
-  if (defect.empty()) defect = defect_of_texts(recording);
   for (const Column& column : recording.columns) {
     if (!defect.empty()) return defect;
-    defect = defect_of_values(column, recording.status);
+    defect = defect_of_values(column, recording.status, first);
   }
   return defect;
+}
+
+std::string recording_defect(const Recording& recording) {
+  const std::string defect = head_defect(recording);
+  return defect.empty() ? samples_defect(recording, 0) : defect;
 }
 
 }  // namespace beamgyro

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "dataset/recording.h"
@@ -14,5 +15,10 @@ namespace beamgyro {
 /// finite values, except NaN in measured and compensated columns where the
 /// status says unpowered; and no NUL in any text.
 std::string recording_defect(const Recording& recording);
+
+/// The same for names and texts alone, and for samples alone, which are
+/// numbered from `first`.
+std::string head_defect(const Recording& recording);
+std::string samples_defect(const Recording& recording, std::size_t first);
 
 }  // namespace beamgyro

@@ -24,6 +24,15 @@ std::string read_text_file(const std::filesystem::path& path) {
         fmt::format("{}: cannot read: {}", path.string(),
                     std::generic_category().message(error)));
   };
+  std::error_code ignored;
+  const auto kind = std::filesystem::status(path, ignored);
+  if (std::filesystem::exists(kind) && !std::filesystem::is_directory(kind) &&
+      !std::filesystem::is_regular_file(kind)) {
+    throw std::invalid_argument(
+        fmt::format("{}: cannot read: it is a device or pipe; "
+                    "expected a file",
+                    path.string()));
+  }
   const std::unique_ptr<std::FILE, CloseFile> file(
       std::fopen(path.c_str(), "rb"));
   if (!file) reject(errno);

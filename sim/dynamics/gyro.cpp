@@ -117,12 +117,13 @@ DriveHeating drive_heating(const Gyro& gyro) {
 
 double in_phase_rate(const MountParameters& mount,
                      const std::array<double, 3>& a) {
-  double sum = 0, square = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    sum += mount.g_sensitivity[i] * a[i];
-    square += a[i] * a[i];
-  }
-  return sum + mount.rectification * square;
+  return in_phase_rate(mount, a, a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
+
+double in_phase_rate(const MountParameters& mount,
+                     const std::array<double, 3>& a, double square) {
+  const std::array<double, 3>& b = mount.g_sensitivity;
+  return b[0] * a[0] + b[1] * a[1] + b[2] * a[2] + mount.rectification * square;
 }
 
 double rate_slope(const Gyro& gyro, const ModalParameters& modal, double T) {

@@ -84,6 +84,10 @@ DriveHeating drive_heating(const Gyro& gyro);
 /// b_g . a + r |a|^2 [rad/s] (2.1).
 double in_phase_rate(const MountParameters& mount,
                      const std::array<double, 3>& a);
+/// The same with |a|^2 [m2/s4] given apart, for a vibration that a filter has
+/// taken out of a.
+double in_phase_rate(const MountParameters& mount,
+                     const std::array<double, 3>& a, double square);
 
 /// d signal / dOmega at rate 0, in the unit of rate_axis, by a central
 /// difference of the exact solution that is exact for its quadratic part.

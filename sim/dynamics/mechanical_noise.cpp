@@ -103,7 +103,9 @@ class LoopedResponse {
     answer_[2] = held(modal.coupling[kDamping], 0.0);
     answer_[3] = held(kI * modal.coupling[kDamping], 0.0);
     Matrix4d conditions;
-    for (int j = 0; j < 4; ++j) conditions.col(j) = errors(answer_[j], j);
+    for (int j = 0; j < 4; ++j) {
+      conditions.col(j) = errors(answer_[static_cast<std::size_t>(j)], j);
+    }
     conditions_ = conditions.partialPivLu();
   }
 

@@ -26,6 +26,7 @@ using Eigen::VectorXd;
 constexpr double kWindow = 1.0;          // [s], phases are exact over one
 constexpr double kTolerance = 1e-7;      // local, in the output [rad/s]
 constexpr double kThermalStep = 0.1;     // [s], temperatures linear between
+constexpr double kBlockTime = 5.0;       // [s]
 constexpr double kCostPerSecond = 0.45;  // [s], measured
 
 // Local error of each state that matters as much as one of 1 rad/s in the

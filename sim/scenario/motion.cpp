@@ -82,8 +82,8 @@ Motion::Motion(const Scenario& scenario, const Gyro& gyro, const RunKey& key)
     acceleration_[i] =
         realise(scenario.acceleration[i], kAccelerationPurposes[i]);
   }
-  for (const auto& axes : {rate_, acceleration_}) {
-    for (const Axis& axis : axes) {
+  for (const auto* axes : {&rate_, &acceleration_}) {
+    for (const Axis& axis : *axes) {
       if (const auto* points = std::get_if<PiecewiseLinear>(&axis)) {
         const std::vector<double> times = points->breakpoints();
         breakpoints_.insert(breakpoints_.end(), times.begin(), times.end());
@@ -98,8 +98,8 @@ Motion::Motion(const Scenario& scenario, const Gyro& gyro, const RunKey& key)
 }
 
 bool Motion::jumps_at(double t) const {
-  for (const auto& axes : {rate_, acceleration_}) {
-    for (const Axis& axis : axes) {
+  for (const auto* axes : {&rate_, &acceleration_}) {
+    for (const Axis& axis : *axes) {
       const auto* points = std::get_if<PiecewiseLinear>(&axis);
       if (points && points->value(t) != points->value_before(t)) return true;
     }

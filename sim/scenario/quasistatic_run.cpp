@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 
 #include "sim/dynamics/mechanical_noise.h"
@@ -47,6 +48,15 @@ struct FilteredMotion {
   Samples rate;
   std::array<Samples, 2> cross_rate;
   std::array<Samples, 3> acceleration;
+  // Of the acceleration: a vibration is rectified in the mechanics, however
+  // little of itself the filter lets through.
+  Samples square;
+
+  bool has_other_axes() const {
+    const auto moved = [](const Samples& s) { return !s.empty(); };
+    return std::any_of(cross_rate.begin(), cross_rate.end(), moved) ||
+           std::any_of(acceleration.begin(), acceleration.end(), moved);
+  }
 
   CaseMotion at(std::size_t k, const MountParameters& mount) const {
     const auto value = [k](const Samples& s) { return s.empty() ? 0.0 : s[k]; };
@@ -55,11 +65,49 @@ struct FilteredMotion {
     motion.y = value(cross_rate[1]);
     motion.z = rate[k];
     motion.in_phase =
-        in_phase_rate(mount, {value(acceleration[0]), value(acceleration[1]),
-                              value(acceleration[2])});
+        in_phase_rate(mount,
+                      {value(acceleration[0]), value(acceleration[1]),
+                       value(acceleration[2])},
+                      value(square));
     return motion;
   }
 };
+
+// Fills the motion in `samples` and returns what the filter makes of it.
+FilteredMotion filtered_motion(const Scenario& scenario,
+                               const OutputFilter& filter, const RunKey& key,
+                               RunSamples& samples) {
+  FilteredMotion filtered;
+  const auto sampled = [&](const RateProfile& profile, RandomPurpose purpose,
+                           Samples& values) {
+    SampledRate s = sampled_rate(profile, filter, samples.time,
+                                 scenario.output_rate, scenario.duration,
+                                 scenario.seed, key.device, key.run, purpose);
+    values = std::move(s.rate);
+    return std::move(s.filtered);
+  };
+  filtered.rate =
+      sampled(scenario.rate, RandomPurpose::kRateProfile, samples.rate);
+  for (std::size_t i = 0; i < scenario.cross_rate.size(); ++i) {
+    if (!moves(scenario.cross_rate[i])) continue;
+    filtered.cross_rate[i] = sampled(scenario.cross_rate[i], kCrossPurposes[i],
+                                     samples.cross_rate[i]);
+  }
+  filtered.square.resize(samples.time.size());
+  for (std::size_t i = 0; i < scenario.acceleration.size(); ++i) {
+    const RateProfile& profile = scenario.acceleration[i];
+    if (!moves(profile)) continue;
+    filtered.acceleration[i] =
+        sampled(profile, kAccelerationPurposes[i], samples.acceleration[i]);
+    const Samples square =
+        filtered_square(profile, filter, scenario.output_rate,
+                        samples.time.size(), scenario.duration, scenario.seed,
+                        key.device, key.run, kAccelerationPurposes[i]);
+    for (std::size_t k = 0; k < square.size(); ++k)
+      filtered.square[k] += square[k];
+  }
+  return filtered;
+}
 
 // Cross rates and accelerations: the exact solution for every sample.
 void show_motion(const Gyro& gyro, const FilteredMotion& filtered,
@@ -80,6 +128,12 @@ void show_motion(const Gyro& gyro, const FilteredMotion& filtered,
 
 Recording simulate_quasistatic(const Scenario& scenario, const Device& device,
                                const RunKey& key) {
+  if (scenario.fidelity != Fidelity::kQuasistatic) {
+    throw std::invalid_argument(
+        "fidelity: a scenario of another fidelity was given to the "
+        "quasi-static "
+        "run; expected \"quasistatic\"");
+  }
   const Gyro gyro = make_gyro(device);
   RunSamples samples;
   samples.time = sample_times(scenario);
@@ -91,33 +145,9 @@ Recording simulate_quasistatic(const Scenario& scenario, const Device& device,
   samples.temperature =
       run_temperatures(scenario, gyro, samples.time).temperature;
 
-  const OutputFilter filter(device.readout.corner_frequency);
-  const auto sampled = [&](const RateProfile& profile, RandomPurpose purpose,
-                           Samples& values) {
-    SampledRate s = sampled_rate(profile, filter, samples.time,
-                                 scenario.output_rate, scenario.duration,
-                                 scenario.seed, key.device, key.run, purpose);
-    values = std::move(s.rate);
-    return std::move(s.filtered);
-  };
-  FilteredMotion filtered;
-  filtered.rate =
-      sampled(scenario.rate, RandomPurpose::kRateProfile, samples.rate);
-  bool moved = false;
-  for (std::size_t i = 0; i < scenario.cross_rate.size(); ++i) {
-    if (!moves(scenario.cross_rate[i])) continue;
-    moved = true;
-    filtered.cross_rate[i] = sampled(scenario.cross_rate[i], kCrossPurposes[i],
-                                     samples.cross_rate[i]);
-  }
-  for (std::size_t i = 0; i < scenario.acceleration.size(); ++i) {
-    if (!moves(scenario.acceleration[i])) continue;
-    moved = true;
-    filtered.acceleration[i] =
-        sampled(scenario.acceleration[i], kAccelerationPurposes[i],
-                samples.acceleration[i]);
-  }
-  if (moved) {
+  const FilteredMotion filtered = filtered_motion(
+      scenario, OutputFilter(device.readout.corner_frequency), key, samples);
+  if (filtered.has_other_axes()) {
     show_motion(gyro, filtered, samples);
   } else {
     show_rate(gyro, filtered.rate, samples);

@@ -24,6 +24,9 @@ const ProfileUnit kAmbient{"temperature_degC", 1, kZeroCelsius,
                            between(-150, 300)};
 constexpr double kStandardGravity = 9.80665;  // [m/s2]
 
+// Beyond this the models do not see what a motion does.
+constexpr Range kMotionFrequency{0, 1e3, true, false};  // [Hz]
+
 // How the motion about or along one axis is written.
 struct MotionKeys {
   ProfileUnit unit;
@@ -91,7 +94,10 @@ PiecewiseLinear read_soaks(const ConfigTable& soaks) {
     if (i > 0) t += std::abs(levels[i] - levels[i - 1]) / ramp;
     for (const double end : {t, t + hold}) {
       // Two soaks at one temperature: the second starts where the first ends.
-      if (!time.empty() && end == time.back()) continue;
+      if (!time.empty() && end == time.back() &&
+          value.back() == levels[i] + kZeroCelsius) {
+        continue;
+      }
       time.push_back(end);
       value.push_back(levels[i] + kZeroCelsius);
     }
@@ -116,7 +122,7 @@ SineSignal read_sine(const ConfigTable& sine, const MotionKeys& keys) {
   return {
       .offset = sine.number_or("offset_" + keys.suffix, 0, range) * factor,
       .amplitude = sine.number("amplitude_" + keys.suffix, range) * factor,
-      .frequency = sine.number("frequency_Hz", positive()),
+      .frequency = sine.number("frequency_Hz", kMotionFrequency),
       .phase = sine.number_or("phase_rad", 0),
   };
 }
@@ -127,7 +133,7 @@ RandomRate read_random(const ConfigTable& random, const MotionKeys& keys,
       .rms = random.number("rms_" + keys.suffix,
                            {0, keys.unit.range.high, true, false}) *
              keys.unit.factor,
-      .bandwidth = random.number("bandwidth_Hz", positive()),
+      .bandwidth = random.number("bandwidth_Hz", kMotionFrequency),
   };
   if (16 * rate.bandwidth * duration > kLargestRecording / 10) {
     random.fail("bandwidth_Hz",

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <limits>
 
+#include "dataset/recording_file.h"
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/sample_recording.h"
 
@@ -133,7 +134,7 @@ TEST(CsvFile, ARecordingReadsBackToTheSameBits) {
   recording.columns[0].values[1] = std::numeric_limits<double>::max();
   recording.columns[0].values[2] = -0.0;
   const fs::path file = test_file("bits.csv");
-  write_recording_csv(recording, file);
+  write_recording(recording, file);
   const CsvTable table = read_csv(file);
   EXPECT_EQ(table.column("time"), recording.time);
   for (const Column& column : recording.columns) {
@@ -149,11 +150,11 @@ TEST(CsvFile, ADefectiveRecordingIsNotWritten) {
   Recording recording = sample_recording(10);
   recording.columns[7].values[3] = std::nan("");
   const fs::path file = test_file("defect.csv");
-  EXPECT_EQ(rejection<std::runtime_error>(
-                [&] { write_recording_csv(recording, file); }),
-            file.string() +
-                ": not written: true_bias: sample 3 is nan; a truth is always "
-                "finite");
+  EXPECT_EQ(
+      rejection<std::runtime_error>([&] { write_recording(recording, file); }),
+      file.string() +
+          ": not written: true_bias: sample 3 is nan; a truth is always "
+          "finite");
   EXPECT_FALSE(fs::exists(file));
 }
 

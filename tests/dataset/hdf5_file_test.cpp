@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "dataset/recording_file.h"
 #include "dataset/text_file.h"
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/sample_recording.h"

@@ -10,6 +10,7 @@
 
 #include "dataset/atomic_file.h"
 #include "dataset/hdf5_file.h"
+#include "dataset/recording_file.h"
 #include "dataset/text_file.h"
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/sample_recording.h"

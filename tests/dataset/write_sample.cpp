@@ -4,8 +4,7 @@
 #include <iostream>
 #include <string>
 
-#include "dataset/csv_file.h"
-#include "dataset/hdf5_file.h"
+#include "dataset/recording_file.h"
 #include "tests/dataset/sample_recording.h"
 
 /// write_sample SAMPLES FILE.h5|FILE.csv
@@ -15,11 +14,7 @@ int main(int argc, char** argv) {
     const std::string file = argv[2];
     const auto samples = std::strtoul(argv[1], nullptr, 10);
     const beamgyro::Recording recording = beamgyro::sample_recording(samples);
-    if (file.ends_with(".csv")) {
-      beamgyro::write_recording_csv(recording, file);
-    } else {
-      beamgyro::write_recording(recording, file);
-    }
+    beamgyro::write_recording(recording, file);
     return 0;
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';

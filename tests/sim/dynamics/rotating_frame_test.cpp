@@ -56,6 +56,17 @@ double orbit_angle(const Vector4d& y, double frequency) {
   return 0.5 * std::atan2(cross, std::norm(X) - std::norm(Y));
 }
 
+// Position and velocity as seen from a frame that stands turned by -`angle` in
+// the case and turns at -`rate`.
+Vector4d turned_back(const Vector4d& y, double angle, double rate) {
+  const Matrix2d back{{std::cos(angle), -std::sin(angle)},
+                      {std::sin(angle), std::cos(angle)}};
+  Vector4d seen;
+  seen << back * y.head<2>(),
+      back * Vector2d(y(2) - rate * y(1), y(3) + rate * y(0));
+  return seen;
+}
+
 TEST(Verification, V14CoriolisForceDoesNoWork) {
   Modes modes;
   modes.stiffness << 40, 0.3, 0.3, 41;
@@ -82,14 +93,9 @@ TEST(Verification, V15FoucaultPlaneStaysInSpace) {
   const double t = 10 / modes.motion.z;  // ten radians
   // At rest in space means turning backwards in the case.
   const Vector4d y = modes.integrator({1, 0, 0, -modes.motion.z}).advance_to(t);
-  Vector4d in_space;
-  const Matrix2d back{{std::cos(10.0), -std::sin(10.0)},
-                      {std::sin(10.0), std::cos(10.0)}};
-  const Vector2d velocity(y(2) - modes.motion.z * y(1),
-                          y(3) + modes.motion.z * y(0));
-  in_space << back * y.head<2>(), back * velocity;
+  const Vector4d in_space = turned_back(y, 10, modes.motion.z);
   EXPECT_NEAR(in_space(0), std::cos(kOmega * t), 1e-7);
-  EXPECT_NEAR(in_space(2), -kOmega * std::sin(kOmega * t), 1e-6);
+  EXPECT_NEAR(in_space(2), -kOmega * std::sin(kOmega * t), 1e-7 * kOmega);
   EXPECT_NEAR(in_space(1), 0, 1e-7);
   EXPECT_NEAR(orbit_angle(in_space, kOmega), 0, 1e-7);
 }
@@ -105,8 +111,12 @@ TEST(Verification, V16AngularGainBelowOnePrecessesByThatMuch) {
       std::sqrt(kOmega * kOmega - g * rate * rate + g * g * rate * rate);
   const Vector4d y = modes.integrator({1, 0, 0, -g * rate}).advance_to(t);
   const double turned = g * rate * t;
-  EXPECT_NEAR(y(0), std::cos(turned) * std::cos(w * t), 1e-8 * kOmega * t);
-  EXPECT_NEAR(y(1), -std::sin(turned) * std::cos(w * t), 1e-8 * kOmega * t);
+  const Vector4d back = turned_back(y, turned, g * rate);
+  EXPECT_NEAR(orbit_angle(back, w), 0, 1e-8 * turned);
+  const double phase = std::arg(std::complex<double>(back(0), -back(2) / w) *
+                                std::polar(1.0, -w * t));
+  EXPECT_NEAR(phase, 0, 1e-8 * w * t);
+  EXPECT_NEAR(std::hypot(back(0), back(2) / w), 1, 1e-8);
 }
 
 TEST(Verification, V17FreeDecay) {

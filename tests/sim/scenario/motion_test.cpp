@@ -4,17 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
-#include "sim/scenario/quasistatic_run.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
 namespace beamgyro {
 namespace {
-
-constexpr double kGravity = 9.80665;
 
 const Gyro& nominal_gyro() {
   static const Gyro gyro = make_gyro(nominal_device());
@@ -65,41 +63,74 @@ TEST(Motion, OfEveryAxisTogether) {
   EXPECT_NEAR(now.in_phase / kDegree, 2 * 0.005 + 4 * 0.002, 1e-12);
 }
 
-TEST(Motion, RandomAxesAreIndependent) {
-  const std::string random =
-      "{ random = { rms_deg_per_s = 5, bandwidth_Hz = 0.5 } }\n";
-  const Scenario scenario =
-      scenario_from("[cross_rate]\nx = " + random + "y = " + random);
-  const Recording run =
-      simulate_quasistatic(scenario, nominal_gyro().device, {});
-  const auto& x = column_values(run, "true_cross_rate_x");
-  const auto& y = column_values(run, "true_cross_rate_y");
-  double xy = 0, xx = 0, yy = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    xy += x[k] * y[k];
-    xx += x[k] * x[k];
-    yy += y[k] * y[k];
-  }
-  EXPECT_LT(std::abs(xy) / std::sqrt(xx * yy), 0.4);  // some 100 independent
-  EXPECT_GT(std::abs(x[500] - y[500]), 1e-6);
+TEST(Motion, BreaksWhereAnyAxisDoes) {
+  const Scenario scenario = scenario_from(
+      "[rate]\npoints = [[0, 0], [30, 3], [60, 0]]\n"
+      "[cross_rate]\ny = { points = [[30, 0], [40, 5], [200, 0]] }\n"
+      "[acceleration]\nx = { steps = [[0, 0], [20, 2], [100, 1]] }\n"
+      "z = { sine = { amplitude_g = 1, frequency_Hz = 2 } }\n");
+  const Motion motion(scenario, nominal_gyro(), {});
+  // Neither 0 nor the end of the run at 100 s is inside.
+  EXPECT_EQ(motion.breakpoints(), (std::vector<double>{20, 30, 40, 60}));
+  EXPECT_TRUE(motion.jumps_at(20));
+  for (const double bend : {30.0, 40.0, 60.0})
+    EXPECT_FALSE(motion.jumps_at(bend)) << bend;
 }
 
-TEST(QuasistaticRun, ShowsAccelerationInBiasAndTruth) {
-  const Device device =
-      nominal_device({"readout.adc_bits=32", "noise.turn_on_deg_per_s=0"});
-  const auto bias = [&](const std::string& motion) {
-    const Recording run =
-        simulate_quasistatic(scenario_from(motion), device, {});
-    return column_values(run, "true_bias")[900];
-  };
-  EXPECT_NEAR(bias("[acceleration]\nx = { constant_g = 10 }\n") - bias(""),
-              0.2 + 0.2, 0.01);
-  const Recording run = simulate_quasistatic(
-      scenario_from("[acceleration]\ny = { steps = [[0, 0], [50, -1]] }\n"),
-      device, {});
-  EXPECT_EQ(column_values(run, "true_acceleration_y")[499], 0);
-  EXPECT_DOUBLE_EQ(column_values(run, "true_acceleration_y")[500], -kGravity);
-  EXPECT_EQ(find_column(run, "true_acceleration_x"), nullptr);
+TEST(Motion, OfAccelerationJumpsAtAStepOnly) {
+  const Scenario scenario =
+      scenario_from("[acceleration]\nx = { steps = [[0, 0], [20, 2]] }\n");
+  const Motion motion(scenario, nominal_gyro(), {});
+  EXPECT_TRUE(motion.rate_is_zero());
+  EXPECT_EQ(motion.segment(0, 20).at(20).in_phase, 0);
+  EXPECT_NEAR(motion.segment(20, 100).at(20).in_phase / kDegree,
+              0.02 * 2 + 0.002 * 4, 1e-12);
+  EXPECT_TRUE(motion.segment(0, 20).is_constant());
+}
+
+TEST(Motion, OfTheTwinKeepsAllButTheRateAboutZ) {
+  const Scenario scenario = scenario_from(
+      "[rate]\nsine = { amplitude_deg_per_s = 2, frequency_Hz = 0.5, "
+      "phase_rad = 0.3, offset_deg_per_s = 1 }\n"
+      "[cross_rate]\nx = { sine = { amplitude_deg_per_s = 3, frequency_Hz = "
+      "0.1 } }\n[acceleration]\ny = { constant_g = -1 }\n");
+  const Motion motion(scenario, nominal_gyro(), {});
+  const MotionSegment segment = motion.segment(0, 100);
+  const CaseMotion moving = segment.at(33.3), resting = segment.at_rest(33.3);
+  EXPECT_NEAR(moving.z,
+              (1 + 2 * std::sin(std::numbers::pi * 33.3 + 0.3)) * kDegree,
+              1e-14);
+  EXPECT_EQ(resting.z, 0);
+  EXPECT_EQ(resting.z_acceleration, 0);
+  EXPECT_EQ(resting.x, moving.x);
+  EXPECT_NEAR(resting.x, 3 * std::sin(0.2 * std::numbers::pi * 33.3) * kDegree,
+              1e-14);
+  EXPECT_EQ(resting.in_phase, moving.in_phase);
+  EXPECT_NEAR(resting.in_phase / kDegree, -0.02 + 0.002, 1e-12);
+}
+
+TEST(Motion, OfASegmentMeetsTheSamplesOfTheRun) {
+  const Scenario scenario = scenario_from(
+      "[rate.random]\nrms_deg_per_s = 5\nbandwidth_Hz = 0.5\n"
+      "[cross_rate]\ny = { points = [[0, 0], [33, 10], [50, -4]] }\n");
+  const Motion motion(scenario, nominal_gyro(), {});
+  std::vector<double> borders = motion.breakpoints();
+  borders.push_back(100);
+  RunSamples samples;
+  samples.time = sample_times(scenario);
+  motion.show(samples);
+  double start = 0;
+  std::size_t k = 0;
+  for (const double end : borders) {
+    const MotionSegment segment = motion.segment(start, end);
+    for (; k < samples.time.size() && samples.time[k] < end; ++k) {
+      EXPECT_NEAR(segment.at(samples.time[k]).z, samples.rate[k], 1e-14);
+      EXPECT_NEAR(segment.at(samples.time[k]).y, samples.cross_rate[1][k],
+                  1e-14);
+    }
+    start = end;
+  }
+  EXPECT_EQ(k, samples.time.size());
 }
 
 std::string rejected(const std::string& extra) {

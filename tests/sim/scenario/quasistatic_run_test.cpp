@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <stdexcept>
+#include <string>
 #include <thread>
 
 #include "tests/sim/device/nominal_device.h"
@@ -129,6 +131,22 @@ TEST(QuasistaticRun, ADriveAtItsVoltageLimitIsFlagged) {
       scenario_from(""), nominal_device({"drive.voltage_limit_V=0.5"}));
   EXPECT_TRUE(run.status[10] & kLoopNotLocked);
   EXPECT_NEAR(values(run, "drive_voltage")[10], 0.5, 1e-9);
+}
+
+TEST(QuasistaticRun, RefusesAScenarioOfAnotherFidelity) {
+  Scenario scenario = scenario_from("");
+  const Device device = nominal_device();
+  for (const Fidelity other : {Fidelity::kEnvelope, Fidelity::kCarrier}) {
+    scenario.fidelity = other;
+    try {
+      simulate_quasistatic(scenario, device);
+      FAIL() << "accepted";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find("fidelity"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("quasistatic"),
+                std::string::npos);
+    }
+  }
 }
 
 TEST(QuasistaticRun, WhiteNoiseHasTheDensityOfTheDeviceAtAnyOutputRate) {

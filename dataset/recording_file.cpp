@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+#include "dataset/recording_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <charconv>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "dataset/atomic_file.h"
+#include "dataset/hdf5_id.h"
+#include "dataset/hdf5_layout.h"
+#include "dataset/recording_defect.h"
+
+namespace beamgyro {
+namespace {
+
+namespace fs = std::filesystem;
+
+static_assert(std::endian::native == std::endian::little);
+
+void append(double value, std::string& text) {
+  if (value != value) {  // the sign of a NaN means nothing
+    text += "nan";
+    return;
+  }
+  std::array<char, 32> digits{};
+  const auto end =
+      std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  text.append(digits.data(), end);
+}
+
+}  // namespace
+
+// The file under its partial name, and how samples get into it.
+class RecordingFile::Body {
+ public:
+  explicit Body(const fs::path& path) : path_(path), target_(path) {}
+  virtual ~Body() {
+    if (file_ >= 0) close(file_);
+  }
+  Body(const Body&) = delete;
+  Body& operator=(const Body&) = delete;
+
+  // `first`: the number of samples before this block.
+  virtual void append(const Recording& block, std::size_t first) = 0;
+
+  void publish() {
+    if (fsync(file_) != 0) fail();
+    if (close(std::exchange(file_, -1)) != 0) fail();
+    target_.publish();
+  }
+
+ protected:
+  const fs::path& partial_path() const { return target_.partial_path(); }
+
+  void open_file() {
+    file_ = open(partial_path().c_str(), O_WRONLY | O_CLOEXEC);
+    if (file_ < 0) fail();
+  }
+
+  void write_at(std::uint64_t place, const void* bytes, std::size_t size) {
+    const char* next = static_cast<const char*>(bytes);
+    while (size > 0) {
+      const ssize_t count =
+          pwrite(file_, next, size, static_cast<off_t>(place));
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) fail();
+      next += count;
+      size -= static_cast<std::size_t>(count);
+      place += static_cast<std::uint64_t>(count);
+    }
+  }
+
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw std::runtime_error(fmt::format("{}: {}", path_.string(), reason));
+  }
+
+ private:
+  [[noreturn]] void fail() const {
+    fail("cannot be written: " +
+         std::error_code(errno, std::generic_category()).message());
+  }
+
+  fs::path path_;
+  AtomicFile target_;
+  int file_ = -1;
+};
+
+class RecordingFile::Hdf5Body : public Body {
+ public:
+  Hdf5Body(const Recording& head, std::size_t samples, const fs::path& path)
+      : Body(path) {
+    try {
+      layout_ = make_hdf5_file(head, samples, partial_path());
+    } catch (const Hdf5Error& error) {
+      fail(error.what());
+    }
+    open_file();
+  }
+
+  void append(const Recording& block, std::size_t first) override {
+    const auto write = [&](std::uint64_t place,
+                           const std::vector<double>& values) {
+      write_at(place + first * sizeof(double), values.data(),
+               values.size() * sizeof(double));
+    };
+    write(layout_.time, block.time);
+    write_at(layout_.status + first, block.status.data(), block.status.size());
+    for (std::size_t i = 0; i < block.columns.size(); ++i)
+      write(layout_.columns[i], block.columns[i].values);
+  }
+
+ private:
+  Hdf5Layout layout_;
+};
+
+class RecordingFile::CsvBody : public Body {
+ public:
+  CsvBody(const Recording& head, const fs::path& path) : Body(path) {
+    open_file();
+    const std::size_t status_at = status_position(head);
+    std::string text = "time";
+    for (std::size_t i = 0; i <= head.columns.size(); ++i) {
+      if (i == status_at) text += ",status";
+      if (i < head.columns.size()) text += ',' + head.columns[i].name;
+    }
+    write(text + '\n');
+  }
+
+  void append(const Recording& block, std::size_t) override {
+    constexpr std::size_t kPiece = std::size_t{1} << 16;  // [bytes]
+    const std::size_t status_at = status_position(block);
+    std::string text;
+    for (std::size_t k = 0; k < block.time.size(); ++k) {
+      beamgyro::append(block.time[k], text);
+      for (std::size_t i = 0; i <= block.columns.size(); ++i) {
+        if (i == status_at) text += ',' + std::to_string(block.status[k]);
+        if (i == block.columns.size()) break;
+        text += ',';
+        beamgyro::append(block.columns[i].values[k], text);
+      }
+      text += '\n';
+      if (text.size() > kPiece) {
+        write(text);
+        text.clear();
+      }
+    }
+    write(text);
+  }
+
+ private:
+  void write(std::string_view text) {
+    write_at(size_, text.data(), text.size());
+    size_ += text.size();
+  }
+
+  std::uint64_t size_ = 0;  // [bytes]
+};
+
+RecordingFile::RecordingFile(const Recording& head, std::size_t samples,
+                             const fs::path& path)
+    : path_(path), samples_(samples) {
+  const std::string defect = head_defect(head);
+  if (!defect.empty()) {
+    throw std::runtime_error(
+        fmt::format("{}: not written: {}", path.string(), defect));
+  }
+  if (path.extension() == ".csv") {
+    body_ = std::make_unique<CsvBody>(head, path);
+  } else {
+    body_ = std::make_unique<Hdf5Body>(head, samples, path);
+  }
+}
+
+RecordingFile::~RecordingFile() = default;
+
+void RecordingFile::append(const Recording& block) {
+  std::string defect = samples_defect(block, written_);
+  if (defect.empty() && written_ > 0 && !(block.time.front() > last_time_)) {
+    defect = fmt::format("time: sample {} is {} s, not after {} s before it",
+                         written_, block.time.front(), last_time_);
+  }
+  if (defect.empty() && written_ + block.time.size() > samples_) {
+    defect = fmt::format("{} samples; expected {}",
+                         written_ + block.time.size(), samples_);
+  }
+  if (!defect.empty()) {
+    throw std::runtime_error(
+        fmt::format("{}: not written: {}", path_.string(), defect));
+  }
+  body_->append(block, written_);
+  written_ += block.time.size();
+  last_time_ = block.time.back();
+}
+
+void RecordingFile::finish() {
+  if (written_ != samples_) {
+    throw std::runtime_error(
+        fmt::format("{}: not written: {} samples; expected {}", path_.string(),
+                    written_, samples_));
+  }
+  body_->publish();
+}
+
+void write_recording(const Recording& recording, const fs::path& path) {
+  RecordingFile file(recording, recording.time.size(), path);
+  file.append(recording);
+  file.finish();
+}
+
+}  // namespace beamgyro
