@@ -107,8 +107,9 @@ void EnvelopeOde::rate(const EnvelopeInputs& inputs, const State& y,
       coefficients(table_.at(nodes(kBeam)).value, inputs.motion, nodes(kBoard));
   const EnvelopeMoment m = moment(now, y);
   const EnvelopePlant plant(now.stiffness, now.velocity, m.drive.frequency);
-  const Vector2cd dU =
-      plant.A() * m.U + plant.B() * m.force - plant.D() * m.force_rate;
+  const Vector2cd dU = plant.from_amplitude() * m.U +
+                       plant.from_force() * m.force -
+                       plant.from_force_rate() * m.force_rate;
   put(dydt, kAmplitude, dU(0));
   put(dydt, kAmplitude + 2, dU(1));
 

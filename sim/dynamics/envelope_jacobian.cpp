@@ -99,7 +99,8 @@ void EnvelopeOde::add_loop_slopes(const EnvelopeCoefficients& now,
   for (Index i = 0; i < 2; ++i) {
     const Index column = kAmplitude + 2 * i;
     for (Index j = 0; j < 2; ++j)
-      put_block(slope, kAmplitude + 2 * j, column, plant.A()(j, i));
+      put_block(slope, kAmplitude + 2 * j, column,
+                plant.from_amplitude()(j, i));
     const Complex h = now.couplings.feedback(i);
     slope(kFeedback1, column) = wf * h.real();
     slope(kFeedback1, column + 1) = -wf * h.imag();
@@ -112,8 +113,8 @@ void EnvelopeOde::add_loop_slopes(const EnvelopeCoefficients& now,
   const EnvelopePlant::Slope by_w = plant.by_frequency();
   const Vector2cd per_w =
       by_w.A * m.U + by_w.B * m.force - by_w.D * m.force_rate;
-  const Vector2cd per_V = plant.B() * now.couplings.drive;
-  const Vector2cd per_V_rate = -plant.D() * now.couplings.drive;
+  const Vector2cd per_V = plant.from_force() * now.couplings.drive;
+  const Vector2cd per_V_rate = -plant.from_force_rate() * now.couplings.drive;
   const Complex readout_per_V =
       wf * loops_.feedthrough * now.turn / loops_.charge_axis;
   Index column = kFeedback1;
@@ -155,8 +156,9 @@ void EnvelopeOde::add_rebalance_slopes(const EnvelopeCoefficients& now,
   put_block(slope, kOutput1, kRebalance, -wo * integral);
   put_block(slope, kOutput1, kReadout2, -wo * proportional);
   const Complex axis = loops_.voltage_axis * std::conj(now.turn);
-  const Vector2cd per_V = plant.B() * now.couplings.damping * axis;
-  const Vector2cd per_V_rate = -plant.D() * now.couplings.damping * axis;
+  const Vector2cd per_V = plant.from_force() * now.couplings.damping * axis;
+  const Vector2cd per_V_rate =
+      -plant.from_force_rate() * now.couplings.damping * axis;
   const Vector2cd by_r1 = -per_V_rate * (wf * proportional);
   const Vector2cd by_r2 =
       -per_V * proportional - per_V_rate * (integral - wf * proportional);
@@ -182,8 +184,9 @@ void EnvelopeOde::add_temperature_slopes(const ModalChannels& modal_slope,
   add_amplitude_column(
       slope, beam,
       by_T.A * m.U + by_T.B * m.force - by_T.D * m.force_rate +
-          plant.B() * (per_K.drive * m.drive.voltage + per_K.damping * m.V_B) -
-          plant.D() *
+          plant.from_force() *
+              (per_K.drive * m.drive.voltage + per_K.damping * m.V_B) -
+          plant.from_force_rate() *
               (per_K.drive * m.voltage_rate + per_K.damping * m.V_B_rate));
   const Complex U_F = per_K.feedback * m.U;
   slope(kFeedback1, beam) += wf * U_F.real();
@@ -198,8 +201,9 @@ void EnvelopeOde::add_temperature_slopes(const ModalChannels& modal_slope,
   const Complex turning = -kI * now.turn_slope;  // of V_B
   add_amplitude_column(
       slope, board,
-      plant.B() * now.couplings.damping * (turning * m.V_B) -
-          plant.D() * now.couplings.damping * (turning * m.V_B_rate));
+      plant.from_force() * now.couplings.damping * (turning * m.V_B) -
+          plant.from_force_rate() * now.couplings.damping *
+              (turning * m.V_B_rate));
 }
 
 }  // namespace beamgyro

@@ -18,9 +18,9 @@ class EnvelopePlant {
   EnvelopePlant(const Eigen::Matrix2d& stiffness,
                 const Eigen::Matrix2d& velocity, double omega);
 
-  const Eigen::Matrix2cd& A() const { return a_; }
-  const Eigen::Matrix2cd& B() const { return b_; }
-  const Eigen::Matrix2cd& D() const { return d_; }
+  const Eigen::Matrix2cd& from_amplitude() const { return a_; }
+  const Eigen::Matrix2cd& from_force() const { return b_; }
+  const Eigen::Matrix2cd& from_force_rate() const { return d_; }
 
   /// Derivatives of A, B, D.
   struct Slope {

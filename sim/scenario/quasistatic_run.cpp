@@ -10,6 +10,7 @@
 #include "sim/dynamics/mechanical_noise.h"
 #include "sim/dynamics/static_map.h"
 #include "sim/scenario/run_temperatures.h"
+#include "sim/scenario/square_acceleration.h"
 
 namespace beamgyro {
 namespace {
@@ -48,9 +49,7 @@ struct FilteredMotion {
   Samples rate;
   std::array<Samples, 2> cross_rate;
   std::array<Samples, 3> acceleration;
-  // Of the acceleration: a vibration is rectified in the mechanics, however
-  // little of itself the filter lets through.
-  Samples square;
+  Samples square;  // of the acceleration, squared before it is filtered
 
   bool has_other_axes() const {
     const auto moved = [](const Samples& s) { return !s.empty(); };
@@ -74,9 +73,9 @@ struct FilteredMotion {
 };
 
 // Fills the motion in `samples` and returns what the filter makes of it.
-FilteredMotion filtered_motion(const Scenario& scenario,
-                               const OutputFilter& filter, const RunKey& key,
-                               RunSamples& samples) {
+FilteredMotion filtered_motion(const Scenario& scenario, double corner,
+                               const RunKey& key, RunSamples& samples) {
+  const OutputFilter filter(corner);
   FilteredMotion filtered;
   const auto sampled = [&](const RateProfile& profile, RandomPurpose purpose,
                            Samples& values) {
@@ -93,19 +92,13 @@ FilteredMotion filtered_motion(const Scenario& scenario,
     filtered.cross_rate[i] = sampled(scenario.cross_rate[i], kCrossPurposes[i],
                                      samples.cross_rate[i]);
   }
-  filtered.square.resize(samples.time.size());
   for (std::size_t i = 0; i < scenario.acceleration.size(); ++i) {
     const RateProfile& profile = scenario.acceleration[i];
     if (!moves(profile)) continue;
     filtered.acceleration[i] =
         sampled(profile, kAccelerationPurposes[i], samples.acceleration[i]);
-    const Samples square =
-        filtered_square(profile, filter, scenario.output_rate,
-                        samples.time.size(), scenario.duration, scenario.seed,
-                        key.device, key.run, kAccelerationPurposes[i]);
-    for (std::size_t k = 0; k < square.size(); ++k)
-      filtered.square[k] += square[k];
   }
+  filtered.square = filtered_square_acceleration(scenario, corner, key);
   return filtered;
 }
 
@@ -145,8 +138,8 @@ Recording simulate_quasistatic(const Scenario& scenario, const Device& device,
   samples.temperature =
       run_temperatures(scenario, gyro, samples.time).temperature;
 
-  const FilteredMotion filtered = filtered_motion(
-      scenario, OutputFilter(device.readout.corner_frequency), key, samples);
+  const FilteredMotion filtered =
+      filtered_motion(scenario, device.readout.corner_frequency, key, samples);
   if (filtered.has_other_axes()) {
     show_motion(gyro, filtered, samples);
   } else {

@@ -15,62 +15,6 @@ namespace {
 const double kCornerPerBandwidth =
     2 * std::numbers::pi / std::sqrt(std::sqrt(2.0) - 1);
 
-// The square of a profile. Each parabola becomes chords over its halves, bent
-// so that they keep its area: what a low-pass shows of it.
-PiecewiseLinear squared(const PiecewiseLinear& points) {
-  constexpr double kLongestPiece = 0.01, kMostPieces = 16;  // [s]
-  const std::vector<double> knots = points.breakpoints();
-  std::vector<double> time, value;
-  const auto add = [&](double t, double v) {
-    if (!time.empty() && t == time.back() && v == value.back()) return;
-    time.push_back(t);
-    value.push_back(v);
-  };
-  const double before = points.value_before(knots.front());
-  add(knots.front(), before * before);
-  for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-    const double start = knots[i], length = knots[i + 1] - start;
-    const double first = points.value(start);
-    const double change = points.value_before(knots[i + 1]) - first;
-    const double pieces =
-        change == 0
-            ? 1
-            : std::clamp(std::ceil(length / kLongestPiece), 1.0, kMostPieces);
-    add(start, first * first);
-    for (double j = 0; j < pieces; ++j) {
-      const double a = first + change * (j / pieces);
-      const double b = first + change * ((j + 1) / pieces);
-      if (change != 0) {
-        add(start + length * ((j + 0.5) / pieces),
-            (a * a + 4 * a * b + b * b) / 6);
-      }
-      add(j + 1 < pieces ? start + length * ((j + 1) / pieces) : knots[i + 1],
-          b * b);
-    }
-  }
-  const double last = points.value(knots.back());
-  add(knots.back(), last * last);
-  return {std::move(time), std::move(value)};
-}
-
-// (o + A sin p)^2 = o^2 + A^2/2 + 2 o A sin p + A^2/2 sin(2 p - 90 deg)
-std::vector<double> filtered_square(const SineSignal& sine,
-                                    const OutputFilter& filter,
-                                    double output_rate, std::size_t count) {
-  const double o = sine.offset, A = sine.amplitude;
-  const SineSignal once{.offset = o * o + A * A / 2,
-                        .amplitude = 2 * o * A,
-                        .frequency = sine.frequency,
-                        .phase = sine.phase};
-  const SineSignal twice{.amplitude = A * A / 2,
-                         .frequency = 2 * sine.frequency,
-                         .phase = 2 * sine.phase - std::numbers::pi / 2};
-  std::vector<double> sum = filter.response(once, output_rate, count);
-  const std::vector<double> rest = filter.response(twice, output_rate, count);
-  for (std::size_t k = 0; k < count; ++k) sum[k] += rest[k];
-  return sum;
-}
-
 }  // namespace
 
 bool moves(const RateProfile& profile) {
@@ -148,21 +92,6 @@ SampledRate sampled_rate(const RateProfile& profile, const OutputFilter& filter,
              : std::get<PiecewiseLinear>(profile);
   return {points.sample(times),
           filter.response(points, output_rate, times.size())};
-}
-
-std::vector<double> filtered_square(const RateProfile& profile,
-                                    const OutputFilter& filter,
-                                    double output_rate, std::size_t count,
-                                    double duration, std::uint64_t seed,
-                                    std::uint32_t device, std::uint32_t run,
-                                    RandomPurpose purpose) {
-  if (const auto* sine = std::get_if<SineSignal>(&profile))
-    return filtered_square(*sine, filter, output_rate, count);
-  const auto* random = std::get_if<RandomRate>(&profile);
-  return filter.response(
-      squared(random ? realised(*random, duration, seed, device, run, purpose)
-                     : std::get<PiecewiseLinear>(profile)),
-      output_rate, count);
 }
 
 }  // namespace beamgyro

@@ -59,13 +59,4 @@ SampledRate sampled_rate(const RateProfile& profile, const OutputFilter& filter,
                          std::uint32_t device, std::uint32_t run,
                          RandomPurpose purpose = RandomPurpose::kRateProfile);
 
-/// What the output filter makes of the square of a profile, [unit^2]: the mean
-/// square of a vibration passes, however fast it is.
-std::vector<double> filtered_square(const RateProfile& profile,
-                                    const OutputFilter& filter,
-                                    double output_rate, std::size_t count,
-                                    double duration, std::uint64_t seed,
-                                    std::uint32_t device, std::uint32_t run,
-                                    RandomPurpose purpose);
-
 }  // namespace beamgyro

@@ -6,7 +6,7 @@ import subprocess
 import time
 import unittest
 
-from program import PROGRAM, SCENARIO, ProgramTest
+from program import CUBIC, PROGRAM, SCENARIO, ProgramTest, ramp
 
 COMMANDS = ["characterise", "run", "train", "compensate", "validate", "allan",
             "info"]
@@ -62,6 +62,57 @@ class CommandLine(ProgramTest):
                          (0, "", ""))
         self.rejected("run", "missing.toml", "-o", "b.h5", "--quiet",
                       says="missing.toml")
+
+    def test_no_command_writes_over_a_file_it_reads(self):
+        self.run_scenario("run", text=ramp())
+        self.write("m.toml", CUBIC)
+        self.ok("train", "run.h5", "--model", "m.toml", "-o", "c.json")
+        (self.dir / "link.h5").symlink_to("run.h5")
+        for arguments in [
+                ("run", "run.toml", "-o", "run.toml"),
+                ("characterise", "device.toml", "-o", "device.toml"),
+                ("train", "run.h5", "--model", "m.toml", "-o", "run.h5"),
+                ("train", "run.h5", "--model", "m.toml", "-o", "m.toml"),
+                ("compensate", "c.json", "run.h5", "-o", "link.h5"),
+                ("validate", "c.json", "run.h5", "--json", "c.json"),
+                ("allan", "run.h5", "--json", "run.h5")]:
+            with self.subTest(arguments):
+                if arguments[0] == "run":
+                    # An ending of its own error comes first.
+                    self.rejected(*arguments, says="run.toml")
+                else:
+                    self.rejected(*arguments, says="is read by this command")
+
+    def test_a_limit_on_the_size_of_files_fails_like_a_full_disk(self):
+        self.write("s.toml", SCENARIO)
+        before = self.files()
+        answer = subprocess.run(
+            ["/bin/bash", "-c", 'ulimit -f 10; exec "$0" run s.toml -o big.h5',
+             str(PROGRAM)], cwd=self.dir, capture_output=True, text=True,
+            check=False)
+        self.assertEqual(answer.returncode, 1, answer.stderr)
+        self.assertEqual(len(answer.stderr.strip().splitlines()), 1,
+                         answer.stderr)
+        self.assertIn("File too large", answer.stderr)
+        self.assertEqual(self.files(), before)
+
+    def test_a_seed_below_zero_is_refused(self):
+        self.write("s.toml", SCENARIO)
+        self.rejected("run", "s.toml", "-o", "a.h5", "--seed=-1", says="seed")
+
+    def test_validate_says_when_it_scores_training_data(self):
+        self.run_scenario("run", text=ramp())
+        self.write("m.toml", CUBIC)
+        self.ok("train", "run.h5", "--model", "m.toml", "-o", "c.json")
+        answer = self.beamgyro("validate", "c.json", "run.h5")
+        self.assertIn("used in training", answer.stderr)
+
+    def test_allan_of_a_constant_has_a_curve_and_no_coefficients(self):
+        self.write("series.csv", "5\n" * 500)
+        text = self.ok("allan", "series.csv", "--rate-Hz", 10, "--json",
+                       "a.json")
+        self.assertIn("oadev deg/s", text)
+        self.assertNotIn("random walk", text)
 
     def test_interrupted_run_leaves_no_file_and_keeps_the_old_one(self):
         long = SCENARIO.replace("duration_s = 600", "duration_s = 45000") \

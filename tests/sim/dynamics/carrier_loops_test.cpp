@@ -26,7 +26,7 @@ constexpr double kTwoPi = 2 * std::numbers::pi;
 
 // Re[g e^{2 i theta}] is the ripple of 1 - a, and of the phase error with -i g
 // in place of g: what two poles w_f leave of the sum frequency.
-Complex ripple(const Unit& unit, double w, double feedback_phase) {
+Complex ripple(const CarrierUnit& unit, double w, double feedback_phase) {
   const LoopElectronics& loops = unit.ode.loops();
   const Complex pole = 1.0 + Complex(0, 2 * w / loops.demodulator_corner);
   return std::polar(1.0, 2 * (loops.pll_phase - feedback_phase)) /
@@ -34,7 +34,7 @@ Complex ripple(const Unit& unit, double w, double feedback_phase) {
 }
 
 // phi_p of the coupling Theta_p = theta_p e^{i phi_p} along its axis.
-double coupling_phase(const Unit& unit, Patch patch, Eigen::Index axis) {
+double coupling_phase(const CarrierUnit& unit, Patch patch, Eigen::Index axis) {
   const Complex coupling = unit.modal.coupling[patch](axis);
   return std::arg(coupling * coupling) / 2;
 }
@@ -42,7 +42,7 @@ double coupling_phase(const Unit& unit, Patch patch, Eigen::Index axis) {
 // The static solution with what the ripple of V_D and of theta' = w + K_p delta
 // at twice the carrier brings back to the carrier, to first order: a signal
 // S e^{i theta} gains -i k conj(S)/2, where k is the ripple of theta.
-Complex output_with_ripple(const Unit& unit) {
+Complex output_with_ripple(const CarrierUnit& unit) {
   const Complex i(0, 1);
   const LoopElectronics& loops = unit.ode.loops();
   const double w = unit.solution().drive_frequency;
@@ -77,7 +77,7 @@ Complex output_with_ripple(const Unit& unit) {
 const CaseMotion kEveryMotion{3, -2, 100 * kDegree, 0, 0.01};
 
 // The state the carrier comes to, off from which it starts by 1e-3.
-VectorXd rest(Unit& unit) {
+VectorXd rest(CarrierUnit& unit) {
   VectorXd start = unit.settled();
   start.head(4) *= 1.001;
   ExplicitRk rk = unit.from(start);
@@ -89,7 +89,7 @@ class CarrierAtRest : public testing::TestWithParam<double> {};
 
 TEST_P(CarrierAtRest, IsTheStaticSolutionAndTheRippleOfTheLoops) {
   const double T = GetParam();
-  Unit unit(nominal_device(), T, T, kEveryMotion);
+  CarrierUnit unit(nominal_device(), T, T, kEveryMotion);
   const Complex found = complex_at(rest(unit), kOutput2);
   const Complex exact =
       beam_signal(unit.gyro, unit.modal, unit.motion).demodulated *
@@ -102,8 +102,8 @@ TEST_P(CarrierAtRest, IsTheStaticSolutionAndTheRippleOfTheLoops) {
 
 TEST_P(CarrierAtRest, IsTheStaticSolutionWithForceRebalance) {
   const double T = GetParam();
-  Unit unit(nominal_device({"readout.mode=\"force_rebalance\""}), T, T,
-            kEveryMotion);
+  CarrierUnit unit(nominal_device({"readout.mode=\"force_rebalance\""}), T, T,
+                   kEveryMotion);
   const Complex found = complex_at(rest(unit), kOutput2);
   const Complex exact =
       beam_signal(unit.gyro, unit.modal, unit.motion).demodulated *
@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Temperatures, CarrierAtRest,
                          testing::Values(240.0, kT0, 320.0));
 
 TEST(Carrier, DemodulatedFeedbackRipplesAtTwiceTheCarrier) {
-  Unit unit(nominal_device());
+  CarrierUnit unit(nominal_device());
   const double w = unit.solution().drive_frequency;
   ExplicitRk rk = unit.from(unit.settled());
   rk.advance_to(0.05);
@@ -131,7 +131,7 @@ TEST(Carrier, DemodulatedFeedbackRipplesAtTwiceTheCarrier) {
 }
 
 TEST(Carrier, AmplitudeOfTheStartUp) {
-  Unit unit(verification_device());
+  CarrierUnit unit(verification_device());
   ExplicitRk rk = unit.from(CarrierOde::at_rest());
   const auto amplitude = [&](double t) {
     const VectorXd& y = rk.advance_to(t);
@@ -180,8 +180,8 @@ StepResponse linear_loop(double P, double I, double gain, double tau,
 
 // `rest` plus the difference of two carriers per step: the ripple they share is
 // gone.
-StepResponse answer(Unit& unit, const VectorXd& stepped, Unit& twin,
-                    const VectorXd& unstepped,
+StepResponse answer(CarrierUnit& unit, const VectorXd& stepped,
+                    CarrierUnit& twin, const VectorXd& unstepped,
                     const std::function<double(const VectorXd&)>& signal,
                     double step, double rest) {
   ExplicitRk a = unit.from(stepped), b = twin.from(unstepped);
@@ -196,14 +196,14 @@ void expect_alike(const StepResponse& found, const StepResponse& model) {
   EXPECT_NEAR(found.settling / model.settling, 1, 0.05);
 }
 
-double decay_time(const Unit& unit) {
+double decay_time(const CarrierUnit& unit) {
   return 2 * unit.modal.mass / unit.modal.damping(0, 0);
 }
 
 TEST(Verification, V32PhaseLoopOfTheCarrierAnswersAStepAsItsLinearModel) {
   constexpr double kStep = 1e-3;  // [rad]
-  Unit before(verification_device());
-  Unit after(verification_device({"drive.pll_phase_rad=0.011"}));
+  CarrierUnit before(verification_device());
+  CarrierUnit after(verification_device({"drive.pll_phase_rad=0.011"}));
   const LoopElectronics& loops = after.ode.loops();
   const VectorXd unstepped = before.settled();
   VectorXd stepped = unstepped;
@@ -221,7 +221,7 @@ TEST(Verification, V32PhaseLoopOfTheCarrierAnswersAStepAsItsLinearModel) {
 
 TEST(Verification, V32AmplitudeLoopOfTheCarrierAnswersAStepAsItsLinearModel) {
   constexpr double kStep = 1e-3;
-  Unit unit(verification_device()), twin(verification_device());
+  CarrierUnit unit(verification_device()), twin(verification_device());
   const LoopElectronics& loops = unit.ode.loops();
   const VectorXd unstepped = unit.settled();
   VectorXd stepped = unstepped;

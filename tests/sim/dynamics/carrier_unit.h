@@ -25,7 +25,7 @@ inline Complex charge_on(const ModalParameters& modal, Patch patch,
 }
 
 // One unit with its carrier at two temperatures [K] and in one motion.
-struct Unit {
+struct CarrierUnit {
   Gyro gyro;
   double T_beam, T_board;
   CaseMotion motion;
@@ -33,9 +33,10 @@ struct Unit {
   ModalParameters modal{
       modal_parameters(gyro.device, gyro.beam, T_beam, gyro.stiffness_trim)};
 
-  explicit Unit(const Device& device, double beam = kCalibrationTemperature,
-                double board = kCalibrationTemperature,
-                const CaseMotion& moving = {})
+  explicit CarrierUnit(const Device& device,
+                       double beam = kCalibrationTemperature,
+                       double board = kCalibrationTemperature,
+                       const CaseMotion& moving = {})
       : gyro(make_gyro(device)), T_beam(beam), T_board(board), motion(moving) {
     ode.set_temperatures(T_beam, T_board);
   }

@@ -48,7 +48,7 @@ struct Modes {
         velocity(modal.damping / modal.mass),
         A(real_form(EnvelopePlant(modal.stiffness / modal.mass, velocity,
                                   solution.drive_frequency)
-                        .A())) {}
+                        .from_amplitude())) {}
 
   BrownianInput brownian() const {
     return brownian_input(density.force, modal.mass, velocity, A,

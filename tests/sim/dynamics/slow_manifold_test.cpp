@@ -71,7 +71,7 @@ Errors errors(double eps) {
   const Matrix2cd first = -modes.P().inverse() * modes.S();
   const EnvelopePlant plant(modes.stiffness, modes.velocity, 1.0);
   return {modes.error(averaged, eps), modes.error(first, eps),
-          modes.error(plant.A(), eps)};
+          modes.error(plant.from_amplitude(), eps)};
 }
 
 TEST(Verification, V21EnvelopeOfFirstAndOfSecondOrder) {

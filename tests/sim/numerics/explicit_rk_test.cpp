@@ -78,9 +78,10 @@ TEST(ExplicitRk, RestartsFromAnotherStateAndGoesOnCounting) {
   rk.advance_to(1);
   const long steps = rk.steps();
   EXPECT_GT(steps, 0);
-  rk.restart(0, kStart);
+  const Eigen::Vector2d other(-0.4, 0.3);
+  rk.restart(0.5, other);
   EXPECT_EQ(rk.steps(), steps);
-  ExplicitRk fresh(pendulum, 0, kStart);
+  ExplicitRk fresh(pendulum, 0.5, other);
   EXPECT_LT((rk.advance_to(2) - fresh.advance_to(2)).norm(), 1e-7);
   EXPECT_GT(rk.steps(), steps);
 }
