@@ -12,8 +12,8 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "dataset/atomic_file.h"
 #include "dataset/hdf5_id.h"
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 static_assert(std::endian::native == std::endian::little);
 
-void append(double value, std::string& text) {
+void append_number(double value, std::string& text) {
   if (value != value) {  // the sign of a NaN means nothing
     text += "nan";
     return;
@@ -36,6 +36,12 @@ void append(double value, std::string& text) {
   const auto end =
       std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
   text.append(digits.data(), end);
+}
+
+// What has to be the same in every block.
+std::string described(const Column& column) {
+  return fmt::format("{} [{}], {}", column.name, column.units,
+                     role_name(column.role));
 }
 
 }  // namespace
@@ -86,7 +92,7 @@ class RecordingFile::Body {
 
  private:
   [[noreturn]] void fail() const {
-    fail("cannot be written: " +
+    fail("cannot write: " +
          std::error_code(errno, std::generic_category()).message());
   }
 
@@ -125,55 +131,57 @@ class RecordingFile::Hdf5Body : public Body {
 
 class RecordingFile::CsvBody : public Body {
  public:
-  CsvBody(const Recording& head, const fs::path& path) : Body(path) {
+  CsvBody(const Recording& head, const fs::path& path)
+      : Body(path), status_at_(status_position(head)) {
     open_file();
-    const std::size_t status_at = status_position(head);
     std::string text = "time";
     for (std::size_t i = 0; i <= head.columns.size(); ++i) {
-      if (i == status_at) text += ",status";
+      if (i == status_at_) text += ",status";
       if (i < head.columns.size()) text += ',' + head.columns[i].name;
     }
-    write(text + '\n');
+    text += '\n';
+    write_at(0, text.data(), text.size());
+    size_ = text.size();
   }
 
   void append(const Recording& block, std::size_t) override {
     constexpr std::size_t kPiece = std::size_t{1} << 16;  // [bytes]
-    const std::size_t status_at = status_position(block);
+    std::uint64_t place = size_;
     std::string text;
+    const auto flush = [&] {
+      write_at(place, text.data(), text.size());
+      place += text.size();
+      text.clear();
+    };
     for (std::size_t k = 0; k < block.time.size(); ++k) {
-      beamgyro::append(block.time[k], text);
+      append_number(block.time[k], text);
       for (std::size_t i = 0; i <= block.columns.size(); ++i) {
-        if (i == status_at) text += ',' + std::to_string(block.status[k]);
+        if (i == status_at_) text += ',' + std::to_string(block.status[k]);
         if (i == block.columns.size()) break;
         text += ',';
-        beamgyro::append(block.columns[i].values[k], text);
+        append_number(block.columns[i].values[k], text);
       }
       text += '\n';
-      if (text.size() > kPiece) {
-        write(text);
-        text.clear();
-      }
+      if (text.size() > kPiece) flush();
     }
-    write(text);
+    flush();
+    size_ = place;
   }
 
  private:
-  void write(std::string_view text) {
-    write_at(size_, text.data(), text.size());
-    size_ += text.size();
-  }
-
-  std::uint64_t size_ = 0;  // [bytes]
+  std::size_t status_at_;
+  std::uint64_t size_ = 0;  // of the blocks that are written [bytes]
 };
 
 RecordingFile::RecordingFile(const Recording& head, std::size_t samples,
                              const fs::path& path)
     : path_(path), samples_(samples) {
-  const std::string defect = head_defect(head);
-  if (!defect.empty()) {
-    throw std::runtime_error(
-        fmt::format("{}: not written: {}", path.string(), defect));
-  }
+  std::string defect = head_defect(head);
+  if (defect.empty() && samples == 0)
+    defect = "time: no samples; expected at least one";
+  if (!defect.empty()) refuse(defect);
+  for (const Column& column : head.columns)
+    columns_.push_back(described(column));
   if (path.extension() == ".csv") {
     body_ = std::make_unique<CsvBody>(head, path);
   } else {
@@ -183,8 +191,26 @@ RecordingFile::RecordingFile(const Recording& head, std::size_t samples,
 
 RecordingFile::~RecordingFile() = default;
 
+void RecordingFile::refuse(const std::string& defect) const {
+  throw std::runtime_error(
+      fmt::format("{}: not written: {}", path_.string(), defect));
+}
+
+std::string RecordingFile::columns_defect(const Recording& block) const {
+  if (block.columns.size() != columns_.size())
+    return fmt::format("{} columns; expected {}", block.columns.size(),
+                       columns_.size());
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    const std::string met = described(block.columns[i]);
+    if (met != columns_[i])
+      return fmt::format("column {} is {}; expected {}", i, met, columns_[i]);
+  }
+  return {};
+}
+
 void RecordingFile::append(const Recording& block) {
-  std::string defect = samples_defect(block, written_);
+  std::string defect = columns_defect(block);
+  if (defect.empty()) defect = samples_defect(block, written_);
   if (defect.empty() && written_ > 0 && !(block.time.front() > last_time_)) {
     defect = fmt::format("time: sample {} is {} s, not after {} s before it",
                          written_, block.time.front(), last_time_);
@@ -193,21 +219,15 @@ void RecordingFile::append(const Recording& block) {
     defect = fmt::format("{} samples; expected {}",
                          written_ + block.time.size(), samples_);
   }
-  if (!defect.empty()) {
-    throw std::runtime_error(
-        fmt::format("{}: not written: {}", path_.string(), defect));
-  }
+  if (!defect.empty()) refuse(defect);
   body_->append(block, written_);
   written_ += block.time.size();
   last_time_ = block.time.back();
 }
 
 void RecordingFile::finish() {
-  if (written_ != samples_) {
-    throw std::runtime_error(
-        fmt::format("{}: not written: {} samples; expected {}", path_.string(),
-                    written_, samples_));
-  }
+  if (written_ != samples_)
+    refuse(fmt::format("{} samples; expected {}", written_, samples_));
   body_->publish();
 }
 

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "dataset/recording.h"
 
@@ -21,17 +23,18 @@ class RecordingFile {
  public:
   /// A file of `samples` samples. `head` is a recording with every column and
   /// text; its samples are not used. Throws std::invalid_argument for a name
-  /// that cannot be written, std::runtime_error for names or texts with a
-  /// defect (head_defect()) and when writing fails.
+  /// that cannot be written, std::runtime_error for no samples, for names or
+  /// texts with a defect (head_defect()) and when writing fails.
   RecordingFile(const Recording& head, std::size_t samples,
                 const std::filesystem::path& path);
   ~RecordingFile();
   RecordingFile(const RecordingFile&) = delete;
   RecordingFile& operator=(const RecordingFile&) = delete;
 
-  /// The next samples, in the columns of the head. Throws std::runtime_error
-  /// for a block with a defect (recording_defect()), named with variable and
-  /// sample, or when writing fails.
+  /// The next samples, one at least, in the columns of the head. Throws
+  /// std::runtime_error for other columns, for samples with a defect
+  /// (samples_defect()), named with variable and sample, for more than were
+  /// announced and when writing fails; the block does not count then.
   void append(const Recording& block);
 
   /// Publishes the file. Throws std::runtime_error when samples are missing or
@@ -43,9 +46,13 @@ class RecordingFile {
   class Hdf5Body;
   class CsvBody;
 
+  [[noreturn]] void refuse(const std::string& defect) const;
+  std::string columns_defect(const Recording& block) const;
+
   std::filesystem::path path_;
   std::size_t samples_, written_ = 0;
-  double last_time_ = 0;  // [s]
+  double last_time_ = 0;              // [s]
+  std::vector<std::string> columns_;  // described()
   std::unique_ptr<Body> body_;
 };
 

@@ -213,9 +213,13 @@ void simulate_carrier(const Scenario& scenario, const Device& device,
   std::optional<SensingNoise> noise;
   if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
   const std::vector<double> times = sample_times(scenario);
-  for (std::size_t k = 0; k < times.size(); k += kBlockSamples) {
+  // Short blocks: they are what shows that a run goes on.
+  const auto block_size =
+      std::clamp(static_cast<std::size_t>(kBlockTime * scenario.output_rate),
+                 std::size_t{1}, kBlockSamples);
+  for (std::size_t k = 0; k < times.size(); k += block_size) {
     const auto block =
-        std::span(times).subspan(k, std::min(kBlockSamples, times.size() - k));
+        std::span(times).subspan(k, std::min(block_size, times.size() - k));
     RunSamples samples = samples_at(block, gyro, temperatures, trajectory,
                                     twin ? &*twin : nullptr);
     motion.show(samples);
