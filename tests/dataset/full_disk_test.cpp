@@ -38,7 +38,9 @@ class FullDisk : public ::testing::TestWithParam<std::string> {
     is_mounted_ = true;
   }
   void TearDown() override {
-    if (is_mounted_) EXPECT_EQ(umount(folder.c_str()), 0);
+    if (is_mounted_) {
+      EXPECT_EQ(umount(folder.c_str()), 0);
+    }
     fs::remove_all(folder);
   }
 

@@ -21,7 +21,6 @@ using Eigen::Vector2cd;
 using Eigen::Vector4d;
 using Eigen::VectorXd;
 
-constexpr double kT0 = kCalibrationTemperature;
 constexpr double kTwoPi = 2 * std::numbers::pi;
 
 // Re[g e^{2 i theta}] is the ripple of 1 - a, and of the phase error with -i g
@@ -76,12 +75,12 @@ Complex output_with_ripple(const CarrierUnit& unit) {
 
 const CaseMotion kEveryMotion{3, -2, 100 * kDegree, 0, 0.01};
 
-// The state the carrier comes to, off from which it starts by 1e-3.
+// The state the carrier comes to, off from which it starts by 2e-4.
 VectorXd rest(CarrierUnit& unit) {
   VectorXd start = unit.settled();
-  start.head(4) *= 1.001;
+  start.head(4) *= 1.0002;
   ExplicitRk rk = unit.from(start);
-  rk.advance_to(0.8);
+  rk.advance_to(0.5);
   return mean_over_cycle(rk, unit.solution().drive_frequency);
 }
 
@@ -112,7 +111,7 @@ TEST_P(CarrierAtRest, IsTheStaticSolutionWithForceRebalance) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Temperatures, CarrierAtRest,
-                         testing::Values(240.0, kT0, 320.0));
+                         testing::Values(240.0, 320.0));
 
 TEST(Carrier, DemodulatedFeedbackRipplesAtTwiceTheCarrier) {
   CarrierUnit unit(nominal_device());
@@ -147,7 +146,7 @@ struct StepResponse {
 };
 
 constexpr double kSample = 1e-4;  // [s]
-constexpr int kSamples = 3000;
+constexpr int kSamples = 1500;
 
 StepResponse judged(const std::function<double(int)>& response) {
   StepResponse found{0, 0};

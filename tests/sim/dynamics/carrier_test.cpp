@@ -171,7 +171,7 @@ TEST(Verification, V29EulerForceShowsAsQuadratureOfTheCarrier) {
   const double w = still.solution().drive_frequency;
   const auto quadrature = [&](CarrierUnit& unit) {
     ExplicitRk rk = unit.from(still.settled());
-    rk.advance_to(0.4);
+    rk.advance_to(0.25);
     return -mean_over_cycle(rk, w)(kOutput2 + 1);
   };
   EXPECT_NEAR(

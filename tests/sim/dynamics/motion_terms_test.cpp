@@ -44,6 +44,26 @@ TEST(Verification, V30CrossAxisRatesShowAsQuadratureOnly) {
   }
 }
 
+TEST(Verification, V31RebalanceNullsTheChargeUnderAnyMotion) {
+  const Gyro open = make_gyro(nominal_device());
+  const Gyro closed =
+      make_gyro(nominal_device({"readout.mode=\"force_rebalance\""}));
+  const double feedthrough = closed.device.readout.feedthrough;
+  ASSERT_GT(feedthrough, 0);
+  const auto charge = [&](const Gyro& gyro, const CaseMotion& motion) {
+    const ModalParameters modal =
+        modal_parameters(gyro.device, gyro.beam, kT0, gyro.stiffness_trim);
+    const StaticSolution s =
+        static_solution(modal, gyro.loop, feedthrough, motion);
+    const Complex readout = modal.coupling[kReadout].transpose() * s.amplitude;
+    return std::abs(readout + feedthrough * s.drive_voltage);
+  };
+  const CaseMotion motions[] = {
+      {}, {.z = 2}, {.x = 5, .y = -3, .z = 1, .z_acceleration = 10}};
+  for (const CaseMotion& motion : motions)
+    EXPECT_LT(charge(closed, motion), 1e-9 * charge(open, motion));
+}
+
 TEST(CentrifugalForce, SoftensTheModeAcrossTheAxisOfRotation) {
   const Gyro gyro = make_gyro(verification_device());
   const auto solved = [&](const CaseMotion& motion) {
