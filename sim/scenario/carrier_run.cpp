@@ -54,6 +54,7 @@ class CarrierTrajectory {
         motion_(motion),
         temperatures_(temperatures),
         at_rest_(at_rest),
+        angular_gain_(gyro.beam.angular_gain),
         ode_(gyro) {
     ExplicitRkOptions options;
     options.absolute_tolerance = kTolerance * error_weights();
@@ -92,12 +93,25 @@ class CarrierTrajectory {
 
   // What holds from border `next_border_` - 1 to the next.
   void begin(double t) {
+    const double before = segment_ ? segment_->at(t).z : 0;
     segment_ = motion_.segment(t, borders_[next_border_]);
+    if (powered_ && !at_rest_) turn_by(segment_->at(t).z - before);
     const bool powered = powered_at(scenario_, t);
     if (powered != powered_) {
       powered_ = powered;
       start_window(CarrierOde::at_rest());
     }
+  }
+
+  // A jump of the rate is an impulse of the Euler force (2.1):
+  // q' changes by -gamma J2 q times the jump.
+  void turn_by(double jump) {
+    if (jump == 0) return;
+    VectorXd y = rk_->state();
+    const double turn = angular_gain_ * jump / ode_.loops().nominal_frequency;
+    y(kVelocity) += turn * y(kPosition + 1);
+    y(kVelocity + 1) -= turn * y(kPosition);
+    rk_->restart(time_ - window_, y);
   }
 
   void start_window(const VectorXd& y) {
@@ -136,6 +150,7 @@ class CarrierTrajectory {
   const Motion& motion_;
   const RunTemperatures& temperatures_;
   bool at_rest_;
+  double angular_gain_;
   CarrierOde ode_;
   std::unique_ptr<ExplicitRk> rk_;
   std::vector<double> borders_;
