@@ -18,7 +18,7 @@ class DynamicsFigures(unittest.TestCase):
                  "--program", PROGRAM, "--out", folder],
                 cwd=folder, capture_output=True, check=True)
             for name in ["start_up", "rate_step", "frequency_response",
-                         "error_ladder"]:
+                         "fidelities"]:
                 for suffix in ["png", "svg"]:
                     picture = pathlib.Path(folder) / f"{name}.{suffix}"
                     self.assertGreater(picture.stat().st_size, 10000)
