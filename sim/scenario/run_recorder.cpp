@@ -97,8 +97,8 @@ Recording RunRecorder::block(RunSamples&& samples) {
   for (std::size_t k = 0; k < cycle.size(); ++k) {
     if (cycle[k] < 0) block.status[k] = kUnpowered;
   }
-  add_measured(block, std::move(samples));
-  add_truth(block, std::move(samples));
+  add_measured(block, samples);
+  add_truth(block, samples);
   return block;
 }
 
@@ -110,7 +110,7 @@ void RunRecorder::add_noise(const std::vector<int>& cycle, Samples& output) {
   }
 }
 
-void RunRecorder::add_measured(Recording& block, RunSamples&& samples) {
+void RunRecorder::add_measured(Recording& block, RunSamples& samples) {
   const ReadoutParameters& readout = device_.readout;
   Samples output(block.time.size()), rate(block.time.size());
   for (std::size_t k = 0; k < output.size(); ++k) {
@@ -139,7 +139,7 @@ void RunRecorder::add_measured(Recording& block, RunSamples&& samples) {
                        readout.quadrature_resolution / kDegree));
 }
 
-void RunRecorder::add_truth(Recording& block, RunSamples&& samples) const {
+void RunRecorder::add_truth(Recording& block, RunSamples& samples) const {
   const auto add = [&](std::string name, const char* units,
                        std::string long_name, Samples values) {
     block.columns.push_back({std::move(name), units, std::move(long_name),

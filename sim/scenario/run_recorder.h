@@ -61,8 +61,8 @@ class RunRecorder {
 
  private:
   void add_noise(const std::vector<int>& cycle, std::vector<double>& output);
-  void add_measured(Recording& block, RunSamples&& samples);
-  void add_truth(Recording& block, RunSamples&& samples) const;
+  void add_measured(Recording& block, RunSamples& samples);
+  void add_truth(Recording& block, RunSamples& samples) const;
 
   const Scenario& scenario_;
   const Device& device_;

@@ -19,7 +19,6 @@
 namespace beamgyro {
 namespace {
 
-constexpr double kT0 = kCalibrationTemperature;
 const std::string kRebalance = "readout.mode=\"force_rebalance\"";
 
 Device fine_device(std::vector<std::string> overrides = {}) {

@@ -80,7 +80,7 @@ VectorXd rest(CarrierUnit& unit) {
   VectorXd start = unit.settled();
   start.head(4) *= 1.0002;
   ExplicitRk rk = unit.from(start);
-  rk.advance_to(0.5);
+  rk.advance_to(0.65);
   return mean_over_cycle(rk, unit.solution().drive_frequency);
 }
 
