@@ -52,7 +52,7 @@ struct CarrierUnit {
       const Eigen::VectorXd& start,
       std::function<void(Eigen::Ref<Eigen::VectorXd>)> adjust = {}) {
     ExplicitRkOptions options;
-    options.absolute_tolerance.setConstant(1e-9);
+    options.absolute_tolerance.setConstant(1e-10);
     return ExplicitRk(
         [this, adjust = std::move(adjust)](double t, const auto& y, auto dydt) {
           ode.rate(t, motion, y, dydt);

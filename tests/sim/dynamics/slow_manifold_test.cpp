@@ -31,15 +31,18 @@ struct ScaledModes {
     velocity << 0.04 * eps, 0.008 * eps - 2 * rate, 0.008 * eps + 2 * rate,
         0.05 * eps;
   }
-  Matrix2cd P() const { return 2.0 * kI * Matrix2cd::Identity() + velocity; }
-  Matrix2cd S() const {
+  Matrix2cd rate_matrix() const {
+    return 2.0 * kI * Matrix2cd::Identity() + velocity;
+  }
+  Matrix2cd stiffness_matrix() const {
     return stiffness - Matrix2d::Identity() + kI * velocity;
   }
 
   // Decay matrix of the exact slow manifold: L^2 - P L + S = 0.
   Matrix2cd exact_decay() const {
     Matrix2cd L = Matrix2cd::Zero();
-    for (int i = 0; i < 200; ++i) L = P().inverse() * (S() + L * L);
+    for (int i = 0; i < 200; ++i)
+      L = rate_matrix().inverse() * (stiffness_matrix() + L * L);
     return L;
   }
 
@@ -67,8 +70,9 @@ struct Errors {
 
 Errors errors(double eps) {
   const ScaledModes modes(eps);
-  const Matrix2cd averaged = -modes.S() / (2.0 * kI);
-  const Matrix2cd first = -modes.P().inverse() * modes.S();
+  const Matrix2cd averaged = -modes.stiffness_matrix() / (2.0 * kI);
+  const Matrix2cd first =
+      -modes.rate_matrix().inverse() * modes.stiffness_matrix();
   const EnvelopePlant plant(modes.stiffness, modes.velocity, 1.0);
   return {modes.error(averaged, eps), modes.error(first, eps),
           modes.error(plant.from_amplitude(), eps)};
