@@ -6,6 +6,12 @@
 #include <algorithm>
 #include <string_view>
 
+// What HDF5 keeps to the end of the process, see QuietHdf5, is no leak.
+extern "C" const char* __lsan_default_suppressions();   // NOLINT
+extern "C" const char* __lsan_default_suppressions() {  // NOLINT
+  return "leak:libhdf5\n";
+}
+
 namespace beamgyro {
 
 void check_hdf5(herr_t status, const std::string& action) {
