@@ -12,6 +12,11 @@ extern "C" const char* __lsan_default_suppressions() {  // NOLINT
   return "leak:libhdf5\n";
 }
 
+extern "C" const char* __lsan_default_options();   // NOLINT
+extern "C" const char* __lsan_default_options() {  // NOLINT
+  return "print_suppressions=0";
+}
+
 namespace beamgyro {
 
 void check_hdf5(herr_t status, const std::string& action) {
