@@ -23,7 +23,7 @@ namespace {
 
 struct TrainArguments {
   std::vector<std::string> runs, held_out;
-  std::string model, output;
+  std::string model, output, cross_validation;
   std::int64_t seed = 0;
 };
 
@@ -53,14 +53,9 @@ void print_equation_one(const BiasModel& model, const char* label,
   text += '\n';
 }
 
-std::string report(const TrainResult& result) {
-  const Provenance& source = result.compensator.provenance;
-  std::string text = fmt::format("{}, {} rows, {} held-out rows\n",
-                                 kind_name(result.compensator.bias),
-                                 result.rows, result.held_out_rows);
+void print_restarts(const TrainResult& result, std::string& text) {
   auto out = std::back_inserter(text);
-  for (std::size_t k = 0; k < result.restarts.size() && result.held_out_rows;
-       ++k) {
+  for (std::size_t k = 0; k < result.restarts.size(); ++k) {
     const TrainSummary& summary = result.restarts[k];
     fmt::format_to(out,
                    "restart {}{}: {} epochs, best {}, rms in-sample {:.6f}, "
@@ -69,14 +64,42 @@ std::string report(const TrainResult& result) {
                    summary.best_epoch, summary.in_sample_rms,
                    shown(summary.held_out_rms), sentence(summary.stop_reason));
   }
+}
+
+std::string report(const TrainResult& result) {
+  const Provenance& source = result.compensator.provenance;
+  std::string text =
+      fmt::format("{}, {} rows, {} held-out rows\n", source.method, result.rows,
+                  result.held_out_rows);
+  auto out = std::back_inserter(text);
+  for (const std::string& choice : source.choices)
+    fmt::format_to(out, "choice: {}\n", choice);
+  if (std::holds_alternative<BpNetwork>(result.compensator.bias.function))
+    print_restarts(result, text);
   fmt::format_to(out, "stopped: {}\n", source.stop_reason);
   fmt::format_to(out, "rms in-sample {:.6f}, held-out {} deg/s\n",
                  source.in_sample_rms, shown(source.held_out_rms));
+  if (const auto& cv = source.cross_validated)
+    fmt::format_to(out,
+                   "rms cross-validated over {} {}s {:.6f} +- {:.6f} deg/s, of "
+                   "a constant {:.6f} deg/s\n",
+                   cv->groups, cv->by, cv->rms, cv->standard_error,
+                   cv->constant_rms);
   fmt::format_to(out, "cubic: rms in-sample {:.6f}, held-out {} deg/s\n",
                  source.baseline_in_sample_rms,
                  shown(source.baseline_held_out_rms));
+  fmt::format_to(out, "constant: rms in-sample {:.6f}, held-out {} deg/s\n",
+                 source.constant_in_sample_rms,
+                 shown(source.constant_held_out_rms));
   print_equation_one(result.compensator.baseline, "cubic", text);
   return text;
+}
+
+std::optional<Grouping> grouping(const std::string& name) {
+  if (name == "run") return Grouping::kRun;
+  if (name == "cycle") return Grouping::kCycle;
+  if (name == "leg") return Grouping::kLeg;
+  return std::nullopt;
 }
 
 int run_training(const TrainArguments& arguments) {
@@ -89,9 +112,12 @@ int run_training(const TrainArguments& arguments) {
   std::optional<Progress> progress("training " + arguments.output);
   const TrainResult result =
       train(spec, read_runs(arguments.runs), read_runs(arguments.held_out),
-            static_cast<std::uint64_t>(arguments.seed));
+            static_cast<std::uint64_t>(arguments.seed),
+            grouping(arguments.cross_validation));
   write_compensator(result.compensator, arguments.output);
   progress.reset();
+  for (const std::string& warning : result.compensator.provenance.warnings)
+    print_warning(warning);
   print_result(report(result));
   return 0;
 }
@@ -107,6 +133,12 @@ void add_train(CLI::App& program, Action& action) {
   command->add_option("--held-out", arguments->held_out,
                       "RUN.h5..., scored but not fitted; a network stops early "
                       "on them");
+  command
+      ->add_option("--cv", arguments->cross_validation,
+                   "run, cycle or leg: cross-validate, holding out whole "
+                   "recordings, power cycles or legs between reversals of the "
+                   "temperature")
+      ->check(CLI::IsMember({"run", "cycle", "leg"}));
   command->add_option("-o,--output", arguments->output, "COMPENSATOR.json")
       ->required();
   command->add_option("--seed", arguments->seed, "of the initial weights")

@@ -13,9 +13,17 @@ namespace {
 struct Predict {
   const Eigen::ArrayXXd& x;
 
-  Eigen::ArrayXd operator()(const BpNetwork& network) const {
-    return network.predict(x);
+  Eigen::ArrayXd operator()(const NoBias&) const {
+    return Eigen::ArrayXd::Zero(x.rows());
   }
+  Eigen::ArrayXd operator()(const ConstantBias& constant) const {
+    return Eigen::ArrayXd::Constant(x.rows(), constant.value);
+  }
+  Eigen::ArrayXd operator()(const Polynomial& f) const { return f.predict(x); }
+  Eigen::ArrayXd operator()(const TakagiSugeno& f) const {
+    return f.predict(x);
+  }
+  Eigen::ArrayXd operator()(const BpNetwork& f) const { return f.predict(x); }
   template <class OneInput>
   Eigen::ArrayXd operator()(const OneInput& curve) const {
     return curve.predict(x.col(0));
@@ -48,30 +56,38 @@ Eigen::ArrayXd BiasModel::predict(
 }
 
 std::string kind_name(const BiasModel& model) {
-  constexpr const char* kNames[] = {"polynomial", "spline", "bp"};
+  constexpr const char* kNames[] = {"none",  "constant", "polynomial",
+                                    "table", "spline",   "thermistor",
+                                    "fuzzy", "bp"};
   return kNames[model.function.index()];
 }
 
-EquationOne equation_one(const BiasModel& model) {
+std::vector<double> coefficients_about(const BiasModel& model,
+                                       double reference) {
   const auto* polynomial = std::get_if<Polynomial>(&model.function);
   if (polynomial == nullptr)
     throw std::invalid_argument(fmt::format(
         "equation (1) belongs to a polynomial, not to a model of kind {}",
         kind_name(model)));
+  if (!polynomial->slopes.empty())
+    throw std::invalid_argument(fmt::format(
+        "equation (1) has the temperature alone; this polynomial has {} more "
+        "inputs",
+        polynomial->slopes.size()));
   const Scale scale = model.input_scales.at(0);
-  // Taylor shift of p from the centre of the scale to T0 by repeated synthetic
-  // division, then powers of K instead of half widths.
-  std::vector<double> c = polynomial->coefficients;
-  const double x0 = (kReferenceTemperature - scale.centre) / scale.half_width;
+  std::vector<double> c = shifted(
+      polynomial->coefficients, (reference - scale.centre) / scale.half_width);
   for (std::size_t n = 0; n < c.size(); ++n)
-    for (std::size_t k = c.size() - 1; k-- > n;) c[k] += x0 * c[k + 1];
-  EquationOne result;
-  result.bias_at_reference =
-      model.bias_scale.centre + model.bias_scale.half_width * c[0];
+    c[n] *= model.bias_scale.half_width / std::pow(scale.half_width, n);
+  c[0] += model.bias_scale.centre;
+  return c;
+}
+
+EquationOne equation_one(const BiasModel& model) {
+  std::vector<double> c = coefficients_about(model, kReferenceTemperature);
+  EquationOne result{c[0], {}};
   for (std::size_t n = 1; n < c.size(); ++n)
-    result.coefficients.push_back(model.bias_scale.half_width * c[n] /
-                                  std::pow(scale.half_width, n) /
-                                  result.bias_at_reference);
+    result.coefficients.push_back(c[n] / c[0]);
   return result;
 }
 

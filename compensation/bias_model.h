@@ -8,7 +8,10 @@
 
 #include "compensation/bp_network.h"
 #include "compensation/cubic_spline.h"
+#include "compensation/lookup_table.h"
 #include "compensation/polynomial.h"
+#include "compensation/takagi_sugeno.h"
+#include "compensation/thermistor_network.h"
 
 namespace beamgyro {
 
@@ -25,19 +28,30 @@ struct Scale {
 Scale scale_to_unit(const Eigen::Ref<const Eigen::ArrayXd>& values,
                     const std::string& what);
 
+/// No bias at all: the raw rate.
+struct NoBias {};
+
+/// The same bias everywhere.
+struct ConstantBias {
+  double value = 0.0;
+};
+
 /// Bias predicted from inputs in the units of the recording (degC, V, Hz, ...):
 ///
 ///   b = bias.centre + bias.half_width * function(scaled inputs)   [deg/s]
 struct BiasModel {
   std::vector<Scale> input_scales;  // one per input
   Scale bias_scale;                 // [deg/s]
-  std::variant<Polynomial, CubicSpline, BpNetwork> function;
+  std::variant<NoBias, ConstantBias, Polynomial, LookupTable, CubicSpline,
+               ThermistorNetwork, TakagiSugeno, BpNetwork>
+      function;
 
   /// One sample per row, one input per column.
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
 };
 
-/// "polynomial", "spline" or "bp".
+/// "none", "constant", "polynomial", "table", "spline", "thermistor", "fuzzy"
+/// or "bp".
 std::string kind_name(const BiasModel& model);
 
 constexpr double kReferenceTemperature = 25.0;  // [degC], T0 of equation (1)
@@ -49,8 +63,14 @@ struct EquationOne {
   std::vector<double> coefficients;  // a_n [1/K^n]; not finite if F(T0) = 0
 };
 
+/// Coefficients [deg/s/K^n] of the polynomial of `model` in T - `reference`.
+/// Throws as equation_one().
+std::vector<double> coefficients_about(const BiasModel& model,
+                                       double reference);
+
 /// The polynomial of `model` written as equation (1). Throws
-/// std::invalid_argument when the model is of another kind.
+/// std::invalid_argument when the model is of another kind or has other inputs
+/// than the temperature.
 EquationOne equation_one(const BiasModel& model);
 
 }  // namespace beamgyro

@@ -27,8 +27,15 @@ std::vector<double> corrected_rate(const BiasModel& bias,
 
 std::vector<double> compensated_rate(const Compensator& compensator,
                                      const Recording& recording) {
-  return corrected_rate(compensator.bias, compensator.inputs,
-                        compensator.temperature_range, recording);
+  const TemperatureRange& range = compensator.temperature_range;
+  std::vector<double> rate =
+      corrected_rate(compensator.bias, compensator.inputs, range, recording);
+  if (!compensator.scale_factor) return rate;
+  const auto& temperature = column_values(recording, "temperature");
+  for (std::size_t k = 0; k < rate.size(); ++k)
+    rate[k] /= compensator.scale_factor->at(
+        std::clamp(temperature[k], range.lowest, range.highest));
+  return rate;
 }
 
 std::vector<double> baseline_rate(const Compensator& compensator,

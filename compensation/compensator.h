@@ -22,26 +22,45 @@ struct SourceFile {
   bool operator==(const SourceFile&) const = default;
 };
 
+/// Residuals of a model fitted to all groups of rows but one, on that one, for
+/// each group in turn.
+struct CrossValidated {
+  std::string by;  // "run", "cycle", "leg" or "segment"
+  std::size_t groups = 0;
+  double rms = 0.0;             // [deg/s], root of the mean of the groups'
+  double standard_error = 0.0;  // [deg/s], of it
+  double constant_rms = 0.0;    // [deg/s], of a constant bias
+
+  bool operator==(const CrossValidated&) const = default;
+};
+
 /// Where a compensator comes from.
 struct Provenance {
+  std::string method;  // "cubic as PX4 fits it", ...
   std::vector<SourceFile> training;
   std::vector<SourceFile> held_out;
   std::string model_text;  // model file byte for byte as read
   std::uint64_t seed = 0;
   std::string stop_reason;
+  std::vector<std::string> choices;   // what was chosen, from what, and why
+  std::vector<std::string> warnings;  // what the data do not support
+  std::optional<CrossValidated> cross_validated;
   double in_sample_rms = 0.0;           // [deg/s], over the training rows
   std::optional<double> held_out_rms;   // [deg/s], over the held-out rows
   double baseline_in_sample_rms = 0.0;  // [deg/s]
   std::optional<double> baseline_held_out_rms;  // [deg/s]
+  double constant_in_sample_rms = 0.0;          // [deg/s], a constant bias
+  std::optional<double> constant_held_out_rms;  // [deg/s]
 
   bool operator==(const Provenance&) const = default;
 };
 
-/// A trained compensator: compensated rate = rate - bias(inputs). Works in the
-/// units of the recording: temperatures in degC, rates in deg/s.
+/// A trained compensator: compensated rate = (rate - bias(inputs)) / s(T).
+/// Works in the units of the recording: temperatures in degC, rates in deg/s.
 struct Compensator {
   std::vector<Input> inputs;
-  BiasModel bias;      // of `inputs`
+  BiasModel bias;                           // of `inputs`
+  std::optional<LookupTable> scale_factor;  // s(T) [-]; 1 without
   BiasModel baseline;  // of the temperature: the cubic of equation (1)
   TemperatureRange temperature_range;  // [degC], seen in training
   Provenance provenance;
@@ -53,7 +72,8 @@ struct Compensator {
 std::vector<double> compensated_rate(const Compensator& compensator,
                                      const Recording& recording);
 
-/// The same for the compensator's own baseline, the cubic of equation (1).
+/// The same for the compensator's own baseline, the cubic of equation (1), with
+/// s = 1.
 std::vector<double> baseline_rate(const Compensator& compensator,
                                   const Recording& recording);
 

@@ -73,9 +73,12 @@ bool FeatureStream::step(double time, std::uint8_t status,
           input.column, value, time));
     if (input.column == "temperature")
       value = std::clamp(value, range_.lowest, range_.highest);
-    features[i] = input.kind == InputKind::kTemperatureLowpass
-                      ? low_passes_[i].step(time, value)
-                      : value;
+    features[i] = value;
+    if (input.kind == InputKind::kColumn) continue;
+    const double smooth = low_passes_[i].step(time, value);
+    features[i] = input.kind == InputKind::kTemperatureRate
+                      ? (value - smooth) / input.time_constant
+                      : smooth;
   }
   return true;
 }

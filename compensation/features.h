@@ -42,7 +42,8 @@ class LowPass {
 
 /// The inputs of a compensator sample by sample, the same in training and at
 /// run time, as firmware would compute them. Filters and the time since
-/// power-on start at the first powered sample after each unpowered one.
+/// power-on start at the first powered sample after each unpowered one: a
+/// low-pass at the temperature there, its rate of change (x - y) / tau at 0.
 class FeatureStream {
  public:
   explicit FeatureStream(std::vector<Input> inputs,

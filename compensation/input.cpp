@@ -14,6 +14,7 @@ namespace beamgyro {
 namespace {
 
 constexpr std::string_view kLowpass = "temperature_lowpass";
+constexpr std::string_view kTemperatureRate = "temperature_rate";
 constexpr std::string_view kSincePowerOn = "since_power_on";
 
 const std::vector<std::string>& plain_inputs() {
@@ -28,17 +29,19 @@ const std::vector<std::string>& plain_inputs() {
   const std::string_view stem = name.substr(0, name.find('('));
   std::vector<std::string> known = plain_inputs();
   known.emplace_back(kLowpass);
+  known.emplace_back(kTemperatureRate);
   known.emplace_back(kSincePowerOn);
   const std::string near = suggestion(stem, known);
   std::string hint;
-  if (stem == kLowpass || stem == kSincePowerOn)
+  if (stem == kLowpass || stem == kTemperatureRate || stem == kSincePowerOn)
     hint = fmt::format("it takes one positive time constant in s, as {}(100); ",
                        stem);
   else if (!near.empty())
     hint = fmt::format("did you mean \"{}\"? ", near);
   throw std::invalid_argument(fmt::format(
-      "input \"{}\": {}inputs are {}, {}(TAU) and {}(TAU), TAU in s", name,
-      hint, fmt::join(plain_inputs(), ", "), kLowpass, kSincePowerOn));
+      "input \"{}\": {}inputs are {}, {}(TAU), {}(TAU) and {}(TAU), TAU in s",
+      name, hint, fmt::join(plain_inputs(), ", "), kLowpass, kTemperatureRate,
+      kSincePowerOn));
 }
 
 // TAU of "stem(TAU)".
@@ -66,6 +69,9 @@ Input parse_input(std::string_view name) {
   if (stem == kLowpass)
     return {InputKind::kTemperatureLowpass, "temperature",
             time_constant(name, stem)};
+  if (stem == kTemperatureRate)
+    return {InputKind::kTemperatureRate, "temperature",
+            time_constant(name, stem)};
   if (stem == kSincePowerOn)
     return {InputKind::kSincePowerOn, "", time_constant(name, stem)};
   reject(name);
@@ -75,12 +81,18 @@ std::string input_name(const Input& input) {
   switch (input.kind) {
     case InputKind::kTemperatureLowpass:
       return fmt::format("{}({})", kLowpass, input.time_constant);
+    case InputKind::kTemperatureRate:
+      return fmt::format("{}({})", kTemperatureRate, input.time_constant);
     case InputKind::kSincePowerOn:
       return fmt::format("{}({})", kSincePowerOn, input.time_constant);
     case InputKind::kColumn:
       break;
   }
   return input.column;
+}
+
+bool sees_the_rate(const Input& input) {
+  return input.column == "output" || input.column == "rate";
 }
 
 std::vector<std::string> input_names(const std::vector<Input>& inputs) {

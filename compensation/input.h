@@ -10,6 +10,7 @@ namespace beamgyro {
 enum class InputKind {
   kColumn,              // a measured column as it is
   kTemperatureLowpass,  // temperature_lowpass(TAU)
+  kTemperatureRate,     // temperature_rate(TAU), smoothed dT/dt [K/s]
   kSincePowerOn,        // since_power_on(TAU) = exp(-t / TAU)
 };
 
@@ -23,13 +24,18 @@ struct Input {
 };
 
 /// Reads "output", "temperature", "temperature_lowpass(100)",
-/// "since_power_on(300)", "drive_frequency", "drive_voltage", "quadrature" or
-/// "rate". Throws std::invalid_argument for anything else, with what there is.
+/// "temperature_rate(60)", "since_power_on(300)", "drive_frequency",
+/// "drive_voltage", "quadrature" or "rate". Throws std::invalid_argument for
+/// anything else, with what there is.
 Input parse_input(std::string_view name);
 
 /// The name parse_input() reads back to the same input, to the last bit of the
 /// time constant.
 std::string input_name(const Input& input);
+
+/// Whether the input is the gyro's own answer, `output` or `rate`: a network
+/// that sees it can take the rate for drift.
+bool sees_the_rate(const Input& input);
 
 std::vector<std::string> input_names(const std::vector<Input>& inputs);
 

@@ -28,6 +28,12 @@ JsonNode JsonNode::at(const std::string& key) const {
   return {*member, file_, path_.empty() ? key : path_ + "." + key};
 }
 
+bool JsonNode::has(const std::string& key) const {
+  return value_->is_object() && value_->contains(key);
+}
+
+bool JsonNode::is_null() const { return value_->is_null(); }
+
 std::vector<JsonNode> JsonNode::elements() const {
   if (!value_->is_array()) expected("an array");
   std::vector<JsonNode> nodes;

@@ -19,7 +19,9 @@ class JsonNode {
            std::string path = "")
       : value_(&value), file_(std::move(file)), path_(std::move(path)) {}
 
-  JsonNode at(const std::string& key) const;      // member, must be there
+  JsonNode at(const std::string& key) const;  // member, must be there
+  bool has(const std::string& key) const;
+  bool is_null() const;
   std::vector<JsonNode> elements() const;         // of an array
   double number() const;                          // finite
   std::optional<double> optional_number() const;  // nothing where it is null

@@ -2,12 +2,22 @@
 #include "compensation/model_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <stdexcept>
+
+#include "config/suggestion.h"
 
 namespace beamgyro {
 namespace {
+
+const std::vector<std::string> kKinds = {
+    "none",      "constant",   "polynomial", "table", "spline", "px4",
+    "ardupilot", "thermistor", "fuzzy",      "bp",    "auto"};
+
+const std::vector<double> kWeightDecays = {0.0, 1e-8, 1e-6};
 
 std::vector<Input> read_inputs(const ConfigTable& root) {
   const std::vector<std::string> names = root.texts("inputs");
@@ -36,11 +46,37 @@ void require_one_temperature(const ConfigTable& root,
                           inputs.size(), input_name(inputs[0]), kind));
 }
 
-RowOptions read_rows(const ConfigTable& table) {
+void require_temperature_first(const ConfigTable& root,
+                               const std::vector<Input>& inputs,
+                               const std::string& kind) {
+  if (inputs[0] != parse_input("temperature"))
+    root.fail("inputs", fmt::format("starts with \"{}\"; the first input of a "
+                                    "{} is \"temperature\"",
+                                    input_name(inputs[0]), kind));
+  for (const Input& input : inputs)
+    if (sees_the_rate(input))
+      root.fail("inputs",
+                fmt::format("\"{}\" feels the rate, and a {} would take the "
+                            "rate for drift; only a bp network takes it, with "
+                            "rate_penalty",
+                            input_name(input), kind));
+}
+
+bool takes_samples(const std::string& kind) {
+  return kind == "px4" || kind == "ardupilot";
+}
+
+RowOptions read_rows(const ConfigTable& table, const std::string& kind) {
   RowOptions rows;
-  rows.seconds = table.number_or("seconds", rows.seconds, positive());
+  rows.seconds = table.number_or(
+      "seconds", takes_samples(kind) ? 0.0 : rows.seconds, non_negative());
   rows.steady_K_per_min = table.optional_number("steady_K_per_min", positive());
   return rows;
+}
+
+PolynomialSpec read_polynomial(const ConfigTable& table) {
+  return {static_cast<int>(table.integer_or("degree", 3, 0, 12)),
+          table.flag_or("normalised", true)};
 }
 
 SplineSpec read_spline(const ConfigTable& table) {
@@ -57,23 +93,33 @@ SplineSpec read_spline(const ConfigTable& table) {
 Trainer read_trainer(const ConfigTable& table) {
   const std::string name = table.choice_or(
       "trainer", "levenberg_marquardt",
-      {"levenberg_marquardt", "gradient_adaptive", "incremental"});
+      {"levenberg_marquardt", "lbfgs", "gradient_adaptive", "incremental"});
   if (name == "incremental") return Trainer::kIncremental;
   if (name == "gradient_adaptive") return Trainer::kGradientAdaptive;
+  if (name == "lbfgs") return Trainer::kLbfgs;
   return Trainer::kLevenbergMarquardt;
 }
 
-BpSpec read_bp(const ConfigTable& table) {
+std::vector<double> read_weight_decays(const ConfigTable& table) {
+  if (const auto fixed = table.optional_number("weight_decay", non_negative()))
+    return {*fixed};
+  if (!table.has("weight_decays")) return kWeightDecays;
+  std::vector<double> decays = table.numbers("weight_decays", non_negative());
+  if (decays.empty())
+    table.fail("weight_decays", "[], needs at least one value to choose from");
+  return decays;
+}
+
+// Everything but the layers.
+BpSpec read_bp_options(const ConfigTable& table) {
   BpSpec spec;
-  for (const long neurons : table.integers("hidden", 1, 1000))
-    spec.hidden.push_back(static_cast<int>(neurons));
-  if (spec.hidden.empty())
-    table.fail("hidden", "[], needs at least one hidden layer, as [6]");
   TrainOptions& training = spec.training;
   training.trainer = read_trainer(table);
-  if (training.trainer == Trainer::kLevenbergMarquardt) {
-    training.weight_decay =
-        table.number_or("weight_decay", training.weight_decay, non_negative());
+  if (training.trainer == Trainer::kLevenbergMarquardt ||
+      training.trainer == Trainer::kLbfgs) {
+    spec.weight_decays = read_weight_decays(table);
+    training.rate_penalty =
+        table.number_or("rate_penalty", training.rate_penalty, non_negative());
   } else {
     training.max_epochs = kGradientMaxEpochs;
     training.patience = kGradientPatience;
@@ -94,7 +140,161 @@ BpSpec read_bp(const ConfigTable& table) {
   return spec;
 }
 
+void require_inputs_for_penalty(const ConfigTable& table, const BpSpec& spec,
+                                const std::vector<Input>& inputs) {
+  if (spec.training.rate_penalty > 0.0 &&
+      std::none_of(inputs.begin(), inputs.end(), sees_the_rate))
+    table.fail("rate_penalty",
+               "is for networks with the input \"output\" or \"rate\"; these "
+               "inputs do not feel the rate");
+}
+
+BpSpec read_bp(const ConfigTable& table, const std::vector<Input>& inputs) {
+  BpSpec spec = read_bp_options(table);
+  for (const long neurons : table.integers("hidden", 1, 1000))
+    spec.hidden.push_back(static_cast<int>(neurons));
+  if (spec.hidden.empty())
+    table.fail("hidden", "[], needs at least one hidden layer, as [6]");
+  require_inputs_for_penalty(table, spec, inputs);
+  return spec;
+}
+
+FitSpec read_kind(const ConfigTable& root, const std::string& kind,
+                  const std::vector<Input>& inputs) {
+  const auto table = [&] { return root.table_or_empty(kind); };
+  if (kind == "none") return NoneSpec{};
+  if (kind == "constant") return ConstantSpec{};
+  if (kind == "bp") return read_bp(root.table("bp"), inputs);
+  if (kind == "polynomial") {
+    require_temperature_first(root, inputs, kind);
+    return read_polynomial(table());
+  }
+  if (kind == "fuzzy") {
+    require_temperature_first(root, inputs, kind);
+    return FuzzySpec{static_cast<int>(table().integer_or("rules", 8, 2, 1000))};
+  }
+  require_one_temperature(root, inputs, kind);
+  if (kind == "table")
+    return TableSpec{table().number_or("bin_width_K", 5.0, positive())};
+  if (kind == "spline") return read_spline(table());
+  if (kind == "thermistor")
+    return ThermistorSpec{table().number_or("b_K", 3950.0, positive())};
+  if (kind == "px4") return Px4Spec{};
+  return ArduPilotSpec{
+      static_cast<int>(table().integer_or("least_samples", 100, 1, 1000000))};
+}
+
+// Layers of "bp(2,8)"; nothing when it is not of that form.
+std::vector<int> layers_of(std::string_view name) {
+  if (!name.starts_with("bp(") || !name.ends_with(')')) return {};
+  std::vector<int> layers;
+  const char* at = name.data() + 3;
+  const char* end = name.data() + name.size() - 1;
+  while (at < end) {
+    int neurons = 0;
+    const auto [next, error] = std::from_chars(at, end, neurons);
+    if (error != std::errc() || neurons < 1 || neurons > 1000 ||
+        (next != end && *next != ','))
+      return {};
+    layers.push_back(neurons);
+    at = next + 1;
+  }
+  return layers;
+}
+
+FitSpec curve_of(const std::string& name, const ConfigTable& automatic) {
+  if (name == "none") return NoneSpec{};
+  if (name == "constant") return ConstantSpec{};
+  if (name == "linear") return PolynomialSpec{1};
+  if (name == "cubic" || name == "cubic_and_slopes") return PolynomialSpec{3};
+  if (name == "fifth") return PolynomialSpec{5};
+  if (name == "table") return TableSpec{};
+  if (name == "spline") return SplineSpec{};
+  if (name == "thermistor") return ThermistorSpec{};
+  if (name == "fuzzy") return FuzzySpec{};
+  const std::vector<std::string> known = {
+      "none",  "constant", "linear", "cubic",      "cubic_and_slopes",
+      "fifth", "table",    "spline", "thermistor", "fuzzy",
+      "bp(6)"};
+  const std::string near = suggestion(name, known);
+  automatic.fail("candidates",
+                 fmt::format("\"{}\"{}; candidates are {}, with the layers of "
+                             "a network in brackets, as bp(2,8)",
+                             name,
+                             near.empty() ? ""
+                                          : fmt::format(", did you mean "
+                                                        "\"{}\"?",
+                                                        near),
+                             fmt::join(known, ", ")));
+}
+
+std::vector<std::string> usual_candidates(std::size_t inputs) {
+  if (inputs == 1)
+    return {"none", "constant", "linear", "cubic", "spline", "bp(3)", "bp(6)"};
+  return {"none",   "constant", "linear", "cubic", "cubic_and_slopes",
+          "spline", "bp(2,4)",  "bp(2,8)"};
+}
+
+std::vector<Candidate> read_candidates(const ConfigTable& root,
+                                       const std::vector<Input>& inputs) {
+  require_temperature_first(root, inputs, "automatic choice");
+  const ConfigTable automatic = root.table_or_empty("auto");
+  const BpSpec options = read_bp_options(root.table_or_empty("bp"));
+  const std::vector<std::string> names = automatic.has("candidates")
+                                             ? automatic.texts("candidates")
+                                             : usual_candidates(inputs.size());
+  if (names.empty())
+    automatic.fail("candidates", "[], needs at least one candidate");
+  std::vector<Candidate> candidates;
+  for (const std::string& name : names) {
+    BpSpec network = options;
+    network.hidden = layers_of(name);
+    if (!network.hidden.empty())
+      candidates.push_back({name, inputs, network});
+    else if (const FitSpec curve = curve_of(name, automatic);
+             name == "cubic_and_slopes")
+      candidates.push_back({name, inputs, curve});
+    else
+      candidates.push_back({name, {inputs[0]}, curve});
+  }
+  return candidates;
+}
+
+struct MethodName {
+  std::string operator()(const NoneSpec&) const { return "none"; }
+  std::string operator()(const ConstantSpec&) const { return "constant"; }
+  std::string operator()(const PolynomialSpec& spec) const {
+    const char* suffix = spec.normalised ? "" : ", not normalised";
+    if (spec.degree == 1) return fmt::format("straight line{}", suffix);
+    if (spec.degree == 3) return fmt::format("cubic{}", suffix);
+    return fmt::format("polynomial of degree {}{}", spec.degree, suffix);
+  }
+  std::string operator()(const TableSpec& spec) const {
+    return fmt::format("table of {:g} K bins", spec.bin_width_K);
+  }
+  std::string operator()(const SplineSpec&) const { return "cubic spline"; }
+  std::string operator()(const Px4Spec&) const {
+    return "cubic as PX4 fits it";
+  }
+  std::string operator()(const ArduPilotSpec&) const {
+    return "cubic as ArduPilot fits it";
+  }
+  std::string operator()(const ThermistorSpec&) const {
+    return "thermistor network";
+  }
+  std::string operator()(const FuzzySpec& spec) const {
+    return fmt::format("fuzzy model of {} rules", spec.rules);
+  }
+  std::string operator()(const BpSpec& spec) const {
+    return fmt::format("BP network {}", fmt::join(spec.hidden, "-"));
+  }
+};
+
 }  // namespace
+
+std::string method_name(const FitSpec& kind) {
+  return std::visit(MethodName{}, kind);
+}
 
 ModelSpec read_model(const std::filesystem::path& file) {
   return read_model(ConfigDocument::read(file));
@@ -104,20 +304,18 @@ ModelSpec read_model(const ConfigDocument& document) {
   const ConfigTable& root = document.root();
   ModelSpec spec;
   spec.text = document.text();
-  const std::string kind = root.choice("kind", {"polynomial", "spline", "bp"});
-  spec.inputs = read_inputs(root);
-  spec.rows = read_rows(root.table_or_empty("rows"));
-  if (kind == "bp") {
-    spec.kind = read_bp(root.table("bp"));
-  } else {
-    require_one_temperature(root, spec.inputs, kind);
-    const ConfigTable table = root.table_or_empty(kind);
-    if (kind == "spline")
-      spec.kind = read_spline(table);
-    else
-      spec.kind = PolynomialSpec{
-          static_cast<int>(table.integer_or("degree", 3, 0, 12))};
-  }
+  const std::string kind = root.choice("kind", kKinds);
+  const bool needs_inputs = kind == "bp" || kind == "auto";
+  spec.inputs = needs_inputs || root.has("inputs")
+                    ? read_inputs(root)
+                    : std::vector<Input>{parse_input("temperature")};
+  spec.rows = read_rows(root.table_or_empty("rows"), kind);
+  if (kind == "auto")
+    spec.candidates = read_candidates(root, spec.inputs);
+  else
+    spec.kind = read_kind(root, kind, spec.inputs);
+  if (const auto table = root.optional_table("scale_factor"))
+    spec.scale_factor_bin_K = table->number_or("bin_width_K", 10.0, positive());
   document.reject_unknown_keys();
   return spec;
 }

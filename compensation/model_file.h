@@ -16,14 +16,25 @@ namespace beamgyro {
 
 /// Table [rows]: how samples become training rows.
 struct RowOptions {
-  double seconds = 60.0;  // [s], length of the blocks that are averaged, > 0
+  // [s], length of the blocks that are averaged; 0 = every sample is a row
+  double seconds = 60.0;
   // [K/min]; rows whose temperature changes faster are left out
   std::optional<double> steady_K_per_min;
 };
 
+struct NoneSpec {};
+struct ConstantSpec {};
+
 /// Table [polynomial].
 struct PolynomialSpec {
   int degree = 3;  // 0 ... 12
+  // false: powers of T - 25 degC in kelvins by the normal equations
+  bool normalised = true;
+};
+
+/// Table [table].
+struct TableSpec {
+  double bin_width_K = 5.0;  // [K], > 0
 };
 
 /// Table [spline].
@@ -32,19 +43,51 @@ struct SplineSpec {
   SplineEnd end = SplineEnd::kNotAKnot;
 };
 
+struct Px4Spec {};
+
+/// Table [ardupilot].
+struct ArduPilotSpec {
+  int least_samples = 100;  // of a point, >= 1
+};
+
+/// Table [thermistor].
+struct ThermistorSpec {
+  double b_K = 3950.0;  // [K], > 0
+};
+
+/// Table [fuzzy].
+struct FuzzySpec {
+  int rules = 8;  // >= 2
+};
+
 /// Table [bp].
 struct BpSpec {
   std::vector<int> hidden;      // neurons of each hidden layer
   double goal_deg_per_s = 0.0;  // [deg/s], becomes TrainOptions::goal
+  std::vector<double> weight_decays = {
+      0.0};  // the best on held-out rows is kept
   TrainOptions training;
+};
+
+using FitSpec =
+    std::variant<NoneSpec, ConstantSpec, PolynomialSpec, TableSpec, SplineSpec,
+                 Px4Spec, ArduPilotSpec, ThermistorSpec, FuzzySpec, BpSpec>;
+
+/// One of the models of an automatic choice.
+struct Candidate {
+  std::string name;  // as the model file says it
+  std::vector<Input> inputs;
+  FitSpec kind;
 };
 
 /// What to train, as a model file says it.
 struct ModelSpec {
-  std::vector<Input> inputs;
-  RowOptions rows;
-  std::variant<PolynomialSpec, SplineSpec, BpSpec> kind;
-  std::string text;  // model file byte for byte as read
+  std::vector<Input> inputs = {};
+  RowOptions rows = {};
+  FitSpec kind = {};
+  std::vector<Candidate> candidates = {};  // simplest first; empty = `kind`
+  std::optional<double> scale_factor_bin_K = {};  // [scale_factor], > 0
+  std::string text = {};                          // model file as read
 };
 
 /// Reads a model file (docs/formats.md). Throws std::invalid_argument with
@@ -52,5 +95,8 @@ struct ModelSpec {
 /// unknown key, or inputs the kind of model cannot take.
 ModelSpec read_model(const std::filesystem::path& file);
 ModelSpec read_model(const ConfigDocument& document);
+
+/// What reports call it: "cubic", "BP network 2-8", ...
+std::string method_name(const FitSpec& kind);
 
 }  // namespace beamgyro

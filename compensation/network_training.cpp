@@ -79,6 +79,7 @@ TrainSummary train_network(const ScaledRows& rows, const ScaledRows& held_out,
       return train_incremental(rows, held_out, options, order, network);
     case Trainer::kGradientAdaptive:
       return train_gradient_adaptive(rows, held_out, options, network);
+    case Trainer::kLbfgs:
     case Trainer::kLevenbergMarquardt:
       break;
   }

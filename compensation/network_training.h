@@ -6,12 +6,18 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compensation/bp_network.h"
 
 namespace beamgyro {
 
-enum class Trainer { kIncremental, kGradientAdaptive, kLevenbergMarquardt };
+enum class Trainer {
+  kIncremental,
+  kGradientAdaptive,
+  kLevenbergMarquardt,
+  kLbfgs
+};
 
 /// Defaults of the two gradient trainers, whose epochs are cheap and many.
 constexpr int kGradientMaxEpochs = 20000;
@@ -35,11 +41,15 @@ std::string sentence(StopReason reason);
 /// weight_decay |w|^2 / 2.
 struct TrainOptions {
   Trainer trainer = Trainer::kLevenbergMarquardt;
-  int restarts = 4;             // >= 1, from different initial weights
-  int max_epochs = 300;         // >= 1; passes over the rows
-  int patience = 60;            // [epochs], >= 1
-  double goal = 0.0;            // rms, >= 0
-  double weight_decay = 0.0;    // >= 0; levenberg_marquardt only
+  int restarts = 4;           // >= 1, from different initial weights
+  int max_epochs = 300;       // >= 1; passes over the rows
+  int patience = 60;          // [epochs], >= 1
+  double goal = 0.0;          // rms, >= 0
+  double weight_decay = 0.0;  // >= 0; levenberg_marquardt, lbfgs
+  // Adds rate_penalty mean((dy/ds)^2) / 2 to F, s running along rate_direction,
+  // the change of the inputs with the rate; levenberg_marquardt, lbfgs.
+  double rate_penalty = 0.0;                // >= 0
+  std::vector<double> rate_direction = {};  // one per input
   double learning_rate = 0.02;  // eta of equation (5), > 0; its first value
   double momentum = 0.9;        // h of equation (5), in [0, 1)
   double min_learning_rate = 1e-9;

@@ -6,17 +6,30 @@
 
 namespace beamgyro {
 
-/// p(x) = c_0 + c_1 x + ... + c_n x^n, x scaled to [-1, 1].
+/// p(x) = c_0 + c_1 x_0 + ... + c_n x_0^n + d_1 x_1 + ... + d_m x_m: a
+/// polynomial of the first input and a straight line in each further one.
 struct Polynomial {
   std::vector<double> coefficients;  // c_0 ... c_n
+  std::vector<double> slopes = {};   // d_1 ... d_m
 
-  Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXd>& x) const;
+  /// One sample per row, 1 + m columns.
+  Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
 };
 
 /// Least squares by Householder QR. Throws std::invalid_argument when `x` does
-/// not determine a polynomial of that degree.
-Polynomial fit_polynomial(const Eigen::Ref<const Eigen::ArrayXd>& x,
+/// not determine a polynomial of that degree and the slopes.
+Polynomial fit_polynomial(const Eigen::Ref<const Eigen::ArrayXXd>& x,
                           const Eigen::Ref<const Eigen::ArrayXd>& y,
                           int degree);
+
+/// The same by the normal equations, as least squares is written where scaling
+/// is not thought of: their condition is the square of that of the powers of
+/// `x`. Throws as fit_polynomial().
+Polynomial fit_polynomial_by_normal_equations(
+    const Eigen::Ref<const Eigen::ArrayXXd>& x,
+    const Eigen::Ref<const Eigen::ArrayXd>& y, int degree);
+
+/// The coefficients of p(x) about another origin: q(x) = p(x + origin).
+std::vector<double> shifted(std::vector<double> coefficients, double origin);
 
 }  // namespace beamgyro

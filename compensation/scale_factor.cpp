@@ -56,6 +56,39 @@ SlopeSums sums_of(const Plateau& plateau) {
           .samples = plateau.time.size()};
 }
 
+/// The usable samples of every plateau. `compensated` may be empty.
+std::vector<Plateau> plateaus_of(const Recording& recording,
+                                 std::span<const double> compensated,
+                                 double largest_rate) {
+  const auto& time = recording.time;
+  const auto& truth = column_values(recording, "true_rate");
+  const auto& raw = column_values(recording, "rate");
+  const Column* temperature = find_column(recording, "temperature");
+  const double settling = kSettlingTime - 0.5 * usual_step(recording);
+  std::vector<Plateau> plateaus;
+  double last_large = -std::numeric_limits<double>::infinity();  // [s]
+  for (const SampleRange& range : temperature_plateaus(recording)) {
+    Plateau& plateau = plateaus.emplace_back();
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      if (std::abs(truth[k]) > largest_rate) {
+        last_large = time[k];
+        continue;
+      }
+      if (time[k] - last_large >= settling &&
+          (recording.status[k] & kLeftOut) == 0) {
+        plateau.time.push_back(time[k]);
+        plateau.temperature.push_back(temperature ? temperature->values[k]
+                                                  : 0.0);
+        plateau.truth.push_back(truth[k]);
+        plateau.raw.push_back(raw[k]);
+        plateau.compensated.push_back(compensated.empty() ? raw[k]
+                                                          : compensated[k]);
+      }
+    }
+  }
+  return plateaus;
+}
+
 }  // namespace
 
 SlopeSums& SlopeSums::operator+=(const SlopeSums& other) {
@@ -71,38 +104,32 @@ SlopeSums& SlopeSums::operator+=(const SlopeSums& other) {
 
 SlopeSums slope_sums(const Recording& recording,
                      std::span<const double> compensated, double largest_rate) {
-  const auto& time = recording.time;
-  const auto& truth = column_values(recording, "true_rate");
-  const auto& raw = column_values(recording, "rate");
-  const Column* temperature = find_column(recording, "temperature");
-  if (compensated.size() != time.size()) {
+  if (compensated.size() != recording.time.size()) {
     throw std::invalid_argument(fmt::format(
         "compensated rate: {} values for {} times, must be one each",
-        compensated.size(), time.size()));
+        compensated.size(), recording.time.size()));
   }
-  const double settling = kSettlingTime - 0.5 * usual_step(recording);
   SlopeSums sums;
-  double last_large = -std::numeric_limits<double>::infinity();  // [s]
-  for (const SampleRange& range : temperature_plateaus(recording)) {
-    Plateau plateau;
-    for (std::size_t k = range.begin; k < range.end; ++k) {
-      if (std::abs(truth[k]) > largest_rate) {
-        last_large = time[k];
-        continue;
-      }
-      if (time[k] - last_large >= settling &&
-          (recording.status[k] & kLeftOut) == 0) {
-        plateau.time.push_back(time[k]);
-        plateau.temperature.push_back(temperature ? temperature->values[k]
-                                                  : 0.0);
-        plateau.truth.push_back(truth[k]);
-        plateau.raw.push_back(raw[k]);
-        plateau.compensated.push_back(compensated[k]);
-      }
-    }
+  for (const Plateau& plateau :
+       plateaus_of(recording, compensated, largest_rate)) {
     sums += sums_of(plateau);
   }
   return sums;
+}
+
+std::vector<PlateauSlope> plateau_slopes(const Recording& recording,
+                                         double least_departure) {
+  std::vector<PlateauSlope> slopes;
+  for (const Plateau& plateau : plateaus_of(recording, {}, kEveryRate)) {
+    const SlopeSums sums = sums_of(plateau);
+    if (sums.largest_departure >= least_departure) {
+      const Eigen::Map<const Eigen::ArrayXd> T(
+          plateau.temperature.data(),
+          static_cast<Eigen::Index>(plateau.temperature.size()));
+      slopes.push_back({T.mean(), sums.raw, sums.truth});
+    }
+  }
+  return slopes;
 }
 
 std::optional<ScaleFactor> scale_factor(const SlopeSums& sums) {

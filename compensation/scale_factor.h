@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "dataset/recording.h"
 
@@ -12,6 +13,7 @@ namespace beamgyro {
 
 constexpr double kSmallRate = 2.0;           // [deg/s]
 constexpr double kLeastRateDeparture = 0.1;  // [deg/s]
+constexpr double kTableRate = 5.0;           // [deg/s], of a rate table
 constexpr double kSettlingTime = 1.0;        // [s]
 constexpr double kEveryRate = std::numeric_limits<double>::infinity();
 
@@ -41,6 +43,17 @@ struct SlopeSums {
 SlopeSums slope_sums(const Recording& recording,
                      std::span<const double> compensated,
                      double largest_rate = kEveryRate);
+
+/// What one temperature plateau says of the gyro's own scale factor.
+struct PlateauSlope {
+  double temperature;  // [degC], mean
+  double raw;          // [(deg/s)^2], Σ w rate
+  double truth;        // [(deg/s)^2], Σ w Omega
+};
+
+/// Of every plateau whose true rate departs by `least_departure` [deg/s].
+std::vector<PlateauSlope> plateau_slopes(const Recording& recording,
+                                         double least_departure);
 
 struct ScaleFactor {
   double retained;   // [-], Σ v compensated_rate / Σ v rate

@@ -3,11 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "compensation/compensator.h"
 #include "compensation/model_file.h"
 #include "compensation/network_training.h"
+#include "compensation/row_groups.h"
 #include "compensation/training_rows.h"
 
 namespace beamgyro {
@@ -23,14 +25,22 @@ struct TrainResult {
 };
 
 /// Fits `spec` and the baseline, the cubic of equation (1), to the rows of
-/// `runs` (training_rows()); a network also stops early on the rows of
-/// `held_out`, and of its restarts the one with the lowest held-out rms is
-/// kept. Restart k starts from the stream (seed, 0, k, kInitialWeights).
+/// `runs` (training_rows()). A network also stops early on the rows of
+/// `held_out`, and of its restarts and weight decays the one with the lowest
+/// held-out rms is kept. With `cross_validation` every group of that kind is
+/// predicted by a fit to the others (cross_validate()); a network without
+/// held-out runs takes its weight decay and the number of its epochs from
+/// there. Of several candidates the choice is choose()'s by cross-validation,
+/// or without it by the groups of the held-out runs, or without those by the
+/// coarsest groups there are; with segments for groups only curves of the
+/// temperature are candidates, because nothing independent is held out.
 ///
-/// Throws std::invalid_argument when there is no run, a network has no held-out
-/// run, a run is on both sides, the temperatures are too few or too close
-/// together for a polynomial, an input never varies, or as training_rows().
+/// Throws std::invalid_argument when there is no run, a network has neither
+/// held-out runs nor cross-validation, a run is on both sides, the temperatures
+/// are too few or too close together, an input never varies, or as
+/// training_rows().
 TrainResult train(const ModelSpec& spec, const std::vector<TrainingRun>& runs,
-                  const std::vector<TrainingRun>& held_out, std::uint64_t seed);
+                  const std::vector<TrainingRun>& held_out, std::uint64_t seed,
+                  std::optional<Grouping> cross_validation = {});
 
 }  // namespace beamgyro

@@ -19,6 +19,7 @@ constexpr double kMinute = 60.0;  // [s]
 // Usable samples of one block.
 struct Block {
   std::vector<Index> samples;
+  int cycle;  // of the run
 };
 
 // Blocks of one run, counted anew from each power-on.
@@ -27,6 +28,7 @@ std::vector<Block> blocks_of(const Recording& recording, double seconds) {
   bool powered = false;
   double start = 0.0;  // [s]
   double number = -1.0;
+  int cycle = -1;
   for (std::size_t k = 0; k < recording.time.size(); ++k) {
     const std::uint8_t status = recording.status[k];
     if ((status & kUnpowered) != 0) {
@@ -34,9 +36,13 @@ std::vector<Block> blocks_of(const Recording& recording, double seconds) {
       continue;
     }
     const double time = recording.time[k];
-    if (!powered) start = time;
-    const double block = std::floor((time - start) / seconds);
-    if (!powered || block != number) blocks.emplace_back();
+    if (!powered) {
+      start = time;
+      ++cycle;
+    }
+    const double block = seconds > 0.0 ? std::floor((time - start) / seconds)
+                                       : static_cast<double>(k);
+    if (!powered || block != number) blocks.push_back({{}, cycle});
     powered = true;
     number = block;
     if ((status & (kOutputSaturated | kLoopNotLocked)) == 0)
@@ -58,12 +64,70 @@ double slope(const ArrayXd& t, const ArrayXd& y) {
   return spread > 0.0 ? (dt * y).sum() / spread : 0.0;
 }
 
-// Rows of one run, one column per row: inputs, temperature, bias.
+// Numbers the legs of temperatures in turn: a leg ends at the extreme from
+// which the temperature then turns by kLegReversal.
+class LegCounter {
+ public:
+  void begin_cycle() {
+    rising_.reset();
+    first_ = legs_.size();
+    if (!legs_.empty()) ++leg_;
+  }
+
+  void add(double T) {
+    const std::size_t here = legs_.size();
+    legs_.push_back(leg_);
+    if (here == first_) {
+      set_extreme(T, here);
+      lowest_ = highest_ = T;
+      return;
+    }
+    lowest_ = std::min(lowest_, T);
+    highest_ = std::max(highest_, T);
+    if (!rising_) {
+      if (highest_ - lowest_ < kLegReversal) return;
+      rising_ = T == highest_;
+      set_extreme(T, here);
+    } else if ((*rising_ == (T > extreme_)) || T == extreme_) {
+      set_extreme(T, here);
+    } else if (std::abs(T - extreme_) >= kLegReversal) {
+      ++leg_;
+      std::fill(legs_.begin() + static_cast<std::ptrdiff_t>(at_) + 1,
+                legs_.end(), leg_);
+      rising_ = !*rising_;
+      set_extreme(T, here);
+    }
+  }
+
+  const std::vector<int>& legs() const { return legs_; }
+
+ private:
+  void set_extreme(double T, std::size_t at) {
+    extreme_ = T;
+    at_ = at;
+  }
+
+  std::vector<int> legs_;
+  int leg_ = 0;
+  std::size_t first_ = 0, at_ = 0;
+  double extreme_ = 0.0, lowest_ = 0.0, highest_ = 0.0;  // [degC]
+  std::optional<bool> rising_;
+};
+
+Eigen::ArrayXi array_of(const std::vector<int>& values) {
+  return Eigen::Map<const Eigen::ArrayXi>(values.data(),
+                                          static_cast<Index>(values.size()));
+}
+
+// Rows of one run, one column per row: inputs, time, temperature, bias.
 class RowCollector {
  public:
   RowCollector(const RowOptions& options, const TemperatureRange& clamp,
-               std::size_t inputs)
-      : options_(options), clamp_(clamp), inputs_(static_cast<Index>(inputs)) {}
+               const LookupTable* scale_factor, std::size_t inputs)
+      : options_(options),
+        clamp_(clamp),
+        scale_factor_(scale_factor),
+        inputs_(static_cast<Index>(inputs)) {}
 
   void add(const TrainingRun& run, const std::vector<Input>& inputs) {
     const Recording& recording = run.recording;
@@ -78,9 +142,14 @@ class RowCollector {
                                        static_cast<Index>(values.size()));
     };
     const ArrayXd temperature = column("temperature");
-    const ArrayXd bias = column("rate") - column("true_rate");
+    ArrayXd truth = column("true_rate");
+    if (scale_factor_ != nullptr) truth *= scale_factor_->predict(temperature);
+    const ArrayXd bias = column("rate") - truth;
     const ArrayXd time = Eigen::Map<const ArrayXd>(
         recording.time.data(), static_cast<Index>(recording.time.size()));
+    note_output(recording);
+    int cycle = -1;
+    ++run_count_;
     for (const Block& block : blocks) {
       const ArrayXd measured = temperature(block.samples);
       check_finite(measured, "temperature", block, time);
@@ -93,22 +162,56 @@ class RowCollector {
         continue;
       range_.lowest = std::min(range_.lowest, T.minCoeff());
       range_.highest = std::max(range_.highest, T.maxCoeff());
+      slowest_ = std::min(slowest_, truth(block.samples).minCoeff());
+      fastest_ = std::max(fastest_, truth(block.samples).maxCoeff());
       for (Index i = 0; i < inputs_; ++i)
         values_.push_back(features.col(i)(block.samples).mean());
+      if (block.cycle != cycle) {
+        cycle = block.cycle;
+        ++cycle_count_;
+        legs_.begin_cycle();
+      }
+      runs_.push_back(run_count_);
+      cycles_.push_back(cycle_count_);
+      legs_.add(T.mean());
+      values_.push_back(time(block.samples).mean());
       values_.push_back(T.mean());
       values_.push_back(b.mean());
     }
   }
 
   TrainingRows rows() const {
-    const Index width = inputs_ + 2;
+    const Index width = inputs_ + 3;
     const Index count = static_cast<Index>(values_.size()) / width;
     const Eigen::Map<const ArrayXXd> all(values_.data(), width, count);
-    return {all.topRows(inputs_).transpose(), all.row(inputs_).transpose(),
-            all.row(inputs_ + 1).transpose(), range_};
+    return {all.topRows(inputs_).transpose(),
+            all.row(inputs_ + 1).transpose(),
+            all.row(inputs_ + 2).transpose(),
+            range_,
+            all.row(inputs_).transpose(),
+            array_of(runs_),
+            array_of(cycles_),
+            array_of(legs_.legs()),
+            output_per_rate_,
+            count > 0 ? fastest_ - slowest_ : 0.0};
   }
 
  private:
+  // The output is a straight line over the rate: two samples tell its slope.
+  void note_output(const Recording& recording) {
+    const Column* output = find_column(recording, "output");
+    if (output == nullptr) return;
+    const auto [low, high] = std::minmax_element(
+        output->values.begin(), output->values.end(),
+        [](double a, double b) { return a < b || (std::isnan(a) && b == b); });
+    const auto& rate = column_values(recording, "rate");
+    const double volts = *high - *low;
+    const double rates =
+        rate[static_cast<std::size_t>(high - output->values.begin())] -
+        rate[static_cast<std::size_t>(low - output->values.begin())];
+    if (rates > 0.0 && volts > 0.0) output_per_rate_ = volts / rates;
+  }
+
   static void check_finite(const ArrayXd& values, const char* what,
                            const Block& block, const ArrayXd& time) {
     for (Index n = 0; n < values.size(); ++n)
@@ -120,8 +223,14 @@ class RowCollector {
 
   const RowOptions& options_;
   const TemperatureRange& clamp_;
+  const LookupTable* scale_factor_;
   Index inputs_;
   std::vector<double> values_;
+  std::vector<int> runs_, cycles_;  // one per row
+  LegCounter legs_;
+  int run_count_ = -1, cycle_count_ = -1;
+  double output_per_rate_ = 0.0;                     // [V/(deg/s)]
+  double slowest_ = HUGE_VAL, fastest_ = -HUGE_VAL;  // [deg/s], true rate
   TemperatureRange range_{std::numeric_limits<double>::infinity(),
                           -std::numeric_limits<double>::infinity()};
 };
@@ -131,8 +240,9 @@ class RowCollector {
 TrainingRows training_rows(const std::vector<TrainingRun>& runs,
                            const std::vector<Input>& inputs,
                            const RowOptions& options,
-                           const TemperatureRange& range) {
-  RowCollector collector(options, range, inputs.size());
+                           const TemperatureRange& range,
+                           const LookupTable* scale_factor) {
+  RowCollector collector(options, range, scale_factor, inputs.size());
   for (const TrainingRun& run : runs) {
     try {
       collector.add(run, inputs);
@@ -151,6 +261,35 @@ TrainingRows training_rows(const std::vector<TrainingRun>& runs,
                           *options.steady_K_per_min)
             : ""));
   return rows;
+}
+
+TrainingRows selected(const TrainingRows& rows,
+                      const Eigen::Array<bool, Eigen::Dynamic, 1>& keep) {
+  std::vector<Index> which;
+  for (Index k = 0; k < keep.size(); ++k)
+    if (keep(k)) which.push_back(k);
+  return {rows.inputs(which, Eigen::all),
+          rows.temperature(which),
+          rows.bias(which),
+          rows.range,
+          rows.time(which),
+          rows.run(which),
+          rows.cycle(which),
+          rows.leg(which),
+          rows.output_per_rate,
+          rows.true_rate_span};
+}
+
+TrainingRows with_columns(const TrainingRows& rows,
+                          const std::vector<Input>& all,
+                          const std::vector<Input>& wanted) {
+  if (wanted == all || rows.size() == 0) return rows;
+  std::vector<Eigen::Index> columns;
+  for (const Input& input : wanted)
+    columns.push_back(std::find(all.begin(), all.end(), input) - all.begin());
+  TrainingRows result = rows;
+  result.inputs = rows.inputs(Eigen::all, columns);
+  return result;
 }
 
 }  // namespace beamgyro

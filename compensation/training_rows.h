@@ -7,6 +7,7 @@
 
 #include "compensation/features.h"
 #include "compensation/input.h"
+#include "compensation/lookup_table.h"
 #include "compensation/model_file.h"
 #include "dataset/recording.h"
 
@@ -25,23 +26,44 @@ struct TrainingRows {
   Eigen::ArrayXd temperature;  // [degC], measured
   Eigen::ArrayXd bias;         // [deg/s], measured rate - known true rate
   TemperatureRange range;      // [degC], of the samples that were averaged
+  // What each block belongs to, numbered from 0 through all runs.
+  Eigen::ArrayXd time;   // [s], mean
+  Eigen::ArrayXi run;    // recording
+  Eigen::ArrayXi cycle;  // time from a power-on to the next loss of power
+  Eigen::ArrayXi leg;    // part of a cycle between reversals of temperature
+  double output_per_rate = 0.0;  // [V/(deg/s)]; 0 without an output that varies
+  double true_rate_span = 0.0;   // [deg/s], of the samples that were averaged
 
   Eigen::Index size() const { return bias.size(); }
 };
 
+/// A turn of the temperature by this much begins another leg.
+constexpr double kLegReversal = 2.0;  // [K]
+
 /// Rows of all runs. Inputs are computed at the rate of the recording and then
-/// averaged over consecutive blocks of `options.seconds`, counted from each
-/// power-on, together with the label rate - true_rate. Samples without power,
-/// saturated or with a loop not locked are left out; so are blocks with less
-/// than half the samples of the fullest block of their run, and, with
-/// steady_K_per_min, blocks over which the slope of a straight line through
-/// the measured temperature is steeper. Temperatures are clamped to `range` as
-/// at run time. Throws std::invalid_argument naming the run and an input it
-/// lacks, a true_rate it lacks, a sample that is not finite, or that it has no
-/// usable sample; and when no row is left.
+/// averaged over consecutive blocks of `options.seconds` (0: every sample is a
+/// block), counted from each power-on, together with the label rate -
+/// true_rate. Samples without power, saturated or with a loop not locked are
+/// left out; so are blocks with less than half the samples of the fullest block
+/// of their run, and, with steady_K_per_min, blocks over which the slope of a
+/// straight line through the measured temperature is steeper. Temperatures are
+/// clamped to `range` as at run time. With `scale_factor`, s of the measured
+/// temperature, the label is rate - s true_rate. Throws std::invalid_argument
+/// naming the run and an input it lacks, a true_rate it lacks, a sample that is
+/// not finite, or that it has no usable sample; and when no row is left.
 TrainingRows training_rows(const std::vector<TrainingRun>& runs,
                            const std::vector<Input>& inputs,
                            const RowOptions& options,
-                           const TemperatureRange& range = {});
+                           const TemperatureRange& range = {},
+                           const LookupTable* scale_factor = nullptr);
+
+/// The rows for which `keep` is true. The range stays.
+TrainingRows selected(const TrainingRows& rows,
+                      const Eigen::Array<bool, Eigen::Dynamic, 1>& keep);
+
+/// The rows with the columns of some of `all` inputs, in the order of `wanted`.
+TrainingRows with_columns(const TrainingRows& rows,
+                          const std::vector<Input>& all,
+                          const std::vector<Input>& wanted);
 
 }  // namespace beamgyro

@@ -180,7 +180,8 @@ Validation validate(const Compensator& compensator, const std::string& method,
   std::vector<AnsweredRun> answered;
   for (const NamedRecording& run : runs)
     answered.push_back(answered_run(compensator, run));
-  return validate(method, answered, specification);
+  return validate(method, answered, specification,
+                  compensator.scale_factor.has_value());
 }
 
 }  // namespace beamgyro

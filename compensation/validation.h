@@ -46,7 +46,6 @@ struct Validation {
 };
 
 constexpr double kCancelledBelow = 0.5;  // [-], scale factor
-constexpr double kTableRate = 5.0;       // [deg/s]
 
 /// Scores the answers and judges them by the first line that applies:
 ///

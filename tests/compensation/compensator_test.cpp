@@ -13,11 +13,12 @@ namespace {
 
 // bias = 1 + 0.1 T, baseline = 2, between 0 and 40 degC
 Compensator linear_compensator() {
-  return {{parse_input("temperature")},
-          {{Scale{}}, {}, Polynomial{{1.0, 0.1}}},
-          {{Scale{}}, {}, Polynomial{{2.0}}},
-          {.lowest = 0.0, .highest = 40.0},
-          {}};
+  Compensator c;
+  c.inputs = {parse_input("temperature")};
+  c.bias = {{Scale{}}, {}, Polynomial{{1.0, 0.1}}};
+  c.baseline = {{Scale{}}, {}, Polynomial{{2.0}}};
+  c.temperature_range = {.lowest = 0.0, .highest = 40.0};
+  return c;
 }
 
 TEST(Compensator, TakesThePredictedBiasOffTheRate) {

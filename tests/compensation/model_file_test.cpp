@@ -84,7 +84,7 @@ TEST(ModelFile, WrongFilesAreAnsweredWithPlaceAndCure) {
                  "did you mean \"temperature\""},
            Wrong{"kind = \"polynomial\"\n"
                  "inputs = [\"temperature\", \"output\"]\n",
-                 "a polynomial takes one input"},
+                 "feels the rate"},
            Wrong{"kind = \"spline\"\ninputs = [\"output\"]\n",
                  "a spline takes one input"},
            Wrong{"kind = \"spline\"\ninputs = [\"temperature\"]\n"

@@ -56,7 +56,7 @@ ModelSpec network_spec(const std::vector<std::string>& inputs, int hidden) {
 }
 
 ModelSpec curve_spec(const decltype(ModelSpec::kind)& kind) {
-  return {{parse_input("temperature")}, {}, kind, ""};
+  return {.inputs = {parse_input("temperature")}, .kind = kind};
 }
 
 double rms(const std::vector<double>& values) {
@@ -189,7 +189,7 @@ TEST(Train, RefusesWhatCannotBeTrainedOn) {
   still.temperature = [](double t) { return -40.0 + 0.1 * t; };
   EXPECT_NE(message(network_spec({"output"}, 6),
                     runs({still.recording()}, "still"), kOffGrid)
-                .find("rate - true_rate is 0 in all 10 training rows"),
+                .find("input output is 2.5 in all 10 training rows"),
             std::string::npos);
 }
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "compensation/fit.h"
+#include "compensation/row_groups.h"
+
+namespace beamgyro {
+
+/// Mean square residual [(deg/s)^2] of each group.
+using GroupErrors = Eigen::ArrayXd;
+
+double rms_of(const GroupErrors& errors);  // root of their mean [deg/s]
+/// Standard error of the mean [(deg/s)^2]; infinite with fewer than two.
+double standard_error(const GroupErrors& errors);
+
+/// Mean square residual of each group of `rows`.
+GroupErrors group_errors(const BiasModel& model, const TrainingRows& rows,
+                         const RowGroups& groups);
+
+/// Residuals of a model on rows that it was not fitted to.
+struct Unseen {
+  GroupErrors errors;
+  int epochs = 0;  // a network's best, median over the folds
+};
+
+/// Each group is predicted by a fit to all others, temperatures clamped to
+/// theirs. A network stops early on the group after it, which then is not
+/// fitted either; with fewer than three groups it runs to its end. Throws
+/// std::invalid_argument for fewer than two groups and as fit_model(), with the
+/// group that was held out.
+Unseen cross_validate(const FitSpec& kind, const std::vector<Input>& inputs,
+                      const TrainingRows& rows, const RowGroups& groups,
+                      std::uint64_t seed);
+
+/// One model among several and its residuals on unseen groups.
+struct Scored {
+  std::string name;
+  GroupErrors errors;
+};
+
+/// The largest excess of rms a simpler model may have.
+constexpr double kAllowedExcess = 0.02;  // [-]
+
+/// The one-standard-error rule: the first model (they come simplest first)
+/// whose mean square residual exceeds the least one by no more than the
+/// standard error of their difference over the groups, nor its root by
+/// kAllowedExcess: with few groups the standard error alone excuses anything.
+std::size_t choose(const std::vector<Scored>& models);
+
+}  // namespace beamgyro

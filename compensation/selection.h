@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compensation/cross_validation.h"
+#include "compensation/fit.h"
+#include "compensation/model_file.h"
+
+namespace beamgyro {
+
+/// What the models are fitted to and judged on.
+struct SelectionData {
+  const std::vector<Input>& inputs;  // of the columns of the rows
+  const TrainingRows& rows;
+  const TrainingRows& held_out;     // may be empty
+  std::optional<RowGroups> groups;  // cross-validation over `rows`
+  std::uint64_t seed;
+};
+
+/// A model and how it came to be.
+struct Selected {
+  Candidate candidate;
+  Fit fit;  // to all rows; its choices tell of every candidate
+  // Residuals on unseen groups, of it and of a constant.
+  std::optional<GroupErrors> errors, constant_errors;
+};
+
+/// Fits the candidate that choose() takes, or the only one. Without groups
+/// several candidates are judged by the held-out rows. A candidate that the
+/// rows do not determine is passed over and said so. Throws
+/// std::invalid_argument when none is left, as fit_model() for the only one.
+Selected select_model(std::vector<Candidate> candidates,
+                      const SelectionData& data);
+
+}  // namespace beamgyro

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+
+namespace beamgyro {
+
+/// Fuzzy model of Takagi and Sugeno (IEEE Trans. SMC 15, 1985, 116): rules "if
+/// x_0 is near c_i then y = a_i0 + a_i1 x_0 + a_i2 x_1 + ...", blended by
+/// Gaussian memberships,
+///
+///   y = Σ w_i y_i / Σ w_i,   w_i = exp(-((x_0 - c_i) / width)^2 / 2)
+struct TakagiSugeno {
+  Eigen::ArrayXd centres;       // one per rule, of the scaled first input
+  double width = 1.0;           // > 0, scaled
+  Eigen::MatrixXd consequents;  // one row per rule: a_i0, a_i1, ...
+
+  /// One sample per row.
+  Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
+};
+
+/// `rules` centres spread evenly over [-1, 1], half of their distance as width,
+/// consequents by least squares; of all solutions the one of least norm, so
+/// that a rule without points stays at its neighbours' blend. Throws
+/// std::invalid_argument for fewer than 2 rules or no points.
+TakagiSugeno fit_takagi_sugeno(const Eigen::Ref<const Eigen::ArrayXXd>& x,
+                               const Eigen::Ref<const Eigen::ArrayXd>& y,
+                               int rules);
+
+}  // namespace beamgyro

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "tests/compensation/sample_compensators.h"
+
+#include "tests/compensation/bias_curve.h"
+
+namespace beamgyro {
+namespace {
+
+BiasModel baseline() {
+  return {{{5.0, 45.0}}, {}, Polynomial{{1.0 / 3.0, 2e-300, -0.1}}};
+}
+
+Provenance some_provenance() {
+  Provenance p;
+  p.method = "BP network 6-4";
+  p.training = {{"a \"b\".h5", std::string(64, 'a')}};
+  p.held_out = {{"held.h5", std::string(64, 'b')}};
+  p.model_text = "# model\nkind = \"bp\"\n";
+  p.seed = 18446744073709551615u;
+  p.stop_reason = "the gradient vanished";
+  p.choices = {"weight decay 1e-06: held-out rms 0.1 deg/s"};
+  p.warnings = {"the temperature spans 8.0 K in training"};
+  p.cross_validated = CrossValidated{"leg", 4, 0.125, 1.0 / 9.0, 2.0};
+  p.in_sample_rms = 1.0 / 7.0;
+  p.held_out_rms = 2.0 / 7.0;
+  p.baseline_in_sample_rms = 0.4;
+  p.constant_in_sample_rms = 1.5;
+  return p;
+}
+
+Compensator of_temperature(const BiasModel& bias) {
+  Compensator c;
+  c.inputs = {parse_input("temperature")};
+  c.bias = bias;
+  c.baseline = baseline();
+  c.temperature_range = {-40.0, 50.0};
+  c.provenance = some_provenance();
+  return c;
+}
+
+Compensator with_inputs(const std::vector<std::string>& names,
+                        const std::vector<Scale>& scales) {
+  Compensator c = of_temperature({scales, {0.1, 2.3}, NoBias{}});
+  c.inputs.clear();
+  for (const std::string& name : names) c.inputs.push_back(parse_input(name));
+  return c;
+}
+
+BpNetwork random_network(const std::vector<int>& layers) {
+  RandomStream random(5, 0, 0, RandomPurpose::kInitialWeights);
+  BpNetwork network(layers);
+  network.randomise(random);
+  return network;
+}
+
+Compensator every_input() {
+  Compensator c =
+      with_inputs({"temperature", "temperature_lowpass(100)",
+                   "temperature_rate(60)", "since_power_on(300)",
+                   "drive_frequency", "drive_voltage", "quadrature", "rate"},
+                  {{5.0, 45.0},
+                   {5.0, 45.0},
+                   {0.0, 0.05},
+                   {0.5, 0.5},
+                   {9156.0, 12.0},
+                   {1.5, 0.7},
+                   {40.0, 25.0},
+                   {0.0, 150.0}});
+  c.bias.function = random_network({8, 5, 1});
+  c.scale_factor = LookupTable{Eigen::ArrayXd::LinSpaced(7, -35.0, 45.0),
+                               Eigen::ArrayXd::LinSpaced(7, 0.98, 1.03)};
+  return c;
+}
+
+}  // namespace
+
+Compensator network_compensator() {
+  Compensator c = with_inputs(
+      {"temperature", "temperature_lowpass(0.1)", "since_power_on(300)"},
+      {{20.1, 3.3}, {20.2, 3.7}, {0.5, 0.5}});
+  c.bias.function = random_network({3, 6, 4, 1});
+  c.temperature_range = {1.0 / 3.0, 50.7};
+  return c;
+}
+
+Compensator spline_compensator() {
+  const Eigen::ArrayXd knots = grid(-40.0, 50.0, 90.0 / 13.0);
+  return of_temperature({{Scale{}},
+                         {},
+                         fit_cubic_spline(knots, bias_curve(knots), knots,
+                                          SplineEnd::kNotAKnot)});
+}
+
+std::vector<NamedCompensator> one_of_each_kind() {
+  const Eigen::ArrayXd T = grid(-40.0, 50.0, 5.0), b = bias_curve(T);
+  Compensator slopes = with_inputs({"temperature", "temperature_rate(60)"},
+                                   {{5, 45}, {0, 0.03}});
+  slopes.bias.function = Polynomial{{0.3, -0.2, 0.1, 1.7}, {0.25}};
+  Compensator fuzzy =
+      with_inputs({"temperature", "quadrature"}, {{5, 45}, {40, 25}});
+  TakagiSugeno rules{Eigen::ArrayXd::LinSpaced(5, -1.0, 1.0), 0.25,
+                     Eigen::MatrixXd(5, 3)};
+  for (Eigen::Index k = 0; k < rules.consequents.size(); ++k)
+    rules.consequents.reshaped()(k) = 0.37 * static_cast<double>(k % 7) - 1.0;
+  fuzzy.bias.function = rules;
+  return {
+      {"none", of_temperature({{Scale{}}, {}, NoBias{}})},
+      {"constant", of_temperature({{Scale{}}, {}, ConstantBias{1.0 / 3.0}})},
+      {"polynomial",
+       of_temperature(
+           {{{5.0, 45.0}}, {}, Polynomial{{0.1, -0.7, 1e-17, 3.0}}})},
+      {"polynomial_with_slopes", slopes},
+      {"table", of_temperature({{Scale{}}, {}, fit_lookup_table(T, b, 5.0)})},
+      {"spline", spline_compensator()},
+      {"thermistor",
+       of_temperature({{Scale{}}, {}, fit_thermistor_network(T, b, 3950.0)})},
+      {"fuzzy", fuzzy},
+      {"bp", network_compensator()},
+      {"bp_with_every_input", every_input()},
+  };
+}
+
+}  // namespace beamgyro

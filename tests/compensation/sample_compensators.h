@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compensation/compensator.h"
+
+namespace beamgyro {
+
+/// Network 3-6-4-1 on temperature, a low-pass and the time since power-on.
+Compensator network_compensator();
+
+/// Inputs "temperature" and a spline with knots every 90/13 K over -40..50.
+Compensator spline_compensator();
+
+struct NamedCompensator {
+  std::string name;
+  Compensator compensator;
+};
+
+/// One of every kind, and a network with a scale-factor table and every input.
+std::vector<NamedCompensator> one_of_each_kind();
+
+}  // namespace beamgyro
