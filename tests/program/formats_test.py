@@ -42,7 +42,8 @@ class Formats(ProgramTest):
     def test_every_shipped_key_is_documented(self):
         for pattern, title in [("*.toml", "Scenario file"),
                                ("devices/*.toml", "Device file"),
-                               ("models/*.toml", "Model file")]:
+                               ("models/*.toml", "Model file"),
+                               ("maps/*.toml", "Log map")]:
             documented = rows(section(title))
             for path, table in shipped(pattern):
                 for key in keys(table):
