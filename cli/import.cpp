@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -55,6 +56,8 @@ std::string sampling_text(const Recording& recording) {
 std::string range_text(const Recording& recording, const char* column,
                        const char* unit) {
   const ValueRange range = range_of(recording, column);
+  if (range.samples == 0)
+    return fmt::format("{:<12} unpowered throughout\n", column);
   if (range.smallest_step == 0)
     return fmt::format("{:<12} {:.6g} {} throughout\n", column, range.low,
                        unit);
@@ -62,10 +65,24 @@ std::string range_text(const Recording& recording, const char* column,
                      column, range.low, range.high, unit, range.smallest_step);
 }
 
+std::string status_text(const Recording& recording) {
+  const auto samples = [&](StatusBit bit) {
+    return std::count_if(recording.status.begin(), recording.status.end(),
+                         [bit](unsigned status) { return status & bit; });
+  };
+  const auto unpowered = samples(kUnpowered);
+  const auto saturated = samples(kOutputSaturated);
+  const auto unlocked = samples(kLoopNotLocked);
+  if (unpowered + saturated + unlocked == 0) return {};
+  return fmt::format("status       {} unpowered, {} saturated, {} not locked\n",
+                     unpowered, saturated, unlocked);
+}
+
 std::string report(const ImportedLog& log, const std::string& path) {
   const Recording& recording = log.recording;
   std::string text = path + ": " + rows_text(log.counts);
   text += sampling_text(recording);
+  text += status_text(recording);
   text += range_text(recording, "rate", "deg/s");
   text += range_text(recording, "temperature", "degC");
   if (find_column(recording, "true_rate") != nullptr) {

@@ -36,7 +36,7 @@ double ticks_between(const Ticks& from, const Ticks& to) {
 
 template <class Number>
 std::errc parse(std::string_view text, Number& number) {
-  if (text.starts_with('+')) text.remove_prefix(1);
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   const auto [end, error] =
       std::from_chars(text.data(), text.data() + text.size(), number);
   if (end != text.data() + text.size() || text.empty())
@@ -131,7 +131,10 @@ class LogReader {
   void take_row() {
     ++counts_.rows;
     if (!text_.is_whole()) {
-      if (map_.rules.drop_ragged) return drop(DropReason::kRagged);
+      if (map_.rules.drop_ragged) {
+        if (!filter_) ++row_number_;
+        return drop(DropReason::kRagged);
+      }
       text_.fail_row(fmt::format(
           "{} cells; expected {} as in the first line (or rules.ragged = "
           "\"drop\" in the map)",
@@ -141,7 +144,7 @@ class LogReader {
     const std::optional<Ticks> ticks = read_ticks();
     if (!ticks) return drop(DropReason::kMissing);
     const double time = time_of(*ticks);
-    if (!follows(*ticks, time)) return;
+    if (!follows(time)) return;
     const std::optional<std::uint8_t> status = read_status(time);
     if (!status || !read_values((*status & kUnpowered) != 0))
       return drop(DropReason::kMissing);
@@ -164,7 +167,8 @@ class LogReader {
     constexpr std::int64_t kMost = std::int64_t{1} << 62;
     Ticks ticks;
     if (!time_) {
-      ticks = {true, row_number_++, 0.0};
+      ticks = {true, row_number_, static_cast<double>(row_number_)};
+      ++row_number_;
       return ticks;
     }
     ticks.whole = !is_marker(text_.cell(*time_)) &&
@@ -189,7 +193,7 @@ class LogReader {
   }
 
   // Whether the time comes after that of the last row kept.
-  bool follows(const Ticks&, double time) {
+  bool follows(double time) {
     if (lines_.empty() || time > recording_.time.back()) return true;
     const bool equal = time == recording_.time.back();
     if (equal ? map_.rules.drop_duplicates : map_.rules.drop_backward) {

@@ -62,12 +62,11 @@ Sampling sampling_of(const Recording& recording) {
 ValueRange range_of(const Recording& recording, std::string_view column) {
   const std::vector<double>& values = column_values(recording, column);
   ValueRange range;
-  bool found = false;
   for (const double value : values) {
     if (!std::isfinite(value)) continue;
-    range.low = found ? std::min(range.low, value) : value;
-    range.high = found ? std::max(range.high, value) : value;
-    found = true;
+    range.low = range.samples > 0 ? std::min(range.low, value) : value;
+    range.high = range.samples > 0 ? std::max(range.high, value) : value;
+    ++range.samples;
   }
   range.smallest_step = smallest_step(values);
   return range;

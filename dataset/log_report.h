@@ -50,6 +50,7 @@ Sampling sampling_of(const Recording& recording);
 
 /// Range of a variable; NaN left out.
 struct ValueRange {
+  std::size_t samples = 0;
   double low = 0, high = 0;
   double smallest_step = 0;  // between successive samples, 0: constant
 };
