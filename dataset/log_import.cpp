@@ -2,18 +2,16 @@
 #include "dataset/log_import.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include "config/suggestion.h"
+#include "dataset/log_clock.h"
+#include "dataset/log_numbers.h"
 #include "dataset/log_outliers.h"
 
 namespace beamgyro {
@@ -21,85 +19,16 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// A time in the unit of the log. Whole numbers keep every digit: nanoseconds
-// since 1970 do not fit into a double.
-struct Ticks {
-  bool whole = false;
-  std::int64_t count = 0;
-  double value = 0;
-};
-
-double ticks_between(const Ticks& from, const Ticks& to) {
-  if (from.whole && to.whole) return static_cast<double>(to.count - from.count);
-  return to.value - from.value;
-}
-
-template <class Number>
-std::errc parse(std::string_view text, Number& number) {
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  const auto [end, error] =
-      std::from_chars(text.data(), text.data() + text.size(), number);
-  if (end != text.data() + text.size() || text.empty())
-    return std::errc::invalid_argument;
-  return error;
-}
-
-bool equal_but_for_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
-    return std::tolower(static_cast<unsigned char>(x)) ==
-           std::tolower(static_cast<unsigned char>(y));
-  });
-}
-
-// Column of the text that `column` of the map means, from 0.
-std::size_t index_of(const LogColumn& column, const LogText& text,
-                     const std::string& path) {
-  const auto reject = [&](const std::string& message) {
-    throw std::invalid_argument(fmt::format("{}: {}", column.place, message));
-  };
-  if (column.number > 0) {
-    if (column.number > text.width()) {
-      reject(fmt::format("{} is out of range; {} has {} columns", column.number,
-                         path, text.width()));
-    }
-    return column.number - 1;
-  }
-  const std::vector<std::string>& names = text.names();
-  if (names.empty()) {
-    reject(
-        fmt::format("\"{}\" is a name, and header = false; expected the "
-                    "number of a column from 1",
-                    column.name));
-  }
-  const auto found = std::find(names.begin(), names.end(), column.name);
-  if (found == names.end()) {
-    const std::string near = suggestion(column.name, names);
-    reject(fmt::format(
-        "{} has no column \"{}\"; {}it has {}", path, column.name,
-        near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near),
-        fmt::join(names, ", ")));
-  }
-  if (std::find(found + 1, names.end(), column.name) != names.end()) {
-    reject(fmt::format("{} has two columns \"{}\"; expected the number of one",
-                       path, column.name));
-  }
-  return static_cast<std::size_t>(found - names.begin());
-}
-
 // Rows of a log on their way into a recording.
 class LogReader {
  public:
   LogReader(std::string_view text, const std::filesystem::path& path,
             const LogMap& map)
-      : text_(text, path, map.layout), map_(map), path_(path.string()) {
-    const auto slot = [&](const LogColumn& column) {
-      return text_.want(index_of(column, text_, path_));
-    };
-    if (map.filter) filter_ = slot(map.filter->column);
-    if (map.time.column) time_ = slot(*map.time.column);
-    if (map.status) status_ = slot(map.status->column);
+      : log_(text, path, map), map_(map), clock_(log_, map.time) {
+    if (map.filter) filter_ = log_.slot(map.filter->column);
+    if (map.status) status_ = log_.slot(map.status->column);
     for (const LogQuantity& quantity : map.quantities) {
-      slots_.push_back(slot(quantity.column));
+      slots_.push_back(log_.slot(quantity.column));
       recording_.columns.push_back({quantity.variable,
                                     quantity.units,
                                     quantity.long_name,
@@ -110,7 +39,7 @@ class LogReader {
   }
 
   ImportedLog read() {
-    while (text_.next()) take_row();
+    while (log_.text().next()) take_row();
     drop_outliers();
     check_plausible();
     counts_.kept = recording_.time.size();
@@ -126,30 +55,30 @@ class LogReader {
   }
 
  private:
-  void drop(DropReason reason) { counts_.drop(reason, text_.line()); }
+  void drop(DropReason reason) { counts_.drop(reason, log_.text().line()); }
 
   void take_row() {
     ++counts_.rows;
-    if (!text_.is_whole()) {
+    if (!log_.text().is_whole()) {
       if (map_.rules.drop_ragged) {
-        if (!filter_) ++row_number_;
+        if (!filter_) clock_.skip_row();
         return drop(DropReason::kRagged);
       }
-      text_.fail_row(fmt::format(
+      log_.text().fail_row(fmt::format(
           "{} cells; expected {} as in the first line (or rules.ragged = "
           "\"drop\" in the map)",
-          text_.cells(), text_.width()));
+          log_.text().cells(), log_.text().width()));
     }
     if (filter_ && !passes_filter()) return drop(DropReason::kFiltered);
-    const std::optional<Ticks> ticks = read_ticks();
+    const std::optional<LogTicks> ticks = clock_.read();
     if (!ticks) return drop(DropReason::kMissing);
-    const double time = time_of(*ticks);
+    const double time = clock_.time(lines_.empty() ? *ticks : first_, *ticks);
     if (!follows(time)) return;
     const std::optional<std::uint8_t> status = read_status(time);
     if (!status || !read_values((*status & kUnpowered) != 0))
       return drop(DropReason::kMissing);
     if (lines_.empty()) first_ = *ticks;
-    lines_.push_back(text_.line());
+    lines_.push_back(log_.text().line());
     recording_.time.push_back(time);
     recording_.status.push_back(*status);
     for (std::size_t i = 0; i < values_.size(); ++i)
@@ -158,38 +87,9 @@ class LogReader {
 
   bool passes_filter() {
     const LogFilter& filter = *map_.filter;
-    if (!filter.number) return text_.cell(*filter_) == filter.text;
-    const std::optional<double> number = number_in(*filter_);
+    if (!filter.number) return log_.text().cell(*filter_) == filter.text;
+    const std::optional<double> number = log_.number_in(*filter_);
     return number && *number == *filter.number;
-  }
-
-  std::optional<Ticks> read_ticks() {
-    constexpr std::int64_t kMost = std::int64_t{1} << 62;
-    Ticks ticks;
-    if (!time_) {
-      ticks = {true, row_number_, static_cast<double>(row_number_)};
-      ++row_number_;
-      return ticks;
-    }
-    ticks.whole = !is_marker(text_.cell(*time_)) &&
-                  parse(text_.cell(*time_), ticks.count) == std::errc() &&
-                  ticks.count < kMost && ticks.count > -kMost;
-    if (ticks.whole) {
-      ticks.value = static_cast<double>(ticks.count);
-      return ticks;
-    }
-    const std::optional<double> number = present(*time_);
-    if (!number) return std::nullopt;
-    ticks.value = *number;
-    return ticks;
-  }
-
-  double time_of(const Ticks& ticks) const {
-    const Ticks& first = lines_.empty() ? ticks : first_;
-    const double since = ticks_between(first, ticks);
-    const double rate = map_.time.ticks_per_s;
-    return map_.time.offset ? (first.value + since) / rate + *map_.time.offset
-                            : since / rate;
   }
 
   // Whether the time comes after that of the last row kept.
@@ -211,14 +111,13 @@ class LogReader {
                     "expected the rows of one run of one sensor (a [filter] in "
                     "the map picks them, rules.backward = \"drop\" drops rows)",
                     recording_.time.back() - time, lines_.back());
-    if (time_) text_.fail(*time_, message);
-    text_.fail_row(message);
+    clock_.fail(message);
   }
 
   std::optional<std::uint8_t> read_status(double time) {
     unsigned bits = 0;
     if (status_) {
-      const std::optional<double> number = present(*status_);
+      const std::optional<double> number = log_.present(*status_);
       if (!number) return std::nullopt;
       bits = map_.status->bits(*number);
     }
@@ -238,63 +137,20 @@ class LogReader {
         values_[i] = kNan;
         continue;
       }
-      const std::optional<double> raw = present(slots_[i]);
+      const std::optional<double> raw = log_.present(slots_[i]);
       if (!raw) return false;
       if (!quantity.fits(*raw)) {
-        text_.fail(
-            slots_[i],
-            fmt::format("{} is no count of {} bits (wrap_bits in the "
-                        "map); expected a whole number from 0 to {:.0f}",
-                        shown_cell(text_.cell(slots_[i])), quantity.wrap_bits,
-                        std::ldexp(1.0, quantity.wrap_bits) - 1));
+        log_.fail(slots_[i],
+                  fmt::format("is no count of {} bits (wrap_bits in the map)",
+                              quantity.wrap_bits),
+                  fmt::format("a whole number from 0 to {:.0f}",
+                              std::ldexp(1.0, quantity.wrap_bits) - 1));
       }
       values_[i] = quantity.value(*raw);
       if (!std::isfinite(values_[i]))
-        fail_number(slots_[i], "is out of range", "a smaller number");
+        log_.fail(slots_[i], "is out of range", "a smaller number");
     }
     return true;
-  }
-
-  bool is_marker(std::string_view cell) const {
-    return std::any_of(map_.missing_markers.begin(), map_.missing_markers.end(),
-                       [cell](const auto& marker) { return marker == cell; });
-  }
-
-  // The number in a cell, or none when it is missing.
-  std::optional<double> number_in(std::size_t slot) const {
-    const std::string_view cell = text_.cell(slot);
-    if (is_marker(cell)) return std::nullopt;
-    double value = 0.0;
-    const std::errc error = parse(cell, value);
-    if (error == std::errc() && std::isfinite(value)) return value;
-    if (cell.empty() || equal_but_for_case(cell, "na") ||
-        (error == std::errc() && std::isnan(value)))
-      return std::nullopt;
-    if (error == std::errc())
-      fail_number(slot, "is infinite", "a finite number");
-    if (error == std::errc::result_out_of_range)
-      fail_number(slot, "is out of range", "a finite number");
-    fail_number(slot, "is not a number",
-                "one such as -12.5, or the text among missing_markers in the "
-                "map");
-  }
-
-  // The same; none only where the rules drop rows without it.
-  std::optional<double> present(std::size_t slot) const {
-    const std::optional<double> number = number_in(slot);
-    if (!number && !map_.rules.drop_missing) {
-      text_.fail(slot, fmt::format("{} is missing; expected a number "
-                                   "(rules.missing = \"drop\" in the map drops "
-                                   "such rows)",
-                                   shown_cell(text_.cell(slot))));
-    }
-    return number;
-  }
-
-  [[noreturn]] void fail_number(std::size_t slot, const char* what,
-                                const char* expected) const {
-    text_.fail(slot, fmt::format("{} {}; expected {}",
-                                 shown_cell(text_.cell(slot)), what, expected));
   }
 
   void drop_outliers() {
@@ -335,13 +191,12 @@ class LogReader {
             return !std::isnan(value) && !quantity.plausible.contains(value);
           });
       if (wrong == values.end()) continue;
-      text_.go_to(lines_[static_cast<std::size_t>(wrong - values.begin())]);
-      text_.fail(slots_[i],
-                 fmt::format("{} is {:g} {} when read as {}: \"{}\"; expected "
-                             "{}, or another unit",
-                             shown_cell(text_.cell(slots_[i])), *wrong,
-                             quantity.units, quantity.unit_place, quantity.unit,
-                             text_of(quantity.plausible)));
+      log_.text().go_to(
+          lines_[static_cast<std::size_t>(wrong - values.begin())]);
+      log_.fail(slots_[i],
+                fmt::format("is {:g} {} when read as {}: \"{}\"", *wrong,
+                            quantity.units, quantity.unit_place, quantity.unit),
+                text_of(quantity.plausible) + ", or another unit");
     }
   }
 
@@ -357,17 +212,16 @@ class LogReader {
     }
     throw std::invalid_argument(
         fmt::format("{}: {} of {} rows are usable; expected at least two{}",
-                    path_, counts_.kept, counts_.rows, dropped));
+                    log_.path(), counts_.kept, counts_.rows, dropped));
   }
 
-  LogText text_;
+  LogNumbers log_;
   const LogMap& map_;
-  std::string path_;
-  std::optional<std::size_t> filter_, time_, status_;  // slots
-  std::vector<std::size_t> slots_;                     // of the quantities
-  std::vector<double> values_;                         // of one row
-  std::int64_t row_number_ = 0;  // of the next row that passes the filter
-  Ticks first_;                  // of the first row kept
+  LogClock clock_;
+  std::optional<std::size_t> filter_, status_;  // slots
+  std::vector<std::size_t> slots_;              // of the quantities
+  std::vector<double> values_;                  // of one row
+  LogTicks first_;                              // of the first row kept
   Recording recording_;
   std::vector<std::size_t> lines_;  // of the rows kept
   LogCounts counts_;

@@ -56,10 +56,12 @@ LogTime read_time(const ConfigTable& table) {
   time.offset = table.optional_number("offset_s");
   if (!table.has("column")) {
     static_cast<void>(table.has("unit"));
+    static_cast<void>(table.has("wrap_bits"));
     time.ticks_per_s = table.number("rate_Hz", positive());
     return time;
   }
   time.column = read_log_column(table);
+  time.wrap_bits = static_cast<int>(table.integer_or("wrap_bits", 0, 8, 53));
   const std::string unit =
       table.choice("unit", {"s", "ms", "us", "ns", "index"});
   if (unit == "index") {

@@ -29,6 +29,7 @@ struct LogTime {
   std::optional<LogColumn> column;
   double ticks_per_s = 1;        // [1/s]
   std::optional<double> offset;  // [s]
+  int wrap_bits = 0;             // the column starts over at 2^wrap_bits; 0: no
 };
 
 /// What the numbers of a column mean for the status.

@@ -115,6 +115,25 @@ TEST(LogImport, NanosecondsSince1970KeepEveryDigit) {
   EXPECT_EQ(log.recording.time, (Values{0, 1e-9}));
 }
 
+TEST(LogImport, ACounterThatStartsOverGoesOn) {
+  const std::string rows =
+      "t,w,T\n4294967290,1,25\n4294967295,2,25\n4,3,25\n9,4,25\n";
+  const std::string map = replaced(kMap, "\"ms\"", "\"us\"\nwrap_bits = 32");
+  EXPECT_EQ(log_of(rows, map).recording.time, (Values{0, 5e-6, 10e-6, 15e-6}));
+  EXPECT_NE(rejection_of("t,w,T\n9,1,25\n8,1,25\n", map).find("goes back by"),
+            std::string::npos);
+  // A row that comes late, from before the end of the counter.
+  EXPECT_NE(rejection_of("t,w,T\n9,1,25\n4294967295,1,25\n", map)
+                .find("goes back by 1e-05 s"),
+            std::string::npos);
+  EXPECT_EQ(rejection_of("t,w,T\n4294967296,1,25\n", map),
+            "log.csv:2:1: '4294967296' is no count of 32 bits (wrap_bits in "
+            "the map); expected a whole number from 0 to 4294967295");
+  EXPECT_NE(
+      rejection_of("t,w,T\n0.5,1,25\n", map).find("'0.5' is no whole number"),
+      std::string::npos);
+}
+
 TEST(LogImport, ARowNumberCountsDroppedRows) {
   const ImportedLog log = log_of("t,w,T\n0,,25\n0,1,25\n0,nan,25\n0,2,25\n",
                                  replaced(kMap, "column = \"t\"\nunit = \"ms\"",
@@ -261,6 +280,12 @@ TEST(LogImport, AColumnThatIsNotThereIsAnsweredWithTheNearest) {
   EXPECT_NE(rejection_of("0,1,25\n", "header = false\n" + kMap)
                 .find("time.column: \"t\" is a name, and header = false"),
             std::string::npos);
+}
+
+TEST(LogImport, AMessageIsOneLineWhateverTheLogHolds) {
+  const std::string message = rejection_of("a\rb,\x1b[31m,w\n0,1,2\n");
+  EXPECT_NE(message.find("it has a\\x0db, \\x1b[31m, w"), std::string::npos)
+      << message;
 }
 
 TEST(LogImport, TooFewRowsAreNoRecording) {
