@@ -63,8 +63,9 @@ std::size_t index_of(const LogColumn& column, const LogText& text,
   if (found == names.end()) {
     const std::string near = suggestion(column.name, names);
     reject(fmt::format(
-        "{} has no column \"{}\"; {}it has {}", path, column.name,
-        near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near),
+        "{} has no column \"{}\"; {}it has {}", path, printable(column.name),
+        near.empty() ? ""
+                     : fmt::format("did you mean \"{}\"? ", printable(near)),
         listed(names)));
   }
   if (std::find(found + 1, names.end(), column.name) != names.end()) {
