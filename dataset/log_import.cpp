@@ -196,7 +196,10 @@ class LogReader {
       log_.fail(slots_[i],
                 fmt::format("is {:g} {} when read as {}: \"{}\"", *wrong,
                             quantity.units, quantity.unit_place, quantity.unit),
-                text_of(quantity.plausible) + ", or another unit");
+                text_of(quantity.plausible) + (quantity.unit == "counts"
+                                                   ? ", or another scale or "
+                                                     "wrap_bits"
+                                                   : ", or another unit"));
     }
   }
 

@@ -240,6 +240,13 @@ TEST(LogImport, WrongUnitsShowAsValuesNoGyroHas) {
             "log.csv:2:5: '25' is -248.15 degC when read as map.toml:9:8: "
             "temperature.unit: \"K\"; expected a number in [-100, 200], or "
             "another unit");
+  EXPECT_EQ(rejection_of("t,w,T\n0,1,65236\n10,1,25\n",
+                         replaced(kMap, "\"degC\"",
+                                  "\"counts\"\nscale_K = 0.01\n"
+                                  "offset_degC = 25")),
+            "log.csv:2:5: '65236' is 677.36 degC when read as map.toml:9:8: "
+            "temperature.unit: \"counts\"; expected a number in [-100, 200], "
+            "or another scale or wrap_bits");
   EXPECT_EQ(
       rejection_of("t,w,T\n0,1,70000\n10,1,25\n",
                    replaced(kMap, "\"degC\"",
