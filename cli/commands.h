@@ -13,6 +13,7 @@ using Action = std::function<int()>;
 /// one that was called.
 void add_characterise(CLI::App& program, Action& action);
 void add_run(CLI::App& program, Action& action);
+void add_import(CLI::App& program, Action& action);
 void add_train(CLI::App& program, Action& action);
 void add_compensate(CLI::App& program, Action& action);
 void add_validate(CLI::App& program, Action& action);

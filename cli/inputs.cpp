@@ -12,6 +12,16 @@
 
 namespace beamgyro {
 
+void require_recording_name(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  if (extension != ".h5" && extension != ".csv") {
+    throw std::invalid_argument(
+        fmt::format("-o {}: unknown kind of file \"{}\"; expected a name that "
+                    "ends in .h5 or .csv",
+                    path.string(), extension));
+  }
+}
+
 void require_output(const std::filesystem::path& output,
                     const std::vector<std::filesystem::path>& inputs) {
   for (const std::filesystem::path& input : inputs) {

@@ -29,6 +29,9 @@ struct LoadedScenario {
 LoadedScenario load_scenario(const std::filesystem::path& path,
                              const std::vector<std::string>& overrides);
 
+/// Throws std::invalid_argument unless `path` ends in .h5 or .csv.
+void require_recording_name(const std::filesystem::path& path);
+
 /// Throws what writing to `output` would throw at its start, and
 /// std::invalid_argument when it is one of the files the command reads.
 void require_output(const std::filesystem::path& output,

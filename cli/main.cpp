@@ -60,6 +60,7 @@ int run_program(int argc, char** argv) {
   program.require_subcommand(1);
   add_characterise(program, action);
   add_run(program, action);
+  add_import(program, action);
   add_train(program, action);
   add_compensate(program, action);
   add_validate(program, action);

@@ -26,16 +26,6 @@ struct RunArguments {
   bool yes = false;
 };
 
-void require_known_ending(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
-  if (extension != ".h5" && extension != ".csv") {
-    throw std::invalid_argument(
-        fmt::format("-o {}: unknown kind of file \"{}\"; expected a name that "
-                    "ends in .h5 or .csv",
-                    path.string(), extension));
-  }
-}
-
 // Above this a run says what it costs before it starts [s].
 constexpr double kLongRun = 3600;
 
@@ -62,7 +52,7 @@ void simulate(const Scenario& scenario, const Device& device,
 }
 
 int run(const RunArguments& arguments) {
-  require_known_ending(arguments.output);
+  require_recording_name(arguments.output);
   std::vector<std::string> overrides = arguments.overrides;
   if (arguments.seed)
     overrides.push_back(fmt::format("seed={}", *arguments.seed));

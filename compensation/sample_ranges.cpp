@@ -15,6 +15,7 @@ std::vector<SampleRange> blocks_of(const std::vector<double>& time,
                                    const SampleRange& stretch, double step,
                                    double length) {
   std::vector<SampleRange> blocks;
+  std::size_t fullest = 0;
   // Half a step keeps t = 60 s in block 1 however the time axis was rounded.
   const double origin = time[stretch.begin] - 0.5 * step;
   for (std::size_t begin = stretch.begin; begin < stretch.end;) {
@@ -24,14 +25,16 @@ std::vector<SampleRange> blocks_of(const std::vector<double>& time,
            std::floor((time[end] - origin) / length) == number) {
       ++end;
     }
-    if (static_cast<double>(end - begin) * step >= 0.5 * length) {
-      blocks.push_back({begin, end});
-    }
+    blocks.push_back({begin, end});
+    fullest = std::max(fullest, end - begin);
     begin = end;
   }
-  if (blocks.empty()) {
-    blocks.push_back(stretch);
-  }
+  // A stretch that is short or sampled in bursts fills no block.
+  const double least =
+      0.5 * std::min(length, static_cast<double>(fullest) * step);  // [s]
+  std::erase_if(blocks, [&](const SampleRange& block) {
+    return static_cast<double>(block.size()) * step < least;
+  });
   return blocks;
 }
 

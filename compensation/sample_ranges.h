@@ -32,7 +32,8 @@ std::vector<SampleRange> powered_stretches(const Recording& recording);
 /// Blocks of `length` [s] counted from each power-on: sample k of a stretch
 /// that starts at t_0 belongs to block floor((t_k - t_0) / length). A block
 /// with less than half of its samples, mostly the last one of a stretch, is
-/// left out; a stretch in which no block is left is one block by itself.
+/// left out. In a stretch that fills no block, being short or sampled in
+/// bursts, half of the samples of its fullest block are enough.
 std::vector<SampleRange> score_blocks(const Recording& recording,
                                       double length = kScoreBlock);
 

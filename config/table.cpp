@@ -99,6 +99,16 @@ bool ConfigTable::has(std::string_view key) const {
   return peek(key) != nullptr;
 }
 
+bool ConfigTable::holds_text(std::string_view key) const {
+  return has(key) && peek(key)->kind == ConfigNode::Kind::kText;
+}
+
+bool ConfigTable::holds_number(std::string_view key) const {
+  if (!has(key)) return false;
+  const ConfigNode::Kind kind = peek(key)->kind;
+  return kind == ConfigNode::Kind::kInteger || kind == ConfigNode::Kind::kFloat;
+}
+
 double ConfigTable::number(std::string_view key, const Range& range) const {
   return read_number(require(key, text_of(range)), range);
 }

@@ -26,6 +26,9 @@ class ConfigTable {
   /// Whether the key is there. Does not count as reading it, so a key that is
   /// only looked for and never read is rejected in the end.
   bool has(std::string_view key) const;
+  /// Whether the key is there and holds a text, or a number; likewise.
+  bool holds_text(std::string_view key) const;
+  bool holds_number(std::string_view key) const;
 
   /// An integer or a float; nan and infinities are rejected.
   double number(std::string_view key, const Range& range = any()) const;

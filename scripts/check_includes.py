@@ -17,7 +17,7 @@ SIM = {"sim/numerics", "sim/device", "sim/thermal", "sim/signal",
 # What each room may include besides itself.
 MAY_INCLUDE = {
     "config": set(),
-    "dataset": set(),
+    "dataset": {"config"},
     "sim/numerics": set(),
     "sim/thermal": FILES | NUMERICS,
     "sim/signal": {"dataset"} | NUMERICS,

@@ -72,6 +72,25 @@ TEST(SampleRanges, LostSamplesDoNotShiftTheBlocksAfterThem) {
               ElementsAre(SampleRange{0, 60}, SampleRange{80, 140}));
 }
 
+TEST(SampleRanges, EveryBurstIsABlock) {
+  Recording run = RecordedRun{.duration = 1000.0, .step = 1.0}.recording();
+  // Five samples every 100 s; the last burst is cut short.
+  const auto thin = [](auto& values) {
+    std::size_t to = 0;
+    for (std::size_t k = 0; k < 902; ++k)
+      if (k % 100 < 5) values[to++] = values[k];
+    values.resize(to);
+  };
+  for (Column& column : run.columns) thin(column.values);
+  thin(run.time);
+  thin(run.status);
+  ASSERT_EQ(run.time.size(), 47u);
+  const std::vector<SampleRange> blocks = score_blocks(run);
+  ASSERT_EQ(blocks.size(), 9u);
+  EXPECT_EQ(blocks.front(), (SampleRange{0, 5}));
+  EXPECT_EQ(blocks.back(), (SampleRange{40, 45}));
+}
+
 TEST(SampleRanges, PlateausAreCutWhereTheTemperatureHasMovedByHalfAKelvin) {
   const Recording run = RecordedRun{
       .duration = 100.0, .step = 1.0, .temperature = [](double t) {

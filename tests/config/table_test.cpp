@@ -34,6 +34,18 @@ class Table : public ::testing::Test {
   ConfigTable beam = document.root().table("beam");
 };
 
+TEST_F(Table, TellsTextsFromNumbers) {
+  EXPECT_TRUE(beam.holds_text("mode"));
+  EXPECT_FALSE(beam.holds_number("mode"));
+  for (const char* key : {"length_m", "count"}) {
+    EXPECT_TRUE(beam.holds_number(key)) << key;
+    EXPECT_FALSE(beam.holds_text(key)) << key;
+  }
+  for (const char* key : {"trimmed", "sizes", "oven", "absent"}) {
+    EXPECT_FALSE(beam.holds_text(key) || beam.holds_number(key)) << key;
+  }
+}
+
 TEST_F(Table, ReadsEveryKindOfValue) {
   EXPECT_EQ(document.root().text("name"), "unit 7");
   EXPECT_EQ(beam.number("length_m"), 0.04);

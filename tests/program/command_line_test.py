@@ -8,8 +8,8 @@ import unittest
 
 from program import CUBIC, PROGRAM, SCENARIO, ProgramTest, ramp
 
-COMMANDS = ["characterise", "run", "train", "compensate", "validate", "allan",
-            "info"]
+COMMANDS = ["characterise", "run", "import", "train", "compensate", "validate",
+            "allan", "info"]
 
 
 class CommandLine(ProgramTest):

@@ -42,7 +42,8 @@ class Formats(ProgramTest):
     def test_every_shipped_key_is_documented(self):
         for pattern, title in [("*.toml", "Scenario file"),
                                ("devices/*.toml", "Device file"),
-                               ("models/*.toml", "Model file")]:
+                               ("models/*.toml", "Model file"),
+                               ("maps/*.toml", "Log map")]:
             documented = rows(section(title))
             for path, table in shipped(pattern):
                 for key in keys(table):
@@ -89,6 +90,44 @@ class Formats(ProgramTest):
                                        f"{key}=[]")
                 self.assertEqual(answer.returncode, 2)
                 self.assertNotIn("unknown key", answer.stderr)
+
+    def test_map_keys_are_known_to_the_program(self):
+        base = {"time.column": '"t"', "time.unit": '"s"',
+                "gyro.column": '"w"', "gyro.unit": '"deg/s"',
+                "temperature.column": '"T"', "temperature.unit": '"degC"'}
+        self.write("log.csv", "t,w,T\n0,1,25\n1,1,25\n")
+        for key in rows(section("Log map")):
+            table = key.rpartition(".")[0]
+            text = dict(base)
+            if table.startswith("gyro."):  # an axis in place of the one gyro
+                text = {k: v for k, v in text.items() if "gyro" not in k}
+            if table and "." not in table.removeprefix("gyro.") \
+                    and table != "rules":
+                text.setdefault(f"{table}.column", '"w"')
+            if key == "time.rate_Hz":
+                text["time.unit"] = '"index"'
+            if key in ("true_rate.at_rest", "true_rate.constant_deg_per_s"):
+                del text["true_rate.column"]
+            if table in ("gyro", "gyro.x", "gyro.y", "gyro.z", "temperature",
+                         "quadrature", "true_rate"):
+                if "scale" in key or "wrap" in key or "offset_degC" in key:
+                    text[f"{table}.unit"] = '"counts"'
+                    text[f"{table}.scale_K"] = "1"
+                text.setdefault(f"{table}.unit", '"deg/s"')
+            text[key] = "{}"
+            self.write("m.toml", "".join(f"{name} = {value}\n"
+                                         for name, value in text.items()))
+            with self.subTest(key):
+                message = self.rejected("import", "log.csv", "--map", "m.toml",
+                                        "-o", "r.h5", says=f": {key}: ")
+                self.assertNotIn("unknown key", message)
+                self.assertNotIn("not used together", message)
+
+    def test_the_example_map_holds_every_table(self):
+        example = dict(shipped("maps/example.toml"))
+        table, = example.values()
+        documented = {key.split(".")[0] for key in rows(section("Log map"))}
+        self.assertEqual(set(table), documented)
 
     def test_the_recording_holds_what_the_page_lists(self):
         self.run_scenario("run", text=ramp())

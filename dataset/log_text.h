@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace beamgyro {
+
+/// How the text of a log is laid out.
+struct LogLayout {
+  char delimiter = 0;  // 0: a tab if the first line holds one, else ';', ','
+  bool header = true;  // the first line holds names
+  std::size_t header_line = 0;  // from 1: lines above it are left out; 0: none
+  std::size_t skip_rows = 0;    // below the names, or at the start
+  std::vector<std::string> comment_prefixes;  // lines that start so are none
+};
+
+/// Walks over the rows of a delimiter-separated text and cuts out the cells of
+/// the columns somebody wants. Accepts a UTF-8 byte-order mark, CRLF, blanks
+/// around a cell, cells in double quotes, lines without anything, and one
+/// delimiter too many at the end of a row. Errors are std::invalid_argument
+/// "file:line:column: ...". The text must outlive it.
+class LogText {
+ public:
+  /// Reads up to the first row. Throws for an empty text, one that is binary,
+  /// and a line of names that is missing or holds numbers only.
+  LogText(std::string_view text, const std::filesystem::path& path,
+          const LogLayout& layout);
+
+  const std::vector<std::string>& names() const { return names_; }
+  std::size_t width() const { return width_; }  // cells of the first line
+
+  /// Cuts out the column `index` (from 0) from now on; the slot of its cells.
+  std::size_t want(std::size_t index);
+
+  bool next();                   // to the next row; false after the last
+  void go_to(std::size_t line);  // to a row that was met before
+
+  std::size_t line() const { return line_; }    // of the row, from 1
+  std::size_t cells() const { return cells_; }  // of the row
+  bool is_whole() const { return cells_ == width_; }
+  std::string_view cell(std::size_t slot) const { return wanted_[slot].text; }
+
+  /// Throws "file:line:column: message" at a cell of the row, or at its end.
+  [[noreturn]] void fail(std::size_t slot, const std::string& message) const;
+  [[noreturn]] void fail_row(const std::string& message) const;
+
+ private:
+  struct Wanted {
+    std::size_t index;
+    std::string_view text;
+    std::size_t column;  // of the text in its line, from 1
+  };
+
+  bool next_line();
+  void start();
+  void read_names();
+  void cut();
+  const char* cell_end(const char* begin, const char* end) const;
+  std::vector<std::string_view> all_cells() const;
+  [[noreturn]] void fail_at(std::size_t column,
+                            const std::string& message) const;
+
+  std::string_view text_, rest_, row_;
+  std::string path_;
+  LogLayout layout_;
+  std::vector<std::string> names_;
+  std::size_t width_ = 0, line_ = 0, cells_ = 0;
+  std::vector<Wanted> wanted_;
+  std::vector<std::size_t> order_;  // slots by index
+};
+
+/// A cell as a message shows it.
+std::string shown_cell(std::string_view cell);
+
+}  // namespace beamgyro

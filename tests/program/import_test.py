@@ -1,0 +1,324 @@
+# SPDX-License-Identifier: MIT
+"""`beamgyro import`: logs as gyros and flight controllers write them."""
+
+import math
+import unittest
+
+import h5py
+import numpy as np
+
+from program import CUBIC, SCENARIOS, ProgramTest
+
+MAPS = SCENARIOS / "maps"
+
+BENCH = """\
+[time]
+column = "t"
+unit = "ms"
+
+[gyro]
+column = "w"
+unit = "deg/s"
+
+[temperature]
+column = "T"
+unit = "degC"
+
+[true_rate]
+at_rest = true
+"""
+
+
+def table(names, rows):
+    return "\n".join([names, *(",".join(map(str, row)) for row in rows)]) + "\n"
+
+
+def bench_rows(samples=2400, step_ms=1000):
+    """A cubic drift over a slow ramp from -30 to 40 degC."""
+    for k in range(samples):
+        T = -30 + 70 * k / samples
+        yield (k * step_ms, round(0.2 + 0.01 * T - 1e-4 * T**2 + 0.01 *
+                                  math.sin(k), 6), round(T, 3))
+
+
+class Import(ProgramTest):
+    def read(self, name):
+        """Columns, status and texts of a recording."""
+        with h5py.File(self.dir / name) as file:
+            values = {key: file[key][()] for key in file if key != "meta"}
+            texts = {key: file["meta"][key][()].decode() for key in file["meta"]}
+            attributes = {key: file.attrs[key] for key in file.attrs}
+        return values, texts, attributes
+
+    def bench(self, name="log.csv", **options):
+        self.write("map.toml", BENCH)
+        self.write(name, table("t,w,T", bench_rows(**options)))
+        return self.ok("import", name, "--map", "map.toml", "-o", "run.h5")
+
+    def test_a_bench_log_goes_through_every_command(self):
+        self.assertIn("2400 rows read, 2400 kept", self.bench())
+        values, texts, attributes = self.read("run.h5")
+        self.assertEqual(set(values), {"time", "rate", "temperature",
+                                       "true_rate", "status"})
+        np.testing.assert_array_equal(values["time"], np.arange(2400))
+        rows = np.array(list(bench_rows()))
+        np.testing.assert_array_equal(values["rate"], rows[:, 1])
+        np.testing.assert_array_equal(values["temperature"], rows[:, 2])
+        self.assertFalse(values["true_rate"].any() or values["status"].any())
+        self.assertEqual(texts, {"scenario": BENCH, "device": "",
+                                 "overrides": ""})
+        self.assertEqual(attributes["fidelity"].decode(), "imported")
+        self.assertEqual(attributes["seed"], 0)
+
+        self.write("cubic.toml", CUBIC)
+        self.assertIn("fidelity imported", self.ok("info", "run.h5"))
+        self.ok("train", "run.h5", "--model", "cubic.toml", "-o", "c.json")
+        self.ok("compensate", "c.json", "run.h5", "-o", "out.h5")
+        answer = self.read("out.h5")[0]["compensated_rate"]
+        self.assertLess(np.sqrt(np.mean(answer**2)), 0.01)
+        self.assertIn("verdict: keeps the rate",
+                      self.ok("validate", "c.json", "run.h5"))
+        self.assertIn("oadev deg/s", self.ok("allan", "run.h5"))
+
+    def test_same_bytes_again_also_from_crlf_and_other_delimiters(self):
+        self.bench()
+        first = (self.dir / "run.h5").read_bytes()
+        self.bench()
+        self.assertEqual((self.dir / "run.h5").read_bytes(), first)
+        text = (self.dir / "log.csv").read_text()
+        for changed in ["\ufeff" + text.replace("\n", "\r\n"),
+                        text.replace(",", "\t"), text.replace(",", " ; "),
+                        text.replace("t,w,T", '"t","w","T"')]:
+            self.write("log.csv", changed)
+            self.ok("import", "log.csv", "--map", "map.toml", "-o", "run.h5")
+            self.assertEqual((self.dir / "run.h5").read_bytes(), first)
+
+    def test_the_same_columns_as_csv(self):
+        self.bench()
+        self.ok("import", "log.csv", "--map", "map.toml", "-o", "run.csv")
+        self.assertEqual((self.dir / "run.csv").read_text().splitlines()[0],
+                         "time,rate,temperature,status,true_rate")
+
+    def test_a_log_of_px4(self):
+        rows = [(51234567 + 4000 * k + (k % 3), 2490378, f"{0.01 * k:.8f}",
+                 -0.02, 0.03, f"{40 + 0.01 * k:.4f}", 0) for k in range(50)]
+        self.write("log.csv", table(
+            "timestamp,device_id,x,y,z,temperature,error_count", rows))
+        text = self.ok("import", "log.csv", "--map", MAPS / "px4.toml",
+                       "--axis", "x", "-o", "x.h5")
+        self.assertIn("[true_rate] at_rest = true", text)
+        values, texts, _ = self.read("x.h5")
+        np.testing.assert_allclose(values["rate"],
+                                   np.degrees(0.01 * np.arange(50)), rtol=1e-14)
+        ticks = np.array([row[0] for row in rows])
+        np.testing.assert_array_equal(values["time"],
+                                      (ticks - ticks[0]) / 1e6)
+        self.assertEqual(texts["overrides"], "axis=x\n")
+        self.assertEqual(texts["scenario"], (MAPS / "px4.toml").read_text())
+        self.assertNotIn("true_rate", values)
+        self.rejected("import", "log.csv", "--map", MAPS / "px4.toml", "-o",
+                      "y.h5", says=["px4.toml", "x, y, z", "--axis"])
+        self.rejected("import", "log.csv", "--map", MAPS / "px4.toml", "-o",
+                      "y.h5", "--axis", "w", says=["--axis w", "x, y, z"])
+
+    def test_a_log_of_ardupilot(self):
+        rows = [(1000000 + 2500 * (k // 2), k % 2, 0.1, 0.2,
+                 -0.3 - 5 * (k % 2), 0, 0, -9.81, 31.5 + 10 * (k % 2))
+                for k in range(100)]
+        self.write("log.csv", table(
+            "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,T", rows))
+        text = self.ok("import", "log.csv", "--map", MAPS / "ardupilot.toml",
+                       "--axis", "z", "-o", "z.h5")
+        self.assertIn("100 rows read, 50 kept", text)
+        self.assertIn("50 filtered out, the first in line 3", text)
+        values, _, _ = self.read("z.h5")
+        np.testing.assert_allclose(values["rate"], math.degrees(-0.3))
+        np.testing.assert_array_equal(values["temperature"], 31.5)
+        np.testing.assert_allclose(np.diff(values["time"]), 0.0025)
+
+    def test_bursts_with_wrapped_counts_and_outliers(self):
+        """25 bursts of 250 samples at 50 Hz, the time stamps in whole ms with
+        jitter, temperatures below 0 printed as unsigned 16-bit counts."""
+        random = np.random.default_rng(4)
+        rows, wild = [], {700: 0.5, 3100: -0.4, 5900: 0.6}
+        for k in range(25 * 250):
+            burst, sample = divmod(k, 250)
+            t = 15352 + burst * 305000 + 20 * sample + random.integers(-3, 4)
+            count = 300 - 110 * burst - sample % 5
+            rate = 0.05 - 1e-5 * count + random.normal(0, 5e-4)
+            rows.append((t, 1e-5, f"{wild.get(k, rate):.5f}", count % 65536))
+        self.write("log.csv", table("time (ms),mag,gyrox rad/s,temp", rows)
+                   .replace("\n", "\r\n"))
+        self.write("map.toml", """\
+[time]
+column = "time (ms)"
+unit = "ms"
+[gyro.x]
+column = "gyrox rad/s"
+unit = "rad/s"
+[temperature]
+column = "temp"
+unit = "counts"
+wrap_bits = 16
+scale_K = 0.03125
+offset_degC = 25
+[true_rate]
+at_rest = true
+[rules.outliers]
+""")
+        text = self.ok("import", "log.csv", "--map", "map.toml", "-o", "b.h5")
+        for part in ["6250 rows read, 6247 kept", "median step 0.02 s (50 Hz)",
+                     "3 outliers of the rate, the first in line 702",
+                     "bursts       25", "24 gaps, the longest 300.0"]:
+            self.assertIn(part, text)
+        values, _, _ = self.read("b.h5")
+        counts = np.array([300 - 110 * (k // 250) - k % 250 % 5
+                           for k in range(6250) if k not in wild])
+        np.testing.assert_array_equal(values["temperature"],
+                                      25 + counts * 0.03125)
+        self.write("cubic.toml", CUBIC)
+        self.assertIn("25 rows", self.ok("train", "b.h5", "--model",
+                                         "cubic.toml", "-o", "c.json"))
+        self.ok("compensate", "c.json", "b.h5", "-o", "out.h5")
+        self.assertIn("verdict: keeps the rate",
+                      self.ok("validate", "c.json", "b.h5"))
+        answer = self.beamgyro("allan", "b.h5")
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertIn("left out; the longest gapless powered stretch",
+                      answer.stderr)
+
+    def test_status_and_power(self):
+        text = "powered_s = [[0.5, 1], [1.5, 9]]\n" + BENCH + \
+            "[status]\ncolumn = \"s\"\nvalid = [0]\nsaturated = [2]\n"
+        self.write("map.toml", text)
+        self.write("log.csv", table("t,w,T,s", [
+            (0, 0.1, 25, 0), (500, 0.2, 25, 0), (999, 0.3, 25, 2),
+            (1000, "", "", 0), (1500, 0.5, 25, 7)]))
+        said = self.ok("import", "log.csv", "--map", "map.toml", "-o", "r.h5")
+        self.assertIn("2 unpowered, 1 saturated, 1 not locked", said)
+        values, _, _ = self.read("r.h5")
+        np.testing.assert_array_equal(values["status"], [1, 0, 2, 1, 4])
+        np.testing.assert_array_equal(values["rate"],
+                                      [np.nan, 0.2, 0.3, np.nan, 0.5])
+        self.assertFalse(values["true_rate"].any())
+
+    def test_the_example_map_reads_the_log_it_describes(self):
+        lines = (MAPS / "example.toml").read_text().splitlines()
+        start = lines.index("#     # bench log 7")
+        log = [line.removeprefix("#     ") for line in lines[start:start + 4]]
+        log.append(log[-1].replace("0,A", "10,A", 1))
+        self.write("log.csv", "\n".join(log) + "\n")
+        self.ok("import", "log.csv", "--map", MAPS / "example.toml", "-o",
+                "r.h5")
+        values, _, _ = self.read("r.h5")
+        self.assertEqual(set(values), {
+            "time", "rate", "temperature", "drive_frequency", "drive_voltage",
+            "quadrature", "status", "true_rate"})
+        np.testing.assert_allclose(values["rate"], (120 - 12) * 0.0076)
+        np.testing.assert_array_equal(values["temperature"],
+                                      25 - 300 * 0.0078125)
+        np.testing.assert_allclose(values["drive_voltage"], 0.812)
+
+    def test_a_million_rows(self):
+        count = 10**6
+        block = "".join(f"{{}}{k:03d},0,0.01,-0.0{k % 9},0.5,0,0,{25 + k / 1e3}"
+                        "\n" for k in range(1000))
+        head = "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,T\n"
+        self.write("log.csv", head + "".join(
+            block.replace("{}", str(1 + n)) for n in range(count // 1000)))
+        text = self.ok("import", "log.csv", "--map", MAPS / "ardupilot.toml",
+                       "--axis", "y", "-o", "r.h5")
+        self.assertIn(f"{count} rows read, {count} kept", text)
+        values, _, _ = self.read("r.h5")
+        np.testing.assert_array_equal(values["time"], np.arange(count) / 1e6)
+
+
+class BadLogs(ProgramTest):
+    def refused(self, log, says, bench=BENCH, *arguments):
+        self.write("log.csv", log)
+        self.write("map.toml", bench)
+        return self.rejected("import", "log.csv", "--map", "map.toml", "-o",
+                             "r.h5", *arguments, says=says)
+
+    def test_logs_that_hold_no_rows(self):
+        for log, says in [("", "log.csv:1:1"), ("\n\n", "log.csv:2:1"),
+                          ("t,w,T\n", "0 of 0 rows"),
+                          ("t,w,T\n0,1,25\n", "1 of 1 rows"),
+                          (b"ULog\x01\x12\x35\0\0", "log.csv:1:8: a NUL"),
+                          ("t,w,T\n0,1,25\n".encode("utf-16"), "UTF-16"),
+                          ("0,1,25\n1,1,25\n", "header = false")]:
+            with self.subTest(log):
+                self.refused(log, says)
+
+    def test_rows_that_are_not_as_the_map_says(self):
+        head = "t,w,T\n0,1,25\n"
+        for rows, says in [("10,x,25\n", "log.csv:3:4: 'x' is not a number"),
+                           ("10,1\n", "log.csv:3:5: 2 cells; expected 3"),
+                           ("10,1,25,4\n", "log.csv:3:10: 4 cells"),
+                           ("-1,1,25\n", "log.csv:3:1: the time goes back"),
+                           ("10,inf,25\n", "log.csv:3:4: 'inf' is infinite"),
+                           ("10,1,298.15\n", ["log.csv:3:6: '298.15' is 298.15",
+                                              "degC", "map.toml:11:8"]),
+                           ("10,30000,25\n", ["log.csv:3:4", "deg/s"]),
+                           ("10,\"1,25\n", "log.csv:3:4: a quote")]:
+            with self.subTest(rows):
+                self.refused(head + rows, says)
+
+    def test_maps_that_do_not_fit(self):
+        log = "t,w,T\n0,1,25\n10,1,25\n"
+        for old, new, says in [
+                ('"w"', '"W1"', ["map.toml:6:10", '"w"?', "t, w, T"]),
+                ('"w"', "4", "log.csv has 3 columns"),
+                ('unit = "deg/s"\n', "", "gyro.unit: missing"),
+                ('"deg/s"', '"dps"', ["gyro.unit", '"dps"', '"deg/s"']),
+                ('"degC"', '"counts"', "temperature.scale_K: missing"),
+                ("[gyro]", "[gyros]", "gyro"),
+                ("[time]", "delimeter = ','\n[time]", "delimiter"),
+                ("at_rest", "at_rets", "at_rest")]:
+            with self.subTest(new):
+                self.refused(log, says, BENCH.replace(old, new))
+        self.refused(log, "--axis", BENCH, "--axis", "z")
+
+    def test_files_that_cannot_be_read_or_written(self):
+        self.write("log.csv", "t,w,T\n0,1,25\n10,1,25\n")
+        self.write("map.toml", BENCH)
+        for log, mapping, output, says in [
+                ("gone.csv", "map.toml", "r.h5", "gone.csv"),
+                ("log.csv", "gone.toml", "r.h5", "gone.toml"),
+                ("log.csv", "log.csv", "r.h5", "not TOML"),
+                (".", "map.toml", "r.h5", "cannot read"),
+                ("log.csv", "map.toml", "r.txt", ".h5 or .csv"),
+                ("log.csv", "map.toml", "log.csv", "is read by this command"),
+                ("log.csv", "map.toml", "gone/r.h5", "gone")]:
+            with self.subTest((log, mapping, output)):
+                self.rejected("import", log, "--map", mapping, "-o", output,
+                              says=says)
+
+    def test_without_a_true_rate_training_says_so(self):
+        self.write("cubic.toml", CUBIC)
+        self.write("map.toml", BENCH.split("[true_rate]")[0])
+        self.write("log.csv", table("t,w,T", bench_rows()))
+        self.ok("import", "log.csv", "--map", "map.toml", "-o", "blind.h5")
+        self.write("map.toml", BENCH)
+        self.ok("import", "log.csv", "--map", "map.toml", "-o", "run.h5")
+        self.ok("train", "run.h5", "--model", "cubic.toml", "-o", "c.json")
+        self.ok("compensate", "c.json", "blind.h5", "-o", "out.h5")
+        self.ok("allan", "blind.h5")
+        for arguments in [("train", "blind.h5", "--model", "cubic.toml", "-o",
+                           "d.json"), ("validate", "c.json", "blind.h5")]:
+            with self.subTest(arguments):
+                self.rejected(*arguments, says=["blind.h5", "'true_rate'"])
+
+    def test_inputs_a_log_does_not_have(self):
+        self.write("m.toml", 'kind = "bp"\ninputs = ["output", "temperature"]\n'
+                             "[bp]\nhidden = [2]\n")
+        self.write("map.toml", BENCH)
+        for name, extra in [("a", 0), ("b", 60)]:
+            self.write("log.csv", table("t,w,T", bench_rows(2400 + extra)))
+            self.ok("import", "log.csv", "--map", "map.toml", "-o", f"{name}.h5")
+        self.rejected("train", "a.h5", "--held-out", "b.h5", "--model", "m.toml",
+                      "-o", "c.json", says=["a.h5", "output"])
+
+
+if __name__ == "__main__":
+    unittest.main()
