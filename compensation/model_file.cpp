@@ -57,9 +57,10 @@ SplineSpec read_spline(const ConfigTable& table) {
 Trainer read_trainer(const ConfigTable& table) {
   const std::string name = table.choice_or(
       "trainer", "levenberg_marquardt",
-      {"levenberg_marquardt", "gradient_adaptive", "incremental"});
+      {"levenberg_marquardt", "lbfgs", "gradient_adaptive", "incremental"});
   if (name == "incremental") return Trainer::kIncremental;
   if (name == "gradient_adaptive") return Trainer::kGradientAdaptive;
+  if (name == "lbfgs") return Trainer::kLbfgs;
   return Trainer::kLevenbergMarquardt;
 }
 
@@ -71,7 +72,12 @@ BpSpec read_bp(const ConfigTable& table) {
     table.fail("hidden", "[], needs at least one hidden layer, as [6]");
   TrainOptions& training = spec.training;
   training.trainer = read_trainer(table);
-  if (training.trainer == Trainer::kLevenbergMarquardt) {
+  const bool lbfgs = training.trainer == Trainer::kLbfgs;
+  if (lbfgs || training.trainer == Trainer::kLevenbergMarquardt) {
+    if (lbfgs) {
+      training.max_epochs = kLbfgsMaxEpochs;
+      training.patience = kLbfgsPatience;
+    }
     training.weight_decay =
         table.number_or("weight_decay", training.weight_decay, non_negative());
   } else {

@@ -11,11 +11,20 @@
 
 namespace beamgyro {
 
-enum class Trainer { kIncremental, kGradientAdaptive, kLevenbergMarquardt };
+enum class Trainer {
+  kIncremental,
+  kGradientAdaptive,
+  kLbfgs,
+  kLevenbergMarquardt
+};
 
 /// Defaults of the two gradient trainers, whose epochs are cheap and many.
 constexpr int kGradientMaxEpochs = 20000;
 constexpr int kGradientPatience = 2000;
+
+/// Of L-BFGS, which needs more epochs than Levenberg-Marquardt.
+constexpr int kLbfgsMaxEpochs = 5000;
+constexpr int kLbfgsPatience = 500;
 
 /// Why a training ended; sentence() says it in words.
 enum class StopReason {
@@ -25,8 +34,9 @@ enum class StopReason {
   kStepSmall,      // |step| <= min_step (|w| + min_step)
   kDampingLimit,   // damping > max_damping: no step lowers the error
   kRateSmall,  // learning rate < min_learning_rate: no step lowers the error
-  kHeldOutRising,  // no new lowest held-out rms for `patience` epochs
-  kMaxEpochs,      // epochs = max_epochs
+  kLineSearchFailed,  // no step along the L-BFGS direction lowers the error
+  kHeldOutRising,     // no new lowest held-out rms for `patience` epochs
+  kMaxEpochs,         // epochs = max_epochs
 };
 
 std::string sentence(StopReason reason);
@@ -39,7 +49,7 @@ struct TrainOptions {
   int max_epochs = 300;         // >= 1; passes over the rows
   int patience = 60;            // [epochs], >= 1
   double goal = 0.0;            // rms, >= 0
-  double weight_decay = 0.0;    // >= 0; levenberg_marquardt only
+  double weight_decay = 0.0;    // >= 0; kLevenbergMarquardt, kLbfgs
   double learning_rate = 0.02;  // eta of equation (5), > 0; its first value
   double momentum = 0.9;        // h of equation (5), in [0, 1)
   double min_learning_rate = 1e-9;
