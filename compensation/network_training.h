@@ -48,6 +48,7 @@ struct TrainOptions {
   int restarts = 4;             // >= 1, from different initial weights
   int max_epochs = 300;         // >= 1; passes over the rows
   int patience = 60;            // [epochs], >= 1
+  int threads = 1;              // >= 1; of one Levenberg-Marquardt training
   double goal = 0.0;            // rms, >= 0
   double weight_decay = 0.0;    // >= 0; kLevenbergMarquardt, kLbfgs
   double learning_rate = 0.02;  // eta of equation (5), > 0; its first value
