@@ -63,6 +63,7 @@ int run_program(int argc, char** argv) {
   add_import(program, action);
   add_train(program, action);
   add_compensate(program, action);
+  add_export(program, action);
   add_validate(program, action);
   add_allan(program, action);
   add_info(program, action);

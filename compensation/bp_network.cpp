@@ -15,32 +15,14 @@ using Eigen::ArrayXXd;
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// Where the weights of one layer lie in the flat vector.
-struct Layer {
-  Index in, out, weights, biases;
-  bool last;
-};
-
-std::vector<Layer> layers_of(const std::vector<int>& sizes) {
-  std::vector<Layer> layers;
-  Index offset = 0;
-  for (std::size_t k = 1; k < sizes.size(); ++k) {
-    const Index in = sizes[k - 1], out = sizes[k];
-    layers.push_back(
-        {in, out, offset, offset + in * out, k + 1 == sizes.size()});
-    offset += (in + 1) * out;
-  }
-  return layers;
-}
-
 Index weight_count(const std::vector<int>& sizes) {
-  const Layer last = layers_of(sizes).back();
+  const NetworkLayer last = layers_of(sizes).back();
   return last.biases + last.out;
 }
 
 // Sums in the order of the inputs, element by element, so that a sample gives
 // the same bits alone and within any block.
-ArrayXXd layer_output(const Layer& layer, const VectorXd& w,
+ArrayXXd layer_output(const NetworkLayer& layer, const VectorXd& w,
                       const Eigen::Ref<const ArrayXXd>& a) {
   ArrayXXd z(a.rows(), layer.out);
   for (Index o = 0; o < layer.out; ++o) {
@@ -54,7 +36,7 @@ ArrayXXd layer_output(const Layer& layer, const VectorXd& w,
 
 // dy/dz of the layer below from dy/dz of `layer`, `a` being the output of the
 // layer below.
-ArrayXXd propagate_back(const Layer& layer, const VectorXd& w,
+ArrayXXd propagate_back(const NetworkLayer& layer, const VectorXd& w,
                         const ArrayXXd& delta, const ArrayXXd& a) {
   ArrayXXd below = ArrayXXd::Zero(a.rows(), layer.in);
   for (Index i = 0; i < layer.in; ++i) {
@@ -70,6 +52,18 @@ double uniform_within(double bound, RandomStream& random) {
 }
 
 }  // namespace
+
+std::vector<NetworkLayer> layers_of(const std::vector<int>& sizes) {
+  std::vector<NetworkLayer> layers;
+  Index offset = 0;
+  for (std::size_t k = 1; k < sizes.size(); ++k) {
+    const Index in = sizes[k - 1], out = sizes[k];
+    layers.push_back(
+        {in, out, offset, offset + in * out, k + 1 == sizes.size()});
+    offset += (in + 1) * out;
+  }
+  return layers;
+}
 
 BpNetwork::BpNetwork(std::vector<int> layer_sizes)
     : layer_sizes_(std::move(layer_sizes)) {
@@ -95,7 +89,7 @@ void BpNetwork::set_weights(const VectorXd& weights) {
 }
 
 void BpNetwork::randomise(RandomStream& random) {
-  for (const Layer& layer : layers_of(layer_sizes_)) {
+  for (const NetworkLayer& layer : layers_of(layer_sizes_)) {
     auto W = weights_.segment(layer.weights, layer.in * layer.out)
                  .reshaped(layer.out, layer.in);
     auto b = weights_.segment(layer.biases, layer.out);
@@ -122,22 +116,22 @@ void BpNetwork::randomise(RandomStream& random) {
 
 ArrayXd BpNetwork::predict(const Eigen::Ref<const ArrayXXd>& x) const {
   ArrayXXd a = x;
-  for (const Layer& layer : layers_of(layer_sizes_))
+  for (const NetworkLayer& layer : layers_of(layer_sizes_))
     a = layer_output(layer, weights_, a);
   return a.col(0);
 }
 
 ArrayXd BpNetwork::predict_with_jacobian(const Eigen::Ref<const ArrayXXd>& x,
                                          Eigen::MatrixXd& jacobian) const {
-  const std::vector<Layer> layers = layers_of(layer_sizes_);
+  const std::vector<NetworkLayer> layers = layers_of(layer_sizes_);
   std::vector<ArrayXXd> a{x};
-  for (const Layer& layer : layers)
+  for (const NetworkLayer& layer : layers)
     a.push_back(layer_output(layer, weights_, a.back()));
 
   jacobian.resize(x.rows(), weights_.size());
   ArrayXXd delta = ArrayXXd::Ones(x.rows(), 1);
   for (std::size_t k = layers.size(); k-- > 0;) {
-    const Layer& layer = layers[k];
+    const NetworkLayer& layer = layers[k];
     for (Index i = 0; i < layer.in; ++i)
       for (Index o = 0; o < layer.out; ++o)
         jacobian.col(layer.weights + i * layer.out + o) =
@@ -151,15 +145,15 @@ ArrayXd BpNetwork::predict_with_jacobian(const Eigen::Ref<const ArrayXXd>& x,
 ArrayXd BpNetwork::predict_with_gradient(
     const Eigen::Ref<const ArrayXXd>& x,
     const Eigen::Ref<const ArrayXd>& target, VectorXd& gradient) const {
-  const std::vector<Layer> layers = layers_of(layer_sizes_);
+  const std::vector<NetworkLayer> layers = layers_of(layer_sizes_);
   std::vector<ArrayXXd> a{x};
-  for (const Layer& layer : layers)
+  for (const NetworkLayer& layer : layers)
     a.push_back(layer_output(layer, weights_, a.back()));
 
   gradient.resize(weights_.size());
   ArrayXXd delta = a.back().col(0) - target;
   for (std::size_t k = layers.size(); k-- > 0;) {
-    const Layer& layer = layers[k];
+    const NetworkLayer& layer = layers[k];
     for (Index i = 0; i < layer.in; ++i)
       for (Index o = 0; o < layer.out; ++o)
         gradient(layer.weights + i * layer.out + o) =

@@ -8,6 +8,15 @@
 
 namespace beamgyro {
 
+/// Where the weights of one layer lie in the flat vector: W column by column
+/// from `weights`, b from `biases`.
+struct NetworkLayer {
+  Eigen::Index in, out, weights, biases;
+  bool last;
+};
+
+std::vector<NetworkLayer> layers_of(const std::vector<int>& layer_sizes);
+
 /// Fully connected network of the paper, equations (2) and (3): tansig hidden
 /// layers, one purelin output,
 ///

@@ -5,60 +5,55 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compensation/batch_network.h"
+#include "compensation/rate_penalty.h"
+
 namespace beamgyro {
 namespace {
 
-using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kBlockRows = 256;  // J of a block stays in the L2 cache
+constexpr double kMaxAcceleration = 0.75;
 
-// J^T J / N + decay I (lower triangle) and dF/dw at the present weights.
-struct NormalEquations {
-  MatrixXd matrix;
-  VectorXd gradient;
-  MatrixXd jacobian;  // of one block
+// F, its gradient and its Gauss-Newton matrix.
+class Objective {
+ public:
+  Objective(const BpNetwork& network, const ScaledRows& rows,
+            const TrainOptions& options)
+      : batch_(network.layer_sizes(), rows, options.threads),
+        penalty_(network, rows, options),
+        count_(static_cast<double>(rows.size())),
+        decay_(options.weight_decay) {}
 
-  void accumulate(const BpNetwork& network, const ScaledRows& rows,
-                  double decay) {
-    const Index weights = network.weights().size();
-    const double scale = 1.0 / static_cast<double>(rows.size());
-    matrix.setZero(weights, weights);
-    gradient.setZero(weights);
-    for (Index first = 0; first < rows.size(); first += kBlockRows) {
-      const Index count = std::min(kBlockRows, rows.size() - first);
-      const VectorXd error =
-          (network.predict_with_jacobian(rows.inputs.middleRows(first, count),
-                                         jacobian) -
-           rows.target.segment(first, count))
-              .matrix();
-      matrix.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose(),
-                                                        scale);
-      gradient.noalias() += scale * (jacobian.transpose() * error);
-    }
-    matrix.diagonal().array() += decay;
-    gradient += decay * network.weights();
+  double value(const VectorXd& w) {
+    squares_ = batch_.sum_of_squares(w);
+    return 0.5 * squares_ / count_ + 0.5 * decay_ * w.squaredNorm() +
+           penalty_.value(w);
   }
+
+  /// rms error of the last value().
+  double rms() const { return std::sqrt(squares_ / count_); }
+
+  /// J^T J / N + decay I + the penalty's (lower triangle) and dF/dw where the
+  /// last value() was taken, at w.
+  void linearise(const VectorXd& w, MatrixXd& matrix, VectorXd& gradient) {
+    batch_.normal_equations(matrix, gradient);
+    matrix /= count_;
+    matrix.diagonal().array() += decay_;
+    gradient = gradient / count_ + decay_ * w;
+    penalty_.add_to(w, matrix, gradient);
+  }
+
+  /// J^T d2y/dt2 / N at t = 0 along w + t v, w being that of the last value().
+  VectorXd curvature(const VectorXd& v) { return batch_.curvature(v) / count_; }
+
+ private:
+  BatchNetwork batch_;
+  RatePenalty penalty_;
+  double count_, decay_;
+  double squares_ = 0.0;
 };
-
-double objective(const BpNetwork& network, const ScaledRows& rows,
-                 double decay) {
-  const double rms = rms_error(network, rows);
-  return 0.5 * rms * rms + 0.5 * decay * network.weights().squaredNorm();
-}
-
-// What stops the iteration before the next step, if anything does.
-std::optional<StopReason> reason_to_stop(const TrainOptions& options,
-                                         const NormalEquations& equations,
-                                         const BpNetwork& network,
-                                         const ScaledRows& rows) {
-  if (options.goal > 0.0 && rms_error(network, rows) <= options.goal)
-    return StopReason::kGoalReached;
-  if (equations.gradient.lpNorm<Eigen::Infinity>() <= options.min_gradient)
-    return StopReason::kGradientSmall;
-  return std::nullopt;
-}
 
 // The damping of Nielsen.
 struct Damping {
@@ -75,6 +70,16 @@ struct Damping {
   }
 };
 
+std::optional<StopReason> reason_to_stop(const TrainOptions& options,
+                                         const Objective& objective,
+                                         const VectorXd& gradient) {
+  if (options.goal > 0.0 && objective.rms() <= options.goal)
+    return StopReason::kGoalReached;
+  if (gradient.lpNorm<Eigen::Infinity>() <= options.min_gradient)
+    return StopReason::kGradientSmall;
+  return std::nullopt;
+}
+
 }  // namespace
 
 TrainSummary train_levenberg_marquardt(const ScaledRows& rows,
@@ -84,36 +89,38 @@ TrainSummary train_levenberg_marquardt(const ScaledRows& rows,
   TrainSummary summary;
   BestWeights best(held_out, options.patience);
   best.stale_after(0, network);
-  NormalEquations equations;
-  equations.accumulate(network, rows, options.weight_decay);
-  double F = objective(network, rows, options.weight_decay);
+  Objective objective(network, rows, options);
+  VectorXd w = network.weights(), gradient;
+  MatrixXd matrix;
+  double F = objective.value(w);
+  objective.linearise(w, matrix, gradient);
   Damping mu{options.initial_damping};
-  std::optional<StopReason> stop =
-      reason_to_stop(options, equations, network, rows);
+  std::optional<StopReason> stop = reason_to_stop(options, objective, gradient);
   while (!stop && summary.epochs < options.max_epochs) {
     ++summary.epochs;
-    MatrixXd damped = equations.matrix;
+    MatrixXd damped = matrix;
     damped.diagonal().array() += mu.value;
-    const VectorXd w = network.weights();
-    const VectorXd step =
-        -damped.selfadjointView<Eigen::Lower>().llt().solve(equations.gradient);
-    if (step.norm() <= options.min_step * (w.norm() + options.min_step)) {
+    const Eigen::LLT<MatrixXd> solver(damped.selfadjointView<Eigen::Lower>());
+    const VectorXd v = -solver.solve(gradient);
+    if (v.norm() <= options.min_step * (w.norm() + options.min_step)) {
       stop = StopReason::kStepSmall;
       break;
     }
-    network.set_weights(w + step);
-    const double trial = objective(network, rows, options.weight_decay);
-    const double predicted =
-        0.5 * step.dot(mu.value * step - equations.gradient);
+    const VectorXd a = -0.5 * solver.solve(objective.curvature(v));
+    const bool bent = !(2.0 * a.norm() <= kMaxAcceleration * v.norm());
+    const VectorXd there = w + v + a;
+    const double trial = bent ? F : objective.value(there);
     if (trial < F) {
-      mu.step_kept((F - trial) / predicted);
+      mu.step_kept((F - trial) / (0.5 * v.dot(mu.value * v - gradient)));
       F = trial;
-      equations.accumulate(network, rows, options.weight_decay);
-      stop = reason_to_stop(options, equations, network, rows);
+      w = there;
+      network.set_weights(w);
+      objective.linearise(w, matrix, gradient);
+      stop = reason_to_stop(options, objective, gradient);
       if (best.stale_after(summary.epochs, network) && !stop)
         stop = StopReason::kHeldOutRising;
     } else {
-      network.set_weights(w);
+      if (!bent) objective.value(w);  // back to where curvature() is wanted
       mu.step_discarded();
       if (mu.value > options.max_damping) stop = StopReason::kDampingLimit;
     }

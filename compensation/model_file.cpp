@@ -115,11 +115,16 @@ BpSpec read_bp_options(const ConfigTable& table) {
   BpSpec spec;
   TrainOptions& training = spec.training;
   training.trainer = read_trainer(table);
-  if (training.trainer == Trainer::kLevenbergMarquardt ||
-      training.trainer == Trainer::kLbfgs) {
+  const bool lbfgs = training.trainer == Trainer::kLbfgs;
+  if (lbfgs || training.trainer == Trainer::kLevenbergMarquardt) {
+    if (lbfgs) {
+      training.max_epochs = kLbfgsMaxEpochs;
+      training.patience = kLbfgsPatience;
+    }
     spec.weight_decays = read_weight_decays(table);
-    training.rate_penalty =
-        table.number_or("rate_penalty", training.rate_penalty, non_negative());
+    if (!lbfgs)
+      training.rate_penalty = table.number_or(
+          "rate_penalty", training.rate_penalty, non_negative());
   } else {
     training.max_epochs = kGradientMaxEpochs;
     training.patience = kGradientPatience;

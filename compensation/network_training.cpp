@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "compensation/gradient_trainer.h"
+#include "compensation/lbfgs_trainer.h"
 #include "compensation/levenberg_marquardt.h"
 
 namespace beamgyro {
@@ -28,6 +29,8 @@ std::string sentence(StopReason reason) {
       return "no step lowers the error any more: damping at its limit";
     case StopReason::kRateSmall:
       return "no step lowers the error any more: learning rate at its limit";
+    case StopReason::kLineSearchFailed:
+      return "no step lowers the error any more: line search at its limit";
     case StopReason::kHeldOutRising:
       return "the held-out error no longer falls: stopped early";
     case StopReason::kMaxEpochs:
@@ -80,6 +83,7 @@ TrainSummary train_network(const ScaledRows& rows, const ScaledRows& held_out,
     case Trainer::kGradientAdaptive:
       return train_gradient_adaptive(rows, held_out, options, network);
     case Trainer::kLbfgs:
+      return train_lbfgs(rows, held_out, options, network);
     case Trainer::kLevenbergMarquardt:
       break;
   }

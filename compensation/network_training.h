@@ -15,13 +15,17 @@ namespace beamgyro {
 enum class Trainer {
   kIncremental,
   kGradientAdaptive,
-  kLevenbergMarquardt,
-  kLbfgs
+  kLbfgs,
+  kLevenbergMarquardt
 };
 
 /// Defaults of the two gradient trainers, whose epochs are cheap and many.
 constexpr int kGradientMaxEpochs = 20000;
 constexpr int kGradientPatience = 2000;
+
+/// Of L-BFGS, which needs more epochs than Levenberg-Marquardt.
+constexpr int kLbfgsMaxEpochs = 5000;
+constexpr int kLbfgsPatience = 500;
 
 /// Why a training ended; sentence() says it in words.
 enum class StopReason {
@@ -31,8 +35,9 @@ enum class StopReason {
   kStepSmall,      // |step| <= min_step (|w| + min_step)
   kDampingLimit,   // damping > max_damping: no step lowers the error
   kRateSmall,  // learning rate < min_learning_rate: no step lowers the error
-  kHeldOutRising,  // no new lowest held-out rms for `patience` epochs
-  kMaxEpochs,      // epochs = max_epochs
+  kLineSearchFailed,  // no step along the L-BFGS direction lowers the error
+  kHeldOutRising,     // no new lowest held-out rms for `patience` epochs
+  kMaxEpochs,         // epochs = max_epochs
 };
 
 std::string sentence(StopReason reason);
@@ -44,10 +49,11 @@ struct TrainOptions {
   int restarts = 4;           // >= 1, from different initial weights
   int max_epochs = 300;       // >= 1; passes over the rows
   int patience = 60;          // [epochs], >= 1
+  int threads = 1;            // >= 1; of one Levenberg-Marquardt training
   double goal = 0.0;          // rms, >= 0
-  double weight_decay = 0.0;  // >= 0; levenberg_marquardt, lbfgs
+  double weight_decay = 0.0;  // >= 0; kLevenbergMarquardt, kLbfgs
   // Adds rate_penalty mean((dy/ds)^2) / 2 to F, s running along rate_direction,
-  // the change of the inputs with the rate; levenberg_marquardt, lbfgs.
+  // the change of the inputs with the rate (RatePenalty); kLevenbergMarquardt.
   double rate_penalty = 0.0;                // >= 0
   std::vector<double> rate_direction = {};  // one per input
   double learning_rate = 0.02;  // eta of equation (5), > 0; its first value

@@ -22,12 +22,16 @@ Restarts train_from_restarts(const std::vector<int>& layer_sizes,
   std::vector<BpNetwork> networks(count, BpNetwork(layer_sizes));
   std::vector<TrainSummary> summaries(count);
   std::vector<std::exception_ptr> failures(count);
+  const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+  const std::size_t at_once = std::min(cores, count);
+  TrainOptions of_one = options;
+  of_one.threads = std::max(options.threads, static_cast<int>(cores / at_once));
   const auto train_one = [&](std::size_t k) {
     const auto run = static_cast<std::uint32_t>(k);
     RandomStream initial(seed, 0, run, RandomPurpose::kInitialWeights);
     RandomStream order(seed, 0, run, RandomPurpose::kSampleOrder);
     networks[k].randomise(initial);
-    summaries[k] = train_network(rows, held_out, options, order, networks[k]);
+    summaries[k] = train_network(rows, held_out, of_one, order, networks[k]);
   };
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
@@ -41,9 +45,7 @@ Restarts train_from_restarts(const std::vector<int>& layer_sizes,
   };
   {
     std::vector<std::jthread> threads;
-    const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-    for (std::size_t n = 1; n < std::min(cores, count); ++n)
-      threads.emplace_back(work);
+    for (std::size_t n = 1; n < at_once; ++n) threads.emplace_back(work);
     work();
   }
   for (const std::exception_ptr& failure : failures)

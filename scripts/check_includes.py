@@ -37,6 +37,7 @@ ONE_HOME = [
     (r"(hdf5|H5)\w*\.h", ("dataset/hdf5_", "tests/dataset/hdf5_")),
     (r"toml\+\+/|toml\.hpp", ("config/",)),
     (r"CLI/", ("cli/",)),
+    (r"ceres/", ("compensation/lbfgs_trainer.cpp",)),
     (r"Random123/", ("dataset/random_stream", "tests/")),
 ]
 

@@ -60,9 +60,11 @@ TEST(BpNetwork, ComputesEquationsTwoAndThree) {
   EXPECT_NEAR(network.predict(x)(0), 0.7 * a1 + 0.8 * a2 + 0.9, 1e-15);
 }
 
+const std::vector<std::vector<int>> kSizes = {
+    {2, 1}, {1, 6, 1}, {3, 14, 1}, {2, 5, 4, 1}, {3, 4, 3, 2, 1}};
+
 TEST(BpNetwork, JacobianMatchesCentralDifferences) {
-  for (const std::vector<int>& sizes :
-       {std::vector{1, 6, 1}, {3, 14, 1}, {2, 5, 4, 1}}) {
+  for (const std::vector<int>& sizes : kSizes) {
     const BpNetwork network = random_network(sizes, 7);
     const ArrayXXd x = some_inputs(9, sizes.front());
     Eigen::MatrixXd jacobian;
@@ -76,17 +78,19 @@ TEST(BpNetwork, JacobianMatchesCentralDifferences) {
 }
 
 TEST(BpNetwork, GradientMatchesCentralDifferences) {
-  const BpNetwork network = random_network({3, 5, 4, 1}, 8);
-  const ArrayXXd x = some_inputs(11, 3);
-  const ArrayXd target = x.col(0) * x.col(1);
-  VectorXd gradient;
-  network.predict_with_gradient(x, target, gradient);
-  const Eigen::MatrixXd expected =
-      central_differences(network, [&](const BpNetwork& n) {
-        return VectorXd::Constant(1,
-                                  0.5 * (n.predict(x) - target).square().sum());
-      });
-  EXPECT_LT((gradient.transpose() - expected).norm(), 1e-7 * expected.norm());
+  for (const std::vector<int>& sizes : kSizes) {
+    const BpNetwork network = random_network(sizes, 8);
+    const ArrayXXd x = some_inputs(11, sizes.front());
+    const ArrayXd target = x.col(0).square() - 0.4;
+    VectorXd gradient;
+    network.predict_with_gradient(x, target, gradient);
+    const Eigen::MatrixXd expected =
+        central_differences(network, [&](const BpNetwork& n) {
+          return VectorXd::Constant(
+              1, 0.5 * (n.predict(x) - target).square().sum());
+        });
+    EXPECT_LT((gradient.transpose() - expected).norm(), 1e-7 * expected.norm());
+  }
 }
 
 TEST(BpNetwork, SampleGivesTheSameBitsAloneAndInABlock) {

@@ -80,24 +80,40 @@ TEST(LevenbergMarquardt, StopsAtTheLargestNumberOfEpochs) {
   EXPECT_EQ(summary.epochs, 3);
 }
 
-// 37 noisy points and 43 weights: without a held-out set the noise is learnt.
+// 37 points with noise of 0.005 deg/s and 43 weights. Measured over these four
+// starts, against the curve without noise: 0.0027 ... 0.0029 deg/s when the
+// held-out error stops it, 0.016 ... 0.44 deg/s when nothing does.
 TEST(LevenbergMarquardt, HeldOutErrorStopsItBeforeItLearnsTheNoise) {
-  const double noise = 0.01;  // [deg/s]
+  const double noise = 0.005;  // [deg/s]
   const ScaledRows rows = curve_rows(grid(-40.0, 50.0, 2.5), noise, 1);
   const ScaledRows held_out = curve_rows(grid(-38.75, 48.75, 2.5), noise, 2);
   const ScaledRows truth = curve_rows(grid(-40.0, 50.0, 0.1), 0.0, 3);
   TrainOptions options;
   options.max_epochs = 2000;
-  BpNetwork stopped = random_network({1, 14, 1}, 0), overfitted = stopped;
-  const TrainSummary early =
-      train_levenberg_marquardt(rows, held_out, options, stopped);
-  const TrainSummary late =
-      train_levenberg_marquardt(rows, {}, options, overfitted);
-  EXPECT_EQ(early.stop_reason, StopReason::kHeldOutRising);
-  EXPECT_EQ(early.epochs - early.best_epoch, options.patience);
-  EXPECT_GT(early.in_sample_rms, late.in_sample_rms);
-  EXPECT_LT(*early.held_out_rms, rms_error(overfitted, held_out));
-  EXPECT_LT(2.0 * rms_error(stopped, truth), rms_error(overfitted, truth));
+  for (std::uint32_t run = 0; run < 4; ++run) {
+    BpNetwork stopped = random_network({1, 14, 1}, run), overfitted = stopped;
+    const TrainSummary early =
+        train_levenberg_marquardt(rows, held_out, options, stopped);
+    const TrainSummary late =
+        train_levenberg_marquardt(rows, {}, options, overfitted);
+    EXPECT_EQ(early.stop_reason, StopReason::kHeldOutRising);
+    EXPECT_GE(early.epochs - early.best_epoch, options.patience);
+    EXPECT_LT(*early.held_out_rms, rms_error(overfitted, held_out));
+    EXPECT_GT(early.in_sample_rms, 3.0 * late.in_sample_rms);
+    EXPECT_LT(kCurveUnit * rms_error(stopped, truth), 0.0035) << run;
+    EXPECT_GT(kCurveUnit * rms_error(overfitted, truth), 0.010) << run;
+  }
+}
+
+TEST(LevenbergMarquardt, ThreadsDoNotChangeABit) {
+  const ScaledRows rows = curve_rows(grid(-40.0, 50.0, 0.02), 0.005, 1);
+  TrainOptions options;
+  options.max_epochs = 20;
+  BpNetwork one = random_network({1, 6, 1}, 0), three = one;
+  train_levenberg_marquardt(rows, {}, options, one);
+  options.threads = 3;
+  train_levenberg_marquardt(rows, {}, options, three);
+  EXPECT_EQ(one.weights(), three.weights());
 }
 
 TEST(Verification, V43NetworkOnA5KGridLeavesLessThanSixThousandths) {

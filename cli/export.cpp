@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/inputs.h"
+#include "cli/terminal.h"
+#include "compensation/compensator_file.h"
+#include "compensation/export_c.h"
+#include "compensation/export_parameters.h"
+#include "dataset/atomic_file.h"
+
+namespace beamgyro {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExportArguments {
+  std::string compensator, format, output, axis = "z", name;
+  int instance = -1;
+  long device_id = 0;
+  bool fit_cubic = false;
+};
+
+using NamedTexts = std::vector<std::pair<std::string, std::string>>;
+
+AutopilotPlace place_of(const ExportArguments& arguments, int first_instance) {
+  return {arguments.axis[0],
+          arguments.instance < 0 ? first_instance : arguments.instance,
+          arguments.device_id};
+}
+
+NamedTexts texts_of(const ExportArguments& arguments,
+                    const Compensator& compensator, const std::string& name) {
+  if (arguments.format == "c") {
+    const ExportedC c = export_c(compensator, name);
+    return {{name + ".h", c.header},
+            {name + ".c", c.source},
+            {name + "_selftest.c", c.self_test}};
+  }
+  const BiasModel cubic = autopilot_cubic(compensator, arguments.fit_cubic);
+  const TemperatureRange& range = compensator.temperature_range;
+  if (arguments.format == "px4")
+    return {{name + ".params",
+             px4_parameters(cubic, range, place_of(arguments, 0))}};
+  return {{name + ".parm",
+           ardupilot_parameters(cubic, range, place_of(arguments, 1))}};
+}
+
+void make_directory(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error || !fs::is_directory(path))
+    throw std::invalid_argument(
+        fmt::format("{}: {}; expected a directory that is there or can be made",
+                    path.string(), error ? error.message() : "a file"));
+}
+
+int run_export(const ExportArguments& arguments) {
+  const fs::path file = arguments.compensator;
+  const Compensator compensator = read_compensator(file);
+  const std::string name = c_identifier(
+      arguments.name.empty() ? file.stem().string() : arguments.name);
+  NamedTexts texts;
+  try {
+    texts = texts_of(arguments, compensator, name);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(
+        fmt::format("{}: {}", file.string(), error.what()));
+  }
+  const fs::path directory = arguments.output;
+  make_directory(directory);
+  for (const auto& [called, text] : texts)
+    require_output(directory / called, {file});
+  for (const auto& [called, text] : texts)
+    write_text_file(directory / called, text);
+  if (arguments.format == "px4" && arguments.device_id == 0)
+    print_warning(
+        "TC_Gn_ID is 0: PX4 applies the parameters to the sensor with this id "
+        "only; pass --device-id");
+  return 0;
+}
+
+}  // namespace
+
+void add_export(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* command = program.add_subcommand(
+      "export", "Write a compensator as C source or autopilot parameters");
+  command->add_option("compensator", arguments->compensator, "COMPENSATOR.json")
+      ->required();
+  command
+      ->add_option("--format", arguments->format,
+                   "c: NAME.h, NAME.c and NAME_selftest.c; px4: NAME.params; "
+                   "ardupilot: NAME.parm")
+      ->required()
+      ->check(CLI::IsMember({"c", "px4", "ardupilot"}));
+  command->add_option("-o,--output", arguments->output, "DIR")->required();
+  command->add_option("--name", arguments->name,
+                      "NAME; without it the compensator's file name");
+  command
+      ->add_option("--axis", arguments->axis,
+                   "x, y or z: axis of the autopilot's gyro")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str();
+  command
+      ->add_option("--instance", arguments->instance,
+                   "of the autopilot's gyro: px4 0 to 3, ardupilot 1 to 3; the "
+                   "first without it")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--device-id", arguments->device_id, "px4: of the sensor")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--fit-cubic", arguments->fit_cubic,
+                    "px4, ardupilot: of a compensator that is no cubic export "
+                    "the cubic fitted to the same rows");
+  command->callback([arguments, &action] {
+    action = [arguments] { return run_export(*arguments); };
+  });
+}
+
+}  // namespace beamgyro

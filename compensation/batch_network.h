@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "compensation/batch_kernels.h"
+#include "compensation/network_training.h"
+
+namespace beamgyro {
+
+/// A BP network over all rows of a training set, for the trainers. Its outputs
+/// are those of BpNetwork but for rounding. Rows are cut into chunks by their
+/// number alone and the sums of the chunks are added in their order, so results
+/// do not depend on `threads`.
+class BatchNetwork {
+ public:
+  BatchNetwork(const std::vector<int>& layer_sizes, const ScaledRows& rows,
+               int threads);
+
+  /// Σ e^2 over the rows, e = y - target, at weights w. Keeps the outputs of
+  /// all neurons.
+  double sum_of_squares(const Eigen::VectorXd& w);
+
+  /// J^T J (lower triangle) and J^T e, J = dy/dw, at the weights of the last
+  /// sum_of_squares().
+  void normal_equations(Eigen::MatrixXd& matrix, Eigen::VectorXd& gradient);
+
+  /// J^T d2y/dt2 at t = 0 along w + t v, at the same weights.
+  Eigen::VectorXd curvature(const Eigen::VectorXd& v);
+
+ private:
+  // Doubles on the boundaries that the kernels want.
+  struct alignas(kLanes * sizeof(double)) Lanes {
+    double value[kLanes];
+  };
+  struct Values {
+    std::vector<Lanes> lanes;
+    explicit Values(Eigen::Index size = 0)
+        : lanes(static_cast<std::size_t>((size + kLanes - 1) / kLanes)) {}
+    double* data() { return lanes.data()->value; }
+  };
+
+  // Blocks [first, last), and what their evaluation leaves.
+  struct Chunk {
+    Eigen::Index first, last;
+    Values jacobian, scratch, products;
+    double squares = 0.0;
+  };
+
+  template <class F>
+  void for_each_chunk(const F& f);
+  SampleBlock block(Eigen::Index k);
+
+  std::vector<NetworkLayer> layers_;
+  int threads_;
+  Eigen::Index rows_, neurons_, widest_, columns_;
+  Eigen::VectorXd w_;
+  Values data_;
+  std::vector<Chunk> chunks_;
+};
+
+}  // namespace beamgyro

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compensation/compensator.h"
+
+namespace beamgyro {
+
+/// Signals a compensator can read, in the order and units of firmware samples.
+constexpr const char* kFirmwareSignals[] = {
+    "rate",       "temperature",     "output",
+    "quadrature", "drive_frequency", "drive_voltage"};
+constexpr const char* kFirmwareFields[] = {
+    "rate_deg_per_s",       "temperature_degC",   "output_V",
+    "quadrature_deg_per_s", "drive_frequency_Hz", "drive_voltage_V"};
+constexpr std::size_t kFirmwareSignalCount = 6;
+
+/// One sample, indexed as kFirmwareSignals.
+struct FirmwareSample {
+  float value[kFirmwareSignalCount] = {};
+};
+
+/// A row of constants of the exported code.
+struct FirmwareArray {
+  std::string name, comment;
+  std::vector<float> values;
+};
+
+/// A compensator in single precision: the constants that exported code holds,
+/// and step by step the operations it carries out. Built with contraction of
+/// multiplications and additions off, the code gives the same bits.
+class FirmwareModel {
+ public:
+  /// Throws std::invalid_argument for a parameter beyond single precision.
+  explicit FirmwareModel(const Compensator& compensator);
+  ~FirmwareModel();
+  FirmwareModel(const FirmwareModel&) = delete;
+  FirmwareModel& operator=(const FirmwareModel&) = delete;
+
+  /// At power-on; samples then come every `period` [s], > 0.
+  void start(float period);
+
+  /// Compensated rate [deg/s].
+  float step(const FirmwareSample& sample);
+
+  const std::vector<FirmwareArray>& arrays() const { return arrays_; }
+  const std::vector<float>& array(std::string_view name) const;
+  bool reads(std::size_t signal) const;  // index of kFirmwareSignals
+
+  /// crc32() of all arrays in their order.
+  std::uint32_t crc() const;
+
+ private:
+  struct State;
+
+  float bias(const std::vector<float>& x) const;
+
+  std::vector<Input> inputs_;
+  std::string kind_;
+  std::vector<int> layers_;  // of a network
+  bool corrects_scale_factor_;
+  std::vector<FirmwareArray> arrays_;
+  std::unique_ptr<State> state_;
+};
+
+/// CRC-32 (IEEE 802.3) of the values, each least significant byte first.
+std::uint32_t crc32(const std::vector<float>& values);
+
+/// Source text (C99) of the functions that the named section of the run-time
+/// holds: exp, lowpass, tanh, polynomial, table, spline, thermistor, fuzzy or
+/// crc. Throws std::logic_error for another name.
+std::string firmware_runtime(std::string_view section);
+
+}  // namespace beamgyro
