@@ -26,8 +26,6 @@ BatchNetwork::BatchNetwork(const std::vector<int>& layer_sizes,
     : layers_(layers_of(layer_sizes)),
       threads_(threads),
       rows_(rows.size()),
-      neurons_(0),
-      widest_(1),
       columns_(rounded_up(layers_.back().biases + 2, kTile)) {
   for (const NetworkLayer& layer : layers_) {
     neurons_ += layer.in;

@@ -54,7 +54,9 @@ class BatchNetwork {
 
   std::vector<NetworkLayer> layers_;
   int threads_;
-  Eigen::Index rows_, neurons_, widest_, columns_;
+  Eigen::Index rows_, columns_;
+  Eigen::Index neurons_ = 0;  // with the inputs, without the output
+  Eigen::Index widest_ = 1;   // neurons of the widest layer above the inputs
   Eigen::VectorXd w_;
   Values data_;
   std::vector<Chunk> chunks_;
