@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // OpenCV's ANN_MLP on the data that beamgyro_trainer prints:
-// beamgyro_opencv rprop|backprop EPOCHS < data. As many starts as there are
-// start weights, but its own (Nguyen-Widrow), and its output is a tanh too: no
-// others exist there.
+// beamgyro_opencv rprop|backprop EPOCHS < data. As many trainings as there are
+// start weights, but all from its own, always the same (Nguyen-Widrow), and its
+// output is a tanh too: it knows no others.
 #include <cmath>
 #include <ctime>
 #include <iostream>
@@ -16,7 +16,7 @@ namespace {
 using cv::ml::ANN_MLP;
 using nlohmann::json;
 
-json train(const json& data, int method, std::uint64_t seed, int epochs) {
+json train(const json& data, int method, int epochs) {
   const auto sizes = data["layer_sizes"].get<std::vector<int>>();
   const auto inputs = data["inputs"].get<std::vector<std::vector<double>>>();
   const auto target = data["target"].get<std::vector<double>>();
@@ -30,7 +30,6 @@ json train(const json& data, int method, std::uint64_t seed, int epochs) {
           static_cast<float>(inputs[static_cast<std::size_t>(i)][row]);
     y.at<float>(k, 0) = static_cast<float>(target[row]);
   }
-  cv::theRNG().state = seed + 1;
   const cv::Ptr<ANN_MLP> ann = ANN_MLP::create();
   ann->setLayerSizes(sizes);
   ann->setActivationFunction(ANN_MLP::SIGMOID_SYM, 2.0, 1.0);  // tanh
@@ -58,7 +57,7 @@ int main(int argc, char** argv) try {
   const json data = json::parse(std::cin);
   json results = json::array();
   for (std::size_t k = 0; k < data["weights"].size(); ++k)
-    results.push_back(train(data, method, k, std::stoi(argv[2])));
+    results.push_back(train(data, method, std::stoi(argv[2])));
   std::cout << results.dump() << '\n';
   return 0;
 } catch (const std::exception& error) {
