@@ -1,38 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include <benchmark/benchmark.h>
 
-#include <cmath>
+#include <algorithm>
 
-#include "compensation/network_training.h"
+#include "bench/bias_rows.h"
 
 namespace beamgyro {
 namespace {
 
-// A bias curve with four extrema over [-1, 1] and label noise, in `inputs`
-// variables of which the others shift the first.
-ScaledRows rows(Eigen::Index count, Eigen::Index inputs, std::uint32_t run) {
-  RandomStream random(5, 0, run, RandomPurpose::kWhiteNoise);
-  ScaledRows set;
-  set.inputs.resize(count, inputs);
-  set.target.resize(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    set.inputs(i, 0) =
-        2 * static_cast<double>(i) / static_cast<double>(count - 1) - 1;
-    double x = set.inputs(i, 0);
-    for (Eigen::Index j = 1; j < inputs; ++j) {
-      set.inputs(i, j) = 2 * random.uniform() - 1;
-      x += 0.05 * set.inputs(i, j);
-    }
-    set.target(i) = 0.4 * std::sin(4 * x) + 0.5 * std::tanh(-6 * (x + 0.35)) +
-                    0.002 * random.normal();
-  }
-  return set;
-}
+constexpr double kNoise = 0.002;
 
 void train(benchmark::State& state, Eigen::Index count, int inputs, int hidden,
            int restarts) {
-  const ScaledRows training = rows(count, inputs, 0);
-  const ScaledRows held_out = rows(count / 2, inputs, 1);
+  const ScaledRows training = bias_rows(count, inputs, kNoise, 0);
+  const ScaledRows held_out = bias_rows(count / 2, inputs, kNoise, 1);
   double epochs = 0, rms = 0;
   for (auto _ : state) {
     epochs = 0;

@@ -22,6 +22,9 @@ class BatchNetwork {
   /// all neurons.
   double sum_of_squares(const Eigen::VectorXd& w);
 
+  /// J^T e at the weights of the last sum_of_squares().
+  Eigen::VectorXd gradient();
+
   /// J^T J (lower triangle) and J^T e, J = dy/dw, at the weights of the last
   /// sum_of_squares().
   void normal_equations(Eigen::MatrixXd& matrix, Eigen::VectorXd& gradient);
@@ -50,11 +53,15 @@ class BatchNetwork {
 
   template <class F>
   void for_each_chunk(const F& f);
+  template <class F>
+  Eigen::VectorXd sum_of_gradients(const F& row_of_block);
   SampleBlock block(Eigen::Index k);
 
   std::vector<NetworkLayer> layers_;
   int threads_;
-  Eigen::Index rows_, neurons_, widest_, columns_;
+  Eigen::Index rows_, columns_;
+  Eigen::Index neurons_ = 0;  // with the inputs, without the output
+  Eigen::Index widest_ = 1;   // neurons of the widest layer above the inputs
   Eigen::VectorXd w_;
   Values data_;
   std::vector<Chunk> chunks_;

@@ -6,57 +6,46 @@
 #include <ceres/gradient_problem_solver.h>
 #include <ceres/iteration_callback.h>
 
-#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
-#include <utility>
+
+#include "compensation/batch_network.h"
 
 namespace beamgyro {
 namespace {
 
-using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr Index kBlockRows = 1024;  // keeps a block in the cache
-constexpr int kRank = 40;           // steps the inverse Hessian remembers
+constexpr int kRank = 40;  // steps the inverse Hessian remembers
 
 // F and dF/dw.
 class Objective final : public ceres::FirstOrderFunction {
  public:
-  Objective(const ScaledRows& rows, double decay, BpNetwork network)
-      : rows_(rows), decay_(decay), network_(std::move(network)) {}
+  Objective(const ScaledRows& rows, const TrainOptions& options,
+            const BpNetwork& network)
+      : batch_(network.layer_sizes(), rows, options.threads),
+        weights_(static_cast<int>(network.weights().size())),
+        count_(static_cast<double>(rows.size())),
+        decay_(options.weight_decay) {}
 
-  int NumParameters() const override {
-    return static_cast<int>(network_.weights().size());
-  }
+  int NumParameters() const override { return weights_; }
 
   bool Evaluate(const double* parameters, double* cost,
                 double* gradient) const override {
-    const Eigen::Map<const VectorXd> w(parameters, NumParameters());
-    network_.set_weights(w);
-    double squares = 0.0;
-    VectorXd slope = VectorXd::Zero(w.size()), of_block;
-    for (Index first = 0; first < rows_.size(); first += kBlockRows) {
-      const Index count = std::min(kBlockRows, rows_.size() - first);
-      const auto target = rows_.target.segment(first, count);
-      squares += (network_.predict_with_gradient(
-                      rows_.inputs.middleRows(first, count), target, of_block) -
-                  target)
-                     .square()
-                     .sum();
-      slope += of_block;
-    }
-    const double count = static_cast<double>(rows_.size());
-    *cost = 0.5 * squares / count + 0.5 * decay_ * w.squaredNorm();
+    const VectorXd w = Eigen::Map<const VectorXd>(parameters, weights_);
+    *cost = 0.5 * batch_.sum_of_squares(w) / count_ +
+            0.5 * decay_ * w.squaredNorm();
     if (gradient != nullptr)
-      Eigen::Map<VectorXd>(gradient, w.size()) = slope / count + decay_ * w;
+      Eigen::Map<VectorXd>(gradient, weights_) =
+          batch_.gradient() / count_ + decay_ * w;
     return std::isfinite(*cost);
   }
 
  private:
-  const ScaledRows& rows_;
-  double decay_;
-  mutable BpNetwork network_;
+  mutable BatchNetwork batch_;
+  int weights_;
+  double count_, decay_;
 };
 
 // Every stop of ours, tested after each epoch.
@@ -121,7 +110,7 @@ TrainSummary train_lbfgs(const ScaledRows& rows, const ScaledRows& held_out,
   solver.update_state_every_iteration = true;
   solver.callbacks.push_back(&watch);
   const ceres::GradientProblem problem(
-      new Objective(rows, options.weight_decay, network));  // which owns it
+      new Objective(rows, options, network));  // which owns it
   ceres::GradientProblemSolver::Summary outcome;
   ceres::Solve(solver, problem, w.data(), &outcome);
   const StopReason otherwise = outcome.termination_type == ceres::NO_CONVERGENCE

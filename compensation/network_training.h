@@ -46,11 +46,11 @@ std::string sentence(StopReason reason);
 /// weight_decay |w|^2 / 2.
 struct TrainOptions {
   Trainer trainer = Trainer::kLevenbergMarquardt;
-  int restarts = 4;           // >= 1, from different initial weights
-  int max_epochs = 300;       // >= 1; passes over the rows
-  int patience = 60;          // [epochs], >= 1
-  int threads = 1;            // >= 1; of one Levenberg-Marquardt training
-  double goal = 0.0;          // rms, >= 0
+  int restarts = 4;      // >= 1, from different initial weights
+  int max_epochs = 300;  // >= 1; passes over the rows
+  int patience = 60;     // [epochs], >= 1
+  int threads = 1;       // >= 1; of one training; the gradient rules use one
+  double goal = 0.0;     // rms, >= 0
   double weight_decay = 0.0;  // >= 0; kLevenbergMarquardt, kLbfgs
   // Adds rate_penalty mean((dy/ds)^2) / 2 to F, s running along rate_direction,
   // the change of the inputs with the rate (RatePenalty); kLevenbergMarquardt.
