@@ -8,9 +8,10 @@ population.py [--program FILE] [--out DIR] [--devices N] [--jobs N]
 DIR is out/population, N devices 40. Every device is the nominal one with the
 keys of draw() changed by --set; it is trained on and scored on by itself. Each
 finished device leaves one line in DIR/devices.jsonl and is not done again; its
-recordings, some 250 MB, are deleted. Ends with medians and worst devices in
+recordings, up to 450 MB, are deleted. Ends with medians and worst devices in
 DIR/table.txt and DIR/table.json. --quick: one pass of each training run, to
 see that all works; its figures mean little and go to devices_quick.jsonl.
+Remove the lines of devices after a change of studies, models or program.
 """
 
 import argparse
@@ -40,7 +41,7 @@ NOMINAL = SCENARIOS / "devices/nominal.toml"
 SOAK_METHODS = ["spline", "bp"]
 SOAK_TEST = [run for run in demo.TEST if run[0] in demo.SOAKS]
 DYNAMIC_TEST = [run for run in demo.TEST if run[0] in demo.MOTION]
-# A campaign against slow noise, 15 days in the chamber where the demo takes 11:
+# A campaign against slow noise, 15 days in the chamber where the demo takes 10:
 # no sweeps, whose labels a day of random walk moves by 0.05 deg/s, but many
 # ramps and power-ons. Only other runs and other turn-ons average theirs out.
 CAMPAIGN = [
@@ -220,7 +221,8 @@ def campaign(unit):
                               CAMPAIGN_HELD_OUT)
 
 
-# A study takes a unit and returns its figures, lower ones being better.
+# A study takes a unit and returns its figures by name, lower ones being better.
+# Another is a function here, with BOUNDS above if devices are to be counted.
 STUDIES = {"drift": drift, "soak": soak, "dynamic": dynamic,
            "campaign": campaign}
 
