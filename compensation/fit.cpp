@@ -83,10 +83,6 @@ std::vector<double> rate_direction(const std::vector<Input>& inputs,
   return direction;
 }
 
-double score(const TrainSummary& summary) {
-  return summary.held_out_rms.value_or(summary.in_sample_rms);
-}
-
 // Fits each kind of model; the restarts stay empty for least squares.
 struct Fitter {
   const std::vector<Input>& inputs;
@@ -175,22 +171,30 @@ struct Fitter {
     const ScaledRows training = scaled(rows, model);
     const ScaledRows unseen =
         held_out.size() > 0 ? scaled(held_out, model) : ScaledRows{};
-    double best = std::numeric_limits<double>::infinity();
+    std::vector<Restarts> of_decays;
+    std::vector<BpNetwork> networks;
     for (const double decay : spec.weight_decays) {
       options.weight_decay = decay;
-      Restarts restarts =
-          train_from_restarts(sizes, training, unseen, options, seed);
-      const double here = score(restarts.summaries[restarts.chosen]);
+      of_decays.push_back(
+          train_from_restarts(sizes, training, unseen, options, seed));
+      networks.push_back(of_decays.back().network);
+      const TrainSummary& best =
+          of_decays.back().summaries[of_decays.back().chosen];
       if (spec.weight_decays.size() > 1)
         fit.choices.push_back(fmt::format(
-            "weight decay {:g}: {} rms {:.6f} deg/s", decay,
-            unseen.size() > 0 ? "held-out" : "in-sample", here * unit));
-      if (!(here < best) && !fit.restarts.empty()) continue;
-      best = here;
-      fit.restarts = std::move(restarts.summaries);
-      fit.chosen = restarts.chosen;
-      model.function = std::move(restarts.network);
+            "weight decay {:g}: rms in-sample {:.6f}{} deg/s", decay,
+            best.in_sample_rms * unit,
+            best.held_out_rms
+                ? fmt::format(", held-out {:.6f}", *best.held_out_rms * unit)
+                : ""));
     }
+    const std::size_t kept = best_network(networks, training, unseen);
+    if (spec.weight_decays.size() > 1)
+      fit.choices.push_back(
+          fmt::format("kept weight decay {:g}", spec.weight_decays[kept]));
+    fit.restarts = std::move(of_decays[kept].summaries);
+    fit.chosen = of_decays[kept].chosen;
+    model.function = std::move(networks[kept]);
     for (TrainSummary& summary : fit.restarts) {
       summary.in_sample_rms *= unit;
       if (summary.held_out_rms) *summary.held_out_rms *= unit;

@@ -12,6 +12,7 @@ namespace beamgyro {
 namespace {
 
 constexpr Eigen::Index kBlockRows = 1024;  // keeps a block in the cache
+constexpr Eigen::Index kStretches = 20;
 
 }  // namespace
 
@@ -39,16 +40,36 @@ std::string sentence(StopReason reason) {
   return "the largest number of epochs was reached";
 }
 
-double rms_error(const BpNetwork& network, const ScaledRows& rows) {
-  double sum = 0.0;
+Eigen::ArrayXd squared_errors(const BpNetwork& network,
+                              const ScaledRows& rows) {
+  Eigen::ArrayXd squares(rows.size());
   for (Eigen::Index first = 0; first < rows.size(); first += kBlockRows) {
     const Eigen::Index count = std::min(kBlockRows, rows.size() - first);
-    sum += (network.predict(rows.inputs.middleRows(first, count)) -
-            rows.target.segment(first, count))
-               .square()
-               .sum();
+    squares.segment(first, count) =
+        (network.predict(rows.inputs.middleRows(first, count)) -
+         rows.target.segment(first, count))
+            .square();
   }
-  return std::sqrt(sum / static_cast<double>(rows.size()));
+  return squares;
+}
+
+double rms_error(const BpNetwork& network, const ScaledRows& rows) {
+  return std::sqrt(squared_errors(network, rows).mean());
+}
+
+bool no_worse(const Eigen::ArrayXd& squares, const Eigen::ArrayXd& least) {
+  const Eigen::Index rows = squares.size();
+  const Eigen::Index stretches = std::min(kStretches, rows);
+  Eigen::ArrayXd excess(stretches);
+  for (Eigen::Index k = 0; k < stretches; ++k) {
+    const Eigen::Index first = k * rows / stretches;
+    const Eigen::Index count = (k + 1) * rows / stretches - first;
+    excess(k) = (squares - least).segment(first, count).mean();
+  }
+  const auto count = static_cast<double>(stretches);
+  const double variance =
+      (excess - excess.mean()).square().sum() / std::max(count - 1.0, 1.0);
+  return excess.mean() <= 2.0 * std::sqrt(variance / count);
 }
 
 bool BestWeights::stale_after(int epoch, const BpNetwork& network) {

@@ -84,6 +84,15 @@ struct ScaledRows {
 
 double rms_error(const BpNetwork& network, const ScaledRows& rows);
 
+/// Squared errors of the rows, one each.
+Eigen::ArrayXd squared_errors(const BpNetwork& network, const ScaledRows& rows);
+
+/// Whether squared errors are no larger than `least`, those of the same rows
+/// with other weights, by what noise explains: the mean difference is within
+/// two standard errors, taken from the means of 20 stretches of rows because
+/// neighbours share their noise.
+bool no_worse(const Eigen::ArrayXd& squares, const Eigen::ArrayXd& least);
+
 /// Keeps the weights with the lowest held-out rms met so far; without held-out
 /// rows, the last weights shown to it.
 class BestWeights {

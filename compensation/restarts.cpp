@@ -7,13 +7,27 @@
 #include <thread>
 
 namespace beamgyro {
-namespace {
-
-double score(const TrainSummary& summary) {
-  return summary.held_out_rms.value_or(summary.in_sample_rms);
+std::size_t best_network(const std::vector<BpNetwork>& networks,
+                         const ScaledRows& rows, const ScaledRows& held_out) {
+  std::vector<Eigen::ArrayXd> squares;
+  Eigen::ArrayXd least;
+  for (const BpNetwork& network : networks) {
+    squares.push_back(squared_errors(network, held_out));
+    if (least.size() == 0 || squares.back().mean() < least.mean())
+      least = squares.back();
+  }
+  std::size_t best = 0;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < networks.size(); ++k) {
+    const double sum =
+        squares[k].sum() + squared_errors(networks[k], rows).sum();
+    if (sum < lowest && (held_out.size() == 0 || no_worse(squares[k], least))) {
+      lowest = sum;
+      best = k;
+    }
+  }
+  return best;
 }
-
-}  // namespace
 
 Restarts train_from_restarts(const std::vector<int>& layer_sizes,
                              const ScaledRows& rows, const ScaledRows& held_out,
@@ -50,10 +64,7 @@ Restarts train_from_restarts(const std::vector<int>& layer_sizes,
   }
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);
-  const auto best = std::min_element(
-      summaries.begin(), summaries.end(),
-      [](const auto& a, const auto& b) { return score(a) < score(b); });
-  const auto chosen = static_cast<std::size_t>(best - summaries.begin());
+  const std::size_t chosen = best_network(networks, rows, held_out);
   return {std::move(summaries), chosen, std::move(networks[chosen])};
 }
 

@@ -12,10 +12,16 @@ namespace beamgyro {
 /// Trainings of one network from several sets of initial weights.
 struct Restarts {
   std::vector<TrainSummary> summaries;  // one per restart
-  std::size_t chosen =
-      0;              // lowest held-out rms; in-sample without held-out rows
-  BpNetwork network;  // of the chosen restart
+  std::size_t chosen = 0;               // best_network()
+  BpNetwork network;                    // of the chosen restart
 };
+
+/// Of the networks that are no_worse() on the held-out rows than the best one
+/// there, the one with the least squared error over training and held-out rows
+/// together: where the held-out runs cannot tell, all data do. Without held-out
+/// rows the one with the least in-sample error.
+std::size_t best_network(const std::vector<BpNetwork>& networks,
+                         const ScaledRows& rows, const ScaledRows& held_out);
 
 /// Runs `options.restarts` trainings on as many threads as there are cores.
 /// Restart k draws from the streams (seed, 0, k, kInitialWeights) and (seed, 0,

@@ -129,7 +129,24 @@ TEST(Verification, V43NetworkOnA5KGridLeavesLessThanSixThousandths) {
   }
 }
 
-TEST(Restarts, ChoosesTheLowestHeldOutErrorAndRepeatsItself) {
+TEST(NoWorse, AsksForTwiceTheStandardErrorOfTheStretches) {
+  // 20 stretches of 3 rows whose excess alternates between a and -b: mean
+  // (a - b) / 2, standard error (a + b) / 2 / sqrt(19).
+  const auto answer = [](double a, double b) {
+    Eigen::ArrayXd excess(60);
+    for (Eigen::Index k = 0; k < 60; ++k) excess(k) = k / 3 % 2 == 0 ? a : -b;
+    const Eigen::ArrayXd least = Eigen::ArrayXd::Constant(60, 5.0);
+    return no_worse(least + excess, least);
+  };
+  const double ratio = 2.0 / std::sqrt(19.0);  // (a - b) / (a + b) at the limit
+  const double b = 1.0, a = (1.0 + ratio) / (1.0 - ratio);
+  EXPECT_TRUE(answer(0.999 * a, b));
+  EXPECT_FALSE(answer(1.001 * a, b));
+  EXPECT_TRUE(answer(-1.0, 1.0));   // less everywhere
+  EXPECT_FALSE(answer(0.1, -0.1));  // more everywhere
+}
+
+TEST(Restarts, WhereHeldOutRowsCannotTellAllRowsChoose) {
   const ScaledRows rows = curve_rows(grid(-40.0, 50.0, 5.0), 0.005, 1);
   const ScaledRows held_out = curve_rows(grid(-37.5, 47.5, 5.0), 0.005, 2);
   TrainOptions options;
@@ -138,8 +155,19 @@ TEST(Restarts, ChoosesTheLowestHeldOutErrorAndRepeatsItself) {
   const Restarts b = train_from_restarts({1, 6, 1}, rows, held_out, options, 9);
   EXPECT_EQ(a.network.weights(), b.network.weights());
   ASSERT_EQ(a.summaries.size(), 7u);
-  for (const TrainSummary& summary : a.summaries)
-    EXPECT_LE(*a.summaries[a.chosen].held_out_rms, *summary.held_out_rms);
+  // The chosen one's errors over both sets, of as many rows each but one.
+  const auto both = [&](const TrainSummary& summary) {
+    return 19 * std::pow(summary.in_sample_rms, 2) +
+           18 * std::pow(*summary.held_out_rms, 2);
+  };
+  double lowest = HUGE_VAL;
+  for (const TrainSummary& summary : a.summaries) {
+    lowest = std::min(lowest, *summary.held_out_rms);
+    if (*summary.held_out_rms <= *a.summaries[a.chosen].held_out_rms) {
+      EXPECT_LE(both(a.summaries[a.chosen]), both(summary) * (1 + 1e-12));
+    }
+  }
+  EXPECT_LT(*a.summaries[a.chosen].held_out_rms, 1.5 * lowest);
   for (std::size_t k = 1; k < 7; ++k)  // no two from the same weights
     EXPECT_NE(*a.summaries[k].held_out_rms, *a.summaries[0].held_out_rms);
   EXPECT_EQ(rms_error(a.network, held_out),
