@@ -426,7 +426,7 @@ std::string c_identifier(const std::string& text) {
   for (const unsigned char c : text)
     name += std::isalnum(c) != 0 && c < 0x80 ? static_cast<char>(c) : '_';
   if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) != 0)
-    name = "c_" + name;
+    name.insert(0, "c_");
   return name;
 }
 
