@@ -11,6 +11,7 @@ import h5py
 import numpy as np
 
 from exported import MODELS, WARNINGS, ExportTest
+from formats_test import rows, section
 
 SELF_TEST = ["net.c", "net_selftest.c", "-o", "selftest"]  # no -lm
 
@@ -298,6 +299,42 @@ class BadExport(ExportTest):
         self.write("cold.json", text[:start] + "[-71.0, 20.0" + text[end:])
         self.refused("cold.json", "--format", "ardupilot", "-o", "out",
                      says=["cold.json", "-70 to 80 degC"])
+
+
+class ExportPage(ExportTest):
+    """docs/formats.md against what is written."""
+
+    def test_names_of_the_exported_code(self):
+        header = (self.export("network") / "net.h").read_text()
+        documented = rows(section("Exported code"))
+        self.assertEqual(len(documented), 11)
+        for name in set(documented) - {"output_V"}:
+            self.assertIn(name.replace("NAME", "net"), header)
+        sample = re.search(r"typedef struct {([^}]*)} net_sample;", header)[1]
+        for field in re.findall(r"float (\w+);", sample):
+            self.assertIn(field, documented)
+
+    def test_names_of_autopilot_parameters(self):
+        documented = rows(section("Autopilot parameters"))
+        for form, n, powers, axes, separator, at in [
+                ("px4", "0", "0123", "012", "\t", 2),
+                ("ardupilot", "2", "123", "XYZ", ",", 0)]:
+            path, = self.export("cubic", "--instance", n, form=form) \
+                .glob("net.par*")
+            written = {line.split(separator)[at] for line in
+                       path.read_text().splitlines() if line[0] != "#"}
+            prefix = "TC_" if form == "px4" else "INS_"
+            expected = set()
+            for name in documented:
+                if not name.startswith(prefix):
+                    continue
+                name = re.sub("(G|TCAL|GYR)n", rf"\g<1>{n}", name)
+                for k in powers if "k_" in name else "-":
+                    for axis in axes if name.endswith("_a") else "-":
+                        expected.add(re.sub("k_", f"{k}_", re.sub(
+                            "_a$", f"_{axis}", name)))
+            self.assertEqual(written, expected)
+            shutil.rmtree(path.parent)
 
 
 if __name__ == "__main__":
