@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/terminal.h"
+#include "compensation/c_text.h"
 #include "compensation/compensator_file.h"
 #include "compensation/export_c.h"
 #include "compensation/export_parameters.h"
@@ -21,18 +23,19 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ExportArguments {
-  std::string compensator, format, output, axis = "z", name;
-  int instance = -1;
-  long device_id = 0;
+  std::string compensator, format, output, name;
+  std::optional<std::string> axis;
+  std::optional<int> instance;
+  std::optional<long> device_id;
   bool fit_cubic = false;
 };
 
 using NamedTexts = std::vector<std::pair<std::string, std::string>>;
 
 AutopilotPlace place_of(const ExportArguments& arguments, int first_instance) {
-  return {arguments.axis[0],
-          arguments.instance < 0 ? first_instance : arguments.instance,
-          arguments.device_id};
+  return {arguments.axis.value_or("z")[0],
+          arguments.instance.value_or(first_instance),
+          arguments.device_id.value_or(0)};
 }
 
 NamedTexts texts_of(const ExportArguments& arguments,
@@ -52,16 +55,56 @@ NamedTexts texts_of(const ExportArguments& arguments,
            ardupilot_parameters(cubic, range, place_of(arguments, 1))}};
 }
 
-void make_directory(const fs::path& path) {
+void require_options(const ExportArguments& arguments) {
+  const auto refuse = [&](bool given, const char* option, const char* formats) {
+    if (given)
+      throw std::invalid_argument(
+          fmt::format("{}: is for the formats {}, not for {}", option, formats,
+                      arguments.format));
+  };
+  if (arguments.format != "px4")
+    refuse(arguments.device_id.has_value(), "--device-id", "px4");
+  if (arguments.format != "c") return;
+  refuse(arguments.axis.has_value(), "--axis", "px4 and ardupilot");
+  refuse(arguments.instance.has_value(), "--instance", "px4 and ardupilot");
+  refuse(arguments.fit_cubic, "--fit-cubic", "px4 and ardupilot");
+}
+
+// Before anything is made.
+void require_outputs(const fs::path& directory, const NamedTexts& texts,
+                     const fs::path& input) {
+  std::error_code ignored;
+  if (!fs::exists(directory, ignored)) return;
+  if (!fs::is_directory(directory, ignored))
+    throw std::invalid_argument(fmt::format(
+        "{}: a file; expected a directory that is there or can be made",
+        directory.string()));
+  for (const auto& [called, text] : texts)
+    require_output(directory / called, {input});
+}
+
+// All of them or none.
+void write_all(const fs::path& directory, const NamedTexts& texts) {
   std::error_code error;
-  fs::create_directories(path, error);
-  if (error || !fs::is_directory(path))
+  fs::create_directories(directory, error);
+  if (error)
     throw std::invalid_argument(
         fmt::format("{}: {}; expected a directory that is there or can be made",
-                    path.string(), error ? error.message() : "a file"));
+                    directory.string(), error.message()));
+  std::vector<fs::path> written;
+  try {
+    for (const auto& [called, text] : texts) {
+      write_text_file(directory / called, text);
+      written.push_back(directory / called);
+    }
+  } catch (...) {
+    for (const fs::path& path : written) fs::remove(path, error);
+    throw;
+  }
 }
 
 int run_export(const ExportArguments& arguments) {
+  require_options(arguments);
   const fs::path file = arguments.compensator;
   const Compensator compensator = read_compensator(file);
   const std::string name = c_identifier(
@@ -73,13 +116,9 @@ int run_export(const ExportArguments& arguments) {
     throw std::invalid_argument(
         fmt::format("{}: {}", file.string(), error.what()));
   }
-  const fs::path directory = arguments.output;
-  make_directory(directory);
-  for (const auto& [called, text] : texts)
-    require_output(directory / called, {file});
-  for (const auto& [called, text] : texts)
-    write_text_file(directory / called, text);
-  if (arguments.format == "px4" && arguments.device_id == 0)
+  require_outputs(arguments.output, texts, file);
+  write_all(arguments.output, texts);
+  if (arguments.format == "px4" && arguments.device_id.value_or(0) == 0)
     print_warning(
         "TC_Gn_ID is 0: PX4 applies the parameters to the sensor with this id "
         "only; pass --device-id");
@@ -105,16 +144,15 @@ void add_export(CLI::App& program, Action& action) {
                       "NAME; without it the compensator's file name");
   command
       ->add_option("--axis", arguments->axis,
-                   "x, y or z: axis of the autopilot's gyro")
-      ->check(CLI::IsMember({"x", "y", "z"}))
-      ->capture_default_str();
+                   "x, y or z: axis of the autopilot's gyro; z without it")
+      ->check(CLI::IsMember({"x", "y", "z"}));
   command
       ->add_option("--instance", arguments->instance,
                    "of the autopilot's gyro: px4 0 to 3, ardupilot 1 to 3; the "
                    "first without it")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--device-id", arguments->device_id, "px4: of the sensor")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, 2147483647));
   command->add_flag("--fit-cubic", arguments->fit_cubic,
                     "px4, ardupilot: of a compensator that is no cubic export "
                     "the cubic fitted to the same rows");

@@ -4,22 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cctype>
-#include <iterator>
 #include <vector>
 
+#include "compensation/c_text.h"
+#include "compensation/export_self_test.h"
 #include "compensation/firmware_model.h"
 
 namespace beamgyro {
 namespace {
-
-// Shortest decimal that reads back to the same single.
-std::string literal(float value) {
-  std::string text = fmt::format("{}", value);
-  if (text.find_first_of(".e") == std::string::npos) text += ".0";
-  return text + "f";
-}
 
 std::string array_text(const FirmwareArray& array) {
   std::string text;
@@ -28,7 +21,7 @@ std::string array_text(const FirmwareArray& array) {
                       array.values.size());
   std::size_t column = 80;
   for (const float value : array.values) {
-    const std::string next = literal(value) + ",";
+    const std::string next = c_literal(value) + ",";
     if (column + next.size() + 1 > 78) {
       text += "\n ";
       column = 1;
@@ -71,24 +64,36 @@ class Writer {
         "/* CRC-32 of the parameters. */\n#define {}_CRC "
         "0x{:08x}u\n\n",
         name_, model_.crc());
+    if (model_.reads(kFirmwareDriveFrequency))
+      text += fmt::format(
+          "/* [Hz]; samples tell the change from it. */\n"
+          "#define {}_DRIVE_FREQUENCY {}\n\n",
+          name_, model_.drive_frequency());
     text += "/* One sample of the gyro. */\ntypedef struct {\n";
     for (std::size_t k = 0; k < kFirmwareSignalCount; ++k)
       if (model_.reads(k))
         text += fmt::format("  float {};\n", kFirmwareFields[k]);
     text += fmt::format("}} {}_sample;\n\n", name_);
+    text += "typedef struct {\n";
+    if (clock_)
+      text +=
+          "  float period;     /* [s] */\n"
+          "  uint32_t samples; /* since power-on */\n";
+    if (filters_ > 0)
+      text += fmt::format(
+          "  float filter[{}][4]; /* low-passes of the temperature */\n"
+          "  int started;        /* they have their first temperature */\n",
+          filters_);
     text += fmt::format(
-        "typedef struct {{\n  float period;      /* [s] */\n  uint32_t "
-        "samples;  /* since power-on */\n  int clamped;       /* whether the "
-        "last temperature was out of range */\n{}}} {}_state;\n\n",
-        filters_ > 0
-            ? fmt::format("  float filter[{}][4]; /* low-passes */\n", filters_)
-            : "",
+        "  int clamped; /* the last temperature was out of range, or NaN */\n"
+        "}} {}_state;\n\n",
         name_);
     text += fmt::format(
         "/* At every power-on. Samples then come every `period` seconds. 0, or "
-        "-1 for a\n   period that is not above 0. */\n"
+        "-1 for a\n   period that is not above 0 or not finite. */\n"
         "int {0}_init({0}_state *state, float period);\n\n"
-        "/* Compensated rate [deg/s] of the next sample. */\n"
+        "/* Compensated rate [deg/s] of the next sample; NaN when an input is, "
+        "and filters\n   then wait for the next temperature. */\n"
         "float {0}_step({0}_state *state, const {0}_sample *sample);\n\n"
         "/* CRC-32 of the parameters as they lie in memory: {0}_CRC. */\n"
         "uint32_t {0}_crc(void);\n\n"
@@ -101,15 +106,15 @@ class Writer {
     std::string text = fmt::format(
         "/* See {0}.h. The same bits everywhere need a compiler that does not "
         "contract\n   a * b + c: gcc and clang want -ffp-contract=off. */\n"
-        "#include \"{0}.h\"\n\n#include <string.h>\n\n",
+        "#include \"{0}.h\"\n\n#include <float.h>\n#include <string.h>\n\n",
         name_);
     for (const FirmwareArray& array : model_.arrays())
       text += array_text(array);
-    text += "\n" + runtime();
+    text += "\n";
+    text += runtime();
+    if (uses_inputs_) text += bias_function();
     return text + crc_function() + init_function() + step_function();
   }
-
-  std::string self_test() const;
 
  private:
   std::string about() const {
@@ -117,7 +122,7 @@ class Writer {
     std::string text = fmt::format(
         "/* Compensator of a gyro's drift: {}.\n   Compensated rate = (rate - "
         "bias){}.\n",
-        p.method, c_.scale_factor ? " / scale factor" : "");
+        c_comment(p.method), c_.scale_factor ? " / scale factor" : "");
     for (std::size_t i = 0; i < c_.inputs.size() && uses_inputs_; ++i)
       text += fmt::format("   x[{}]: {}\n", i, input_name(c_.inputs[i]));
     text += fmt::format(
@@ -162,22 +167,22 @@ class Writer {
   std::string init_function() const {
     std::string text = fmt::format(
         "int {0}_init({0}_state *state, float period) {{\n"
-        "  if (!(period > 0.0f)) return -1;\n"
-        "  memset(state, 0, sizeof *state);\n"
-        "  state->period = period;\n",
+        "  if (!(period > 0.0f && period <= FLT_MAX)) return -1;\n"
+        "  memset(state, 0, sizeof *state);\n",
         name_);
+    if (clock_) text += "  state->period = period;\n";
     int filter = 0;
     for (std::size_t i = 0; i < c_.inputs.size() && uses_inputs_; ++i)
       if (has_filter(c_.inputs[i]))
         text += fmt::format(
-            "  lowpass_init(state->filter[{}], period, time_constants[{}]);\n",
+            "  start_lowpass(state->filter[{}], period, time_constants[{}]);\n",
             filter++, i);
     return text + "  return 0;\n}\n\n";
   }
 
   std::string step_function() const;
   std::string input_lines() const;
-  std::string bias_lines() const;
+  std::string bias_function() const;
   std::string network_lines() const;
 
   std::size_t layers() const {
@@ -186,7 +191,7 @@ class Writer {
 
   const Compensator& c_;
   const std::string& name_;
-  mutable FirmwareModel model_;  // its state serves the golden samples
+  const FirmwareModel model_;
   int filters_ = 0;
   bool clock_ = false, uses_inputs_ = true;
 };
@@ -204,10 +209,8 @@ std::string Writer::input_lines() const {
             value = fmt::format("sample->{}", kFirmwareFields[k]);
         break;
       case InputKind::kSincePowerOn:
-        value = fmt::format(
-            "exp_minus((float)state->samples * state->period / "
-            "time_constants[{}])",
-            i);
+        value =
+            fmt::format("exp_minus(since_power_on / time_constants[{}])", i);
         break;
       case InputKind::kTemperatureLowpass:
         value = fmt::format("T - lowpass_lag(state->filter[{}], first, T)",
@@ -226,51 +229,78 @@ std::string Writer::input_lines() const {
   return text;
 }
 
-std::string Writer::network_lines() const {
-  const std::vector<int>& sizes =
-      std::get<BpNetwork>(c_.bias.function).layer_sizes();
-  std::string text, from = "x";
-  for (std::size_t k = 1; k < sizes.size(); ++k) {
-    const bool last = k + 1 == sizes.size();
-    const std::string to = last ? "y" : fmt::format("a{}[o]", k);
-    text += fmt::format(
-        "  for (o = 0; o < {0}; ++o) {{\n"
-        "    float z = biases_{1}[o];\n"
-        "    for (i = 0; i < {2}; ++i) z = z + weights_{1}[o * {2} + i] * "
-        "{3}[i];\n"
-        "    {4} = {5};\n  }}\n",
-        sizes[k], k, sizes[k - 1], from, to, last ? "z" : "tanh_of(z)");
-    from = fmt::format("a{}", k);
-  }
+constexpr int kWrittenOut = 8;
+
+// The weighted sum of one neuron: few terms are written out, so that no loop
+// over them costs more than they do.
+std::string sum_text(std::size_t layer, int terms, const std::string& from) {
+  std::string text = fmt::format(
+      "    const float *w = weights_{0} + o * {1};\n"
+      "    float z = biases_{0}[o];\n",
+      layer, terms);
+  if (terms > kWrittenOut)
+    return text +
+           fmt::format("    for (i = 0; i < {}; ++i) z = z + w[i] * {}[i];\n",
+                       terms, from);
+  for (int i = 0; i < terms; ++i)
+    text += fmt::format("    z = z + w[{0}] * {1}[{0}];\n", i, from);
   return text;
 }
 
-std::string Writer::bias_lines() const {
+std::string Writer::network_lines() const {
+  const std::vector<int>& sizes =
+      std::get<BpNetwork>(c_.bias.function).layer_sizes();
+  const std::size_t output = sizes.size() - 1;
+  std::string arrays, text, from = "x";
+  for (std::size_t k = 1; k < output; ++k) {
+    text += fmt::format("  for (o = 0; o < {}; ++o) {{\n", sizes[k]) +
+            sum_text(k, sizes[k - 1], from);
+    from = fmt::format("a{}", k);
+    if (k + 1 < output) {
+      arrays += fmt::format("  float {}[{}];\n", from, sizes[k]);
+      text += fmt::format("    {}[o] = tanh_of(z);\n  }}\n", from);
+    } else {
+      text += fmt::format("    y = y + weights_{}[o] * tanh_of(z);\n  }}\n",
+                          output);
+    }
+  }
+  if (output == 1)
+    text = fmt::format(
+        "  for (o = 0; o < {}; ++o) y = y + weights_1[o] * x[o];\n", sizes[0]);
+  const bool loops = std::any_of(sizes.begin(), sizes.end() - 2,
+                                 [](int terms) { return terms > kWrittenOut; });
+  return fmt::format("  float y = biases_{}[0];\n{}  int {}o;\n", output,
+                     arrays, loops ? "i, " : "") +
+         text + "  return y;\n";
+}
+
+std::string Writer::bias_function() const {
   const std::string kind = kind_name(c_.bias);
   const auto count = [&](const char* name) {
     return model_.array(name).size();
   };
-  if (kind == "none") return "  y = 0.0f;\n";
-  if (kind == "constant") return "  y = constant[0];\n";
+  std::string text;
   if (kind == "table")
-    return fmt::format("  y = table_at(temperatures, values, {}, x[0]);\n",
+    text = fmt::format("  return table_at(temperatures, values, {}, x[0]);\n",
                        count("values"));
   if (kind == "spline")
-    return fmt::format("  y = spline_at(knots, values, seconds, {}, x[0]);\n",
-                       count("values"));
-  if (kind == "thermistor") return "  y = thermistor_at(network, x[0]);\n";
+    text =
+        fmt::format("  return spline_at(knots, values, seconds, {}, x[0]);\n",
+                    count("values"));
+  if (kind == "thermistor") text = "  return thermistor_at(network, x[0]);\n";
   if (kind == "fuzzy")
-    return fmt::format("  y = fuzzy_of(centres, width[0], rules, {}, {}, x);\n",
-                       count("centres"), c_.inputs.size());
+    text =
+        fmt::format("  return fuzzy_of(centres, width[0], rules, {}, {}, x);\n",
+                    count("centres"), c_.inputs.size());
   if (kind == "polynomial") {
-    std::string text =
-        fmt::format("  y = polynomial_of(coefficients, {}, x[0]);\n",
-                    count("coefficients"));
+    text = fmt::format("  float y = polynomial_of(coefficients, {}, x[0]);\n",
+                       count("coefficients"));
     for (std::size_t j = 1; j < c_.inputs.size(); ++j)
       text += fmt::format("  y = y + slopes[{}] * x[{}];\n", j - 1, j);
-    return text;
+    text += "  return y;\n";
   }
-  return network_lines();
+  if (kind == "bp") text = network_lines();
+  return "static float bias_of(const float *x) {\n" + text + "}\n\n";
 }
 
 std::string Writer::step_function() const {
@@ -278,20 +308,28 @@ std::string Writer::step_function() const {
       "float {0}_step({0}_state *state, const {0}_sample *sample) {{\n", name_);
   text += "  float T = sample->temperature_degC, y;\n";
   if (uses_inputs_) text += fmt::format("  float x[{}];\n", c_.inputs.size());
-  if (filters_ > 0) text += "  const int first = state->samples == 0;\n";
-  if (const auto* network = std::get_if<BpNetwork>(&c_.bias.function)) {
-    const std::vector<int>& sizes = network->layer_sizes();
-    for (std::size_t k = 1; k + 1 < sizes.size(); ++k)
-      text += fmt::format("  float a{}[{}];\n", k, sizes[k]);
-    text += "  int i, o;\n";
-  }
+  if (filters_ > 0) text += "  const int first = !state->started;\n";
+  if (clock_)
+    text +=
+        "  const float since_power_on = (float)state->samples * "
+        "state->period;\n"
+        "  if (state->samples < 0xffffffffu) ++state->samples;\n";
   text +=
-      "  state->clamped = !(T >= range[0]) || T > range[1];\n"
-      "  if (!(T >= range[0])) T = range[0];\n"
-      "  if (T > range[1]) T = range[1];\n";
-  if (uses_inputs_) text += input_lines();
-  text += "  if (state->samples < 0xffffffffu) ++state->samples;\n";
-  text += bias_lines();
+      "  state->clamped = 0;\n"
+      "  if (!(T >= range[0])) {\n"
+      "    state->clamped = 1;\n"
+      "    if (T != T) return T;\n"
+      "    T = range[0];\n"
+      "  } else if (T > range[1]) {\n"
+      "    state->clamped = 1;\n"
+      "    T = range[1];\n"
+      "  }\n";
+  if (filters_ > 0) text += "  state->started = 1;\n";
+  if (uses_inputs_)
+    text += input_lines() + "  y = bias_of(x);\n";
+  else
+    text +=
+        kind_name(c_.bias) == "none" ? "  y = 0.0f;\n" : "  y = constant[0];\n";
   text += "  y = sample->rate_deg_per_s - (unit[0] + unit[1] * y);\n";
   if (c_.scale_factor)
     text += fmt::format(
@@ -301,133 +339,12 @@ std::string Writer::step_function() const {
   return text + "  return y;\n}\n";
 }
 
-// What the self-test feeds: low + span u, u from a linear congruence.
-struct GoldenRange {
-  float low, span;
-};
-
-std::vector<GoldenRange> golden_ranges(const Compensator& c) {
-  std::vector<GoldenRange> ranges(kFirmwareSignalCount, {-100.0f, 200.0f});
-  const auto low = static_cast<float>(c.temperature_range.lowest);
-  const auto high = static_cast<float>(c.temperature_range.highest);
-  ranges[1] = {low - 5.0f, high - low + 10.0f};  // beyond both ends
-  for (std::size_t i = 0; i < c.inputs.size(); ++i)
-    for (std::size_t k = 2; k < kFirmwareSignalCount; ++k)
-      if (c.inputs[i].column == kFirmwareSignals[k]) {
-        const Scale& scale = c.bias.input_scales[i];
-        ranges[k] = {static_cast<float>(scale.centre - scale.half_width),
-                     static_cast<float>(2.0 * scale.half_width)};
-      }
-  return ranges;
-}
-
-constexpr float kGoldenPeriods[] = {0.01f, 0.1f, 1.0f, 20.0f};  // [s]
-
-std::string Writer::self_test() const {
-  const std::vector<GoldenRange> ranges = golden_ranges(c_);
-  std::uint32_t random = 1;
-  std::vector<float> answers;
-  for (int k = 0; k < kGoldenSamples; ++k) {
-    if (k % (kGoldenSamples / 4) == 0)
-      model_.start(kGoldenPeriods[k / (kGoldenSamples / 4)]);
-    FirmwareSample sample;
-    for (std::size_t s = 0; s < kFirmwareSignalCount; ++s) {
-      if (!model_.reads(s)) continue;
-      random = random * 1664525u + 1013904223u;
-      sample.value[s] =
-          ranges[s].low + ranges[s].span * (static_cast<float>(random >> 8) *
-                                            (1.0f / 16777216.0f));
-    }
-    answers.push_back(model_.step(sample));
-  }
-  std::string golden;
-  for (int k = 0; k < kGoldenSamples; k += kGoldenStep)
-    golden += fmt::format(
-        "{}0x{:08x}u,", k / kGoldenStep % 6 == 0 ? "\n  " : " ",
-        std::bit_cast<std::uint32_t>(answers[static_cast<std::size_t>(k)]));
-  std::string fill;
-  for (std::size_t s = 0; s < kFirmwareSignalCount; ++s)
-    if (model_.reads(s))
-      fill += fmt::format("    sample.{} = {} + {} * uniform();\n",
-                          kFirmwareFields[s], literal(ranges[s].low),
-                          literal(ranges[s].span));
-  return fmt::format(
-      R"(/* Runs {0} through {1} samples and compares with the bits expected: every
-   {2}th answer, and the CRC-32 of all. Exit status 0 when they are equal. */
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
-#include "{0}.h"
-
-static const uint32_t golden[{3}] = {{{4}
-}};
-static const float periods[4] = {{{5}, {6}, {7}, {8}}}; /* [s] */
-
-static uint32_t state_of_uniform = 1;
-
-static float uniform(void) {{
-  state_of_uniform = state_of_uniform * 1664525u + 1013904223u;
-  return (float)(state_of_uniform >> 8) * (1.0f / 16777216.0f);
-}}
-
-static uint32_t crc_with(uint32_t crc, uint32_t bits) {{
-  int byte, bit;
-  for (byte = 0; byte < 4; ++byte) {{
-    crc ^= (bits >> (8 * byte)) & 0xffu;
-    for (bit = 0; bit < 8; ++bit)
-      crc = (crc >> 1) ^ (0xedb88320u & (0u - (crc & 1u)));
-  }}
-  return crc;
-}}
-
-int main(void) {{
-  {0}_state state;
-  {0}_sample sample;
-  uint32_t crc = 0xffffffffu;
-  int k, wrong = 0;
-  if ({0}_crc() != {0}_CRC) {{
-    puts("{0}: the parameters are damaged");
-    return 1;
-  }}
-  for (k = 0; k < {1}; ++k) {{
-    float answer;
-    uint32_t bits;
-    if (k % {9} == 0 && {0}_init(&state, periods[k / {9}]) != 0) return 1;
-{10}    answer = {0}_step(&state, &sample);
-    memcpy(&bits, &answer, sizeof bits);
-    crc = crc_with(crc, bits);
-    if (k % {2} == 0 && bits != golden[k / {2}]) ++wrong;
-  }}
-  if (wrong != 0 || ~crc != 0x{11:08x}u) {{
-    printf("{0}: %d of {3} answers differ, crc %08lx\n", wrong,
-           (unsigned long)~crc);
-    return 1;
-  }}
-  puts("{0}: {1} answers equal to the last bit");
-  return 0;
-}}
-)",
-      name_, kGoldenSamples, kGoldenStep, kGoldenSamples / kGoldenStep, golden,
-      literal(kGoldenPeriods[0]), literal(kGoldenPeriods[1]),
-      literal(kGoldenPeriods[2]), literal(kGoldenPeriods[3]),
-      kGoldenSamples / 4, fill, crc32(answers));
-}
-
 }  // namespace
 
 ExportedC export_c(const Compensator& compensator, const std::string& name) {
   const Writer writer(compensator, name);
-  return {writer.header(), writer.source(), writer.self_test()};
-}
-
-std::string c_identifier(const std::string& text) {
-  std::string name;
-  for (const unsigned char c : text)
-    name += std::isalnum(c) != 0 && c < 0x80 ? static_cast<char>(c) : '_';
-  if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) != 0)
-    name.insert(0, "c_");
-  return name;
+  return {writer.header(), writer.source(),
+          self_test_source(compensator, name)};
 }
 
 }  // namespace beamgyro

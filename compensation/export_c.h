@@ -15,18 +15,9 @@ struct ExportedC {
   std::string self_test;  // NAME_selftest.c, the only one with main()
 };
 
-/// Samples the self-test runs through, in four power cycles of different rates.
-constexpr int kGoldenSamples = 10000;
-/// Of them, one in so many is compared on its own, all by their CRC-32.
-constexpr int kGoldenStep = 100;
-
 /// `name` is a C identifier. Bits are the same on every machine with IEEE-754
 /// single precision when the compiler does not contract a * b + c: gcc and
 /// clang want -ffp-contract=off. Throws as FirmwareModel.
 ExportedC export_c(const Compensator& compensator, const std::string& name);
-
-/// A C identifier from a file name: what is neither letter nor digit becomes _,
-/// and a digit is not the first.
-std::string c_identifier(const std::string& text);
 
 }  // namespace beamgyro

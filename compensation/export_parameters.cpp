@@ -36,9 +36,9 @@ std::string obstacle(const Compensator& c) {
 
 BiasModel as_polynomial(const BiasModel& bias) {
   if (const auto* constant = std::get_if<ConstantBias>(&bias.function))
-    return {{Scale{}}, {}, Polynomial{{constant->value}}};
+    return {{Scale{}}, bias.bias_scale, Polynomial{{constant->value}}};
   if (std::holds_alternative<NoBias>(bias.function))
-    return {{Scale{}}, {}, Polynomial{{0.0}}};
+    return {{Scale{}}, bias.bias_scale, Polynomial{{0.0}}};
   return bias;
 }
 
@@ -64,17 +64,16 @@ BiasModel autopilot_cubic(const Compensator& c, bool fit_cubic) {
   if (reason.empty()) return as_polynomial(c.bias);
   if (fit_cubic) return c.baseline;
   const Provenance& p = c.provenance;
+  const bool both = p.held_out_rms && p.baseline_held_out_rms;
   throw std::invalid_argument(fmt::format(
       "the format holds a cubic of the temperature, and of this compensator "
       "{}; "
       "a cubic fitted to the same rows has {:.4g} deg/s rms in-sample{} where "
       "this one has {:.4g}{}; --fit-cubic exports it",
       reason, p.baseline_in_sample_rms,
-      p.baseline_held_out_rms
-          ? fmt::format(" and {:.4g} held-out", *p.baseline_held_out_rms)
-          : "",
+      both ? fmt::format(" and {:.4g} held-out", *p.baseline_held_out_rms) : "",
       p.in_sample_rms,
-      p.held_out_rms ? fmt::format(" and {:.4g}", *p.held_out_rms) : ""));
+      both ? fmt::format(" and {:.4g}", *p.held_out_rms) : ""));
 }
 
 std::string px4_parameters(const BiasModel& cubic,

@@ -107,10 +107,25 @@ struct KindArrays {
   }
 };
 
+int drive_frequency_of(const Compensator& c) {
+  for (std::size_t i = 0; i < c.inputs.size(); ++i)
+    if (c.inputs[i].column == kFirmwareSignals[kFirmwareDriveFrequency]) {
+      const double centre = c.bias.input_scales[i].centre;
+      if (!(std::abs(centre) < 1e9))
+        throw std::invalid_argument(
+            fmt::format("the drive frequency {} Hz is beyond 1e9 Hz", centre));
+      return static_cast<int>(std::lround(centre));
+    }
+  return 0;
+}
+
 std::vector<FirmwareArray> arrays_of(const Compensator& c) {
   std::vector<double> centres, gains, constants;
   for (std::size_t i = 0; i < c.inputs.size(); ++i) {
-    centres.push_back(c.bias.input_scales[i].centre);
+    const bool frequency =
+        c.inputs[i].column == kFirmwareSignals[kFirmwareDriveFrequency];
+    centres.push_back(c.bias.input_scales[i].centre -
+                      (frequency ? drive_frequency_of(c) : 0));
     gains.push_back(1.0 / c.bias.input_scales[i].half_width);
     constants.push_back(c.inputs[i].time_constant);
   }
@@ -154,6 +169,7 @@ std::uint32_t crc32(const std::vector<float>& values) {
 struct FirmwareModel::State {
   float period = 0.0f;
   std::uint32_t samples = 0;
+  bool started = false;                       // since the first temperature
   std::vector<std::array<float, 4>> filters;  // one per input
 };
 
@@ -161,6 +177,7 @@ FirmwareModel::FirmwareModel(const Compensator& c)
     : inputs_(c.inputs),
       kind_(kind_name(c.bias)),
       corrects_scale_factor_(c.scale_factor.has_value()),
+      drive_frequency_(drive_frequency_of(c)),
       arrays_(arrays_of(c)),
       state_(std::make_unique<State>()) {
   if (const auto* network = std::get_if<BpNetwork>(&c.bias.function))
@@ -193,11 +210,12 @@ std::uint32_t FirmwareModel::crc() const {
 void FirmwareModel::start(float period) {
   state_->period = period;
   state_->samples = 0;
+  state_->started = false;
   state_->filters.assign(inputs_.size(), {});
   const std::vector<float>& constants = array("time_constants");
   for (std::size_t i = 0; i < inputs_.size(); ++i)
     if (constants[i] > 0.0f)
-      lowpass_init(state_->filters[i].data(), period, constants[i]);
+      start_lowpass(state_->filters[i].data(), period, constants[i]);
 }
 
 float FirmwareModel::step(const FirmwareSample& sample) {
@@ -205,10 +223,14 @@ float FirmwareModel::step(const FirmwareSample& sample) {
   const std::vector<float>& centres = array("centres_of_inputs");
   const std::vector<float>& gains = array("gains_of_inputs");
   const std::vector<float>& constants = array("time_constants");
+  const std::uint32_t samples = state_->samples;
+  if (state_->samples < 0xffffffffu) ++state_->samples;
   float T = sample.value[1];
-  if (!(T >= range[0])) T = range[0];
+  if (std::isnan(T)) return T;
+  if (T < range[0]) T = range[0];
   if (T > range[1]) T = range[1];
-  const int first = state_->samples == 0 ? 1 : 0;
+  const int first = state_->started ? 0 : 1;
+  state_->started = true;
   std::vector<float> x(inputs_.size());
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const Input& input = inputs_[i];
@@ -216,7 +238,7 @@ float FirmwareModel::step(const FirmwareSample& sample) {
     if (input.kind == InputKind::kColumn && input.column != "temperature")
       value = sample.value[signal_of(input)];
     if (input.kind == InputKind::kSincePowerOn)
-      value = exp_minus(static_cast<float>(state_->samples) * state_->period /
+      value = exp_minus(static_cast<float>(samples) * state_->period /
                         constants[i]);
     if (input.kind == InputKind::kTemperatureLowpass)
       value = T - lowpass_lag(state_->filters[i].data(), first, T);
@@ -224,7 +246,6 @@ float FirmwareModel::step(const FirmwareSample& sample) {
       value = lowpass_lag(state_->filters[i].data(), first, T) / constants[i];
     x[i] = (value - centres[i]) * gains[i];
   }
-  if (state_->samples < 0xffffffffu) ++state_->samples;
   const std::vector<float>& unit = array("unit");
   float rate = sample.value[0] - (unit[0] + unit[1] * bias(x));
   if (corrects_scale_factor_)

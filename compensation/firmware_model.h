@@ -17,11 +17,14 @@ constexpr const char* kFirmwareSignals[] = {
     "rate",       "temperature",     "output",
     "quadrature", "drive_frequency", "drive_voltage"};
 constexpr const char* kFirmwareFields[] = {
-    "rate_deg_per_s",       "temperature_degC",   "output_V",
-    "quadrature_deg_per_s", "drive_frequency_Hz", "drive_voltage_V"};
+    "rate_deg_per_s",       "temperature_degC",          "output_V",
+    "quadrature_deg_per_s", "drive_frequency_change_Hz", "drive_voltage_V"};
 constexpr std::size_t kFirmwareSignalCount = 6;
 
-/// One sample, indexed as kFirmwareSignals.
+constexpr std::size_t kFirmwareDriveFrequency = 4;
+
+/// One sample, indexed as kFirmwareSignals. The drive frequency is told as its
+/// change from FirmwareModel::drive_frequency(): of 9 kHz a single holds 1 mHz.
 struct FirmwareSample {
   float value[kFirmwareSignalCount] = {};
 };
@@ -46,12 +49,16 @@ class FirmwareModel {
   /// At power-on; samples then come every `period` [s], > 0.
   void start(float period);
 
-  /// Compensated rate [deg/s].
+  /// Compensated rate [deg/s]. Temperatures out of range are clamped; for one
+  /// that is NaN it is NaN, and filters wait for the next.
   float step(const FirmwareSample& sample);
 
   const std::vector<FirmwareArray>& arrays() const { return arrays_; }
   const std::vector<float>& array(std::string_view name) const;
   bool reads(std::size_t signal) const;  // index of kFirmwareSignals
+
+  /// Whole [Hz] nearest to the middle of the drive frequencies of training.
+  int drive_frequency() const { return drive_frequency_; }
 
   /// crc32() of all arrays in their order.
   std::uint32_t crc() const;
@@ -65,6 +72,7 @@ class FirmwareModel {
   std::string kind_;
   std::vector<int> layers_;  // of a network
   bool corrects_scale_factor_;
+  int drive_frequency_;  // [Hz]
   std::vector<FirmwareArray> arrays_;
   std::unique_ptr<State> state_;
 };

@@ -1,0 +1,341 @@
+# SPDX-License-Identifier: MIT
+"""`export` of the shipped program: C source on this machine, and parameters of
+autopilots."""
+
+import math
+import re
+import shutil
+import unittest
+
+import h5py
+import numpy as np
+
+from exported import MODELS, WARNINGS, ExportTest
+from formats_test import rows, section
+
+SELF_TEST = ["net.c", "net_selftest.c", "-o", "selftest"]  # no -lm
+
+# Rows "power-on, rate, temperature, ..." in, compensated rates out.
+DRIVER = """\
+#include <stdio.h>
+#include "net.h"
+
+int main(void) {{
+  net_state state;
+  net_sample sample;
+  float rate;
+  int power_on;
+  while (scanf("%d", &power_on) == 1) {{
+{reads}    if (power_on && net_init(&state, 1.0f) != 0) return 1;
+    rate = net_step(&state, &sample);
+    printf("%.9g %d\\n", (double)rate, state.clamped);
+  }}
+  return 0;
+}}
+"""
+
+COLUMNS = {"rate": "rate_deg_per_s", "temperature": "temperature_degC",
+           "quadrature": "quadrature_deg_per_s",
+           "drive_frequency": "drive_frequency_change_Hz",
+           "drive_voltage": "drive_voltage_V"}
+
+
+class ExportC(ExportTest):
+    def test_every_kind_answers_to_the_last_bit_without_a_warning(self):
+        compilers = [("cc", []), ("cc", ["-x", "c++"]), ("clang", [])]
+        for kind in MODELS:
+            folder = self.export(kind)
+            self.assertEqual({path.name for path in folder.iterdir()},
+                             {"net.h", "net.c", "net_selftest.c"})
+            for compiler, more in compilers:
+                if shutil.which(compiler) is None:
+                    continue
+                options = WARNINGS if not more else [
+                    w for w in WARNINGS if w != "-std=c99"]
+                with self.subTest(f"{kind}: {compiler} {more}"):
+                    self.compile(folder, *options, "-O2", *more, *SELF_TEST,
+                                 compiler=compiler)
+                    self.assertEqual(
+                        self.run_binary(folder / "selftest"),
+                        "net: 10000 answers equal to the last bit\n")
+
+    def test_damaged_parameters_and_damaged_code_are_noticed(self):
+        folder = self.export("network")
+        source = (folder / "net.c").read_text()
+        start = source.index("{", source.index("weights_2["))
+        digit = next(at for at in range(start, len(source))
+                     if source[at] in "123456789")
+        other = str(10 - int(source[digit])) if source[digit] != "5" else "6"
+        for damaged, says in [
+                (source[:digit] + other + source[digit + 1:],
+                 "net: the parameters are damaged\n"),
+                (source.replace("0.123534271f", "0.123534301f"),
+                 "answers differ")]:
+            self.assertNotEqual(damaged, source)
+            (folder / "net.c").write_text(damaged)
+            self.compile(folder, *WARNINGS, "-O2", *SELF_TEST)
+            self.assertIn(says, self.run_binary(folder / "selftest", status=1))
+
+    def driver_answers(self, folder, recording):
+        """Rates and clamped flags of the powered samples."""
+        header = (folder / "net.h").read_text()
+        columns = [name for name, field in COLUMNS.items()
+                   if f"float {field};" in header]
+        (folder / "driver.c").write_text(DRIVER.format(reads="".join(
+            f'    if (scanf("%f", &sample.{COLUMNS[name]}) != 1) return 1;\n'
+            for name in columns)))
+        self.compile(folder, *WARNINGS, "-O2", "net.c", "driver.c", "-o",
+                     "driver")
+        reference = re.search("#define net_DRIVE_FREQUENCY (\\d+)", header)
+        less = {"drive_frequency": float(reference[1]) if reference else 0}
+        off = recording["status"][()] & 1
+        rows = [f"{k == 0 or off[k - 1]:d} " + " ".join(
+                    f"{np.float32(recording[name][k] - less.get(name, 0)):.9g}"
+                    for name in columns)
+                for k in np.flatnonzero(off == 0)]
+        answer = self.run_binary(folder / "driver", given="\n".join(rows))
+        return np.loadtxt(answer.splitlines())
+
+    def test_answers_to_a_recording_are_those_of_compensate(self):
+        """Singles against doubles: 6e-8 of up to 50 deg/s, and of inputs that
+        are scaled up, as the drive frequency; measured 2e-5 at most."""
+        for kind in MODELS:
+            folder = self.export(kind)
+            self.ok("compensate", f"{kind}.json", "train.h5", "-o", "out.h5",
+                    "--quiet")
+            with h5py.File(self.dir / "out.h5") as file, self.subTest(kind):
+                expected = file["compensated_rate"][()]
+                expected = expected[~np.isnan(expected)]
+                found = self.driver_answers(folder, file)
+                self.assertEqual(len(found), len(expected))
+                worst = np.max(np.abs(found[:, 0] - expected))
+                self.assertLess(worst, 1e-3)
+                self.assertFalse(found[:, 1].any())
+
+    def test_clamped_is_told_and_no_number_gives_none(self):
+        folder = self.export("cubic")
+        with h5py.File(self.dir / "train.h5") as file:
+            low = np.nanmin(file["temperature"][()])
+        (folder / "driver.c").write_text(DRIVER.format(
+            reads='    if (scanf("%f %f", &sample.rate_deg_per_s, '
+                  "&sample.temperature_degC) != 2) return 1;\n"))
+        self.compile(folder, *WARNINGS, "net.c", "driver.c", "-o", "driver")
+        rows = f"1 0 {low + 1}\n0 0 {low - 20}\n0 0 {low - 30}\n0 0 nan\n" \
+               f"0 0 99\n0 0 {low + 1}\n"
+        lines = [line.split() for line in
+                 self.run_binary(folder / "driver", given=rows).splitlines()]
+        self.assertEqual([flag for _, flag in lines], list("011110"))
+        rates = [float(rate) for rate, _ in lines]
+        self.assertEqual(rates[1], rates[2])
+        self.assertTrue(math.isnan(rates[3]))
+        self.assertEqual(rates[5], rates[0])
+
+    def test_init_refuses_a_period_that_is_none(self):
+        folder = self.export("3_8_1")
+        (folder / "periods.c").write_text("""\
+#include <stdio.h>
+#include "net.h"
+
+int main(void) {
+  const float periods[] = {0.0f, -1.0f, 1e30f * 1e30f, 0.001f, 100.0f};
+  net_state state;
+  int k;
+  for (k = 0; k < 5; ++k) printf("%d ", net_init(&state, periods[k]));
+  return 0;
+}
+""")
+        self.compile(folder, "net.c", "periods.c", "-o", "periods")
+        self.assertEqual(self.run_binary(folder / "periods"), "-1 -1 -1 0 0 ")
+
+    def test_same_bytes_again(self):
+        for form in ["c", "px4", "ardupilot"]:
+            folder = self.export("cubic", form=form)
+            first = {path.name: path.read_bytes() for path in folder.iterdir()}
+            self.ok("export", "cubic.json", "--format", form, "-o", "again",
+                    "--name", "net")
+            for name, data in first.items():
+                self.assertEqual((self.dir / "again" / name).read_bytes(), data)
+
+    def test_the_name_comes_from_the_file_or_the_option(self):
+        (self.dir / self.train("cubic")).rename(self.dir / "2nd gyro.v1.json")
+        self.ok("export", "2nd gyro.v1.json", "--format", "c", "-o", "a/b")
+        header = (self.dir / "a/b/c_2nd_gyro_v1.h").read_text()
+        self.assertIn("float c_2nd_gyro_v1_step(", header)
+        for name in ["lowpass", "crc", "main", "int"]:  # as parts of names
+            self.ok("export", "2nd gyro.v1.json", "--format", "c", "-o", name,
+                    "--name", name)
+            self.compile(self.dir / name, *WARNINGS, f"{name}.c",
+                         f"{name}_selftest.c", "-o", "t")
+            self.run_binary(self.dir / name / "t")
+
+
+class ExportParameters(ExportTest):
+    def parameters(self, kind, form, *arguments):
+        """Values by name."""
+        folder = self.export(kind, *arguments, form=form)
+        ending, separator, at = (".params", "\t", 2) if form == "px4" else \
+            (".parm", ",", 0)
+        path, = folder.glob("net.par*")
+        self.assertEqual(path.name, f"net{ending}")
+        rows = [line.split(separator) for line in path.read_text().splitlines()
+                if not line.startswith("#")]
+        shutil.rmtree(folder)
+        return {row[at]: float(np.float32(row[at + 1])) for row in rows}
+
+    def bias(self, kind):
+        """Temperatures, and what `compensate` took off there."""
+        self.ok("compensate", f"{kind}.json", "train.h5", "-o", "out.h5",
+                "--quiet")
+        with h5py.File(self.dir / "out.h5") as file:
+            on = file["status"][()] & 1 == 0
+            return (file["temperature"][()][on],
+                    (file["rate"][()] - file["compensated_rate"][()])[on])
+
+    def test_px4_takes_off_what_compensate_takes_off(self):
+        for kind in ["none", "constant", "cubic", "px4"]:
+            p = self.parameters(kind, "px4", "--axis", "y", "--instance", 3,
+                                "--device-id", 4_000_000)
+            temperature, bias = self.bias(kind)
+            d = np.clip(temperature, p["TC_G3_TMIN"], p["TC_G3_TMAX"]) \
+                - p["TC_G3_TREF"]
+            offset = sum(p[f"TC_G3_X{k}_1"] * d ** k for k in range(4))
+            with self.subTest(kind):
+                self.assertLess(np.max(np.abs(np.degrees(offset) - bias)), 1e-6)
+                self.assertEqual(p["TC_G3_ID"], 4_000_000)
+                self.assertEqual(p["TC_G3_X0_0"], 0)
+
+    def test_ardupilot_takes_off_what_compensate_takes_off(self):
+        for kind in ["none", "constant", "cubic", "ardupilot"]:
+            p = self.parameters(kind, "ardupilot", "--axis", "x", "--instance",
+                                2)
+            temperature, bias = self.bias(kind)
+            d = np.clip(temperature, p["INS_TCAL2_TMIN"],
+                        p["INS_TCAL2_TMAX"]) - 35
+            offset = p["INS_GYR2OFFS_X"] + 1e-6 * sum(
+                p[f"INS_TCAL2_GYR{k}_X"] * d ** k for k in (1, 2, 3))
+            with self.subTest(kind):
+                self.assertEqual(p["INS_GYR2_CALTEMP"], 35)
+                self.assertLess(np.max(np.abs(np.degrees(offset) - bias)), 1e-6)
+
+    def test_the_first_gyro_and_axis_z_without_options(self):
+        p = self.parameters("cubic", "px4", "--device-id", 1)
+        self.assertNotEqual(p["TC_G0_X0_2"], 0)
+        self.assertEqual(p["TC_G0_X0_1"], 0)
+        a = self.parameters("cubic", "ardupilot")
+        self.assertNotEqual(a["INS_GYROFFS_Z"], 0)
+
+    def test_px4_without_a_device_is_warned_of(self):
+        answer = self.beamgyro("export", self.train("cubic"), "--format", "px4",
+                               "-o", "out")
+        self.assertEqual(answer.returncode, 0)
+        self.assertIn("--device-id", answer.stderr)
+        answer = self.beamgyro("export", "cubic.json", "--format", "px4", "-o",
+                               "out", "--device-id", 5)
+        self.assertEqual(answer.stderr, "")
+
+    def test_fit_cubic_exports_the_cubic_of_the_same_rows(self):
+        of_cubic = self.parameters("cubic", "px4", "--device-id", 1)
+        self.rejected("export", self.train("spline"), "--format", "px4", "-o",
+                      "none", says=["spline.json: ", "of kind spline",
+                                    "deg/s rms in-sample", "--fit-cubic"])
+        self.assertFalse((self.dir / "none").exists())
+        of_spline = self.parameters("spline", "px4", "--device-id", 1,
+                                    "--fit-cubic")
+        self.assertEqual(set(of_spline), set(of_cubic))
+        for name, value in of_cubic.items():
+            self.assertAlmostEqual(of_spline[name], value,
+                                   delta=1e-5 * abs(value) + 1e-12)
+
+
+class BadExport(ExportTest):
+    def refused(self, *arguments, says):
+        self.rejected("export", *arguments, says=says)
+        self.assertFalse((self.dir / "out").exists())
+
+    def test_bad_input_leaves_nothing(self):
+        cubic = self.train("cubic")
+        (self.dir / "broken.json").write_text("{")
+        self.write("other.json", '{"filetype": "other"}')
+        to = ["-o", "out"]
+        self.refused("gone.json", "--format", "c", *to, says="gone.json")
+        self.refused("broken.json", "--format", "c", *to, says="broken.json")
+        self.refused("other.json", "--format", "c", *to, says="other.json")
+        self.refused(cubic, "--format", "rust", *to, says="rust")
+        self.refused(cubic, *to, says="--format")
+        self.refused(cubic, "--format", "c", says="--output")
+        self.refused(cubic, "--format", "px4", *to, "--axis", "w", says="w")
+        for form, instance in [("px4", 4), ("ardupilot", 0), ("ardupilot", 4)]:
+            self.refused(cubic, "--format", form, *to, "--instance", instance,
+                         says=[cubic, f"instance {instance}"])
+        self.refused(cubic, "--format", "px4", *to, "--device-id", 2 ** 31,
+                     says="--device-id")
+
+    def test_options_of_another_format_are_refused(self):
+        cubic = self.train("cubic")
+        for form, option in [("c", ["--axis", "x"]), ("c", ["--instance", 1]),
+                             ("c", ["--device-id", 1]), ("c", ["--fit-cubic"]),
+                             ("ardupilot", ["--device-id", 1])]:
+            self.refused(cubic, "--format", form, "-o", "out", *option,
+                         says=[option[0], form])
+
+    def test_what_is_in_the_way_is_named(self):
+        cubic = self.train("cubic")
+        self.write("file", "x")
+        self.refused(cubic, "--format", "c", "-o", "file", says="file")
+        self.refused(cubic, "--format", "c", "-o", "file/below", says="file")
+        (self.dir / "folder/net.c").mkdir(parents=True)
+        self.refused(cubic, "--format", "c", "-o", "folder", "--name", "net",
+                     says="net.c")
+
+    def test_the_compensator_is_not_written_over(self):
+        (self.dir / self.train("cubic")).rename(self.dir / "gyro.parm")
+        self.refused("gyro.parm", "--format", "ardupilot", "-o", ".",
+                     says="is read by this command")
+
+    def test_a_range_ardupilot_does_not_take(self):
+        text = (self.dir / self.train("cubic")).read_text()
+        start = text.index("[", text.index('"temperature_range_degC"'))
+        end = text.index("]", start)
+        self.write("cold.json", text[:start] + "[-71.0, 20.0" + text[end:])
+        self.refused("cold.json", "--format", "ardupilot", "-o", "out",
+                     says=["cold.json", "-70 to 80 degC"])
+
+
+class ExportPage(ExportTest):
+    """docs/formats.md against what is written."""
+
+    def test_names_of_the_exported_code(self):
+        header = (self.export("network") / "net.h").read_text()
+        documented = rows(section("Exported code"))
+        self.assertEqual(len(documented), 11)
+        for name in set(documented) - {"output_V"}:
+            self.assertIn(name.replace("NAME", "net"), header)
+        sample = re.search(r"typedef struct {([^}]*)} net_sample;", header)[1]
+        for field in re.findall(r"float (\w+);", sample):
+            self.assertIn(field, documented)
+
+    def test_names_of_autopilot_parameters(self):
+        documented = rows(section("Autopilot parameters"))
+        for form, n, powers, axes, separator, at in [
+                ("px4", "0", "0123", "012", "\t", 2),
+                ("ardupilot", "2", "123", "XYZ", ",", 0)]:
+            path, = self.export("cubic", "--instance", n, form=form) \
+                .glob("net.par*")
+            written = {line.split(separator)[at] for line in
+                       path.read_text().splitlines() if line[0] != "#"}
+            prefix = "TC_" if form == "px4" else "INS_"
+            expected = set()
+            for name in documented:
+                if not name.startswith(prefix):
+                    continue
+                name = re.sub("(G|TCAL|GYR)n", rf"\g<1>{n}", name)
+                for k in powers if "k_" in name else "-":
+                    for axis in axes if name.endswith("_a") else "-":
+                        expected.add(re.sub("k_", f"{k}_", re.sub(
+                            "_a$", f"_{axis}", name)))
+            self.assertEqual(written, expected)
+            shutil.rmtree(path.parent)
+
+
+if __name__ == "__main__":
+    unittest.main()
