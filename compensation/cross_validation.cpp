@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <stdexcept>
+#include <thread>
 
 namespace beamgyro {
 namespace {
@@ -45,6 +48,52 @@ Fold fold_without(int group, const TrainingRows& rows, const RowGroups& groups,
   return fold;
 }
 
+FitSpec as_in_fold(FitSpec kind, int cores) {
+  if (auto* bp = std::get_if<BpSpec>(&kind)) {
+    bp->training.restarts = std::min(bp->training.restarts, kFoldRestarts);
+    bp->training.cores = cores;
+  }
+  return kind;
+}
+
+// Folds by number on several threads; of those that fail the first is told.
+class FoldWork {
+ public:
+  FoldWork(int count, int threads)
+      : count_(count),
+        cores_(threads > 0 ? threads
+                           : static_cast<int>(std::max(
+                                 1u, std::thread::hardware_concurrency()))),
+        at_once_(std::min(cores_, count)) {}
+
+  int cores_of_each() const { return std::max(1, cores_ / at_once_); }
+
+  template <class F>
+  void run(const F& fold) {
+    std::vector<std::exception_ptr> failures(static_cast<std::size_t>(count_));
+    std::atomic<int> next = 0;
+    const auto work = [&] {
+      for (int k = next++; k < count_; k = next++) {
+        try {
+          fold(k);
+        } catch (...) {
+          failures[static_cast<std::size_t>(k)] = std::current_exception();
+        }
+      }
+    };
+    {
+      std::vector<std::jthread> others;
+      for (int n = 1; n < at_once_; ++n) others.emplace_back(work);
+      work();
+    }
+    for (const std::exception_ptr& failure : failures)
+      if (failure) std::rethrow_exception(failure);
+  }
+
+ private:
+  int count_, cores_, at_once_;
+};
+
 }  // namespace
 
 double rms_of(const GroupErrors& errors) { return std::sqrt(errors.mean()); }
@@ -69,7 +118,7 @@ GroupErrors group_errors(const BiasModel& model, const TrainingRows& rows,
 
 Unseen cross_validate(const FitSpec& kind, const std::vector<Input>& inputs,
                       const TrainingRows& rows, const RowGroups& groups,
-                      std::uint64_t seed) {
+                      std::uint64_t seed, int threads) {
   if (groups.count < 2)
     throw std::invalid_argument(fmt::format(
         "cross-validation by {} needs two or more; the recordings have {}",
@@ -77,23 +126,25 @@ Unseen cross_validate(const FitSpec& kind, const std::vector<Input>& inputs,
   const bool stops_early =
       std::holds_alternative<BpSpec>(kind) && groups.count > 2;
   Unseen result{GroupErrors(groups.count), 0};
-  std::vector<int> epochs;
-  for (int group = 0; group < groups.count; ++group) {
+  std::vector<int> epochs(static_cast<std::size_t>(groups.count));
+  FoldWork work(groups.count, threads);
+  const FitSpec cheap = as_in_fold(kind, work.cores_of_each());
+  work.run([&](int group) {
     try {
       const Fold fold = fold_without(group, rows, groups, stops_early);
       const TemperatureRange& range = fold.rows.range;
-      const Fit fit = fit_model(kind, inputs, fold.rows,
+      const Fit fit = fit_model(cheap, inputs, fold.rows,
                                 clamped(fold.stopping, inputs, range), seed);
       const double rms =
           rms_residual(fit.model, clamped(fold.unseen, inputs, range));
       result.errors(group) = rms * rms;
-      epochs.push_back(fit.summary().best_epoch);
+      epochs[static_cast<std::size_t>(group)] = fit.summary().best_epoch;
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fmt::format("without {} {}: {}",
                                               grouping_name(groups.by),
                                               group + 1, error.what()));
     }
-  }
+  });
   const auto middle =
       epochs.begin() + static_cast<std::ptrdiff_t>(epochs.size() / 2);
   std::nth_element(epochs.begin(), middle, epochs.end());

@@ -28,14 +28,19 @@ struct Unseen {
   int epochs = 0;  // a network's best, median over the folds
 };
 
+/// Restarts of a network in a fold: more would be tried for the one kept.
+constexpr int kFoldRestarts = 2;
+
 /// Each group is predicted by a fit to all others, temperatures clamped to
 /// theirs. A network stops early on the group after it, which then is not
-/// fitted either; with fewer than three groups it runs to its end. Throws
+/// fitted either; with fewer than three groups it runs to its end. It starts
+/// from kFoldRestarts sets of weights at most. Folds run on `threads` threads,
+/// 0 for as many as there are cores, on which no result depends. Throws
 /// std::invalid_argument for fewer than two groups and as fit_model(), with the
-/// group that was held out.
+/// first group that cannot be held out.
 Unseen cross_validate(const FitSpec& kind, const std::vector<Input>& inputs,
                       const TrainingRows& rows, const RowGroups& groups,
-                      std::uint64_t seed);
+                      std::uint64_t seed, int threads = 0);
 
 /// One model among several and its residuals on unseen groups.
 struct Scored {

@@ -17,7 +17,8 @@ struct Restarts {
   BpNetwork network;  // of the chosen restart
 };
 
-/// Runs `options.restarts` trainings on as many threads as there are cores.
+/// Runs `options.restarts` trainings on `options.cores` threads or, with 0, as
+/// many as there are cores.
 /// Restart k draws from the streams (seed, 0, k, kInitialWeights) and (seed, 0,
 /// k, kSampleOrder), so the result does not depend on the threads. Throws
 /// std::runtime_error when a restart diverges.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -15,6 +16,27 @@ struct Judged {
   Candidate candidate;
   Unseen unseen;
 };
+
+constexpr int kLeastGroupsOfNetwork = 3;
+constexpr int kLeastPowerOns = 3;
+constexpr double kPowerOnsApart = 10.0;  // [K]
+
+// Temperatures kPowerOnsApart or more apart at which power came on.
+int power_on_temperatures(const TrainingRows& rows) {
+  std::vector<double> temperatures;
+  for (Eigen::Index k = 0; k < rows.size(); ++k)
+    if (k == 0 || rows.cycle(k) != rows.cycle(k - 1))
+      temperatures.push_back(rows.temperature(k));
+  std::sort(temperatures.begin(), temperatures.end());
+  int count = 0;
+  double last = -std::numeric_limits<double>::infinity();
+  for (const double T : temperatures)
+    if (T - last >= kPowerOnsApart) {
+      ++count;
+      last = T;
+    }
+  return count;
+}
 
 // A network of several weight decays is as many candidates, the strongest decay
 // first: it is the simplest.
@@ -38,6 +60,35 @@ std::vector<Candidate> one_decay_each(
     }
   }
   return result;
+}
+
+bool is_constant(const Candidate& candidate) {
+  return std::holds_alternative<NoneSpec>(candidate.kind) ||
+         std::holds_alternative<ConstantSpec>(candidate.kind);
+}
+
+bool is_curve(const Candidate& candidate) {
+  const auto* polynomial = std::get_if<PolynomialSpec>(&candidate.kind);
+  return is_constant(candidate) ||
+         (polynomial != nullptr && polynomial->degree <= 3 &&
+          candidate.inputs.size() == 1);
+}
+
+// Segments are not independent and excuse no simplicity: the last that leaves
+// less than every constant does, or else the best.
+std::size_t richest_curve(const std::vector<Judged>& judged) {
+  const auto error = [&](std::size_t k) {
+    return judged[k].unseen.errors.mean();
+  };
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t best = 0;
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    if (is_constant(judged[k].candidate)) least = std::min(least, error(k));
+    if (error(k) < error(best)) best = k;
+  }
+  for (std::size_t k = judged.size(); k-- > 0;)
+    if (!is_constant(judged[k].candidate) && error(k) < least) return k;
+  return best;
 }
 
 class Selector {
@@ -84,7 +135,8 @@ class Selector {
     if (judged.empty())
       throw std::invalid_argument("no candidate can be fitted: " +
                                   told.front());
-    const std::size_t chosen = choose(scores);
+    const bool one_leg = data_.groups && groups_.by == Grouping::kSegment;
+    const std::size_t chosen = one_leg ? richest_curve(judged) : choose(scores);
     Selected result;
     result.candidate = judged[chosen].candidate;
     result.errors = scores[chosen].errors;
@@ -141,6 +193,11 @@ class Selector {
         });
     if (best->name == scores[chosen].name)
       return fmt::format("kept {}: the lowest residual", best->name);
+    if (data_.groups && groups_.by == Grouping::kSegment)
+      return fmt::format(
+          "kept {}: the richest curve that leaves less than a constant; one "
+          "leg tells no more",
+          scores[chosen].name);
     return fmt::format(
         "kept {}: the simplest within one standard error and {:g} % of {}",
         scores[chosen].name, 100.0 * kAllowedExcess, best->name);
@@ -150,34 +207,63 @@ class Selector {
   RowGroups groups_;
 };
 
-bool is_curve(const Candidate& candidate) {
-  const auto* polynomial = std::get_if<PolynomialSpec>(&candidate.kind);
-  return std::holds_alternative<NoneSpec>(candidate.kind) ||
-         std::holds_alternative<ConstantSpec>(candidate.kind) ||
-         (polynomial != nullptr && polynomial->degree <= 3 &&
-          candidate.inputs.size() == 1);
+bool sees_power_on(const Candidate& candidate) {
+  return std::any_of(candidate.inputs.begin(), candidate.inputs.end(),
+                     [](const Input& input) {
+                       return input.kind == InputKind::kSincePowerOn;
+                     });
+}
+
+// Why unseen groups cannot judge a candidate; empty when they can.
+std::string objection(const Candidate& candidate, const TrainingRows& rows,
+                      const RowGroups& groups) {
+  if (is_constant(candidate)) return "";
+  if (groups.by == Grouping::kSegment && !is_curve(candidate))
+    return "the recordings are one leg of temperature, of which nothing "
+           "independent can be held out: curves up to the cubic only";
+  if (groups.count < kLeastGroupsOfNetwork &&
+      std::holds_alternative<BpSpec>(candidate.kind))
+    return fmt::format(
+        "a network needs {} {}s, to fit, to stop on and unseen; the recordings "
+        "have {}",
+        kLeastGroupsOfNetwork, grouping_name(groups.by), groups.count);
+  const bool few =
+      groups.by == Grouping::kSegment || groups.count < kLeastGroupsOfNetwork;
+  if (few && !moves_more_than_noise(rows))
+    return "the bias moves no more than slow noise does, and time and "
+           "temperature run together";
+  if (const int ambients = power_on_temperatures(rows);
+      sees_power_on(candidate) && ambients < kLeastPowerOns)
+    return fmt::format(
+        "time since power-on is told from temperature by power-ons at {} "
+        "temperatures {:g} K apart; the recordings have {}",
+        kLeastPowerOns, kPowerOnsApart, ambients);
+  return "";
 }
 
 }  // namespace
 
 Selected select_model(std::vector<Candidate> candidates,
                       const SelectionData& data) {
-  if (candidates.size() > 1 && data.groups &&
-      data.groups->by == Grouping::kSegment) {
-    std::erase_if(candidates, [](const Candidate& candidate) {
-      return !is_curve(candidate);
+  std::vector<std::string> told;
+  if (candidates.size() > 1 && data.groups)
+    std::erase_if(candidates, [&](const Candidate& candidate) {
+      const std::string why = objection(candidate, data.rows, *data.groups);
+      if (!why.empty())
+        told.push_back(fmt::format("{}: passed over, {}", candidate.name, why));
+      return !why.empty();
     });
-    if (candidates.empty())
-      throw std::invalid_argument(
-          "the recordings are one leg of temperature: nothing independent can "
-          "be held out, and no candidate is as simple as a cubic");
-  }
+  if (candidates.empty())
+    throw std::invalid_argument("no candidate can be judged: " + told.front());
   // With held-out rows fit_model() chooses the decay itself.
   if (data.groups && data.held_out.size() == 0)
     candidates = one_decay_each(candidates);
   const Selector selector(data);
-  return candidates.size() == 1 ? selector.only(candidates[0])
-                                : selector.best_of(candidates);
+  Selected result = candidates.size() == 1 ? selector.only(candidates[0])
+                                           : selector.best_of(candidates);
+  result.fit.choices.insert(result.fit.choices.begin(), told.begin(),
+                            told.end());
+  return result;
 }
 
 }  // namespace beamgyro
