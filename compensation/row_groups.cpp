@@ -2,8 +2,6 @@
 #include "compensation/row_groups.h"
 
 #include <algorithm>
-#include <set>
-#include <vector>
 
 namespace beamgyro {
 namespace {
@@ -16,8 +14,6 @@ constexpr Grouping kIndependent[] = {Grouping::kRun, Grouping::kCycle,
 constexpr int kSegments = 5;
 constexpr Index kPieces = 20;
 constexpr Index kLeastRows = 2;
-constexpr int kTemperatureBins = 10;
-constexpr double kSlowNoise = 0.05;  // [-], of n s^2
 
 // Pieces of a leg in turn, so that each group spans it: held-out ends would
 // ask for an extrapolation that a fit to all rows is never used for.
@@ -72,23 +68,30 @@ RowGroups coarsest_groups(const TrainingRows& rows, int least) {
   return group_rows(rows, Grouping::kSegment);
 }
 
-bool others_cover(const TrainingRows& rows, const RowGroups& groups) {
+std::vector<std::set<int>> groups_in_tenths(const TrainingRows& rows,
+                                            const ArrayXi& group_of_row) {
   const double lowest = rows.temperature.minCoeff();
   const double span = rows.temperature.maxCoeff() - lowest;
-  if (!(span > 0.0)) return true;
-  std::vector<std::set<int>> in_bin(kTemperatureBins);
+  std::vector<std::set<int>> tenths(10);
   for (Index k = 0; k < rows.size(); ++k) {
-    const double share = (rows.temperature(k) - lowest) / span;
-    const auto bin = std::min(static_cast<int>(share * kTemperatureBins),
-                              kTemperatureBins - 1);
-    in_bin[static_cast<std::size_t>(bin)].insert(groups.of_row(k));
+    const double share =
+        span > 0.0 ? (rows.temperature(k) - lowest) / span : 0.0;
+    const auto tenth =
+        std::min(static_cast<std::size_t>(10.0 * share), tenths.size() - 1);
+    tenths[tenth].insert(group_of_row(k));
   }
-  std::erase_if(in_bin, [](const auto& bin) { return bin.empty(); });
+  std::erase_if(tenths, [](const auto& groups) { return groups.empty(); });
+  return tenths;
+}
+
+bool others_cover(const TrainingRows& rows, const RowGroups& groups) {
+  const auto tenths = groups_in_tenths(rows, groups.of_row);
+  if (rows.temperature.minCoeff() == rows.temperature.maxCoeff()) return true;
   std::vector<int> alone(static_cast<std::size_t>(groups.count), 0);
-  for (const std::set<int>& bin : in_bin)
-    if (bin.size() == 1) ++alone[static_cast<std::size_t>(*bin.begin())];
+  for (const std::set<int>& tenth : tenths)
+    if (tenth.size() == 1) ++alone[static_cast<std::size_t>(*tenth.begin())];
   return *std::max_element(alone.begin(), alone.end()) <=
-         kLargestAlone * static_cast<double>(in_bin.size());
+         kLargestAlone * static_cast<double>(tenths.size());
 }
 
 RowGroups folds_of(const TrainingRows& rows, int least) {
@@ -99,21 +102,6 @@ RowGroups folds_of(const TrainingRows& rows, int least) {
     if (enough && others_cover(rows, groups)) return groups;
   }
   return group_rows(rows, Grouping::kSegment);
-}
-
-bool moves_more_than_noise(const TrainingRows& rows) {
-  double squares = 0.0, count = 0.0;
-  for (Index k = 2; k < rows.size(); ++k) {
-    if (rows.cycle(k) != rows.cycle(k - 2)) continue;
-    const double second =
-        rows.bias(k) - 2.0 * rows.bias(k - 1) + rows.bias(k - 2);
-    squares += second * second;
-    count += 1.0;
-  }
-  if (count == 0.0) return false;
-  const double variance = (rows.bias - rows.bias.mean()).square().mean();
-  return variance >
-         kSlowNoise * static_cast<double>(rows.size()) * 0.5 * squares / count;
 }
 
 }  // namespace beamgyro

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "compensation/training_rows.h"
 
@@ -32,6 +34,11 @@ RowGroups group_rows(const TrainingRows& rows, Grouping by);
 /// and in the end by segment.
 RowGroups coarsest_groups(const TrainingRows& rows, int least);
 
+/// Groups with rows in each tenth of the span of temperatures; a tenth without
+/// rows is left out.
+std::vector<std::set<int>> groups_in_tenths(const TrainingRows& rows,
+                                            const Eigen::ArrayXi& group_of_row);
+
 /// Largest share of the temperatures that one group alone may hold.
 constexpr double kLargestAlone = 0.25;  // [-]
 
@@ -44,13 +51,5 @@ bool others_cover(const TrainingRows& rows, const RowGroups& groups);
 /// What to hold out by turns: coarsest_groups() of which others_cover() the
 /// temperatures, or two legs that do, before segments.
 RowGroups folds_of(const TrainingRows& rows, int least);
-
-/// Whether the bias moves more than slow noise would: its variance is above
-/// n s^2 / 20, n rows, s^2 half the mean square second difference within a
-/// cycle. White noise alone gives s^2 / 3, a random walk alone n s^2 / 6. In a
-/// single leg the temperature is a function of time, and only this tells its
-/// effect from a walk; it leans to the curve, which costs little where there
-/// is none.
-bool moves_more_than_noise(const TrainingRows& rows);
 
 }  // namespace beamgyro

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "compensation/temperature_effect.h"
+
 namespace beamgyro {
 namespace {
 
@@ -229,9 +231,12 @@ std::string objection(const Candidate& candidate, const TrainingRows& rows,
         kLeastGroupsOfNetwork, grouping_name(groups.by), groups.count);
   const bool few =
       groups.by == Grouping::kSegment || groups.count < kLeastGroupsOfNetwork;
-  if (few && !moves_more_than_noise(rows))
-    return "the bias moves no more than slow noise does, and time and "
-           "temperature run together";
+  if (few && !temperature_shows(rows))
+    return temperature_comes_back(rows)
+               ? "the bias does not come back with the temperature: a cubic "
+                 "leaves half its variance or more"
+               : "the bias moves no more than slow noise does while the "
+                 "temperature goes one way";
   if (const int ambients = power_on_temperatures(rows);
       sees_power_on(candidate) && ambients < kLeastPowerOns)
     return fmt::format(
