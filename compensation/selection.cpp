@@ -16,7 +16,7 @@ namespace {
 // A candidate with its columns of the rows, and its residuals.
 struct Judged {
   Candidate candidate;
-  Unseen unseen;
+  GroupErrors errors;
 };
 
 constexpr int kLeastGroupsOfNetwork = 3;
@@ -79,9 +79,7 @@ bool is_curve(const Candidate& candidate) {
 // Segments are not independent and excuse no simplicity: the last that leaves
 // less than every constant does, or else the best.
 std::size_t richest_curve(const std::vector<Judged>& judged) {
-  const auto error = [&](std::size_t k) {
-    return judged[k].unseen.errors.mean();
-  };
+  const auto error = [&](std::size_t k) { return judged[k].errors.mean(); };
   double least = std::numeric_limits<double>::infinity();
   std::size_t best = 0;
   for (std::size_t k = 0; k < judged.size(); ++k) {
@@ -105,13 +103,8 @@ class Selector {
   Selected only(const Candidate& candidate) const {
     Selected result;
     result.candidate = candidate;
-    int epochs = 0;
-    if (data_.groups) {
-      const Unseen unseen = judge(candidate);
-      result.errors = unseen.errors;
-      epochs = unseen.epochs;
-    }
-    result.fit = final_fit(candidate, epochs);
+    if (data_.groups) result.errors = judge(candidate);
+    result.fit = final_fit(candidate);
     if (!data_.groups && data_.held_out.size() > 0)
       result.errors = held_out_errors(candidate, result.fit.model);
     result.constant_errors = constant_errors();
@@ -125,7 +118,7 @@ class Selector {
     for (const Candidate& candidate : candidates) {
       try {
         judged.push_back({candidate, judge(candidate)});
-        scores.push_back({candidate.name, judged.back().unseen.errors});
+        scores.push_back({candidate.name, judged.back().errors});
         told.push_back(fmt::format("{}: {:.6f} deg/s rms over {} unseen {}s",
                                    candidate.name, rms_of(scores.back().errors),
                                    groups_.count, grouping_name(groups_.by)));
@@ -142,7 +135,7 @@ class Selector {
     Selected result;
     result.candidate = judged[chosen].candidate;
     result.errors = scores[chosen].errors;
-    result.fit = final_fit(result.candidate, judged[chosen].unseen.epochs);
+    result.fit = final_fit(result.candidate);
     told.push_back(reason(scores, chosen));
     result.fit.choices.insert(result.fit.choices.begin(), told.begin(),
                               told.end());
@@ -163,28 +156,21 @@ class Selector {
     return group_errors(model, held_out(candidate), groups_);
   }
 
-  Unseen judge(const Candidate& candidate) const {
+  GroupErrors judge(const Candidate& candidate) const {
     if (data_.groups)
       return cross_validate(candidate.kind, candidate.inputs, rows(candidate),
                             groups_, data_.seed);
-    const Fit fit = final_fit(candidate, 0);
-    return {held_out_errors(candidate, fit.model), fit.summary().best_epoch};
+    return held_out_errors(candidate, final_fit(candidate).model);
   }
 
-  // Without held-out rows a network stops after the epochs that
-  // cross-validation found.
-  Fit final_fit(const Candidate& candidate, int epochs) const {
-    FitSpec kind = candidate.kind;
-    if (auto* bp = std::get_if<BpSpec>(&kind);
-        bp != nullptr && data_.held_out.size() == 0 && epochs > 0)
-      bp->training.max_epochs = epochs;
-    return fit_model(kind, candidate.inputs, rows(candidate),
+  Fit final_fit(const Candidate& candidate) const {
+    return fit_model(candidate.kind, candidate.inputs, rows(candidate),
                      held_out(candidate), data_.seed);
   }
 
   std::optional<GroupErrors> constant_errors() const {
     if (groups_.count == 0) return std::nullopt;
-    return judge({"constant", data_.inputs, ConstantSpec{}}).errors;
+    return judge({"constant", data_.inputs, ConstantSpec{}});
   }
 
   std::string reason(const std::vector<Scored>& scores,
@@ -225,10 +211,9 @@ std::string objection(const Candidate& candidate, const TrainingRows& rows,
            "independent can be held out: curves up to the cubic only";
   if (groups.count < kLeastGroupsOfNetwork &&
       std::holds_alternative<BpSpec>(candidate.kind))
-    return fmt::format(
-        "a network needs {} {}s, to fit, to stop on and unseen; the recordings "
-        "have {}",
-        kLeastGroupsOfNetwork, grouping_name(groups.by), groups.count);
+    return fmt::format("{} {}s or more judge a network; the recordings have {}",
+                       kLeastGroupsOfNetwork, grouping_name(groups.by),
+                       groups.count);
   const bool few =
       groups.by == Grouping::kSegment || groups.count < kLeastGroupsOfNetwork;
   if (few && !temperature_shows(rows))
