@@ -15,6 +15,7 @@ Remove the lines of devices after a change of studies, models or program.
 """
 
 import argparse
+import collections
 import csv
 import json
 import os
@@ -29,7 +30,9 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "bench"))
 import demo  # noqa: E402  (its runs, seeds and way to call the program)
+import automatic_study  # noqa: E402
 from demo import NOISE_OFF, SCENARIOS  # noqa: E402
 
 DEVICES = 40
@@ -67,6 +70,9 @@ BOUNDS = {
     "dynamic": {"recommended_rms_deg_per_s": 0.03,
                 "with_drive_frequency_rms_deg_per_s": 0.01},
     "campaign": {"with_drive_frequency_rms_deg_per_s": 0.01},
+    "automatic": {f"{case}_{model}_of_best": automatic_study.BOUND
+                  for case, (_, _, models, _) in automatic_study.CASES.items()
+                  for model in models},
 }
 
 
@@ -221,10 +227,11 @@ def campaign(unit):
                               CAMPAIGN_HELD_OUT)
 
 
-# A study takes a unit and returns its figures by name, lower ones being better.
-# Another is a function here, with BOUNDS above if devices are to be counted.
+# A study takes a unit and returns its figures by name, lower ones being better;
+# a figure that is a text is counted. Another is a function here, with BOUNDS
+# above if devices are to be counted.
 STUDIES = {"drift": drift, "soak": soak, "dynamic": dynamic,
-           "campaign": campaign}
+           "campaign": campaign, "automatic": automatic_study.automatic}
 
 
 def finished(file):
@@ -245,7 +252,12 @@ def summary(done, studies):
     for study in studies:
         of_device = [entry[study] for entry in done.values()]
         result[study] = {}
-        for figure in of_device[0]:
+        for figure, first in of_device[0].items():
+            if isinstance(first, str):
+                counts = collections.Counter(
+                    entry[figure] for entry in of_device)
+                result[study][figure] = {"counts": dict(counts.most_common())}
+                continue
             values = np.array([entry[figure] for entry in of_device])
             row = {"best": values.min(), "median": np.median(values),
                    "worst": values.max()}
@@ -262,6 +274,10 @@ def table(rows, devices):
         lines += ["", f"{study + ':':54}{'best':>10}{'median':>10}"
                       f"{'worst':>10}  within"]
         for figure, row in figures.items():
+            if "counts" in row:
+                lines.append(f"  {figure:52}  " + ", ".join(
+                    f"{text} {n}" for text, n in row["counts"].items()))
+                continue
             count = (f"{row['within']} within {row['bound']:g}"
                      if "bound" in row else "")
             lines.append(f"  {figure:52}{row['best']:10.4g}"

@@ -22,20 +22,22 @@ double standard_error(const GroupErrors& errors);
 GroupErrors group_errors(const BiasModel& model, const TrainingRows& rows,
                          const RowGroups& groups);
 
-/// Residuals of a model on rows that it was not fitted to.
-struct Unseen {
-  GroupErrors errors;
-  int epochs = 0;  // a network's best, median over the folds
-};
+/// Restarts of a network in a fold: more would be tried for the one kept.
+constexpr int kFoldRestarts = 2;
 
-/// Each group is predicted by a fit to all others, temperatures clamped to
-/// theirs. A network stops early on the group after it, which then is not
-/// fitted either; with fewer than three groups it runs to its end. Throws
+/// Mean square residual of each group, predicted by a fit to all others with
+/// temperatures clamped to theirs. Rows beyond the temperatures of the others
+/// are not scored, if the group has any between: the fit to all groups is not
+/// asked to go beyond them either. A network starts from kFoldRestarts sets of
+/// weights at most and runs to its end: to stop early on one of the groups
+/// would stop it by that group's slow noise. Folds run on `threads` threads, 0
+/// for as many as there are cores, on which no result depends. Throws
 /// std::invalid_argument for fewer than two groups and as fit_model(), with the
-/// group that was held out.
-Unseen cross_validate(const FitSpec& kind, const std::vector<Input>& inputs,
-                      const TrainingRows& rows, const RowGroups& groups,
-                      std::uint64_t seed);
+/// first group that cannot be held out.
+GroupErrors cross_validate(const FitSpec& kind,
+                           const std::vector<Input>& inputs,
+                           const TrainingRows& rows, const RowGroups& groups,
+                           std::uint64_t seed, int threads = 0);
 
 /// One model among several and its residuals on unseen groups.
 struct Scored {

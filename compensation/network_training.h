@@ -50,6 +50,7 @@ struct TrainOptions {
   int max_epochs = 300;  // >= 1; passes over the rows
   int patience = 60;     // [epochs], >= 1
   int threads = 1;       // >= 1; of one training; the gradient rules use one
+  int cores = 0;         // of all restarts together; 0 = those there are
   double goal = 0.0;     // rms, >= 0
   double weight_decay = 0.0;  // >= 0; kLevenbergMarquardt, kLbfgs
   // Adds rate_penalty mean((dy/ds)^2) / 2 to F, s running along rate_direction,

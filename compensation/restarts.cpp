@@ -36,7 +36,9 @@ Restarts train_from_restarts(const std::vector<int>& layer_sizes,
   std::vector<BpNetwork> networks(count, BpNetwork(layer_sizes));
   std::vector<TrainSummary> summaries(count);
   std::vector<std::exception_ptr> failures(count);
-  const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+  const std::size_t cores =
+      options.cores > 0 ? static_cast<std::size_t>(options.cores)
+                        : std::max(1u, std::thread::hardware_concurrency());
   const std::size_t at_once = std::min(cores, count);
   TrainOptions of_one = options;
   of_one.threads = std::max(options.threads, static_cast<int>(cores / at_once));

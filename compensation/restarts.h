@@ -23,7 +23,8 @@ struct Restarts {
 std::size_t best_network(const std::vector<BpNetwork>& networks,
                          const ScaledRows& rows, const ScaledRows& held_out);
 
-/// Runs `options.restarts` trainings on as many threads as there are cores.
+/// Runs `options.restarts` trainings on `options.cores` threads or, with 0, as
+/// many as there are cores.
 /// Restart k draws from the streams (seed, 0, k, kInitialWeights) and (seed, 0,
 /// k, kSampleOrder), so the result does not depend on the threads. Throws
 /// std::runtime_error when a restart diverges.

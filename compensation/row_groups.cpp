@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "compensation/row_groups.h"
 
-#include <stdexcept>
+#include <algorithm>
 
 namespace beamgyro {
 namespace {
@@ -9,28 +9,26 @@ namespace {
 using Eigen::ArrayXi;
 using Eigen::Index;
 
+constexpr Grouping kIndependent[] = {Grouping::kRun, Grouping::kCycle,
+                                     Grouping::kLeg};
 constexpr int kSegments = 5;
+constexpr Index kPieces = 20;
 constexpr Index kLeastRows = 2;
 
-ArrayXi segments(Index rows) {
-  ArrayXi result(rows);
+// Pieces of a leg in turn, so that each group spans it: held-out ends would
+// ask for an extrapolation that a fit to all rows is never used for.
+RowGroups segments(Index rows) {
+  const Index pieces = std::min(kPieces, rows);
+  RowGroups groups{Grouping::kSegment, ArrayXi(rows),
+                   static_cast<int>(std::min<Index>(kSegments, rows))};
   for (Index k = 0; k < rows; ++k)
-    result(k) = static_cast<int>(k * kSegments / rows);
-  return result;
+    groups.of_row(k) = static_cast<int>(k * pieces / rows % kSegments);
+  return groups;
 }
 
-ArrayXi labels(const TrainingRows& rows, Grouping by) {
-  switch (by) {
-    case Grouping::kRun:
-      return rows.run;
-    case Grouping::kCycle:
-      return rows.cycle;
-    case Grouping::kLeg:
-      return rows.leg;
-    case Grouping::kSegment:
-      break;
-  }
-  return segments(rows.size());
+const ArrayXi& labels(const TrainingRows& rows, Grouping by) {
+  if (by == Grouping::kRun) return rows.run;
+  return by == Grouping::kCycle ? rows.cycle : rows.leg;
 }
 
 }  // namespace
@@ -50,7 +48,8 @@ std::string grouping_name(Grouping by) {
 }
 
 RowGroups group_rows(const TrainingRows& rows, Grouping by) {
-  const ArrayXi label = labels(rows, by);
+  if (by == Grouping::kSegment) return segments(rows.size());
+  const ArrayXi& label = labels(rows, by);
   RowGroups groups{by, ArrayXi(rows.size()), 0};
   for (Index begin = 0; begin < rows.size();) {
     Index end = begin;
@@ -63,12 +62,45 @@ RowGroups group_rows(const TrainingRows& rows, Grouping by) {
 }
 
 RowGroups coarsest_groups(const TrainingRows& rows, int least) {
-  for (const Grouping by : {Grouping::kRun, Grouping::kCycle, Grouping::kLeg}) {
-    RowGroups groups = group_rows(rows, by);
-    if (groups.count >= least) return groups;
+  for (const Grouping by : kIndependent)
+    if (RowGroups groups = group_rows(rows, by); groups.count >= least)
+      return groups;
+  return group_rows(rows, Grouping::kSegment);
+}
+
+std::vector<std::set<int>> groups_in_tenths(const TrainingRows& rows,
+                                            const ArrayXi& group_of_row) {
+  const double lowest = rows.temperature.minCoeff();
+  const double span = rows.temperature.maxCoeff() - lowest;
+  std::vector<std::set<int>> tenths(10);
+  for (Index k = 0; k < rows.size(); ++k) {
+    const double share =
+        span > 0.0 ? (rows.temperature(k) - lowest) / span : 0.0;
+    const auto tenth =
+        std::min(static_cast<std::size_t>(10.0 * share), tenths.size() - 1);
+    tenths[tenth].insert(group_of_row(k));
   }
-  if (RowGroups legs = group_rows(rows, Grouping::kLeg); legs.count > 1)
-    return legs;
+  std::erase_if(tenths, [](const auto& groups) { return groups.empty(); });
+  return tenths;
+}
+
+bool others_cover(const TrainingRows& rows, const RowGroups& groups) {
+  const auto tenths = groups_in_tenths(rows, groups.of_row);
+  if (rows.temperature.minCoeff() == rows.temperature.maxCoeff()) return true;
+  std::vector<int> alone(static_cast<std::size_t>(groups.count), 0);
+  for (const std::set<int>& tenth : tenths)
+    if (tenth.size() == 1) ++alone[static_cast<std::size_t>(*tenth.begin())];
+  return *std::max_element(alone.begin(), alone.end()) <=
+         kLargestAlone * static_cast<double>(tenths.size());
+}
+
+RowGroups folds_of(const TrainingRows& rows, int least) {
+  for (const Grouping by : kIndependent) {
+    RowGroups groups = group_rows(rows, by);
+    const bool enough =
+        groups.count >= least || (by == Grouping::kLeg && groups.count == 2);
+    if (enough && others_cover(rows, groups)) return groups;
+  }
   return group_rows(rows, Grouping::kSegment);
 }
 

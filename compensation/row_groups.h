@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "compensation/training_rows.h"
 
@@ -14,7 +16,7 @@ enum class Grouping {
   kRun,      // recordings
   kCycle,    // times from power-on to the loss of power
   kLeg,      // between reversals of the temperature
-  kSegment,  // fifths of the rows in their order, where there is nothing else
+  kSegment,  // every fifth of twenty pieces, where there is nothing else
 };
 
 std::string grouping_name(Grouping by);  // "run", "cycle", "leg", "segment"
@@ -28,8 +30,26 @@ struct RowGroups {
 /// The groups of at least 2 rows each: a smaller one joins the one before it.
 RowGroups group_rows(const TrainingRows& rows, Grouping by);
 
-/// By run where that gives `least` groups or more, else by cycle, else by leg
-/// if there are two, and in the end by segment.
+/// By run where that gives `least` groups or more, else by cycle, else by leg,
+/// and in the end by segment.
 RowGroups coarsest_groups(const TrainingRows& rows, int least);
+
+/// Groups with rows in each tenth of the span of temperatures; a tenth without
+/// rows is left out.
+std::vector<std::set<int>> groups_in_tenths(const TrainingRows& rows,
+                                            const Eigen::ArrayXi& group_of_row);
+
+/// Largest share of the temperatures that one group alone may hold.
+constexpr double kLargestAlone = 0.25;  // [-]
+
+/// Whether the others still cover the temperatures when any one group is held
+/// out: of the tenths of the whole span that have rows, no group is alone in
+/// more than kLargestAlone. Otherwise a fit to the others says nothing of a fit
+/// to all.
+bool others_cover(const TrainingRows& rows, const RowGroups& groups);
+
+/// What to hold out by turns: coarsest_groups() of which others_cover() the
+/// temperatures, or two legs that do, before segments.
+RowGroups folds_of(const TrainingRows& rows, int least);
 
 }  // namespace beamgyro

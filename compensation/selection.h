@@ -30,9 +30,17 @@ struct Selected {
 };
 
 /// Fits the candidate that choose() takes, or the only one. Without groups
-/// several candidates are judged by the held-out rows. A candidate that the
-/// rows do not determine is passed over and said so. Throws
-/// std::invalid_argument when none is left, as fit_model() for the only one.
+/// several candidates are judged by the held-out rows. Passed over, and said
+/// so, is a candidate that the rows do not determine, and of several that are
+/// cross-validated
+/// - by segments (one leg): all but curves up to the cubic. Of those the
+///   richest is kept that leaves less than a constant;
+/// - by fewer than three groups: networks, and all but constants if not
+///   temperature_shows();
+/// - with since_power_on among the inputs: where power came on at fewer than
+///   three temperatures 10 K apart, since warm-ups elsewhere would be a guess.
+/// Throws std::invalid_argument when none is left, as fit_model() for the only
+/// one.
 Selected select_model(std::vector<Candidate> candidates,
                       const SelectionData& data);
 

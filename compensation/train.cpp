@@ -56,7 +56,7 @@ std::optional<RowGroups> groups_of(const ModelSpec& spec,
     return groups;
   }
   if (spec.candidates.empty() || held_out.size() > 0) return std::nullopt;
-  return coarsest_groups(rows, kLeastGroups);
+  return folds_of(rows, kLeastGroups);
 }
 
 std::vector<SourceFile> sources(const std::vector<TrainingRun>& runs) {
@@ -104,6 +104,22 @@ double coarsest_resolution(const std::vector<TrainingRun>& runs) {
 bool claims_nothing(const FitSpec& kind) {
   return std::holds_alternative<NoneSpec>(kind) ||
          std::holds_alternative<ConstantSpec>(kind);
+}
+
+// Why the model claims no improvement over a constant; empty when it may.
+std::string why_no_claim(const ModelSpec& spec,
+                         const std::optional<RowGroups>& groups,
+                         const Selected& selected) {
+  if (claims_nothing(selected.candidate.kind))
+    return spec.candidates.empty()
+               ? ""
+               : fmt::format(
+                     "no improvement to claim: no candidate is worth "
+                     "more than \"{}\"",
+                     selected.candidate.name);
+  if (groups && groups->by == Grouping::kSegment)
+    return objection_to_claim({}, {});
+  return objection_to_claim(selected.errors, selected.constant_errors);
 }
 
 }  // namespace
@@ -157,11 +173,8 @@ TrainResult train(const ModelSpec& spec, const std::vector<TrainingRun>& runs,
   if (groups) p.cross_validated = summary_of(*groups, selected);
   p.warnings = cautions({c.inputs, c.bias, c.baseline, own, own_unseen,
                          coarsest_resolution(runs)});
-  if (!claims_nothing(selected.candidate.kind)) {
-    const std::string objection =
-        objection_to_claim(selected.errors, selected.constant_errors);
-    if (!objection.empty()) p.warnings.push_back(objection);
-  }
+  const std::string objection = why_no_claim(spec, groups, selected);
+  if (!objection.empty()) p.warnings.push_back(objection);
   return result;
 }
 

@@ -29,11 +29,10 @@ struct TrainResult {
 /// `held_out`, and of its restarts and weight decays the one with the lowest
 /// held-out rms is kept. With `cross_validation` every group of that kind is
 /// predicted by a fit to the others (cross_validate()); a network without
-/// held-out runs takes its weight decay and the number of its epochs from
-/// there. Of several candidates the choice is choose()'s by cross-validation,
-/// or without it by the groups of the held-out runs, or without those by the
-/// coarsest groups there are; with segments for groups only curves of the
-/// temperature are candidates, because nothing independent is held out.
+/// held-out runs takes its weight decay from there and runs all its epochs. Of
+/// several candidates the choice is choose()'s by cross-validation, or without
+/// it by the groups of the held-out runs, or without those by folds_of() the
+/// rows; select_model() says which candidates these can judge.
 ///
 /// Throws std::invalid_argument when there is no run, a network has neither
 /// held-out runs nor cross-validation, a run is on both sides, the temperatures
