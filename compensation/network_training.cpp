@@ -51,14 +51,17 @@ double rms_error(const BpNetwork& network, const ScaledRows& rows) {
   return std::sqrt(sum / static_cast<double>(rows.size()));
 }
 
-bool BestWeights::stale_after(int epoch, const BpNetwork& network) {
+bool BestWeights::stale_after(int epoch, const BpNetwork& network,
+                              double rate_penalty) {
   if (held_out_.size() == 0) {
     epoch_ = epoch;
     weights_ = network.weights();
     return false;
   }
   const double rms = rms_error(network, held_out_);
-  if (rms < rms_) {
+  const double here = 0.5 * rms * rms + rate_penalty;
+  if (here < lowest_) {
+    lowest_ = here;
     rms_ = rms;
     epoch_ = epoch;
     weights_ = network.weights();

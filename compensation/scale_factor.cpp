@@ -52,6 +52,7 @@ SlopeSums sums_of(const Plateau& plateau) {
           .truth = w.dot(truth),
           .compensated_without_drift = v.dot(compensated),
           .raw_without_drift = v.dot(raw),
+          .truth_without_drift = v.dot(truth),
           .largest_departure = w.cwiseAbs().maxCoeff(),
           .samples = plateau.time.size()};
 }
@@ -97,6 +98,7 @@ SlopeSums& SlopeSums::operator+=(const SlopeSums& other) {
   truth += other.truth;
   compensated_without_drift += other.compensated_without_drift;
   raw_without_drift += other.raw_without_drift;
+  truth_without_drift += other.truth_without_drift;
   largest_departure = std::max(largest_departure, other.largest_departure);
   samples += other.samples;
   return *this;
@@ -126,7 +128,8 @@ std::vector<PlateauSlope> plateau_slopes(const Recording& recording,
       const Eigen::Map<const Eigen::ArrayXd> T(
           plateau.temperature.data(),
           static_cast<Eigen::Index>(plateau.temperature.size()));
-      slopes.push_back({T.mean(), sums.raw, sums.truth});
+      slopes.push_back(
+          {T.mean(), sums.raw_without_drift, sums.truth_without_drift});
     }
   }
   return slopes;
