@@ -53,6 +53,8 @@ struct PlateauSlope {
 };
 
 /// Of every plateau whose true rate departs by `least_departure` [deg/s].
+/// Samples within kSettlingTime after a step of the rate by more than that are
+/// left out, unless nothing is left then: the output lags behind the step.
 std::vector<PlateauSlope> plateau_slopes(const Recording& recording,
                                          double least_departure);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "compensation/fit.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -158,12 +159,8 @@ TEST(Fit, TheWeightDecayOfTheLeastHeldOutResidualIsKeptAndTold) {
     EXPECT_TRUE(alone.choices.empty());
     best = std::min(best, *alone.summary().held_out_rms);
     EXPECT_EQ(found.choices[k],
-              "weight decay " +
-                  std::string(k == 0   ? "0.1"
-                              : k == 1 ? "0"
-                                       : "0.01") +
-                  ": held-out rms " +
-                  std::to_string(*alone.summary().held_out_rms) + " deg/s");
+              fmt::format("weight decay {:g}: held-out rms {:.6f} deg/s",
+                          decays[k], *alone.summary().held_out_rms));
   }
   EXPECT_EQ(*found.summary().held_out_rms, best);
   EXPECT_NEAR(rms_residual(found.model, unseen), best, 1e-12);

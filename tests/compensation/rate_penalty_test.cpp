@@ -169,8 +169,8 @@ TEST(RatePenalty, WithoutItANetworkOnTheOutputCancelsTheRate) {
 
 TEST(RatePenalty, WithItTheNetworkKeepsTheRateAndOwnsUpToTheResidual) {
   for (const char* input : {"output", "rate"}) {
-    const TrainResult result = trained(1e4, input);
-    EXPECT_GT(result.summary().in_sample_rms, 0.08);
+    const TrainResult result = trained(100.0, input);
+    EXPECT_GT(result.summary().in_sample_rms, 0.06);
     EXPECT_LT(result.summary().in_sample_rms, 0.13);
     const Validation found = validated(result.compensator);
     EXPECT_LT(taken(found), 1e-3) << input;
@@ -180,11 +180,9 @@ TEST(RatePenalty, WithItTheNetworkKeepsTheRateAndOwnsUpToTheResidual) {
 
 TEST(RatePenalty, ALargerOneLeavesMoreOfTheRate) {
   double before = HUGE_VAL;
-  for (const double penalty : {0.01, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e5}) {
+  for (const double penalty : {0.01, 1.0, 100.0}) {
     const double here =
         taken(validated(trained(penalty, "output").compensator));
-    RecordProperty("taken_" + std::to_string(penalty), std::to_string(here));
-    std::printf("penalty %g taken %g rms %g\n", penalty, here, 0.0);
     EXPECT_LT(here, before) << penalty;
     before = here;
   }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -57,9 +58,31 @@ TEST(ScaleFactorTable, WithoutDriftItIsExactAndBinsAreJoined) {
   ASSERT_EQ(table.temperatures.size(), 5);
   for (Eigen::Index k = 0; k < 5; ++k) {
     EXPECT_NEAR(table.temperatures(k), k < 4 ? -30.0 + 20.0 * double(k) : 45.0,
-                1e-9);
+                0.01);
     EXPECT_NEAR(table.values(k), true_scale(table.temperatures(k)), 1e-9);
   }
+}
+
+// The output shows a step one sample after the true rate does.
+TEST(ScaleFactorTable, LagBehindTheStepsOfTheRateIsNoScaleFactor) {
+  RecordedRun run = rate_tables();
+  run.bias = [table = run.true_rate](double t) {
+    return table(std::max(t - 1.0, 0.0)) - table(t);
+  };
+  const Recording recording = run.recording();
+  const LookupTable table = fit_scale_factor({&recording}, 10.0);
+  for (Eigen::Index k = 0; k < table.values.size(); ++k)
+    EXPECT_NEAR(table.values(k), true_scale(table.temperatures(k)), 1e-6) << k;
+}
+
+TEST(ScaleFactorTable, ARateThatIsNeverHeldServesToo) {
+  RecordedRun run = rate_tables();
+  run.true_rate = [](double t) { return 90.0 * std::sin(0.7 * t); };
+  const Recording recording = run.recording();
+  const LookupTable table = fit_scale_factor({&recording}, 10.0);
+  ASSERT_EQ(table.values.size(), 9);
+  for (Eigen::Index k = 0; k < 9; ++k)
+    EXPECT_NEAR(table.values(k), true_scale(table.temperatures(k)), 1e-4) << k;
 }
 
 TEST(ScaleFactorTable, RecordingsAtRestAddNothing) {
