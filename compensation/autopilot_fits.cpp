@@ -20,24 +20,25 @@ constexpr int kPx4Bins = 2000;
 constexpr double kAveragingTime = 2.0;    // [s]
 constexpr double kTemperatureStep = 0.5;  // [K]
 
-// First rows of the runs, and the end.
-std::vector<Index> run_bounds(const TrainingRows& samples) {
+// First rows of the power cycles, and the end.
+std::vector<Index> cycle_bounds(const TrainingRows& samples) {
   std::vector<Index> bounds{0};
   for (Index k = 1; k < samples.size(); ++k)
-    if (samples.run(k) != samples.run(k - 1)) bounds.push_back(k);
+    if (samples.cycle(k) != samples.cycle(k - 1)) bounds.push_back(k);
   bounds.push_back(samples.size());
   return bounds;
 }
 
-// Median over a window cut short at the ends of a run.
+// Median over a window cut short at the ends of a power cycle.
 ArrayXd median_filtered(const TrainingRows& samples) {
   ArrayXd result(samples.size());
-  const std::vector<Index> bounds = run_bounds(samples);
+  const std::vector<Index> bounds = cycle_bounds(samples);
   std::vector<double> window;
-  for (std::size_t run = 0; run + 1 < bounds.size(); ++run)
-    for (Index k = bounds[run]; k < bounds[run + 1]; ++k) {
-      const Index first = std::max(bounds[run], k - kMedianSamples / 2);
-      const Index last = std::min(bounds[run + 1], k + kMedianSamples / 2 + 1);
+  for (std::size_t cycle = 0; cycle + 1 < bounds.size(); ++cycle)
+    for (Index k = bounds[cycle]; k < bounds[cycle + 1]; ++k) {
+      const Index first = std::max(bounds[cycle], k - kMedianSamples / 2);
+      const Index last =
+          std::min(bounds[cycle + 1], k + kMedianSamples / 2 + 1);
       window.assign(samples.bias.begin() + first, samples.bias.begin() + last);
       const auto middle =
           window.begin() + static_cast<std::ptrdiff_t>(window.size() / 2);
@@ -64,7 +65,7 @@ struct Points {
   std::vector<double> temperature, bias;
 };
 
-// Points of one run.
+// Points of one power cycle.
 void add_points(const TrainingRows& samples, Index begin, Index end,
                 int least_samples, Points& points) {
   double start = NAN, sum_T = 0.0, sum_b = 0.0, bias = 0.0;
@@ -134,9 +135,10 @@ BiasModel fit_as_ardupilot(const TrainingRows& samples, int least_samples) {
         "needs {} K",
         span, kArduPilotSpan));
   Points points;
-  const std::vector<Index> bounds = run_bounds(samples);
-  for (std::size_t run = 0; run + 1 < bounds.size(); ++run)
-    add_points(samples, bounds[run], bounds[run + 1], least_samples, points);
+  const std::vector<Index> bounds = cycle_bounds(samples);
+  for (std::size_t cycle = 0; cycle + 1 < bounds.size(); ++cycle)
+    add_points(samples, bounds[cycle], bounds[cycle + 1], least_samples,
+               points);
   if (points.bias.size() <= kDegree)
     throw std::invalid_argument(fmt::format(
         "the temperature rises by {} K over {} samples {} times in training; "

@@ -15,8 +15,7 @@ namespace {
 using Eigen::ArrayXd;
 using Eigen::Index;
 
-constexpr double kHysteresisBin = 5.0;  // [K]
-constexpr double kAtRest = 1.0;         // [deg/s], span of the true rate
+constexpr double kAtRest = 1.0;  // [deg/s], span of the true rate
 
 std::string span_caution(const TrainingRows& rows) {
   const double span = rows.range.highest - rows.range.lowest;
@@ -68,11 +67,8 @@ std::string resolution_caution(const FittedCase& fitted) {
 std::string extrapolation_caution(const FittedCase& fitted) {
   const TrainingRows& held_out = fitted.held_out;
   if (held_out.size() == 0) return "";
-  // Held-out temperatures come clamped; their samples' range tells.
   const TemperatureRange& range = fitted.rows.range;
-  const ArrayXd& T = held_out.temperature;
-  const auto outside =
-      (T <= range.lowest).count() + (T >= range.highest).count();
+  const auto outside = held_out.outside.count();
   if (outside == 0) return "";
   return fmt::format(
       "{} of {} held-out rows lie outside {:.1f} to {:.1f} degC, the "
@@ -88,14 +84,18 @@ bool tells_directions_apart(const std::vector<Input>& inputs) {
 
 std::string hysteresis_caution(const FittedCase& fitted) {
   if (tells_directions_apart(fitted.inputs)) return "";
-  const auto difference = hysteresis(fitted.rows);
-  const double residual = rms_residual(fitted.model, fitted.rows);
-  if (!difference || *difference <= residual) return "";
+  const ArrayXd residual =
+      fitted.rows.bias - fitted.model.predict(fitted.rows.inputs);
+  const auto found = hysteresis(fitted.rows, residual);
+  const double rms = std::sqrt(residual.square().mean());
+  if (!found || found->difference <= rms ||
+      found->difference <= kSignificance * found->standard_error)
+    return "";
   return fmt::format(
       "rising and falling temperature differ by up to {:.3g} deg/s, more than "
       "the residual of {:.3g} deg/s: inputs such as temperature_lowpass(100) "
       "tell them apart",
-      *difference, residual);
+      found->difference, rms);
 }
 
 std::string rate_caution(const FittedCase& fitted) {
@@ -132,31 +132,63 @@ double temperature_resolution(const Recording& recording) {
   return std::isfinite(smallest) ? smallest : 0.0;
 }
 
-std::optional<double> hysteresis(const TrainingRows& rows) {
-  struct Mean {
-    double sum = 0.0, count = 0.0;
-  };
-  std::map<double, Mean> bins[2];  // falling, rising
-  for (Index k = 0; k < rows.size(); ++k) {
-    // The direction from the neighbour in the same leg.
-    const Index before = k > 0 && rows.leg(k - 1) == rows.leg(k) ? k - 1 : k;
-    const Index after =
-        k + 1 < rows.size() && rows.leg(k + 1) == rows.leg(k) ? k + 1 : k;
-    const double change = rows.temperature(after) - rows.temperature(before);
-    if (change == 0.0) continue;
-    Mean& mean =
-        bins[change > 0.0][std::floor(rows.temperature(k) / kHysteresisBin)];
-    mean.sum += rows.bias(k);
-    mean.count += 1.0;
+namespace {
+
+// Which way the temperature went over the leg of each row: +1, -1, or 0 where
+// it did not move by kLegReversal.
+std::vector<int> directions(const TrainingRows& rows) {
+  std::vector<int> direction(static_cast<std::size_t>(rows.size()), 0);
+  for (Index begin = 0; begin < rows.size();) {
+    Index end = begin;
+    while (end < rows.size() && rows.leg(end) == rows.leg(begin)) ++end;
+    const double change = rows.temperature(end - 1) - rows.temperature(begin);
+    if (std::abs(change) >= kLegReversal)
+      std::fill(direction.begin() + begin, direction.begin() + end,
+                change > 0.0 ? 1 : -1);
+    begin = end;
   }
-  std::optional<double> largest;
-  for (const auto& [bin, rising] : bins[1]) {
-    const auto falling = bins[0].find(bin);
-    if (falling == bins[0].end()) continue;
-    const double difference =
-        std::abs(rising.sum / rising.count -
-                 falling->second.sum / falling->second.count);
-    largest = std::max(largest.value_or(0.0), difference);
+  return direction;
+}
+
+struct Cell {
+  double sum = 0.0, squares = 0.0, count = 0.0;
+
+  double mean() const { return sum / count; }
+  double scatter() const { return squares - sum * sum / count; }
+};
+
+}  // namespace
+
+std::optional<Hysteresis> hysteresis(const TrainingRows& rows,
+                                     const ArrayXd& residual) {
+  std::map<double, Cell> falling, rising;
+  const std::vector<int> direction = directions(rows);
+  for (Index k = 0; k < rows.size(); ++k) {
+    const int way = direction[static_cast<std::size_t>(k)];
+    if (way == 0) continue;
+    Cell& cell =
+        (way > 0 ? rising
+                 : falling)[std::floor(rows.temperature(k) / kHysteresisBin)];
+    cell.sum += residual(k);
+    cell.squares += residual(k) * residual(k);
+    cell.count += 1.0;
+  }
+  double scatter = 0.0, freedom = 0.0;
+  for (const auto* cells : {&falling, &rising})
+    for (const auto& [bin, cell] : *cells) {
+      scatter += std::max(cell.scatter(), 0.0);
+      freedom += cell.count - 1.0;
+    }
+  const double variance =
+      freedom > 0.0 ? scatter / freedom : residual.square().mean();
+  std::optional<Hysteresis> largest;
+  for (const auto& [bin, up] : rising) {
+    const auto down = falling.find(bin);
+    if (down == falling.end()) continue;
+    const double difference = std::abs(up.mean() - down->second.mean());
+    if (!largest || difference > largest->difference)
+      largest = {difference, std::sqrt(variance * (1.0 / up.count +
+                                                   1.0 / down->second.count))};
   }
   return largest;
 }

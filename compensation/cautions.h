@@ -13,6 +13,8 @@ namespace beamgyro {
 
 constexpr double kLeastSpan = 10.0;  // [K]
 constexpr double kWidestGap = 10.5;  // [K], between neighbouring temperatures
+constexpr double kHysteresisBin = 5.0;  // [K]
+constexpr double kSignificance = 4.0;   // [-], standard errors
 
 /// A fit and what it was fitted to, for cautions().
 struct FittedCase {
@@ -26,18 +28,26 @@ struct FittedCase {
 
 /// What the data do not support, one line each: a temperature span under
 /// kLeastSpan; gaps in coverage; a temperature too coarse for the slope of the
-/// bias; held-out temperatures outside the training's; a bias that differs
-/// between rising and falling temperature by more than the residual of a fit
-/// that cannot tell them apart; an input that feels the rate in a training at
-/// rest.
+/// bias; held-out temperatures outside the training's; hysteresis() above the
+/// rms residual and above kSignificance standard errors, of a model without an
+/// input that tells rising from falling; an input that feels the rate in a
+/// training at rest.
 std::vector<std::string> cautions(const FittedCase& fitted);
 
 /// Smallest difference of two measured temperatures [K], 0 when all are equal.
 double temperature_resolution(const Recording& recording);
 
-/// Largest difference of the mean bias between rising and falling legs at one
-/// temperature [deg/s], in bins of 5 K; nothing without such a bin.
-std::optional<double> hysteresis(const TrainingRows& rows);
+struct Hysteresis {
+  double difference;      // [deg/s], largest of the bins
+  double standard_error;  // [deg/s], of it
+};
+
+/// What a model leaves that differs between legs of rising and of falling
+/// temperature: the largest difference of the means of `residual` (one per row
+/// [deg/s]) in bins of kHysteresisBin. The standard error takes the scatter
+/// within a bin and direction, pooled. Nothing without a bin that has both.
+std::optional<Hysteresis> hysteresis(const TrainingRows& rows,
+                                     const Eigen::ArrayXd& residual);
 
 /// Why the model must not claim to be better than a constant bias: nothing was
 /// unseen, or its mean square residual on unseen groups is not below the

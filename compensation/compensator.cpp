@@ -2,6 +2,7 @@
 #include "compensation/compensator.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace beamgyro {
 namespace {
@@ -20,6 +21,9 @@ std::vector<double> corrected_rate(const BiasModel& bias,
     const Eigen::ArrayXd b = bias.predict(x.middleRows(first, count));
     Eigen::Map<Eigen::ArrayXd>(rate.data() + first, count) -= b;
   }
+  // Not every kind of model answers NaN to NaN.
+  for (std::size_t k = 0; k < rate.size(); ++k)
+    if ((recording.status[k] & kUnpowered) != 0) rate[k] = NAN;
   return rate;
 }
 

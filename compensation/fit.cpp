@@ -188,7 +188,7 @@ struct Fitter {
                 ? fmt::format(", held-out {:.6f}", *best.held_out_rms * unit)
                 : ""));
     }
-    const std::size_t kept = best_network(networks, training, unseen);
+    const std::size_t kept = best_network(networks, training, unseen, options);
     if (spec.weight_decays.size() > 1)
       fit.choices.push_back(
           fmt::format("kept weight decay {:g}", spec.weight_decays[kept]));

@@ -28,9 +28,13 @@ class Objective {
 
   double value(const VectorXd& w) {
     squares_ = batch_.sum_of_squares(w);
+    penalised_ = penalty_.value(w);
     return 0.5 * squares_ / count_ + 0.5 * decay_ * w.squaredNorm() +
-           penalty_.value(w);
+           penalised_;
   }
+
+  /// The rate penalty of the last value().
+  double penalised() const { return penalised_; }
 
   /// rms error of the last value().
   double rms() const { return std::sqrt(squares_ / count_); }
@@ -52,7 +56,7 @@ class Objective {
   BatchNetwork batch_;
   RatePenalty penalty_;
   double count_, decay_;
-  double squares_ = 0.0;
+  double squares_ = 0.0, penalised_ = 0.0;
 };
 
 // The damping of Nielsen.
@@ -88,11 +92,11 @@ TrainSummary train_levenberg_marquardt(const ScaledRows& rows,
                                        BpNetwork& network) {
   TrainSummary summary;
   BestWeights best(held_out, options.patience);
-  best.stale_after(0, network);
   Objective objective(network, rows, options);
   VectorXd w = network.weights(), gradient;
   MatrixXd matrix;
   double F = objective.value(w);
+  best.stale_after(0, network, objective.penalised());
   objective.linearise(w, matrix, gradient);
   Damping mu{options.initial_damping};
   std::optional<StopReason> stop = reason_to_stop(options, objective, gradient);
@@ -117,7 +121,8 @@ TrainSummary train_levenberg_marquardt(const ScaledRows& rows,
       network.set_weights(w);
       objective.linearise(w, matrix, gradient);
       stop = reason_to_stop(options, objective, gradient);
-      if (best.stale_after(summary.epochs, network) && !stop)
+      if (best.stale_after(summary.epochs, network, objective.penalised()) &&
+          !stop)
         stop = StopReason::kHeldOutRising;
     } else {
       if (!bent) objective.value(w);  // back to where curvature() is wanted

@@ -35,15 +35,25 @@ std::vector<Input> read_inputs(const ConfigTable& root) {
   return inputs;
 }
 
+bool takes_samples(const std::string& kind) {
+  return kind == "px4" || kind == "ardupilot";
+}
+
 void require_one_temperature(const ConfigTable& root,
                              const std::vector<Input>& inputs,
                              const std::string& kind) {
-  if (inputs.size() != 1 || inputs[0].column != "temperature")
-    root.fail("inputs",
-              fmt::format("{} inputs starting with \"{}\"; a {} takes one "
-                          "input, \"temperature\" or \"temperature_lowpass"
-                          "(TAU)\"",
-                          inputs.size(), input_name(inputs[0]), kind));
+  const bool of_samples = takes_samples(kind);
+  const bool one =
+      inputs.size() == 1 &&
+      (inputs[0] == parse_input("temperature") ||
+       (inputs[0].kind == InputKind::kTemperatureLowpass && !of_samples));
+  if (!one)
+    root.fail(
+        "inputs",
+        fmt::format("{} inputs starting with \"{}\"; a {} takes one "
+                    "input, \"temperature\"{}",
+                    inputs.size(), input_name(inputs[0]), kind,
+                    of_samples ? "" : " or \"temperature_lowpass(TAU)\""));
 }
 
 void require_temperature_first(const ConfigTable& root,
@@ -62,15 +72,14 @@ void require_temperature_first(const ConfigTable& root,
                             input_name(input), kind));
 }
 
-bool takes_samples(const std::string& kind) {
-  return kind == "px4" || kind == "ardupilot";
-}
-
 RowOptions read_rows(const ConfigTable& table, const std::string& kind) {
   RowOptions rows;
   rows.seconds = table.number_or(
       "seconds", takes_samples(kind) ? 0.0 : rows.seconds, non_negative());
   rows.steady_K_per_min = table.optional_number("steady_K_per_min", positive());
+  if (rows.steady_K_per_min && rows.seconds == 0.0)
+    table.fail("steady_K_per_min",
+               "is the slope over the seconds of a row, and seconds is 0");
   return rows;
 }
 
@@ -204,6 +213,7 @@ std::vector<int> layers_of(std::string_view name) {
     layers.push_back(neurons);
     at = next + 1;
   }
+  if (!layers.empty() && end[-1] == ',') return {};
   return layers;
 }
 
@@ -244,7 +254,9 @@ std::vector<Candidate> read_candidates(const ConfigTable& root,
                                        const std::vector<Input>& inputs) {
   require_temperature_first(root, inputs, "automatic choice");
   const ConfigTable automatic = root.table_or_empty("auto");
-  const BpSpec options = read_bp_options(root.table_or_empty("bp"));
+  const ConfigTable network_table = root.table_or_empty("bp");
+  const BpSpec options = read_bp_options(network_table);
+  require_inputs_for_penalty(network_table, options, inputs);
   const std::vector<std::string> names = automatic.has("candidates")
                                              ? automatic.texts("candidates")
                                              : usual_candidates(inputs.size());

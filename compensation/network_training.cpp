@@ -72,14 +72,17 @@ bool no_worse(const Eigen::ArrayXd& squares, const Eigen::ArrayXd& least) {
   return excess.mean() <= 2.0 * std::sqrt(variance / count);
 }
 
-bool BestWeights::stale_after(int epoch, const BpNetwork& network) {
+bool BestWeights::stale_after(int epoch, const BpNetwork& network,
+                              double rate_penalty) {
   if (held_out_.size() == 0) {
     epoch_ = epoch;
     weights_ = network.weights();
     return false;
   }
   const double rms = rms_error(network, held_out_);
-  if (rms < rms_) {
+  const double here = 0.5 * rms * rms + rate_penalty;
+  if (here < lowest_) {
+    lowest_ = here;
     rms_ = rms;
     epoch_ = epoch;
     weights_ = network.weights();

@@ -53,8 +53,8 @@ struct TrainOptions {
   int cores = 0;         // of all restarts together; 0 = those there are
   double goal = 0.0;     // rms, >= 0
   double weight_decay = 0.0;  // >= 0; kLevenbergMarquardt, kLbfgs
-  // Adds rate_penalty mean((dy/ds)^2) / 2 to F, s running along rate_direction,
-  // the change of the inputs with the rate (RatePenalty); kLevenbergMarquardt.
+  // Adds rate_penalty mean(g^2) / 2 to F, g the share of the rate taken for
+  // drift along rate_direction (RatePenalty); kLevenbergMarquardt.
   double rate_penalty = 0.0;                // >= 0
   std::vector<double> rate_direction = {};  // one per input
   double learning_rate = 0.02;  // eta of equation (5), > 0; its first value
@@ -94,16 +94,18 @@ Eigen::ArrayXd squared_errors(const BpNetwork& network, const ScaledRows& rows);
 /// neighbours share their noise.
 bool no_worse(const Eigen::ArrayXd& squares, const Eigen::ArrayXd& least);
 
-/// Keeps the weights with the lowest held-out rms met so far; without held-out
-/// rows, the last weights shown to it.
+/// Keeps the weights with the lowest held-out mean(e^2) / 2 + rate penalty met
+/// so far (held-out rows at rest are predicted best by cancelling the rate);
+/// without held-out rows, the last weights shown to it.
 class BestWeights {
  public:
   BestWeights(const ScaledRows& held_out, int patience)
       : held_out_(held_out), patience_(patience) {}
 
-  /// Shows it the network after `epoch`; true when the lowest held-out rms is
+  /// Shows it the network after `epoch`; true when the lowest value is
   /// `patience` or more epochs old.
-  bool stale_after(int epoch, const BpNetwork& network);
+  bool stale_after(int epoch, const BpNetwork& network,
+                   double rate_penalty = 0.0);
 
   /// Puts the kept weights into `network` and writes the summary's scores.
   void restore(const ScaledRows& rows, BpNetwork& network,
@@ -114,6 +116,7 @@ class BestWeights {
   int patience_;
   int epoch_ = 0;
   double rms_ = std::numeric_limits<double>::infinity();
+  double lowest_ = std::numeric_limits<double>::infinity();
   Eigen::VectorXd weights_;
 };
 

@@ -61,7 +61,10 @@ Polynomial fit_polynomial_by_normal_equations(
   const Eigen::MatrixXd columns = terms(x, degree);
   const Eigen::LLT<Eigen::MatrixXd> normal(columns.transpose() * columns);
   if (normal.info() != Eigen::Success)
-    fail(degree, x.rows(), columns.cols() - 1, columns.cols());
+    throw std::invalid_argument(fmt::format(
+        "polynomial of degree {}: the normal equations of {} rows cannot be "
+        "solved in double precision; normalised = true needs none",
+        degree, x.rows()));
   return polynomial_of(normal.solve(columns.transpose() * y.matrix()), degree);
 }
 

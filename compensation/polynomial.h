@@ -22,9 +22,11 @@ Polynomial fit_polynomial(const Eigen::Ref<const Eigen::ArrayXXd>& x,
                           const Eigen::Ref<const Eigen::ArrayXd>& y,
                           int degree);
 
-/// The same by the normal equations, as least squares is written where scaling
-/// is not thought of: their condition is the square of that of the powers of
-/// `x`. Throws as fit_polynomial().
+/// The same by the normal equations and Cholesky, as least squares is written
+/// where scaling is not thought of: their condition is the square of that of
+/// the powers of `x`, harmless for a cubic in kelvins about 25 degC, and
+/// ruinous for a high degree over a range far from it. Throws
+/// std::invalid_argument when that is more than double precision holds.
 Polynomial fit_polynomial_by_normal_equations(
     const Eigen::Ref<const Eigen::ArrayXXd>& x,
     const Eigen::Ref<const Eigen::ArrayXd>& y, int degree);

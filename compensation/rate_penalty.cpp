@@ -2,6 +2,8 @@
 #include "compensation/rate_penalty.h"
 
 #include <algorithm>
+#include <iterator>
+#include <stdexcept>
 
 namespace beamgyro {
 namespace {
@@ -11,8 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kInputStep = 1e-3;  // of a scaled input
-constexpr Index kBlockRows = 1024;   // J of a block stays in the cache
+constexpr Index kBlockRows = 1024;  // J of a block stays in the cache
 
 }  // namespace
 
@@ -23,17 +24,25 @@ RatePenalty::RatePenalty(const BpNetwork& network, const ScaledRows& rows,
   const Eigen::Map<const Eigen::RowVectorXd> direction(
       options.rate_direction.data(),
       static_cast<Index>(options.rate_direction.size()));
-  step_ = kInputStep / direction.norm();
-  const Eigen::RowVectorXd move = step_ * direction;
-  behind_ = rows.inputs.rowwise() - move.array();
-  ahead_ = rows.inputs.rowwise() + move.array();
+  const double length = direction.norm();
+  if (!(length > 0.0))
+    throw std::invalid_argument(
+        "a penalty on the rate needs an input that changes with it");
+  here_ = there_ = rows.inputs;
+  inverse_step_.resize(rows.size());
+  for (Index k = 0; k < rows.size(); ++k) {
+    const double step =
+        kPenaltySteps[static_cast<std::size_t>(k) % std::size(kPenaltySteps)];
+    there_.row(k) += (step / length) * direction.array();
+    inverse_step_(k) = length / step;
+  }
 }
 
 double RatePenalty::value(const VectorXd& w) {
   if (!active()) return 0.0;
   network_.set_weights(w);
   const ArrayXd g =
-      (network_.predict(ahead_) - network_.predict(behind_)) / (2.0 * step_);
+      (network_.predict(there_) - network_.predict(here_)) * inverse_step_;
   return 0.5 * penalty_ * g.square().mean();
 }
 
@@ -41,18 +50,19 @@ void RatePenalty::add_to(const VectorXd& w, MatrixXd& matrix,
                          VectorXd& gradient) {
   if (!active()) return;
   network_.set_weights(w);
-  const double scale = penalty_ / static_cast<double>(ahead_.rows());
-  MatrixXd here, there;
-  for (Index first = 0; first < ahead_.rows(); first += kBlockRows) {
-    const Index count = std::min(kBlockRows, ahead_.rows() - first);
-    const ArrayXd up =
-        network_.predict_with_jacobian(ahead_.middleRows(first, count), there);
-    const ArrayXd down =
-        network_.predict_with_jacobian(behind_.middleRows(first, count), here);
-    there = (there - here) / (2.0 * step_);
-    matrix.selfadjointView<Eigen::Lower>().rankUpdate(there.transpose(), scale);
+  const double scale = penalty_ / static_cast<double>(here_.rows());
+  MatrixXd from, to;
+  for (Index first = 0; first < here_.rows(); first += kBlockRows) {
+    const Index count = std::min(kBlockRows, here_.rows() - first);
+    const auto per_step = inverse_step_.segment(first, count);
+    const ArrayXd before =
+        network_.predict_with_jacobian(here_.middleRows(first, count), from);
+    const ArrayXd after =
+        network_.predict_with_jacobian(there_.middleRows(first, count), to);
+    to = per_step.matrix().asDiagonal() * (to - from);
+    matrix.selfadjointView<Eigen::Lower>().rankUpdate(to.transpose(), scale);
     gradient.noalias() +=
-        scale * (there.transpose() * ((up - down) / (2.0 * step_)).matrix());
+        scale * (to.transpose() * ((after - before) * per_step).matrix());
   }
 }
 

@@ -7,12 +7,19 @@
 
 namespace beamgyro {
 
-/// P = penalty mean(g^2) / 2 over the rows, g = dy/ds with the inputs running
-/// along TrainOptions::rate_direction: the share of the rate that a network
-/// takes for drift. g and its change with the weights are central differences
-/// over 1e-3 of the scaled inputs to either side.
+/// P = penalty mean(g^2) / 2 over the rows. g is the share of a rate that the
+/// network takes for drift: from row x to x + s d, with d the change of the
+/// scaled inputs with the rate in units of the scaled bias
+/// (TrainOptions::rate_direction),
+///
+///   g = (y(x + s d) - y(x)) / s
+///
+/// and s |d| one of kPenaltySteps, for each row the next: a network whose slope
+/// vanishes at the rows alone can still bend, or saturate, on its way to the
+/// rates that training at rest never shows it.
 class RatePenalty {
  public:
+  /// Throws std::invalid_argument when no input changes with the rate.
   RatePenalty(const BpNetwork& network, const ScaledRows& rows,
               const TrainOptions& options);
 
@@ -27,8 +34,13 @@ class RatePenalty {
  private:
   BpNetwork network_;
   double penalty_;
-  double step_ = 0.0;               // of s, to either side
-  Eigen::ArrayXXd behind_, ahead_;  // inputs at s = -step, +step
+  Eigen::ArrayXXd here_, there_;  // scaled inputs x, x + s d
+  Eigen::ArrayXd inverse_step_;   // 1 / s
 };
+
+/// Of the scaled inputs, whose half width is that of the training rows: from
+/// the slope to a hundred times what the rows span.
+constexpr double kPenaltySteps[] = {1e-3, -1.0,  10.0, -100.0,
+                                    1.0,  -10.0, 100.0};
 
 }  // namespace beamgyro

@@ -4,28 +4,35 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <limits>
 #include <thread>
+
+#include "compensation/rate_penalty.h"
 
 namespace beamgyro {
 std::size_t best_network(const std::vector<BpNetwork>& networks,
-                         const ScaledRows& rows, const ScaledRows& held_out) {
+                         const ScaledRows& rows, const ScaledRows& held_out,
+                         const TrainOptions& options) {
   std::vector<Eigen::ArrayXd> squares;
+  std::vector<double> sums;
   Eigen::ArrayXd least;
   for (const BpNetwork& network : networks) {
-    squares.push_back(squared_errors(network, held_out));
+    const double penalty =
+        2.0 * RatePenalty(network, rows, options).value(network.weights());
+    squares.push_back(squared_errors(network, held_out) + penalty);
+    sums.push_back(squares.back().sum() +
+                   (squared_errors(network, rows) + penalty).sum());
     if (least.size() == 0 || squares.back().mean() < least.mean())
       least = squares.back();
   }
   std::size_t best = 0;
   double lowest = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < networks.size(); ++k) {
-    const double sum =
-        squares[k].sum() + squared_errors(networks[k], rows).sum();
-    if (sum < lowest && (held_out.size() == 0 || no_worse(squares[k], least))) {
-      lowest = sum;
+  for (std::size_t k = 0; k < networks.size(); ++k)
+    if (sums[k] < lowest &&
+        (held_out.size() == 0 || no_worse(squares[k], least))) {
+      lowest = sums[k];
       best = k;
     }
-  }
   return best;
 }
 
@@ -66,7 +73,7 @@ Restarts train_from_restarts(const std::vector<int>& layer_sizes,
   }
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);
-  const std::size_t chosen = best_network(networks, rows, held_out);
+  const std::size_t chosen = best_network(networks, rows, held_out, options);
   return {std::move(summaries), chosen, std::move(networks[chosen])};
 }
 

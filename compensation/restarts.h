@@ -19,9 +19,12 @@ struct Restarts {
 /// Of the networks that are no_worse() on the held-out rows than the best one
 /// there, the one with the least squared error over training and held-out rows
 /// together: where the held-out runs cannot tell, all data do. Without held-out
-/// rows the one with the least in-sample error.
+/// rows the one with the least in-sample error. Every error has the network's
+/// rate penalty added to it: rows at rest are predicted best by cancelling the
+/// rate.
 std::size_t best_network(const std::vector<BpNetwork>& networks,
-                         const ScaledRows& rows, const ScaledRows& held_out);
+                         const ScaledRows& rows, const ScaledRows& held_out,
+                         const TrainOptions& options);
 
 /// Runs `options.restarts` trainings on `options.cores` threads or, with 0, as
 /// many as there are cores.

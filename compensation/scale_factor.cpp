@@ -52,14 +52,16 @@ SlopeSums sums_of(const Plateau& plateau) {
           .truth = w.dot(truth),
           .compensated_without_drift = v.dot(compensated),
           .raw_without_drift = v.dot(raw),
+          .truth_without_drift = v.dot(truth),
           .largest_departure = w.cwiseAbs().maxCoeff(),
           .samples = plateau.time.size()};
 }
 
-/// The usable samples of every plateau. `compensated` may be empty.
+/// The usable samples of every plateau, without those within kSettlingTime
+/// after a larger rate or a larger step of it. `compensated` may be empty.
 std::vector<Plateau> plateaus_of(const Recording& recording,
                                  std::span<const double> compensated,
-                                 double largest_rate) {
+                                 double largest_rate, double largest_step) {
   const auto& time = recording.time;
   const auto& truth = column_values(recording, "true_rate");
   const auto& raw = column_values(recording, "rate");
@@ -70,6 +72,9 @@ std::vector<Plateau> plateaus_of(const Recording& recording,
   for (const SampleRange& range : temperature_plateaus(recording)) {
     Plateau& plateau = plateaus.emplace_back();
     for (std::size_t k = range.begin; k < range.end; ++k) {
+      if (k > 0 && std::abs(truth[k] - truth[k - 1]) > largest_step) {
+        last_large = time[k];
+      }
       if (std::abs(truth[k]) > largest_rate) {
         last_large = time[k];
         continue;
@@ -97,6 +102,7 @@ SlopeSums& SlopeSums::operator+=(const SlopeSums& other) {
   truth += other.truth;
   compensated_without_drift += other.compensated_without_drift;
   raw_without_drift += other.raw_without_drift;
+  truth_without_drift += other.truth_without_drift;
   largest_departure = std::max(largest_departure, other.largest_departure);
   samples += other.samples;
   return *this;
@@ -111,7 +117,7 @@ SlopeSums slope_sums(const Recording& recording,
   }
   SlopeSums sums;
   for (const Plateau& plateau :
-       plateaus_of(recording, compensated, largest_rate)) {
+       plateaus_of(recording, compensated, largest_rate, kEveryRate)) {
     sums += sums_of(plateau);
   }
   return sums;
@@ -120,13 +126,21 @@ SlopeSums slope_sums(const Recording& recording,
 std::vector<PlateauSlope> plateau_slopes(const Recording& recording,
                                          double least_departure) {
   std::vector<PlateauSlope> slopes;
-  for (const Plateau& plateau : plateaus_of(recording, {}, kEveryRate)) {
-    const SlopeSums sums = sums_of(plateau);
-    if (sums.largest_departure >= least_departure) {
-      const Eigen::Map<const Eigen::ArrayXd> T(
-          plateau.temperature.data(),
-          static_cast<Eigen::Index>(plateau.temperature.size()));
-      slopes.push_back({T.mean(), sums.raw, sums.truth});
+  // A rate that is never held has no settled samples.
+  for (const double largest_step : {least_departure, kEveryRate}) {
+    for (const Plateau& plateau :
+         plateaus_of(recording, {}, kEveryRate, largest_step)) {
+      const SlopeSums sums = sums_of(plateau);
+      if (sums.largest_departure >= least_departure) {
+        const Eigen::Map<const Eigen::ArrayXd> T(
+            plateau.temperature.data(),
+            static_cast<Eigen::Index>(plateau.temperature.size()));
+        slopes.push_back(
+            {T.mean(), sums.raw_without_drift, sums.truth_without_drift});
+      }
+    }
+    if (!slopes.empty()) {
+      break;
     }
   }
   return slopes;

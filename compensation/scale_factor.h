@@ -30,6 +30,7 @@ struct SlopeSums {
   double truth = 0.0;                      // [(deg/s)^2], Σ w Omega
   double compensated_without_drift = 0.0;  // [(deg/s)^2], Σ v compensated_rate
   double raw_without_drift = 0.0;          // [(deg/s)^2], Σ v rate
+  double truth_without_drift = 0.0;        // [(deg/s)^2], Σ v Omega
   double largest_departure = 0.0;          // [deg/s], max |w|
   std::size_t samples = 0;
 
@@ -47,11 +48,13 @@ SlopeSums slope_sums(const Recording& recording,
 /// What one temperature plateau says of the gyro's own scale factor.
 struct PlateauSlope {
   double temperature;  // [degC], mean
-  double raw;          // [(deg/s)^2], Σ w rate
-  double truth;        // [(deg/s)^2], Σ w Omega
+  double raw;          // [(deg/s)^2], Σ v rate
+  double truth;        // [(deg/s)^2], Σ v Omega
 };
 
 /// Of every plateau whose true rate departs by `least_departure` [deg/s].
+/// Samples within kSettlingTime after a step of the rate by more than that are
+/// left out, unless nothing is left then: the output lags behind the step.
 std::vector<PlateauSlope> plateau_slopes(const Recording& recording,
                                          double least_departure);
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/QR>
+#include <cmath>
 #include <stdexcept>
 
 namespace beamgyro {

@@ -12,7 +12,10 @@ namespace beamgyro {
 ///   p     = n r_p / (n + r_p),               with a resistor beside it
 ///   b(T)  = offset + gain r_d / (r_d + r_s + p)   [deg/s]
 ///
-/// with all resistances over that of the NTC at 25 degC.
+/// with all resistances over that of the NTC at 25 degC. Its shape depends on
+/// the resistances through one number alone, n' of the bend:
+///
+///   b(T) = b_0 + b_1 / (1 + n / n'),   1 / n' = 1 / (r_s + r_d) + 1 / r_p
 struct ThermistorNetwork {
   double b_K = 3950.0;    // [K], > 0, of the NTC
   double series = 1.0;    // r_s > 0
@@ -25,11 +28,11 @@ struct ThermistorNetwork {
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXd>& x) const;
 };
 
-/// Offset, gain and the three resistances of least squared residual: each of
-/// 216 starts on a grid of resistances is solved for offset and gain, the best
-/// one refined in all five by Levenberg-Marquardt. Resistances are held within
-/// 1e-3 .. 1e3. Throws std::invalid_argument for fewer than 5 points or points
-/// of one temperature.
+constexpr double kLeastBend = 1e-3, kLargestBend = 1e3;  // n' of a fit [-]
+
+/// Least squares over b_0, b_1 and kLeastBend <= n' <= kLargestBend, told as
+/// the network with r_s = r_d = n' and r_p = 2 n'. Throws std::invalid_argument
+/// for fewer than 3 points or points of one temperature.
 ThermistorNetwork fit_thermistor_network(
     const Eigen::Ref<const Eigen::ArrayXd>& x,
     const Eigen::Ref<const Eigen::ArrayXd>& y, double b_K);

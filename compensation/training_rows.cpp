@@ -143,7 +143,9 @@ class RowCollector {
     };
     const ArrayXd temperature = column("temperature");
     ArrayXd truth = column("true_rate");
-    if (scale_factor_ != nullptr) truth *= scale_factor_->predict(temperature);
+    if (scale_factor_ != nullptr)
+      truth *= scale_factor_->predict(
+          temperature.max(clamp_.lowest).min(clamp_.highest));
     const ArrayXd bias = column("rate") - truth;
     const ArrayXd time = Eigen::Map<const ArrayXd>(
         recording.time.data(), static_cast<Index>(recording.time.size()));
@@ -174,6 +176,8 @@ class RowCollector {
       runs_.push_back(run_count_);
       cycles_.push_back(cycle_count_);
       legs_.add(T.mean());
+      const double mean = measured.mean();
+      outside_.push_back(mean < clamp_.lowest || mean > clamp_.highest);
       values_.push_back(time(block.samples).mean());
       values_.push_back(T.mean());
       values_.push_back(b.mean());
@@ -193,7 +197,8 @@ class RowCollector {
             array_of(cycles_),
             array_of(legs_.legs()),
             output_per_rate_,
-            count > 0 ? fastest_ - slowest_ : 0.0};
+            count > 0 ? fastest_ - slowest_ : 0.0,
+            array_of(outside_).cast<bool>()};
   }
 
  private:
@@ -201,15 +206,18 @@ class RowCollector {
   void note_output(const Recording& recording) {
     const Column* output = find_column(recording, "output");
     if (output == nullptr) return;
-    const auto [low, high] = std::minmax_element(
-        output->values.begin(), output->values.end(),
-        [](double a, double b) { return a < b || (std::isnan(a) && b == b); });
+    const auto& volts = output->values;
     const auto& rate = column_values(recording, "rate");
-    const double volts = *high - *low;
-    const double rates =
-        rate[static_cast<std::size_t>(high - output->values.begin())] -
-        rate[static_cast<std::size_t>(low - output->values.begin())];
-    if (rates > 0.0 && volts > 0.0) output_per_rate_ = volts / rates;
+    std::size_t low = 0, high = 0;
+    bool any = false;
+    for (std::size_t k = 0; k < volts.size(); ++k) {
+      if ((recording.status[k] & kUnpowered) != 0) continue;
+      if (!any || volts[k] < volts[low]) low = k;
+      if (!any || volts[k] > volts[high]) high = k;
+      any = true;
+    }
+    if (any && rate[high] != rate[low])
+      output_per_rate_ = (volts[high] - volts[low]) / (rate[high] - rate[low]);
   }
 
   static void check_finite(const ArrayXd& values, const char* what,
@@ -226,7 +234,7 @@ class RowCollector {
   const LookupTable* scale_factor_;
   Index inputs_;
   std::vector<double> values_;
-  std::vector<int> runs_, cycles_;  // one per row
+  std::vector<int> runs_, cycles_, outside_;  // one per row
   LegCounter legs_;
   int run_count_ = -1, cycle_count_ = -1;
   double output_per_rate_ = 0.0;                     // [V/(deg/s)]
@@ -277,7 +285,8 @@ TrainingRows selected(const TrainingRows& rows,
           rows.cycle(which),
           rows.leg(which),
           rows.output_per_rate,
-          rows.true_rate_span};
+          rows.true_rate_span,
+          rows.outside(which)};
 }
 
 TrainingRows with_columns(const TrainingRows& rows,

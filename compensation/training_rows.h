@@ -33,6 +33,8 @@ struct TrainingRows {
   Eigen::ArrayXi leg;    // part of a cycle between reversals of temperature
   double output_per_rate = 0.0;  // [V/(deg/s)]; 0 without an output that varies
   double true_rate_span = 0.0;   // [deg/s], of the samples that were averaged
+  // Whether the mean temperature measured lies beyond what it was clamped to.
+  Eigen::Array<bool, Eigen::Dynamic, 1> outside;
 
   Eigen::Index size() const { return bias.size(); }
 };

@@ -145,5 +145,86 @@ TEST(CompensatorFile, ParameterThatIsNotFiniteIsNotWritten) {
   EXPECT_THROW(compensator_text(c), std::runtime_error);
 }
 
+const Compensator& sample(const std::string& name) {
+  static const std::vector<NamedCompensator> all = one_of_each_kind();
+  for (const NamedCompensator& each : all)
+    if (each.name == name) return each.compensator;
+  throw std::logic_error(name);
+}
+
+struct Damage {
+  const char* sample;
+  const char* from;
+  const char* to;
+  const char* message;
+};
+
+TEST(CompensatorFile, DamageOfEachKindIsNamedByItsKey) {
+  for (const Damage& damage : {
+           Damage{"constant", "value_deg_per_s", "value",
+                  "parameters: \"value_deg_per_s\" is missing"},
+           Damage{"polynomial_with_slopes", "\"slopes\": [\n   0.25\n  ]",
+                  "\"slopes\": []",
+                  "parameters.slopes: 0 slopes, must be one for each of the 2 "
+                  "inputs but the first"},
+           Damage{"polynomial", "\"coefficients\": [\n   0.1,",
+                  "\"coefficients\": [\n   \"0.1\",",
+                  "parameters.coefficients[0]"},
+           Damage{"table", "\"temperatures_degC\": [\n   -40.0",
+                  "\"temperatures_degC\": [\n   -35.0",
+                  "temperatures_degC: must increase"},
+           Damage{"table", "\"values_deg_per_s\": [",
+                  "\"values_deg_per_s\": [ 1.0,",
+                  "20 values for 19 temperatures"},
+           Damage{"thermistor", "\"series\": ", "\"series\": -",
+                  "parameters.series"},
+           Damage{"thermistor", "\"b_K\": 3950.0", "\"b_K\": 0",
+                  "parameters.b_K: 0, must be above 0"},
+           Damage{"thermistor", "gain_deg_per_s", "gain",
+                  "\"gain_deg_per_s\" is missing"},
+           Damage{"fuzzy", "\"width\": 0.25", "\"width\": 0",
+                  "parameters.width: 0, must be above 0"},
+           Damage{"fuzzy", "\"centres\": [", "\"centres\": [ -2.0,",
+                  "consequents: 5 rules, must be one for each of the 6"},
+           Damage{"fuzzy", "\"consequents\": [\n   [",
+                  "\"consequents\": [\n   [ 0.5,",
+                  "consequents[0]: 4 numbers, must be 3"},
+           Damage{"fuzzy", "\"kind\": \"fuzzy\"", "\"kind\": \"table\"",
+                  "2 inputs, a table takes one"},
+           Damage{"bp_with_every_input", "\"values\": [\n   0.98",
+                  "\"values\": [\n   -0.98",
+                  "scale_factor.values: must be above 0"},
+           Damage{"bp_with_every_input", "\"values\": [", "\"values\": [ 1.0,",
+                  "8 values for 7 temperatures"},
+           Damage{"none", "\"method\"", "\"methods\"",
+                  "training: \"method\" is missing"},
+           Damage{"none", "\"choices\": [", "\"choices\": [ 3,",
+                  "training.choices[0]"},
+           Damage{"none", "\"by\"", "\"bye\"",
+                  "training.cross_validation: \"by\" is missing"},
+           Damage{"none", "\"constant_in_sample_rms_deg_per_s\": 1.5",
+                  "\"constant_in_sample_rms_deg_per_s\": null",
+                  "training.constant_in_sample_rms_deg_per_s"},
+           Damage{"none", "\"format_version\": 2", "\"format_version\": 1",
+                  "written by an older program; this one reads version 2"},
+       }) {
+    const std::string message =
+        error_of(with(damage.from, damage.to, sample(damage.sample)));
+    EXPECT_NE(message.find("mine.json"), std::string::npos) << message;
+    EXPECT_NE(message.find(damage.message), std::string::npos)
+        << damage.sample << ": " << message;
+  }
+}
+
+TEST(CompensatorFile, OfAnyKindCutOffIsRejected) {
+  for (const auto& [name, c] : one_of_each_kind()) {
+    const std::string text = compensator_text(c);
+    for (std::size_t size = 0; size + 2 <= text.size(); size += 97)
+      ASSERT_NE(error_of(text.substr(0, size)).find("not a whole JSON file"),
+                std::string::npos)
+          << name << " " << size;
+  }
+}
+
 }  // namespace
 }  // namespace beamgyro

@@ -7,6 +7,7 @@
 
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
+#include "tests/compensation/sample_compensators.h"
 
 namespace beamgyro {
 namespace {
@@ -70,6 +71,53 @@ TEST(Compensator, RateOfABiasOnlyModelPassesExactly) {
       compensated_rate(linear_compensator(), run.recording());
   for (std::size_t k = 0; k < still.size(); ++k)
     EXPECT_NEAR(turning[k] - still[k], 64.0, 1e-12);
+}
+
+// s from 0.9 at 0 to 1.1 at 50 degC, of which the range takes 0 ... 40.
+Compensator scaling_compensator() {
+  Compensator c = linear_compensator();
+  c.scale_factor = LookupTable{Eigen::ArrayXd::LinSpaced(2, 0.0, 50.0),
+                               Eigen::ArrayXd::LinSpaced(2, 0.9, 1.1)};
+  return c;
+}
+
+TEST(Compensator, DividesWhatTheBiasLeavesByTheScaleFactor) {
+  RecordedRun run{.duration = 100.0, .step = 0.01};
+  run.temperature = [](double t) { return 0.4 * t; };
+  run.scale_factor = [](double t) { return 0.9 + 0.004 * 0.4 * t; };
+  run.bias = [](double t) { return 1.0 + 0.04 * t; };
+  run.true_rate = [](double t) { return 50.0 * std::sin(t); };
+  const Recording recording = run.recording();
+  const std::vector<double> rate =
+      compensated_rate(scaling_compensator(), recording);
+  for (std::size_t k = 0; k < rate.size(); ++k)
+    ASSERT_NEAR(rate[k], 50.0 * std::sin(recording.time[k]), 1e-12);
+  // The baseline has s = 1.
+  EXPECT_EQ(baseline_rate(scaling_compensator(), recording),
+            baseline_rate(linear_compensator(), recording));
+}
+
+TEST(Compensator, ClampsTheTemperatureOfTheScaleFactorToo) {
+  RecordedRun run{.duration = 60.0, .step = 1.0};
+  run.temperature = [](double t) { return t < 30.0 ? -60.0 : 90.0; };
+  run.true_rate = [](double) { return 10.0; };
+  const std::vector<double> rate =
+      compensated_rate(scaling_compensator(), run.recording());
+  EXPECT_NEAR(rate[0], (10.0 - 1.0) / 0.9, 1e-13);
+  EXPECT_NEAR(rate[59], (10.0 - 5.0) / 1.06, 1e-13);
+}
+
+TEST(Compensator, NoKindAnswersWhereThereIsNoPower) {
+  RecordedRun run{.duration = 40.0, .step = 1.0};
+  run.temperature = [](double t) { return t; };
+  Recording recording = run.recording();
+  for (std::size_t k = 10; k < 20; ++k) recording.status[k] |= kUnpowered;
+  for (const auto& [name, c] : one_of_each_kind()) {
+    if (c.inputs.size() > 1 && name != "bp") continue;  // loop signals
+    const std::vector<double> rate = compensated_rate(c, recording);
+    for (std::size_t k = 0; k < rate.size(); ++k)
+      EXPECT_EQ(std::isnan(rate[k]), k >= 10 && k < 20) << name << " " << k;
+  }
 }
 
 }  // namespace

@@ -163,5 +163,53 @@ TEST(Features, NanAtAPoweredSampleIsAnErrorNotAGap) {
       << message;
 }
 
+TEST(Features, TemperatureRateOfARampIsItsSlopeOnceTheFilterHasSettled) {
+  const double tau = 60.0, slope = 0.02;  // [s, K/s]
+  FeatureStream stream(inputs({"temperature_rate(60)"}));
+  double rate[1];
+  for (const double t : irregular_times(400)) {
+    ASSERT_TRUE(stream.step(t, 0, std::vector{-30.0 + slope * t}, rate));
+    // (x - y) / tau with tau y' = x - y
+    ASSERT_NEAR(rate[0], slope * (1.0 - std::exp(-t / tau)), 1e-14) << t;
+  }
+  EXPECT_NEAR(rate[0], slope, 0.01 * slope);
+}
+
+TEST(Features, TemperatureRateStartsAtZeroAtEachPowerOn) {
+  RecordedRun run{.duration = 300.0, .step = 1.0};
+  run.temperature = [](double t) { return 20.0 + 0.1 * t; };
+  run.powered = [](double t) { return t < 150.0 || t >= 170.0; };
+  const Eigen::ArrayXXd x =
+      features_of(inputs({"temperature_rate(40)"}), run.recording());
+  EXPECT_EQ(x(0, 0), 0.0);
+  EXPECT_NEAR(x(149, 0), 0.1 * (1.0 - std::exp(-149.0 / 40.0)), 1e-13);
+  EXPECT_TRUE(std::isnan(x(160, 0)));
+  EXPECT_EQ(x(170, 0), 0.0);
+  EXPECT_NEAR(x(210, 0), 0.1 * (1.0 - std::exp(-1.0)), 1e-13);
+}
+
+TEST(Features, TemperatureRateForgetsAStepAndSeesNoConstant) {
+  FeatureStream stream(inputs({"temperature_rate(10)"}));
+  double rate[1];
+  for (const double t : {0.0, 3.0, 4.0, 50.0}) {
+    stream.step(t, 0, std::vector{23.7}, rate);
+    EXPECT_EQ(rate[0], 0.0);
+  }
+  stream.step(50.0 + 1e-9, 0, std::vector{24.7}, rate);
+  EXPECT_NEAR(rate[0], 0.1, 1e-9);  // 1 K / 10 s
+  stream.step(70.0, 0, std::vector{24.7}, rate);
+  EXPECT_NEAR(rate[0], 0.1 * std::exp(-2.0), 1e-9);
+}
+
+TEST(Features, TemperatureRateIsZeroWhereTheTemperatureIsClamped) {
+  RecordedRun run{.duration = 600.0, .step = 1.0};
+  run.temperature = [](double t) { return 20.0 + 0.1 * t; };
+  const Eigen::ArrayXXd x =
+      features_of(inputs({"temperature_rate(20)"}), run.recording(),
+                  {.lowest = 0.0, .highest = 30.0});
+  EXPECT_NEAR(x(99, 0), 0.1, 1e-3);
+  EXPECT_NEAR(x(599, 0), 0.0, 1e-10);
+}
+
 }  // namespace
 }  // namespace beamgyro

@@ -150,11 +150,59 @@ class Formats(ProgramTest):
                 self.assertEqual(variable.attrs["role"].decode(), role.strip())
 
     def test_the_compensator_holds_what_the_page_lists(self):
+        steps = ", ".join(f"[{40 * k}, {30 * (k % 5 - 2)}]" for k in range(100))
+        self.run_scenario("run", text=f"{ramp()}\n[rate]\nsteps = [{steps}]\n")
+        page, training = section("Compensator file").split("| key of `training`")
+        documented = rows(page)
+        optional = {name for name, rest in documented.items()
+                    if rest.startswith("only with")}
+        self.assertEqual(optional, {"scale_factor"})
+        for text, left_out in [(CUBIC, optional),
+                               (CUBIC + "[scale_factor]\n", set())]:
+            self.write("m.toml", text)
+            self.ok("train", "run.h5", "--model", "m.toml", "-o", "c.json")
+            answer = json.loads((self.dir / "c.json").read_text())
+            self.assertEqual(set(answer), set(documented) - left_out)
+            self.assertEqual(set(answer["training"]), set(rows(training)))
+
+    def test_parameters_of_every_kind_are_listed(self):
         self.run_scenario("run", text=ramp())
-        self.write("m.toml", CUBIC)
-        self.ok("train", "run.h5", "--model", "m.toml", "-o", "c.json")
-        answer = json.loads((self.dir / "c.json").read_text())
-        self.assertEqual(set(answer), set(rows(section("Compensator file"))))
+        self.run_scenario("held_out", text=ramp(seed=9))
+        page = section("Compensator file")
+        listed = rows(page)["parameters"]
+        for kind in re.findall(r'"(\w+)"', rows(page)["kind"]):
+            self.write("m.toml", f'kind = "{kind}"\ninputs = ["temperature"]\n'
+                       + ("[bp]\nhidden = [2]\nrestarts = 1\nmax_epochs = 9\n"
+                          if kind == "bp" else ""))
+            self.ok("train", "run.h5", "--model", "m.toml", "--held-out",
+                    "held_out.h5", "-o", "c.json")
+            answer = json.loads((self.dir / "c.json").read_text())
+            self.assertEqual(answer["kind"], kind)
+            part = "" if kind == "none" else \
+                listed.split(f"{kind}:")[1].split(";")[0]
+            names = set(re.findall(r"`(\w+)`", part))
+            with self.subTest(kind):
+                self.assertEqual(set(answer["parameters"]), names)
+
+    def test_model_keys_are_known_to_the_program(self):
+        self.run_scenario("run", text=ramp())
+        for key in rows(section("Model file")):
+            table = key.rpartition(".")[0]
+            kind = table if table not in ("", "rows", "scale_factor") \
+                else "polynomial"
+            text = {"kind": f'"{kind}"', "inputs": '["temperature"]'}
+            if kind == "bp":
+                text["bp.hidden"] = "[2]"
+            if key in ("bp.learning_rate", "bp.momentum"):
+                text["bp.trainer"] = '"incremental"'
+            text[key] = "{}"
+            self.write("m.toml", "".join(f"{name} = {value}\n"
+                                         for name, value in text.items()))
+            with self.subTest(key):
+                message = self.rejected("train", "run.h5", "--model", "m.toml",
+                                        "-o", "c.json",
+                                        says=key.rpartition(".")[2])
+                self.assertNotIn("unknown key", message)
 
 
 if __name__ == "__main__":
