@@ -81,7 +81,7 @@ class Writer {
           "  uint32_t samples; /* since power-on */\n";
     if (filters_ > 0)
       text += fmt::format(
-          "  float filter[{}][4]; /* low-passes of the temperature */\n"
+          "  float filter[{}][5]; /* low-passes of the temperature */\n"
           "  int started;        /* they have their first temperature */\n",
           filters_);
     text += fmt::format(

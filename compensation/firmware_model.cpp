@@ -170,7 +170,7 @@ struct FirmwareModel::State {
   float period = 0.0f;
   std::uint32_t samples = 0;
   bool started = false;                       // since the first temperature
-  std::vector<std::array<float, 4>> filters;  // one per input
+  std::vector<std::array<float, 5>> filters;  // one per input
 };
 
 FirmwareModel::FirmwareModel(const Compensator& c)
