@@ -63,7 +63,7 @@ TEST(RatePenalty, WeighsWhatANetworkTakesOnTheWayToLargeRates) {
 TEST(RatePenalty, GradientIsThatOfCentralDifferences) {
   const BpNetwork network = random_network({2, 5, 3, 1});
   RatePenalty penalty(network, some_rows(60), options(2.5, {0.6, 0.2}));
-  const VectorXd w = network.weights();
+  const VectorXd& w = network.weights();
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(w.size(), w.size());
   VectorXd gradient = VectorXd::Zero(w.size());
   penalty.add_to(w, matrix, gradient);
@@ -82,7 +82,7 @@ TEST(RatePenalty, GradientIsThatOfCentralDifferences) {
 TEST(RatePenalty, MatrixIsTheSecondDerivativeWhereTheNetworkIsLinear) {
   const BpNetwork network = random_network({2, 4, 1});
   RatePenalty penalty(network, some_rows(30), options(0.7, {1.0, 0.3}));
-  const VectorXd w = network.weights();
+  const VectorXd& w = network.weights();
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(w.size(), w.size());
   VectorXd ignored = VectorXd::Zero(w.size());
   penalty.add_to(w, matrix, ignored);

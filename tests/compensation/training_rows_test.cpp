@@ -190,7 +190,9 @@ TEST(TrainingRows, WithoutSecondsEverySampleIsARow) {
 TEST(TrainingRows, RateAndOutputTellVoltsPerDegreeEvenWithGapsInPower) {
   RecordedRun run = drifting_run();
   for (const bool gap : {false, true}) {
-    run.powered = [gap](double t) { return !gap || t < 200.0 || t > 300.0; };
+    run.powered = [gap](double t) {
+      return !gap || (t > 10.0 && t < 200.0) || t > 300.0;
+    };
     const TrainingRows rows =
         training_rows(one(run.recording()), kTemperature, {});
     EXPECT_NEAR(rows.output_per_rate, 0.0125, 1e-9) << gap;
