@@ -207,8 +207,10 @@ std::string objection(const Candidate& candidate, const TrainingRows& rows,
                       const RowGroups& groups) {
   if (is_constant(candidate)) return "";
   if (groups.by == Grouping::kSegment && !is_curve(candidate))
-    return "the recordings are one leg of temperature, of which nothing "
-           "independent can be held out: curves up to the cubic only";
+    return "the recordings are one leg of temperature, or legs that share too "
+           "little of it, and nothing independent can be held out: curves up "
+           "to "
+           "the cubic only";
   if (groups.count < kLeastGroupsOfNetwork &&
       std::holds_alternative<BpSpec>(candidate.kind))
     return fmt::format("{} {}s or more judge a network; the recordings have {}",

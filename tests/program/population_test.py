@@ -99,10 +99,21 @@ class ShortenedRun(unittest.TestCase):
             for study, figures in studies.items():
                 for figure, value in figures.items():
                     with self.subTest(f"{study} {figure}"):
-                        self.assertTrue(math.isfinite(value) and value > 0)
                         row = table["studies"][study][figure]
+                        if isinstance(value, str):
+                            self.assertEqual(row, {"counts": {value: 1}})
+                            continue
+                        self.assertTrue(math.isfinite(value))
+                        if "_lost_" not in figure:
+                            self.assertGreater(value, 0)
                         self.assertEqual(row["median"], value)
             self.assertLess(studies["soak"]["bp_percent_of_cubic"], 7.28)
+            automatic = studies["automatic"]
+            self.assertLessEqual(automatic["up_down_auto_of_best"], 1.05)
+            self.assertEqual(automatic["up_auto_method"], "cubic")
+            self.assertEqual(automatic["up_auto_lost_deg_per_s"], 0)
+            self.assertIn(automatic["zeroed_up_down_method"],
+                          ["none", "constant"])
 
             # Half a line, as a run broken off leaves it, is no device.
             with (out / "devices_quick.jsonl").open("a") as file:

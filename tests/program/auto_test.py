@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: MIT
+"""The automatic choice of a model, and cross-validation, by the program."""
+
+import json
+import re
+import unittest
+
+import h5py
+import numpy as np
+
+from program import CUBIC, ProgramTest, SCENARIO, SCENARIOS, ramp
+
+AUTO = SCENARIOS / "models/auto.toml"
+FIVE_INPUTS = SCENARIOS / "models/auto_recommended.toml"
+
+NETWORK = """\
+kind = "bp"
+inputs = ["temperature"]
+
+[bp]
+hidden = [3]
+restarts = 1
+max_epochs = 40
+"""
+
+CURVES = """\
+kind = "auto"
+inputs = ["temperature"]
+
+[auto]
+candidates = ["constant", "linear", "cubic", "spline"]
+"""
+
+
+def points(seed, *temperatures, seconds=6000):
+    """Scenario text of straight lines between temperatures [degC]."""
+    times = np.linspace(0, seconds, len(temperatures))
+    way = [[float(t), T] for t, T in zip(times, temperatures)]
+    return ramp(seconds, seed=seed).replace(
+        f"points = [[0, -30], [{seconds}, 40]]", f"points = {way}")
+
+
+def power_cycles(ambient, seed):
+    """Scenario text of two power-ons in still air."""
+    return SCENARIO.replace("duration_s = 600", "duration_s = 6000") \
+        .replace("output_rate_Hz = 2", "output_rate_Hz = 1") \
+        .replace("seed = 7", f"seed = {seed}") \
+        .replace("constant_degC = 25", f"constant_degC = {ambient}") \
+        + "\n[power]\non_s = [0, 3600]\noff_s = [2400]\n"
+
+
+class Auto(ProgramTest):
+    def recordings(self, **scenarios):
+        for name, text in scenarios.items():
+            self.run_scenario(name, text=text)
+        return [f"{name}.h5" for name in scenarios]
+
+    def zero(self, name):
+        """Takes the true bias from a recording: nothing is left to learn."""
+        with h5py.File(self.dir / name, "r+") as file:
+            file["rate"][...] -= file["true_bias"][()]
+
+    def trained(self, runs, model, *arguments, name="c.json"):
+        """Printed report, warnings on stderr, and what the file says."""
+        answer = self.beamgyro("train", *runs, "--model", model, "-o", name,
+                               *arguments)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        stored = json.loads((self.dir / name).read_text())["training"]
+        for warning in stored["warnings"]:
+            self.assertIn(warning, answer.stderr)
+        return answer.stdout, answer.stderr, stored
+
+    def rms(self, compensator, run):
+        self.ok("validate", compensator, run, "--json", "v.json")
+        overall = json.loads((self.dir / "v.json").read_text())["overall"]
+        return overall["residual"]["rms_deg_per_s"]
+
+
+class OneLeg(Auto):
+    def test_is_a_cubic_and_says_why_it_is_no_more(self):
+        runs = self.recordings(up=points(3, -40, 50))
+        for model in [AUTO, FIVE_INPUTS]:
+            report, errors, stored = self.trained(runs, model)
+            self.assertEqual(stored["method"], "cubic")
+            self.assertRegex(report, r"choice: spline: passed over, the "
+                                     r"recordings are one leg of temperature")
+            self.assertIn("claims nothing", errors)
+        # What it keeps is the cubic, bit for bit.
+        self.write("cubic.toml", CUBIC)
+        self.ok("train", *runs, "--model", "cubic.toml", "-o", "cubic.json")
+        automatic, cubic = (
+            json.loads((self.dir / name).read_text())["parameters"]
+            for name in ["c.json", "cubic.json"])
+        self.assertEqual(automatic, cubic)
+
+    def test_without_a_temperature_effect_is_no_more_than_a_constant(self):
+        for name, temperatures in [("up", [-40, 50]), ("both", [-40, 50, -40])]:
+            runs = self.recordings(**{name: points(5, *temperatures)})
+            self.zero(runs[0])
+            report, errors, stored = self.trained(runs, AUTO)
+            self.assertIn(stored["method"], ["none", "constant"])
+            self.assertIn("no improvement to claim", errors)
+            self.assertRegex(report, r"choice: cubic: passed over, the bias")
+
+    def test_over_8_K_loses_nothing_against_constant_and_cubic(self):
+        runs = self.recordings(train=points(6, 10, 18, 10))
+        (test,) = self.recordings(test=points(7, 18, 10, 18, seconds=9000) +
+                                  "\n[noise]\nenabled = false\n")
+        self.write("cubic.toml", CUBIC)
+        self.write("constant.toml", 'kind = "constant"\n')
+        self.trained(runs, AUTO)
+        left = {}
+        for name in ["constant", "cubic"]:
+            self.ok("train", *runs, "--model", f"{name}.toml", "-o",
+                    f"{name}.json")
+            left[name] = self.rms(f"{name}.json", test)
+        # The two differ, so that the choice matters.
+        self.assertGreater(left["constant"], 1.2 * left["cubic"])
+        self.assertLessEqual(self.rms("c.json", test), 1.05 * left["cubic"])
+
+
+class ManyLegs(Auto):
+    def setUp(self):
+        super().setUp()
+        self.runs = self.recordings(a=points(11, -40, 50, -40),
+                                    b=points(12, 50, -40, 50),
+                                    c=points(13, -40, 50, -40, seconds=9000))
+
+    def test_takes_more_than_a_cubic_and_claims_it(self):
+        report, errors, stored = self.trained(self.runs, AUTO)
+        self.assertRegex(stored["method"], "cubic spline|BP network")
+        self.assertNotIn("no improvement to claim", errors)
+        judged = dict(re.findall(r"choice: (.*): ([\d.]+) deg/s rms over 3 "
+                                 r"unseen runs", report))
+        self.assertLess(float(judged["spline"]), float(judged["cubic"]))
+        self.assertEqual(stored["cross_validation"]["by"], "run")
+        self.assertEqual(stored["cross_validation"]["groups"], 3)
+
+    def test_gives_the_same_file_again(self):
+        for name in ["first.json", "again.json"]:
+            self.trained(self.runs, FIVE_INPUTS, name=name)
+        self.assertEqual((self.dir / "first.json").read_bytes(),
+                         (self.dir / "again.json").read_bytes())
+
+    def test_needs_warm_ups_to_use_the_time_since_power_on(self):
+        report, _, stored = self.trained(self.runs, FIVE_INPUTS)
+        self.assertEqual(stored["method"], "cubic spline")
+        self.assertRegex(report, r"choice: bp\(2,8\).*: passed over, time "
+                                 r"since power-on is told from temperature by")
+
+    def test_without_a_temperature_effect_claims_nothing(self):
+        for run in self.runs:
+            self.zero(run)
+        _, errors, stored = self.trained(self.runs, AUTO)
+        self.assertIn(stored["method"], ["none", "constant"])
+        self.assertIn("no improvement to claim", errors)
+
+    def test_is_judged_by_held_out_runs_where_there_are_any(self):
+        self.write("curves.toml", CURVES)
+        report, _, stored = self.trained(self.runs[:1], "curves.toml",
+                                         "--held-out", *self.runs[1:])
+        self.assertEqual(stored["method"], "cubic spline")
+        self.assertIn("unseen legs", report)
+        self.assertIsNone(stored["cross_validation"])
+
+
+class CrossValidation(Auto):
+    def setUp(self):
+        super().setUp()
+        self.runs = self.recordings(cold=power_cycles(-20, 21),
+                                    warm=power_cycles(20, 22))
+        self.write("network.toml", NETWORK)
+
+    def test_holds_out_runs_cycles_or_legs(self):
+        for by, runs, count in [("run", self.runs, 2), ("cycle", self.runs, 4),
+                                ("leg", self.recordings(
+                                    way=points(23, -40, 50, -40, 50)), 3)]:
+            report, _, stored = self.trained(runs, "network.toml", "--cv", by)
+            validated = stored["cross_validation"]
+            self.assertEqual((validated["by"], validated["groups"]),
+                             (by, count))
+            self.assertRegex(report, f"rms cross-validated over {count} {by}s")
+
+    def test_says_of_what_there_are_too_few(self):
+        way = self.recordings(up=points(24, -40, 50))
+        for by in ["run", "cycle", "leg"]:
+            self.rejected("train", *way, "--model", "network.toml", "--cv", by,
+                          "-o", "n.json",
+                          says=f"needs two {by}s or more; the recordings "
+                               "have 1")
+        self.rejected("train", *way, "--model", AUTO, "--cv", "run", "-o",
+                      "n.json", says="needs two runs or more")
+        self.rejected("train", *way, "--model", "network.toml", "--cv",
+                      "sample", "-o", "n.json", says="--cv")
+
+    def test_a_network_needs_it_or_held_out_runs(self):
+        self.rejected("train", *self.runs, "--model", "network.toml", "-o",
+                      "n.json", says=["--held-out", "--cv run|cycle|leg"])
+
+
+if __name__ == "__main__":
+    unittest.main()
