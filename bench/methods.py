@@ -27,7 +27,7 @@ STATIC = {"temperature"}
 RATE_TABLES = [name for name, *_ in demo.TEST if name.startswith("rate_table")]
 TRAINING_RATES = [
     (f"rate_table_training_{t}", "rate_table", 170 + k,
-     [f"ambient.constant_degC={t}"]) for k, t in enumerate([-40, -20, 0, 20, 40])]
+     [f"ambient.constant_degC={t}"]) for k, t in enumerate(range(-45, 51, 5))]
 
 
 def runs_of(text):

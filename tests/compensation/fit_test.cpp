@@ -147,21 +147,24 @@ BpSpec network(const std::vector<double>& decays) {
   return spec;
 }
 
-TEST(Fit, TheWeightDecayOfTheLeastHeldOutResidualIsKeptAndTold) {
+TEST(Fit, TheWeightDecayThatLeavesLeastIsKeptAndTold) {
   const TrainingRows rows = curve(-40.0, 50.0, 5.0),
                      unseen = curve(-37.5, 47.5);
   const std::vector<double> decays{1e-1, 0.0, 1e-2};
   const Fit found = fit(network(decays), rows, unseen);
-  ASSERT_EQ(found.choices.size(), 3u);
+  ASSERT_EQ(found.choices.size(), 4u);
   double best = HUGE_VAL;
   for (std::size_t k = 0; k < decays.size(); ++k) {
     const Fit alone = fit(network({decays[k]}), rows, unseen);
     EXPECT_TRUE(alone.choices.empty());
     best = std::min(best, *alone.summary().held_out_rms);
     EXPECT_EQ(found.choices[k],
-              fmt::format("weight decay {:g}: held-out rms {:.6f} deg/s",
-                          decays[k], *alone.summary().held_out_rms));
+              fmt::format("weight decay {:g}: rms in-sample {:.6f}, held-out "
+                          "{:.6f} deg/s",
+                          decays[k], alone.summary().in_sample_rms,
+                          *alone.summary().held_out_rms));
   }
+  EXPECT_EQ(found.choices[3], "kept weight decay 0");  // the others bend it
   EXPECT_EQ(*found.summary().held_out_rms, best);
   EXPECT_NEAR(rms_residual(found.model, unseen), best, 1e-12);
 }
