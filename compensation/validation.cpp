@@ -165,7 +165,14 @@ AnsweredRun answered_run(const Compensator& compensator,
                   .compensated = estimator(recording),
                   .baseline = baseline_rate(compensator, recording)};
   if (!scale_factor(slope_sums(recording, run.compensated))) {
-    run.injected_scale_factor = injected_scale_factor(estimator, recording);
+    // Replayed rates have the nominal scale factor, so none is to be corrected.
+    Compensator bias_only = compensator;
+    bias_only.scale_factor.reset();
+    run.injected_scale_factor = injected_scale_factor(
+        [&bias_only](const Recording& any) {
+          return compensated_rate(bias_only, any);
+        },
+        recording);
   }
   return run;
 } catch (const std::invalid_argument& error) {
