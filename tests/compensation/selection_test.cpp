@@ -38,7 +38,8 @@ const Candidate kNetwork = candidate("bp(3)", network());
 const Leg kUp{0, 0, -40.0, 50.0, 91}, kDown{0, 0, 50.0, -40.0, 91};
 
 Selected select(const std::vector<Candidate>& candidates,
-                const TrainingRows& rows, std::optional<RowGroups> groups = {},
+                const TrainingRows& rows,
+                const std::optional<RowGroups>& groups = {},
                 const TrainingRows& held_out = {},
                 const std::vector<Input>& inputs = kTemperature) {
   return select_model(candidates, {inputs, rows, held_out, groups, 1});
