@@ -34,7 +34,7 @@ TrainingRows clamped(TrainingRows rows, const std::vector<Input>& inputs,
 // has none.
 using Mask = Eigen::Array<bool, Eigen::Dynamic, 1>;
 Mask covered_by_others(const TrainingRows& rows, const RowGroups& groups) {
-  Mask covered(rows.size());
+  Mask covered = Mask::Constant(rows.size(), false);
   for (int group = 0; group < groups.count; ++group) {
     const Mask own = groups.of_row == group;
     const double infinity = std::numeric_limits<double>::infinity();
