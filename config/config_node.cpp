@@ -2,6 +2,7 @@
 #include "config/config_node.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -37,6 +38,65 @@ std::string text_of(const ConfigNode& node) {
       return "a date or time";
   }
   return {};
+}
+
+namespace {
+
+std::string quoted(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f) {
+      result += fmt::format("\\u{:04x}", byte);
+    } else {
+      if (c == '"' || c == '\\') result += '\\';
+      result += c;
+    }
+  }
+  return result + '"';
+}
+
+// fmt's shortest digits; a mark that keeps an integral float a float.
+std::string float_text(double number) {
+  const std::string digits = fmt::format("{}", number);
+  const bool integral = digits.find_first_of(".en") == std::string::npos;
+  return integral ? digits + ".0" : digits;
+}
+
+}  // namespace
+
+std::string toml_text(const ConfigNode& node) {
+  std::vector<std::string> parts;
+  for (const ConfigNode& child : node.children) {
+    const std::string text = toml_text(child);
+    parts.push_back(node.kind == ConfigNode::Kind::kTable
+                        ? fmt::format("{} = {}", quoted(child.key), text)
+                        : text);
+  }
+  switch (node.kind) {
+    case ConfigNode::Kind::kTable:
+      return fmt::format("{{{}}}", fmt::join(parts, ", "));
+    case ConfigNode::Kind::kArray:
+      return fmt::format("[{}]", fmt::join(parts, ", "));
+    case ConfigNode::Kind::kText:
+      return quoted(node.text);
+    case ConfigNode::Kind::kInteger:
+      return fmt::format("{}", node.integer);
+    case ConfigNode::Kind::kFloat:
+      return float_text(node.number);
+    case ConfigNode::Kind::kFlag:
+      return node.flag ? "true" : "false";
+    case ConfigNode::Kind::kDate:
+      return {};
+  }
+  return {};
+}
+
+ConfigNode number_node(double number) {
+  ConfigNode node;
+  node.kind = ConfigNode::Kind::kFloat;
+  node.number = number;
+  return node;
 }
 
 std::string printable(std::string_view text) {

@@ -43,6 +43,13 @@ const ConfigNode* find_child(const ConfigNode& table, std::string_view key);
 /// The value as one line for a message: `-0.04`, `"abc"`, `an array of 3`.
 std::string text_of(const ConfigNode& node);
 
+/// The value in TOML syntax on one line; numbers in the fewest digits that read
+/// back as the same number. kDate has none: an empty text.
+std::string toml_text(const ConfigNode& node);
+
+/// A number as a value of a document.
+ConfigNode number_node(double number);
+
 /// Text without control characters and of bounded length, for a message.
 std::string printable(std::string_view text);
 

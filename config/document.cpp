@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <iterator>
@@ -32,6 +33,11 @@ std::string read_file(const std::filesystem::path& file) {
   std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (stream.bad()) reject(std::generic_category().message(errno));
   return text;
+}
+
+void insert_all(const OverrideSet& sets, DocumentState& state) {
+  for (std::size_t i = 0; i < sets.overrides.size(); ++i)
+    insert_override(sets.overrides[i], i, state.name, state.root);
 }
 
 }  // namespace
@@ -74,9 +80,31 @@ ConfigDocument ConfigDocument::parse(std::string text,
         fmt::format("{}:{}:{}: not TOML: {}", state->name, error.position.line,
                     error.position.column, error.what()));
   }
-  for (std::size_t i = 0; i < sets->overrides.size(); ++i)
-    insert_override(sets->overrides[i], i, state->name, state->root);
+  state->file_root = state->root;
+  insert_all(*sets, *state);
   return ConfigDocument(std::move(state));
+}
+
+ConfigDocument ConfigDocument::with(Overrides& overrides) const {
+  auto state = std::make_shared<DocumentState>();
+  state->path = state_->path;
+  state->name = state_->name;
+  state->text = state_->text;
+  state->file_root = state_->file_root;
+  state->root = state_->file_root;
+  state->overrides = overrides.state_;
+  insert_all(*overrides.state_, *state);
+  return ConfigDocument(std::move(state));
+}
+
+const ConfigNode* ConfigDocument::value(std::string_view dotted_key) const {
+  const ConfigNode* node = &state_->root;
+  while (node != nullptr && !dotted_key.empty()) {
+    const std::size_t dot = std::min(dotted_key.find('.'), dotted_key.size());
+    node = find_child(*node, dotted_key.substr(0, dot));
+    dotted_key.remove_prefix(std::min(dot + 1, dotted_key.size()));
+  }
+  return node;
 }
 
 const std::string& ConfigDocument::text() const { return state_->text; }

@@ -26,6 +26,12 @@ class ConfigDocument {
                               Overrides& overrides);
   static ConfigDocument parse(std::string_view text, const std::string& name);
 
+  /// The same text with other overrides, as if nobody had read it yet.
+  ConfigDocument with(Overrides& overrides) const;
+
+  /// The value of a dotted key, or null; does not count as reading it.
+  const ConfigNode* value(std::string_view dotted_key) const;
+
   const ConfigTable& root() const { return root_; }
   const std::string& text() const;  // byte for byte as read
   const std::filesystem::path& path() const;

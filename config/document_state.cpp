@@ -21,6 +21,19 @@ bool comes_before(const ConfigNode& a, const ConfigNode& b) {
 }
 
 void find_first_unknown(const ConfigNode& table, const std::string& path,
+                        UnknownKey& first);
+
+// The elements of an array of tables that were read as such.
+void find_in_tables(const ConfigNode& array, const std::string& path,
+                    UnknownKey& first) {
+  for (std::size_t i = 0; i < array.children.size(); ++i) {
+    const ConfigNode& element = array.children[i];
+    if (element.known && element.kind == ConfigNode::Kind::kTable)
+      find_first_unknown(element, fmt::format("{}[{}]", path, i), first);
+  }
+}
+
+void find_first_unknown(const ConfigNode& table, const std::string& path,
                         UnknownKey& first) {
   for (const ConfigNode& child : table.children) {
     // What another document's override put here is that document's business.
@@ -31,6 +44,8 @@ void find_first_unknown(const ConfigNode& table, const std::string& path,
         first = {&child, path};
     } else if (child.kind == ConfigNode::Kind::kTable) {
       find_first_unknown(child, joined(path, child.key), first);
+    } else {
+      find_in_tables(child, joined(path, child.key), first);
     }
   }
 }
@@ -69,7 +84,8 @@ void DocumentState::mark_read(const ConfigNode& node) const {
 std::string DocumentState::place(const ConfigNode& node,
                                  FilePosition position) const {
   if (node.origin) {
-    return "--set " + printable(overrides->overrides[*node.origin].argument);
+    const Override& set = overrides->overrides[*node.origin];
+    return set.place.empty() ? "--set " + printable(set.argument) : set.place;
   }
   return fmt::format("{}:{}:{}", name, position.line, position.column);
 }

@@ -108,7 +108,7 @@ Override parse_override(const std::string& argument) {
   const std::string_view text = argument;
   const std::string_view key = trimmed(text.substr(0, equals));
   const std::string_view value = trimmed(text.substr(equals + 1));
-  Override set{argument, split_key(key, argument), {}};
+  Override set{argument, split_key(key, argument), {}, {}};
   set.value = parse_value(key, value, argument);
   return set;
 }
@@ -183,9 +183,24 @@ Overrides::Overrides(const std::vector<std::string>& arguments) : Overrides() {
   }
 }
 
+void Overrides::add(const std::vector<std::string>& path,
+                    const ConfigNode& value, const std::string& place) {
+  state_->overrides.push_back(
+      {fmt::format("{}={}", fmt::join(path, "."), toml_text(value)), path,
+       value, place});
+}
+
+bool Overrides::all_used() const {
+  return std::all_of(state_->overrides.begin(), state_->overrides.end(),
+                     [](const Override& set) { return set.used; });
+}
+
+std::vector<std::string> Overrides::keys_asked() const {
+  return {state_->asked.begin(), state_->asked.end()};
+}
+
 void Overrides::check_all_used() const {
-  const std::vector<std::string> asked(state_->asked.begin(),
-                                       state_->asked.end());
+  const std::vector<std::string> asked = keys_asked();
   for (const Override& set : state_->overrides) {
     if (set.used) continue;
     const std::string key = fmt::format("{}", fmt::join(set.path, "."));

@@ -7,6 +7,7 @@
 
 namespace beamgyro {
 
+struct ConfigNode;
 struct OverrideSet;
 
 /// The `--set KEY=VALUE` arguments of one command, shared by its documents:
@@ -21,9 +22,20 @@ class Overrides {
   /// replace or that runs through an earlier value which is no table.
   explicit Overrides(const std::vector<std::string>& arguments);
 
+  /// Adds `value` for the key `path` without a look at what is there already.
+  /// `place` is what messages blame, `--set KEY=VALUE` when empty.
+  void add(const std::vector<std::string>& path, const ConfigNode& value,
+           const std::string& place = "");
+
   /// Throws std::invalid_argument for the first override no document asked
   /// for, with a suggestion among the keys that were asked for.
   void check_all_used() const;
+
+  /// Whether every override was read by some document.
+  bool all_used() const;
+
+  /// The dotted keys that documents asked for, sorted.
+  std::vector<std::string> keys_asked() const;
 
   std::string text() const;  // one KEY=VALUE per line, in the order given
 

@@ -218,6 +218,35 @@ std::vector<std::vector<double>> ConfigTable::rows(std::string_view key,
   return rows;
 }
 
+std::vector<std::string> ConfigTable::keys() const {
+  std::vector<std::string> keys;
+  if (!present_) return keys;
+  for (const ConfigNode& child : node_->children) keys.push_back(child.key);
+  return keys;
+}
+
+const ConfigNode& ConfigTable::value(std::string_view key) const {
+  return require(key, "a value").node;
+}
+
+std::vector<ConfigTable> ConfigTable::tables(std::string_view key) const {
+  std::vector<ConfigTable> tables;
+  const std::optional<ConfigValue> value = find(key);
+  if (!value) return tables;
+  const std::string expected =
+      fmt::format("an array of tables [[{}]]", path_of(key));
+  const std::size_t count = read_array(*value, expected).children.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const ConfigValue element = value->element(i);
+    if (element.node.kind != ConfigNode::Kind::kTable)
+      value->fail(fmt::format("{} is wrong here; expected {}",
+                              text_of(element.node), expected));
+    document_->mark_read(element.node);
+    tables.push_back(ConfigTable(document_, element.node, element.path, true));
+  }
+  return tables;
+}
+
 ConfigTable ConfigTable::table(std::string_view key) const {
   std::optional<ConfigTable> table = optional_table(key);
   if (!table) fail_missing(key, fmt::format("a table [{}]", path_of(key)));
@@ -241,11 +270,14 @@ ConfigTable ConfigTable::table_or_empty(std::string_view key) const {
   return ConfigTable(document_, *node_, path_of(key), false);
 }
 
-std::string ConfigTable::place(std::string_view key) const {
+std::string ConfigTable::position(std::string_view key) const {
   const ConfigNode* value = peek(key);
   const ConfigNode& node = value != nullptr ? *value : *node_;
-  return fmt::format("{}: {}", document_->place(node, node.position),
-                     path_of(key));
+  return document_->place(node, node.position);
+}
+
+std::string ConfigTable::place(std::string_view key) const {
+  return fmt::format("{}: {}", position(key), path_of(key));
 }
 
 std::string ConfigTable::place(std::string_view key, std::size_t index) const {

@@ -62,11 +62,21 @@ class ConfigTable {
   std::vector<std::vector<double>> rows(std::string_view key,
                                         std::size_t width) const;
 
+  /// Its keys in file order; does not count as reading them.
+  std::vector<std::string> keys() const;
+  /// The value whatever it is, with all it holds.
+  const ConfigNode& value(std::string_view key) const;
+  /// An array of tables: [[key]], or none when the key is absent.
+  std::vector<ConfigTable> tables(std::string_view key) const;
+
   ConfigTable table(std::string_view key) const;
   std::optional<ConfigTable> optional_table(std::string_view key) const;
   /// A table without keys when the key is absent.
   ConfigTable table_or_empty(std::string_view key) const;
 
+  /// "file:line:column" of the value, or of the nearest table above it when the
+  /// key is absent.
+  std::string position(std::string_view key) const;
   /// "file:line:column: table.key" of the value, or of the nearest table above
   /// it when the key is absent.
   std::string place(std::string_view key) const;

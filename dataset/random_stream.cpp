@@ -113,6 +113,8 @@ double normal_quantile(double probability) {
   return q < -kCentreHalfWidth ? tail_quantile(q, probability) : quantile(q);
 }
 
+double uniform_number(std::uint64_t word) { return number(word, 0.0); }
+
 RandomStream::RandomStream(std::uint64_t seed, std::uint32_t device,
                            std::uint32_t run, RandomPurpose purpose)
     : key_{static_cast<std::uint32_t>(seed),

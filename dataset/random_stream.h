@@ -26,12 +26,16 @@ enum class RandomPurpose : std::uint32_t {
   kAccelerationX = 12,
   kAccelerationY = 13,
   kAccelerationZ = 14,
+  kSobolScramble = 15,
 };
 
 /// Inverse of the normal distribution function. Throws std::invalid_argument
 /// for a probability outside (0, 1). Method: Wichura, algorithm AS 241
 /// (PPND16), Applied Statistics 37 (1988) 477; relative error about 1e-15.
 double normal_quantile(double probability);
+
+/// The odd multiple of 2^-53 in (0, 1) with the upper 52 bits of `word`.
+double uniform_number(std::uint64_t word);
 
 /// Numbers from the counter-based generator Philox4x32-10 (Salmon et al., SC
 /// 2011): key = seed, counter = (block, purpose, device, run), two numbers a
@@ -42,6 +46,9 @@ class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::uint32_t device, std::uint32_t run,
                RandomPurpose purpose);
+
+  /// The 64 random bits that the next number would be made of.
+  std::uint64_t next_word();
 
   /// The next number: an odd multiple of 2^-53, so in (0, 1), symmetric about
   /// 1/2.
@@ -57,7 +64,6 @@ class RandomStream {
 
  private:
   std::array<std::uint64_t, 2> next_block();
-  std::uint64_t next_word();
 
   std::array<std::uint32_t, 2> key_;
   std::array<std::uint32_t, 3> stream_;  // purpose, device, run

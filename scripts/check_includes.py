@@ -12,7 +12,7 @@ import sys
 NUMERICS = {"sim/numerics"}
 FILES = {"config", "dataset"}
 SIM = {"sim/numerics", "sim/device", "sim/thermal", "sim/signal",
-       "sim/dynamics", "sim/scenario"}
+       "sim/dynamics", "sim/scenario", "sim/campaign"}
 
 # What each room may include besides itself.
 MAY_INCLUDE = {
@@ -22,8 +22,9 @@ MAY_INCLUDE = {
     "sim/thermal": FILES | NUMERICS,
     "sim/signal": {"dataset"} | NUMERICS,
     "sim/device": FILES | NUMERICS | {"sim/thermal", "sim/signal"},
-    "sim/dynamics": FILES | SIM - {"sim/scenario"},
-    "sim/scenario": FILES | SIM,
+    "sim/dynamics": FILES | SIM - {"sim/scenario", "sim/campaign"},
+    "sim/scenario": FILES | SIM - {"sim/campaign"},
+    "sim/campaign": FILES | SIM,
     "compensation": FILES,
     "cli": FILES | SIM | {"compensation"},
     "bench": FILES | SIM | {"compensation"},
@@ -38,6 +39,7 @@ ONE_HOME = [
     (r"toml\+\+/|toml\.hpp", ("config/",)),
     (r"CLI/", ("cli/",)),
     (r"ceres/", ("compensation/lbfgs_trainer.cpp",)),
+    (r"boost/random/", ("sim/campaign/scrambled_sobol.cpp",)),
     (r"Random123/", ("dataset/random_stream", "tests/")),
 ]
 

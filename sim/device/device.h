@@ -98,7 +98,8 @@ struct ReadoutParameters {
   double input_capacitance;      // C_in of the amplifier [F]
   double quadrature_trim;        // Q_0 at T_0 [rad/s]
   double offset_trim;            // output at T_0 and rate 0 [rad/s]
-  double scale_factor;           // [V/(rad/s)]
+  double scale_factor;           // nominal [V/(rad/s)]
+  double scale_factor_error;     // true one at T_0 over the nominal, less 1
   double offset;                 // [V]
   double full_scale;             // [rad/s]
   double phase_tc, phase_tc2;    // [rad/K rad/K2]

@@ -16,6 +16,18 @@ Complex signal(const Gyro& gyro, const ModalParameters& modal,
       .signal;
 }
 
+Gyro untrimmed_gyro(const Device& device) {
+  Gyro gyro;
+  gyro.device = device;
+  gyro.beam = project_beam(device);
+  const Eigen::Vector2cd feedback =
+      patch_coupling(device, gyro.beam, kFeedback, kCalibrationTemperature);
+  gyro.loop = {std::abs(feedback(0)) * device.drive.amplitude,
+               device.drive.pll_phase, device.drive.voltage_limit,
+               device.readout.mode};
+  return gyro;
+}
+
 // The quadrature is linear in k_trim up to the shift of w_d: a secant from the
 // closed-form slope 1/(2 m g w_d) of (2.22) converges in two or three steps.
 double trimmed_stiffness(Gyro gyro) {
@@ -68,14 +80,7 @@ Complex zero_rate_terms(const Gyro& gyro, const ModalParameters& modal) {
 }
 
 Gyro make_gyro(const Device& device) {
-  Gyro gyro;
-  gyro.device = device;
-  gyro.beam = project_beam(device);
-  const Eigen::Vector2cd feedback =
-      patch_coupling(device, gyro.beam, kFeedback, kCalibrationTemperature);
-  gyro.loop = {std::abs(feedback(0)) * device.drive.amplitude,
-               device.drive.pll_phase, device.drive.voltage_limit,
-               device.readout.mode};
+  Gyro gyro = untrimmed_gyro(device);
   gyro.stiffness_trim = trimmed_stiffness(gyro);
   const ModalParameters modal = modal_parameters(
       device, gyro.beam, kCalibrationTemperature, gyro.stiffness_trim);
@@ -84,9 +89,18 @@ Gyro make_gyro(const Device& device) {
     gyro.rate_axis = std::polar(std::abs(gyro.rate_axis),
                                 std::arg(rebalance_reference(gyro, modal)));
   }
+  gyro.rate_axis /= 1 + device.readout.scale_factor_error;
   gyro.offset = device.readout.offset_trim -
                 beam_signal(gyro, modal, {}).demodulated.real();
   return gyro;
+}
+
+double built_quadrature(const Device& device, double stiffness_trim) {
+  const Gyro gyro = untrimmed_gyro(device);
+  return -zero_rate_terms(
+              gyro, modal_parameters(device, gyro.beam, kCalibrationTemperature,
+                                     stiffness_trim))
+              .imag();
 }
 
 BeamSignal beam_signal(const Gyro& gyro, double T, const CaseMotion& motion) {
@@ -130,7 +144,8 @@ double rate_slope(const Gyro& gyro, const ModalParameters& modal, double T) {
   const Complex slope =
       rate_response(modal, gyro.loop, gyro.device.readout.feedthrough) /
       gyro.rate_axis;
-  return (slope * electronics_at(gyro, T).turn).real();
+  return (slope * electronics_at(gyro, T).turn).real() /
+         (1 + gyro.device.readout.scale_factor_error);
 }
 
 Electronics electronics_at(const Gyro& gyro, double board_temperature) {

@@ -17,7 +17,8 @@ struct Gyro {
   double stiffness_trim = 0;  // k_trim [N/m]
   DriveLoop loop{};
   // d signal / dOmega at T_0: of the charge [C/(rad/s)], or, with force
-  // rebalance, of the voltage on the damping patch [V/(rad/s)].
+  // rebalance, of the voltage on the damping patch [V/(rad/s)]; over
+  // 1 + scale_factor_error, so that a rate shows with that error.
   std::complex<double> rate_axis{};
   double offset = 0;  // V_off/SF_0 at T_0 [rad/s]
 };
@@ -28,6 +29,11 @@ struct Gyro {
 /// output at T_0 is `offset_trim`. Throws std::runtime_error when the drive
 /// loop cannot lock at T_0.
 Gyro make_gyro(const Device& device);
+
+/// Input-referred quadrature at T_0 [rad/s] with k_trim = `stiffness_trim`
+/// [N/m] in place of one that was set for this unit. Throws std::runtime_error
+/// when the drive loop cannot lock at T_0.
+double built_quadrature(const Device& device, double stiffness_trim);
 
 /// Demodulated, input-referred signal r/(dr/dOmega at T_0) [rad/s] with the
 /// board at T_0: real part in phase with a rate, imaginary part minus the

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "config/config_node.h"
 #include "sim/scenario/profile_keys.h"
 
 namespace beamgyro {
@@ -79,9 +80,9 @@ std::vector<PowerInterval> read_power(const ConfigTable& power) {
 }
 
 // Hold at each temperature, ramp to the next at a constant rate.
-PiecewiseLinear read_soaks(const ConfigTable& soaks) {
+PiecewiseLinear read_soaks(const ConfigTable& soaks, const ProfileUnit& unit) {
   const std::vector<double> levels =
-      soaks.numbers("temperatures_degC", kAmbient.range);
+      soaks.numbers("temperatures_degC", unit.range);
   if (levels.empty()) {
     soaks.fail("temperatures_degC",
                "[] is empty; expected at least one temperature in degC");
@@ -95,11 +96,11 @@ PiecewiseLinear read_soaks(const ConfigTable& soaks) {
     for (const double end : {t, t + hold}) {
       // Two soaks at one temperature: the second starts where the first ends.
       if (!time.empty() && end == time.back() &&
-          value.back() == levels[i] + kZeroCelsius) {
+          value.back() == levels[i] + unit.offset) {
         continue;
       }
       time.push_back(end);
-      value.push_back(levels[i] + kZeroCelsius);
+      value.push_back(levels[i] + unit.offset);
     }
     t += hold;
   }
@@ -110,11 +111,15 @@ PiecewiseLinear read_ambient(const ConfigTable& ambient,
                              const std::filesystem::path& folder) {
   const std::string form =
       only_form(ambient, {"constant_degC", "points", "soaks", "file"});
-  if (form == "points") return read_points(ambient, kAmbient);
-  if (form == "soaks") return read_soaks(ambient.table("soaks"));
-  if (form == "file") return read_profile_file(ambient, kAmbient, folder);
-  return PiecewiseLinear::constant(ambient.number(form, kAmbient.range) +
-                                   kZeroCelsius);
+  const double offset = ambient.number_or("offset_K", 0, between(-100, 100));
+  const ProfileUnit unit{
+      kAmbient.csv_column, kAmbient.factor, kAmbient.offset + offset,
+      between(kAmbient.range.low - offset, kAmbient.range.high - offset)};
+  if (form == "points") return read_points(ambient, unit);
+  if (form == "soaks") return read_soaks(ambient.table("soaks"), unit);
+  if (form == "file") return read_profile_file(ambient, unit, folder);
+  return PiecewiseLinear::constant(ambient.number(form, unit.range) +
+                                   unit.offset);
 }
 
 SineSignal read_sine(const ConfigTable& sine, const MotionKeys& keys) {
@@ -208,6 +213,19 @@ Scenario read_scenario(const ConfigDocument& document) {
   scenario.noise_enabled =
       root.table_or_empty("noise").flag_or("enabled", true);
   return scenario;
+}
+
+std::vector<std::filesystem::path> profile_files(
+    const ConfigDocument& document) {
+  std::vector<std::filesystem::path> files;
+  for (const char* table :
+       {"ambient", "rate", "cross_rate.x", "cross_rate.y", "acceleration.x",
+        "acceleration.y", "acceleration.z"}) {
+    const ConfigNode* file = document.value(fmt::format("{}.file", table));
+    if (file != nullptr)
+      files.push_back(document.path().parent_path() / file->text);
+  }
+  return files;
 }
 
 }  // namespace beamgyro

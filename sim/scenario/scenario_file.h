@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <filesystem>
+#include <vector>
+
 #include "config/document.h"
 #include "sim/scenario/scenario.h"
 
@@ -11,5 +14,9 @@ namespace beamgyro {
 /// std::invalid_argument naming file, line, key and value. The caller rejects
 /// unknown keys once the device is read as well.
 Scenario read_scenario(const ConfigDocument& document);
+
+/// The CSV files that a scenario which can be read names.
+std::vector<std::filesystem::path> profile_files(
+    const ConfigDocument& document);
 
 }  // namespace beamgyro

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "sim/campaign/campaign.h"
+
+#include <algorithm>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "dataset/random_stream.h"
+#include "sim/campaign/campaign_file.h"
+#include "sim/device/device_file.h"
+#include "sim/scenario/scenario_file.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;  // [rad]
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+// `work` fills in `result`; what a check rejects becomes its failure.
+template <class Result, class Work>
+void attempt(Result& result, const Work& work) {
+  try {
+    work();
+  } catch (const std::invalid_argument& error) {
+    result.failure = one_line(error.what());
+  } catch (const std::runtime_error& error) {
+    result.failure = one_line(error.what());
+  }
+}
+
+void add_as_built(const CampaignState& campaign, Device device,
+                  Overrides& overrides) {
+  const Trims& trims = campaign.trims;
+  set_as_built(trims, *campaign.base_gyro, device);
+  const auto add = [&](const char* key, double value) {
+    overrides.add({"readout", key}, number_node(value));
+  };
+  const ReadoutParameters& readout = device.readout;
+  if (!trims.quadrature)
+    add("quadrature_trim_deg_per_s", readout.quadrature_trim / kDegree);
+  if (!trims.scale_factor)
+    add("scale_factor_error", readout.scale_factor_error);
+  if (!trims.offset)
+    add("offset_trim_deg_per_s", readout.offset_trim / kDegree);
+}
+
+}  // namespace
+
+Campaign::Campaign(std::shared_ptr<const CampaignState> state)
+    : state_(std::move(state)) {}
+
+Campaign Campaign::read(const std::filesystem::path& file,
+                        std::optional<long> devices) {
+  return Campaign(
+      std::make_shared<const CampaignState>(read_campaign(file, devices)));
+}
+
+const std::string& Campaign::name() const { return state_->name; }
+const std::string& Campaign::text() const { return state_->text; }
+std::uint32_t Campaign::devices() const { return state_->devices; }
+std::uint32_t Campaign::devices_per_file() const {
+  return state_->devices_per_file;
+}
+std::uint64_t Campaign::seed() const { return state_->source.seed; }
+const CampaignOutput& Campaign::output() const { return state_->output; }
+const std::vector<CampaignRun>& Campaign::runs() const { return state_->runs; }
+const Device& Campaign::base_device() const { return state_->device; }
+const std::string& Campaign::device_text() const {
+  return state_->device_document->text();
+}
+const Scenario& Campaign::base_scenario(std::size_t run) const {
+  return state_->scenarios.at(run);
+}
+const std::vector<SourceFile>& Campaign::sources() const {
+  return state_->sources;
+}
+const std::vector<DrawnParameter>& Campaign::parameters() const {
+  return state_->device_plan.parameters;
+}
+const std::vector<DrawnParameter>& Campaign::run_parameters(
+    std::size_t run) const {
+  return state_->run_plans.at(run).parameters;
+}
+
+VirtualDevice Campaign::device(std::uint32_t index) const {
+  const DrawPlan& plan = state_->device_plan;
+  DrawnValues drawn = drawn_values(plan, state_->source, index);
+  VirtualDevice result;
+  result.parameters = std::move(drawn.parameters);
+  Overrides overrides = overrides_of(plan, drawn.values);
+  attempt(result, [&] {
+    const ConfigDocument& document = *state_->device_document;
+    Device device = read_device(document.with(overrides));
+    if (state_->base_gyro) {
+      add_as_built(*state_, device, overrides);
+      device = read_device(document.with(overrides));
+    }
+    result.device = device;
+  });
+  result.overrides = overrides.text();
+  return result;
+}
+
+VirtualRun Campaign::run(std::size_t run, std::uint32_t device) const {
+  const DrawPlan& plan = state_->run_plans.at(run);
+  VirtualRun result;
+  if (plan.draws.empty()) {
+    result.scenario = state_->scenarios[run];
+    return result;
+  }
+  DrawnValues drawn = drawn_values(plan, state_->source, device);
+  result.parameters = std::move(drawn.parameters);
+  Overrides overrides = overrides_of(plan, drawn.values);
+  attempt(result, [&] {
+    result.scenario =
+        read_scenario(state_->scenario_documents[run].with(overrides));
+    result.scenario->seed = seed();
+  });
+  result.overrides = overrides.text();
+  return result;
+}
+
+Part Campaign::part(std::uint32_t device) const {
+  RandomStream stream(seed(), device, stream_number("split"),
+                      RandomPurpose::kDeviceDraw);
+  return static_cast<Part>(
+      static_cast<int>(quantile(state_->split, stream.uniform())));
+}
+
+}  // namespace beamgyro

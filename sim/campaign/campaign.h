@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/campaign/draw_plan.h"
+#include "sim/device/device.h"
+#include "sim/scenario/scenario.h"
+
+namespace beamgyro {
+
+/// What a device's data are for.
+enum class Part : std::uint8_t { kTrain, kValidation, kTest };
+
+/// What files of the set hold.
+struct CampaignOutput {
+  std::vector<std::string> variables;  // names to keep; empty: all
+  bool double_precision = false;       // truth as float64 in place of float32
+  double truth_rate = 0;  // [Hz] of all truth but true_rate; 0: the output rate
+  bool compress = true;
+};
+
+/// One scenario that every device goes through.
+struct CampaignRun {
+  std::string name;  // [a-z][a-z0-9_]*
+  std::filesystem::path scenario_file;
+  std::string scenario_text;  // byte for byte
+};
+
+struct SourceFile {
+  std::filesystem::path path;  // as opened, relative to the working folder
+  std::string text;            // byte for byte
+};
+
+struct VirtualDevice {
+  std::vector<double> parameters;  // one per Campaign::parameters()
+  std::optional<Device> device;    // none when it cannot be built
+  std::string overrides;           // KEY=VALUE lines that make it of the base
+  std::string failure;             // why not, one line
+};
+
+/// One run of one device.
+struct VirtualRun {
+  std::vector<double> parameters;  // one per Campaign::run_parameters()
+  std::optional<Scenario> scenario;
+  std::string overrides;  // KEY=VALUE lines that make it of the scenario file
+  std::string failure;
+};
+
+struct CampaignState;
+
+/// A population of devices and what each of them goes through, from a campaign
+/// file (docs/formats.md). Immutable; its const members may be called by many
+/// threads at once, and what they return depends on the campaign's files and
+/// their arguments alone.
+class Campaign {
+ public:
+  /// `devices` replaces the number of the file. Checks the base device, every
+  /// scenario, every choice and the median of every distribution. Throws
+  /// std::invalid_argument "file:line:column: key: ...".
+  static Campaign read(const std::filesystem::path& file,
+                       std::optional<long> devices = {});
+
+  const std::string& name() const;
+  const std::string& text() const;  // byte for byte
+  std::uint32_t devices() const;
+  std::uint32_t devices_per_file() const;
+  std::uint64_t seed() const;
+  const CampaignOutput& output() const;
+  const std::vector<CampaignRun>& runs() const;
+  const Device& base_device() const;
+  const std::string& device_text() const;
+  /// As the file says, with the campaign's seed.
+  const Scenario& base_scenario(std::size_t run) const;
+  /// Campaign, device, scenarios and their profiles in the order of reading.
+  const std::vector<SourceFile>& sources() const;
+
+  const std::vector<DrawnParameter>& parameters() const;
+  const std::vector<DrawnParameter>& run_parameters(std::size_t run) const;
+
+  /// Device number `index`, which may lie beyond devices().
+  VirtualDevice device(std::uint32_t index) const;
+  /// Its scenario in a run, with the campaign's seed.
+  VirtualRun run(std::size_t run, std::uint32_t device) const;
+  /// By the device's own random number, whatever the number of devices.
+  Part part(std::uint32_t device) const;
+
+ private:
+  explicit Campaign(std::shared_ptr<const CampaignState> state);
+
+  std::shared_ptr<const CampaignState> state_;
+};
+
+}  // namespace beamgyro

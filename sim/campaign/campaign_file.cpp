@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: MIT
+#include "sim/campaign/campaign_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include "dataset/text_file.h"
+#include "sim/campaign/draw_plan_file.h"
+#include "sim/device/device_file.h"
+#include "sim/scenario/scenario_file.h"
+
+namespace beamgyro {
+namespace {
+
+// Every device of a run has the same times and kind of file.
+constexpr std::array<std::string_view, 8> kSameForAll = {
+    "name",       "description",    "device", "fidelity",
+    "duration_s", "output_rate_Hz", "seed",   "noise"};
+constexpr std::string_view kAmbientOffset = "ambient_offset_K";
+constexpr std::string_view kSplitStream = "split";
+
+class CampaignReader {
+ public:
+  CampaignReader(const std::filesystem::path& file, std::optional<long> devices)
+      : document_(ConfigDocument::read(file)),
+        root_(document_.root()),
+        folder_(file.parent_path()),
+        devices_(devices) {}
+
+  CampaignState read() {
+    add_source(document_);
+    taken_.insert(stream_number(kSplitStream));
+    read_head();
+    read_split();
+    read_trims();
+    read_device_file();
+    read_tolerances();
+    for (const ConfigTable& run : require_runs()) read_run(run);
+    read_output();
+    read_sampling();
+    document_.reject_unknown_keys();
+    return std::move(state_);
+  }
+
+ private:
+  void read_head() {
+    constexpr long kMostDevices = 4'000'000'000;
+    state_.name = root_.text("name");
+    root_.text_or("description", "");
+    state_.text = document_.text();
+    if (devices_ && (*devices_ < 1 || *devices_ > kMostDevices)) {
+      throw std::invalid_argument(
+          fmt::format("--devices {}: out of range; expected an integer in "
+                      "[1, {}]",
+                      *devices_, kMostDevices));
+    }
+    const long devices = devices_
+                             ? root_.integer_or("devices", 1, 1, kMostDevices)
+                             : root_.integer("devices", 1, kMostDevices);
+    state_.devices = static_cast<std::uint32_t>(devices_.value_or(devices));
+    state_.devices_per_file = static_cast<std::uint32_t>(
+        root_.integer_or("devices_per_file", 50, 1, 100'000));
+    state_.source.seed = static_cast<std::uint64_t>(
+        root_.integer("seed", 0, std::numeric_limits<long>::max()));
+  }
+
+  void read_split() {
+    std::vector<double> shares = {1, 0, 0};
+    if (const auto split = root_.optional_table("split")) {
+      const Range share{0, 1, false, false};
+      shares = {split->number_or("train", 0, share),
+                split->number_or("validation", 0, share),
+                split->number_or("test", 0, share)};
+      const double sum = shares[0] + shares[1] + shares[2];
+      if (std::abs(sum - 1) > 1e-9) {
+        root_.fail("split",
+                   fmt::format("the shares sum to {:.9g}; expected 1", sum));
+      }
+    }
+    state_.split = discrete(shares);
+  }
+
+  void read_trims() {
+    const ConfigTable trims = root_.table_or_empty("trims");
+    state_.trims = {trims.flag_or("quadrature", true),
+                    trims.flag_or("offset", true),
+                    trims.flag_or("scale_factor", true)};
+  }
+
+  void read_device_file() {
+    state_.device_document =
+        ConfigDocument::read(folder_ / root_.text("device"));
+    const ConfigDocument& document = *state_.device_document;
+    state_.device = read_device(document);
+    document.reject_unknown_keys();
+    add_source(document);
+    const Trims& trims = state_.trims;
+    if (!trims.quadrature || !trims.offset || !trims.scale_factor)
+      state_.base_gyro = make_gyro(state_.device);
+  }
+
+  void read_tolerances() {
+    const DrawnFile file{*state_.device_document,
+                         [](const ConfigDocument& d) { read_device(d); }};
+    DrawPlan& plan = state_.device_plan;
+    const ConfigTable tolerances = root_.table_or_empty("tolerances");
+    for (const std::string& key : tolerances.keys()) {
+      reject_untrimmed(tolerances, key);
+      add_draw(read_draw(tolerances, key, key, file), "", plan, taken_);
+    }
+    check_medians(plan, file);
+    plan.groups = read_correlated(root_.tables("correlated"), plan);
+  }
+
+  void reject_untrimmed(const ConfigTable& tolerances, const std::string& key) {
+    const auto check = [&](bool trimmed, std::string_view trim,
+                           std::string_view trim_key) {
+      if (trimmed || key != trim_key) return;
+      tolerances.fail(key, fmt::format("follows from the other values with "
+                                       "trims.{} = false; remove one of the "
+                                       "two",
+                                       trim));
+    };
+    check(state_.trims.quadrature, "quadrature",
+          "readout.quadrature_trim_deg_per_s");
+    check(state_.trims.offset, "offset", "readout.offset_trim_deg_per_s");
+    check(state_.trims.scale_factor, "scale_factor",
+          "readout.scale_factor_error");
+  }
+
+  std::vector<ConfigTable> require_runs() {
+    std::vector<ConfigTable> runs = root_.tables("run");
+    if (runs.empty())
+      root_.fail("run", "missing; expected at least one [[run]]");
+    return runs;
+  }
+
+  std::string read_run_name(const ConfigTable& run) {
+    const std::string name = run.text("name");
+    const bool good =
+        !name.empty() && name[0] >= 'a' && name[0] <= 'z' &&
+        std::all_of(name.begin(), name.end(), [](char c) {
+          return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+        });
+    if (!good) {
+      run.fail("name", fmt::format("\"{}\" is no name of files; expected a "
+                                   "letter a-z, then letters, digits and '_'",
+                                   printable(name)));
+    }
+    for (const CampaignRun& other : state_.runs) {
+      if (other.name == name)
+        run.fail("name", fmt::format("\"{}\" is the name of an earlier run; "
+                                     "expected another",
+                                     name));
+    }
+    return name;
+  }
+
+  void read_run(const ConfigTable& run) {
+    const std::string name = read_run_name(run);
+    const ConfigDocument document =
+        ConfigDocument::read(folder_ / run.text("scenario"));
+    Scenario scenario = read_scenario(document);
+    document.reject_unknown_keys();
+    scenario.seed = state_.source.seed;
+    add_source(document);
+    add_profiles(document);
+    state_.runs.push_back({name, document.path(), document.text()});
+    state_.scenarios.push_back(scenario);
+    state_.run_plans.push_back(read_variations(run, name, document));
+    state_.scenario_documents.push_back(document);
+  }
+
+  DrawPlan read_variations(const ConfigTable& run, const std::string& name,
+                           const ConfigDocument& document) {
+    const DrawnFile file{document, [this](const ConfigDocument& d) {
+                           read_scenario(d);
+                           add_profiles(d);
+                         }};
+    DrawPlan plan;
+    const ConfigTable vary = run.table_or_empty("vary");
+    for (const std::string& key : vary.keys()) {
+      const std::string first = key.substr(0, key.find('.'));
+      if (std::find(kSameForAll.begin(), kSameForAll.end(), first) !=
+          kSameForAll.end()) {
+        vary.fail(key,
+                  "is the same for all devices of a set; write it into "
+                  "the scenario");
+      }
+      add_draw(read_draw(vary, key, key, file), name, plan, taken_);
+    }
+    if (run.has(kAmbientOffset)) {
+      add_draw(
+          read_draw(run, std::string(kAmbientOffset), "ambient.offset_K", file),
+          name, plan, taken_);
+    }
+    check_medians(plan, file);
+    require_other_names(run, plan);
+    return plan;
+  }
+
+  // A file holds the parameters of the device and those of the run.
+  void require_other_names(const ConfigTable& run, const DrawPlan& plan) {
+    for (const DrawnParameter& mine : plan.parameters) {
+      for (const DrawnParameter& other : state_.device_plan.parameters) {
+        if (mine.name == other.name)
+          run.fail("vary", fmt::format("two numbers are called {}; draw one of "
+                                       "them",
+                                       mine.name));
+      }
+    }
+  }
+
+  void read_output() {
+    const ConfigTable output = root_.table_or_empty("output");
+    CampaignOutput& result = state_.output;
+    if (output.has("variables")) {
+      result.variables = output.texts("variables");
+      if (result.variables.empty())
+        output.fail("variables",
+                    "[] is empty; expected names, or no key for "
+                    "all variables");
+    }
+    result.double_precision =
+        output.choice_or("precision", "float32", {"float32", "float64"}) ==
+        "float64";
+    result.compress = output.flag_or("compress", true);
+    result.truth_rate = output.number_or("truth_rate_Hz", 0, positive());
+    if (result.truth_rate == 0) return;
+    for (std::size_t i = 0; i < state_.runs.size(); ++i) {
+      const double rate = state_.scenarios[i].output_rate;
+      const double step = rate / result.truth_rate;
+      if (std::round(step) >= 1 && std::abs(step - std::round(step)) < 1e-9)
+        continue;
+      output.fail("truth_rate_Hz",
+                  fmt::format("{} does not divide the output rate {} Hz of the "
+                              "run {}; expected a rate that does",
+                              result.truth_rate, rate, state_.runs[i].name));
+    }
+  }
+
+  void read_sampling() {
+    std::size_t dimensions = state_.device_plan.parameters.size();
+    for (DrawPlan& plan : state_.run_plans) {
+      plan.first_dimension = dimensions;
+      dimensions += plan.parameters.size();
+    }
+    if (root_.choice_or("sampling", "monte_carlo", {"monte_carlo", "sobol"}) !=
+        "sobol") {
+      return;
+    }
+    try {
+      state_.source.sobol.emplace(dimensions, state_.source.seed);
+    } catch (const std::invalid_argument& error) {
+      root_.fail("sampling", error.what());
+    }
+  }
+
+  void add_source(const ConfigDocument& document) {
+    if (is_new(document.path()))
+      state_.sources.push_back({document.path(), document.text()});
+  }
+
+  void add_profiles(const ConfigDocument& document) {
+    for (const std::filesystem::path& file : profile_files(document)) {
+      if (is_new(file)) state_.sources.push_back({file, read_text_file(file)});
+    }
+  }
+
+  bool is_new(const std::filesystem::path& path) const {
+    return std::none_of(state_.sources.begin(), state_.sources.end(),
+                        [&](const SourceFile& source) {
+                          return source.path.lexically_normal() ==
+                                 path.lexically_normal();
+                        });
+  }
+
+  ConfigDocument document_;
+  const ConfigTable& root_;
+  std::filesystem::path folder_;
+  std::optional<long> devices_;
+  std::set<std::uint32_t> taken_;  // random streams
+  CampaignState state_;
+};
+
+}  // namespace
+
+CampaignState read_campaign(const std::filesystem::path& file,
+                            std::optional<long> devices) {
+  return CampaignReader(file, devices).read();
+}
+
+}  // namespace beamgyro

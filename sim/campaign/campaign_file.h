@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/document.h"
+#include "sim/campaign/as_built.h"
+#include "sim/campaign/campaign.h"
+
+namespace beamgyro {
+
+/// Everything a campaign file says, read and checked.
+struct CampaignState {
+  std::string name, text;
+  std::uint32_t devices = 0, devices_per_file = 0;
+  CampaignOutput output;
+  Distribution split;  // of Part
+  Trims trims;
+  UniformSource source;
+  std::vector<SourceFile> sources;
+
+  std::optional<ConfigDocument> device_document;
+  Device device;
+  std::optional<Gyro> base_gyro;  // where a trim is left out
+  DrawPlan device_plan;
+
+  // One of each per run.
+  std::vector<CampaignRun> runs;
+  std::vector<ConfigDocument> scenario_documents;
+  std::vector<Scenario> scenarios;
+  std::vector<DrawPlan> run_plans;
+};
+
+/// See Campaign::read.
+CampaignState read_campaign(const std::filesystem::path& file,
+                            std::optional<long> devices);
+
+}  // namespace beamgyro

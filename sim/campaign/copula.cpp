@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "sim/campaign/copula.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <stdexcept>
+
+#include "dataset/random_stream.h"
+#include "sim/campaign/distribution.h"
+
+namespace beamgyro {
+
+Eigen::MatrixXd correlation_factor(const Eigen::MatrixXd& correlation) {
+  if (correlation != correlation.transpose() ||
+      (correlation.diagonal().array() != 1).any()) {
+    throw std::invalid_argument(
+        "not symmetric with ones on the diagonal; expected a correlation "
+        "matrix");
+  }
+  const Eigen::LLT<Eigen::MatrixXd> factor(correlation);
+  if (factor.info() != Eigen::Success ||
+      (factor.matrixLLT().diagonal().array() < 1e-6).any()) {
+    throw std::invalid_argument(
+        "not positive definite; no numbers are correlated so");
+  }
+  return factor.matrixL();
+}
+
+void correlate(const CorrelatedGroup& group, std::span<double> numbers) {
+  Eigen::VectorXd z(group.factor.rows());
+  for (Eigen::Index i = 0; i < z.size(); ++i) {
+    z(i) = normal_quantile(numbers[group.members[static_cast<std::size_t>(i)]]);
+  }
+  const Eigen::VectorXd correlated = group.factor * z;
+  for (Eigen::Index i = 0; i < z.size(); ++i) {
+    numbers[group.members[static_cast<std::size_t>(i)]] =
+        std::clamp(normal_cumulative(correlated(i)), 0x1p-53, 1 - 0x1p-53);
+  }
+}
+
+}  // namespace beamgyro

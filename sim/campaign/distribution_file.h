@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "config/config_node.h"
+#include "config/table.h"
+#include "sim/campaign/distribution.h"
+
+namespace beamgyro {
+
+/// A distribution and, of a discrete one, its choices as they stand in the
+/// file.
+struct FileDistribution {
+  Distribution distribution;
+  std::vector<ConfigNode> values;
+};
+
+/// Reads `key = { normal = { mean, sigma } }` and the other forms
+/// (docs/formats.md). Throws std::invalid_argument naming file, line, key and
+/// value.
+FileDistribution read_distribution(const ConfigTable& table,
+                                   std::string_view key);
+
+}  // namespace beamgyro
