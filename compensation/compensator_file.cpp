@@ -7,6 +7,7 @@
 
 #include "compensation/bias_model_json.h"
 #include "compensation/json_node.h"
+#include "compensation/population_json.h"
 #include "dataset/atomic_file.h"
 #include "dataset/text_file.h"
 
@@ -29,6 +30,14 @@ Json to_json(const std::vector<SourceFile>& files) {
   return array;
 }
 
+Json to_json(const std::optional<SetPart>& set) {
+  if (!set) return {};
+  return {{"name", set->name},
+          {"manifest_sha256", set->manifest_sha256},
+          {"devices", set->devices},
+          {"files", set->files}};
+}
+
 Json to_json(const std::optional<CrossValidated>& cv) {
   if (!cv) return {};
   return {{"by", cv->by},
@@ -42,6 +51,8 @@ Json to_json(const Provenance& p) {
   return {{"method", p.method},
           {"files", to_json(p.training)},
           {"held_out_files", to_json(p.held_out)},
+          {"set", to_json(p.training_set)},
+          {"held_out_set", to_json(p.held_out_set)},
           {"model", p.model_text},
           {"seed", p.seed},
           {"stop_reason", p.stop_reason},
@@ -65,6 +76,16 @@ std::vector<SourceFile> read_files(const JsonNode& node) {
   return files;
 }
 
+// Files from before there were sets lack the key.
+std::optional<SetPart> read_set(const JsonNode& node, const std::string& key) {
+  if (!node.has(key) || node.at(key).is_null()) return std::nullopt;
+  const JsonNode set = node.at(key);
+  return SetPart{
+      set.at("name").text(), set.at("manifest_sha256").text(),
+      static_cast<std::size_t>(set.at("devices").integer(0, 4294967295)),
+      static_cast<std::size_t>(set.at("files").integer(0, 4294967295))};
+}
+
 std::optional<CrossValidated> read_cross_validation(const JsonNode& node) {
   if (node.is_null()) return std::nullopt;
   return CrossValidated{
@@ -80,6 +101,8 @@ Provenance read_provenance(const JsonNode& node) {
   p.method = node.at("method").text();
   p.training = read_files(node.at("files"));
   p.held_out = read_files(node.at("held_out_files"));
+  p.training_set = read_set(node, "set");
+  p.held_out_set = read_set(node, "held_out_set");
   p.model_text = node.at("model").text();
   p.seed = node.at("seed").unsigned_integer();
   p.stop_reason = node.at("stop_reason").text();
@@ -147,6 +170,8 @@ Compensator read_root(const JsonNode& root) {
   }
   c.temperature_range = read_range(root.at("temperature_range_degC"));
   c.baseline = read_bias_model(root.at("baseline"), "polynomial", 1);
+  if (root.has("population"))
+    c.population = read_population(root.at("population"));
   c.provenance = read_provenance(root.at("training"));
   return c;
 }
@@ -169,6 +194,7 @@ std::string compensator_text(const Compensator& compensator) {
                                     finite_json(c.temperature_range.highest)};
   json["baseline"]["kind"] = kind_name(c.baseline);
   put_bias_model(c.baseline, json["baseline"]);
+  if (c.population) json["population"] = population_json(*c.population);
   json["training"] = to_json(c.provenance);
   // A file name need not be UTF-8.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
