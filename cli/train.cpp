@@ -12,11 +12,10 @@
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/progress.h"
+#include "cli/recorded_runs.h"
 #include "cli/terminal.h"
 #include "compensation/compensator_file.h"
 #include "dataset/atomic_file.h"
-#include "dataset/hdf5_file.h"
-#include "dataset/sha256.h"
 
 namespace beamgyro {
 namespace {
@@ -26,15 +25,6 @@ struct TrainArguments {
   std::string model, output, cross_validation;
   std::int64_t seed = 0;
 };
-
-std::vector<TrainingRun> read_runs(const std::vector<std::string>& paths) {
-  std::vector<TrainingRun> runs;
-  for (const std::string& path : paths) {
-    runs.push_back({std::filesystem::path(path).filename().string(),
-                    sha256_of_file(path), read_recording(path)});
-  }
-  return runs;
-}
 
 std::string shown(const std::optional<double>& value) {
   return value ? fmt::format("{:.6f}", *value) : "-";
@@ -110,10 +100,10 @@ int run_training(const TrainArguments& arguments) {
                 arguments.held_out.end());
   require_output(arguments.output, inputs);
   std::optional<Progress> progress("training " + arguments.output);
-  const TrainResult result =
-      train(spec, read_runs(arguments.runs), read_runs(arguments.held_out),
-            static_cast<std::uint64_t>(arguments.seed),
-            grouping(arguments.cross_validation));
+  const TrainResult result = train(spec, runs_of_files(arguments.runs),
+                                   runs_of_files(arguments.held_out),
+                                   static_cast<std::uint64_t>(arguments.seed),
+                                   grouping(arguments.cross_validation));
   write_compensator(result.compensator, arguments.output);
   progress.reset();
   for (const std::string& warning : result.compensator.provenance.warnings)

@@ -26,7 +26,9 @@ std::string span_caution(const TrainingRows& rows) {
       span, kLeastSpan, rows.range.lowest, rows.range.highest);
 }
 
-std::string gap_caution(const TrainingRows& rows) {
+std::string gap_caution(const FittedCase& fitted) {
+  if (fitted.knows_between) return "";
+  const TrainingRows& rows = fitted.rows;
   std::vector<double> sorted(rows.temperature.begin(), rows.temperature.end());
   std::sort(sorted.begin(), sorted.end());
   double widest = 0.0, from = 0.0;
@@ -114,7 +116,7 @@ std::string rate_caution(const FittedCase& fitted) {
 std::vector<std::string> cautions(const FittedCase& fitted) {
   std::vector<std::string> found;
   for (std::string& text :
-       std::vector{span_caution(fitted.rows), gap_caution(fitted.rows),
+       std::vector{span_caution(fitted.rows), gap_caution(fitted),
                    resolution_caution(fitted), extrapolation_caution(fitted),
                    hysteresis_caution(fitted), rate_caution(fitted)})
     if (!text.empty()) found.push_back(std::move(text));

@@ -24,6 +24,7 @@ struct FittedCase {
   const TrainingRows& rows;
   const TrainingRows& held_out;   // may be empty
   double temperature_resolution;  // [K], the coarsest of the recordings
+  bool knows_between = false;     // the model knows what lies between the rows
 };
 
 /// What the data do not support, one line each: a temperature span under

@@ -10,6 +10,8 @@
 #include "compensation/bias_model.h"
 #include "compensation/features.h"
 #include "compensation/input.h"
+#include "compensation/population.h"
+#include "compensation/run_source.h"
 #include "dataset/recording.h"
 
 namespace beamgyro {
@@ -39,6 +41,8 @@ struct Provenance {
   std::string method;  // "cubic as PX4 fits it", ...
   std::vector<SourceFile> training;
   std::vector<SourceFile> held_out;
+  // In place of files: the set the runs come from.
+  std::optional<SetPart> training_set, held_out_set;
   std::string model_text;  // model file byte for byte as read
   std::uint64_t seed = 0;
   std::string stop_reason;
@@ -63,6 +67,8 @@ struct Compensator {
   std::optional<LookupTable> scale_factor;  // s(T) [-]; 1 without
   BiasModel baseline;  // of the temperature: the cubic of equation (1)
   TemperatureRange temperature_range;  // [degC], seen in training
+  // Learned with the bias, which then is its mean: to adapt to devices.
+  std::optional<Population> population = {};
   Provenance provenance;
 };
 

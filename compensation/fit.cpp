@@ -157,6 +157,33 @@ struct Fitter {
         fit_takagi_sugeno(scaled(rows.inputs, scales), rows.bias, spec.rules)};
   }
 
+  BiasModel operator()(const PopulationSpec& spec) const {
+    Population p = fit_population(inputs, rows, spec.grid_K);
+    fit.choices.push_back(
+        fmt::format("{} devices, {} modes on {} temperatures from {:.2f} to "
+                    "{:.2f} degC",
+                    p.devices, p.modes.cols(), p.grid(), p.range().lowest,
+                    p.range().highest));
+    BiasModel model{
+        identity(), {}, bias_curve(p, p.mean.head(p.grid()).array())};
+    fit.population = std::move(p);
+    return model;
+  }
+
+  BiasModel operator()(const AdaptedSpec& spec) const {
+    const AdaptedBias adapted =
+        adapted_bias(spec.population, inputs, rows, spec.noise);
+    Index worst = 0;
+    const double largest = adapted.deviation.maxCoeff(&worst);
+    fit.choices.push_back(fmt::format("population: {}", spec.source));
+    fit.choices.push_back(fmt::format(
+        "1-sigma left open by the rows: rms {:.4f} deg/s, largest {:.4f} deg/s "
+        "at {:.1f} degC",
+        std::sqrt(adapted.deviation.square().mean()), largest,
+        spec.population.temperatures(worst)));
+    return {identity(), {}, bias_curve(spec.population, adapted.mean)};
+  }
+
   BiasModel operator()(const BpSpec& spec) const {
     std::vector<int> sizes{static_cast<int>(inputs.size())};
     sizes.insert(sizes.end(), spec.hidden.begin(), spec.hidden.end());

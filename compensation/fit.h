@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,11 +20,14 @@ struct Fit {
   std::vector<TrainSummary> restarts;  // one unless it is a network; [deg/s]
   std::size_t chosen = 0;              // the restart kept
   std::vector<std::string> choices;    // what was chosen, from what, and why
+  std::optional<Population> population = {};  // learned, of a PopulationSpec
 
   const TrainSummary& summary() const { return restarts[chosen]; }
 };
 
-/// Fits `kind` to rows whose input columns are `inputs`. A network stops early
+/// Fits `kind` to rows whose input columns are `inputs`. A population's model
+/// is its mean, an adapted one the conditional mean: both depend on the first
+/// input alone, the temperature. A network stops early
 /// on `held_out`, which may be empty, and of its restarts and weight decays the
 /// one with the lowest held-out rms is kept, in-sample without held-out rows.
 /// Restart k starts from the stream (seed, 0, k, kInitialWeights). Throws

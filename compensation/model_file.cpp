@@ -8,14 +8,17 @@
 #include <charconv>
 #include <stdexcept>
 
+#include "compensation/compensator_file.h"
 #include "config/suggestion.h"
+#include "dataset/sha256.h"
 
 namespace beamgyro {
 namespace {
 
 const std::vector<std::string> kKinds = {
-    "none",      "constant",   "polynomial", "table", "spline", "px4",
-    "ardupilot", "thermistor", "fuzzy",      "bp",    "auto"};
+    "none", "constant",   "polynomial", "table", "spline",
+    "px4",  "ardupilot",  "thermistor", "fuzzy", "bp",
+    "auto", "population", "adapted"};
 
 const std::vector<double> kWeightDecays = {0.0, 1e-8, 1e-6};
 
@@ -173,6 +176,61 @@ BpSpec read_bp(const ConfigTable& table, const std::vector<Input>& inputs) {
   return spec;
 }
 
+void require_channels(const ConfigTable& root, const std::vector<Input>& inputs,
+                      const std::string& kind) {
+  require_temperature_first(root, inputs, kind);
+  for (const Input& input : inputs)
+    if (input.kind != InputKind::kColumn)
+      root.fail("inputs",
+                fmt::format("\"{}\"; a {} takes what a soak shows: "
+                            "\"quadrature\", \"drive_voltage\" or "
+                            "\"drive_frequency\" beside the temperature",
+                            input_name(input), kind));
+}
+
+AdaptedSpec read_adapted(const ConfigDocument& document) {
+  const ConfigTable& root = document.root();
+  const std::string name = root.text("population");
+  const std::filesystem::path file = document.path().parent_path() / name;
+  Compensator compensator;
+  try {
+    compensator = read_compensator(file);
+  } catch (const std::invalid_argument& error) {
+    root.fail("population", error.what());
+  }
+  if (!compensator.population)
+    root.fail("population",
+              fmt::format("\"{}\" is a compensator without a population; "
+                          "train one of kind \"population\"",
+                          name));
+  AdaptedSpec spec{std::move(*compensator.population), {}, {}};
+  spec.source =
+      fmt::format("{}, {} devices, sha256 {}", file.filename().string(),
+                  spec.population.devices, sha256_of_file(file));
+  const ConfigTable table = root.table_or_empty("adapted");
+  spec.noise.bias =
+      table.number_or("noise_deg_per_s", spec.noise.bias, positive());
+  spec.noise.channel_share = table.number_or(
+      "channel_noise_share", spec.noise.channel_share, positive());
+  return spec;
+}
+
+// The temperature and the population's channels, or some of them.
+std::vector<Input> adapted_inputs(const ConfigTable& root,
+                                  const Population& population) {
+  std::vector<Input> all = {parse_input("temperature")};
+  all.insert(all.end(), population.channels.begin(), population.channels.end());
+  if (!root.has("inputs")) return all;
+  const std::vector<Input> inputs = read_inputs(root);
+  require_channels(root, inputs, "adapted");
+  for (const Input& input : inputs)
+    if (std::find(all.begin(), all.end(), input) == all.end())
+      root.fail("inputs", fmt::format("\"{}\"; the population knows {}",
+                                      input_name(input),
+                                      fmt::join(input_names(all), ", ")));
+  return inputs;
+}
+
 FitSpec read_kind(const ConfigTable& root, const std::string& kind,
                   const std::vector<Input>& inputs) {
   const auto table = [&] { return root.table_or_empty(kind); };
@@ -186,6 +244,10 @@ FitSpec read_kind(const ConfigTable& root, const std::string& kind,
   if (kind == "fuzzy") {
     require_temperature_first(root, inputs, kind);
     return FuzzySpec{static_cast<int>(table().integer_or("rules", 8, 2, 1000))};
+  }
+  if (kind == "population") {
+    require_channels(root, inputs, kind);
+    return PopulationSpec{table().number_or("grid_K", 5.0, positive())};
   }
   require_one_temperature(root, inputs, kind);
   if (kind == "table")
@@ -277,41 +339,7 @@ std::vector<Candidate> read_candidates(const ConfigTable& root,
   return candidates;
 }
 
-struct MethodName {
-  std::string operator()(const NoneSpec&) const { return "none"; }
-  std::string operator()(const ConstantSpec&) const { return "constant"; }
-  std::string operator()(const PolynomialSpec& spec) const {
-    const char* suffix = spec.normalised ? "" : ", not normalised";
-    if (spec.degree == 1) return fmt::format("straight line{}", suffix);
-    if (spec.degree == 3) return fmt::format("cubic{}", suffix);
-    return fmt::format("polynomial of degree {}{}", spec.degree, suffix);
-  }
-  std::string operator()(const TableSpec& spec) const {
-    return fmt::format("table of {:g} K bins", spec.bin_width_K);
-  }
-  std::string operator()(const SplineSpec&) const { return "cubic spline"; }
-  std::string operator()(const Px4Spec&) const {
-    return "cubic as PX4 fits it";
-  }
-  std::string operator()(const ArduPilotSpec&) const {
-    return "cubic as ArduPilot fits it";
-  }
-  std::string operator()(const ThermistorSpec&) const {
-    return "thermistor network";
-  }
-  std::string operator()(const FuzzySpec& spec) const {
-    return fmt::format("fuzzy model of {} rules", spec.rules);
-  }
-  std::string operator()(const BpSpec& spec) const {
-    return fmt::format("BP network {}", fmt::join(spec.hidden, "-"));
-  }
-};
-
 }  // namespace
-
-std::string method_name(const FitSpec& kind) {
-  return std::visit(MethodName{}, kind);
-}
 
 ModelSpec read_model(const std::filesystem::path& file) {
   return read_model(ConfigDocument::read(file));
@@ -322,15 +350,21 @@ ModelSpec read_model(const ConfigDocument& document) {
   ModelSpec spec;
   spec.text = document.text();
   const std::string kind = root.choice("kind", kKinds);
-  const bool needs_inputs = kind == "bp" || kind == "auto";
-  spec.inputs = needs_inputs || root.has("inputs")
-                    ? read_inputs(root)
-                    : std::vector<Input>{parse_input("temperature")};
   spec.rows = read_rows(root.table_or_empty("rows"), kind);
-  if (kind == "auto")
-    spec.candidates = read_candidates(root, spec.inputs);
-  else
-    spec.kind = read_kind(root, kind, spec.inputs);
+  if (kind == "adapted") {
+    AdaptedSpec adapted = read_adapted(document);
+    spec.inputs = adapted_inputs(root, adapted.population);
+    spec.kind = std::move(adapted);
+  } else {
+    const bool needs_inputs = kind == "bp" || kind == "auto";
+    spec.inputs = needs_inputs || root.has("inputs")
+                      ? read_inputs(root)
+                      : std::vector<Input>{parse_input("temperature")};
+    if (kind == "auto")
+      spec.candidates = read_candidates(root, spec.inputs);
+    else
+      spec.kind = read_kind(root, kind, spec.inputs);
+  }
   if (const auto table = root.optional_table("scale_factor"))
     spec.scale_factor_bin_K = table->number_or("bin_width_K", 10.0, positive());
   document.reject_unknown_keys();

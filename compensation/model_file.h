@@ -10,17 +10,11 @@
 #include "compensation/cubic_spline.h"
 #include "compensation/input.h"
 #include "compensation/network_training.h"
+#include "compensation/population.h"
+#include "compensation/row_options.h"
 #include "config/document.h"
 
 namespace beamgyro {
-
-/// Table [rows]: how samples become training rows.
-struct RowOptions {
-  // [s], length of the blocks that are averaged; 0 = every sample is a row
-  double seconds = 60.0;
-  // [K/min]; rows whose temperature changes faster are left out
-  std::optional<double> steady_K_per_min;
-};
 
 struct NoneSpec {};
 struct ConstantSpec {};
@@ -69,9 +63,21 @@ struct BpSpec {
   TrainOptions training;
 };
 
-using FitSpec =
-    std::variant<NoneSpec, ConstantSpec, PolynomialSpec, TableSpec, SplineSpec,
-                 Px4Spec, ArduPilotSpec, ThermistorSpec, FuzzySpec, BpSpec>;
+/// Table [population]: what the devices of a set have in common.
+struct PopulationSpec {
+  double grid_K = 5.0;  // [K], > 0
+};
+
+/// Table [adapted]: a device of a population, known from a few rows.
+struct AdaptedSpec {
+  Population population;
+  std::string source;  // of it, for the provenance
+  RowNoise noise;
+};
+
+using FitSpec = std::variant<NoneSpec, ConstantSpec, PolynomialSpec, TableSpec,
+                             SplineSpec, Px4Spec, ArduPilotSpec, ThermistorSpec,
+                             FuzzySpec, BpSpec, PopulationSpec, AdaptedSpec>;
 
 /// One of the models of an automatic choice.
 struct Candidate {
@@ -92,11 +98,9 @@ struct ModelSpec {
 
 /// Reads a model file (docs/formats.md). Throws std::invalid_argument with
 /// file, line and column for a key, type or value that is not allowed, an
-/// unknown key, or inputs the kind of model cannot take.
+/// unknown key, or inputs the kind of model cannot take; of an adapted model
+/// also for its population's file, whose place is relative to the model file.
 ModelSpec read_model(const std::filesystem::path& file);
 ModelSpec read_model(const ConfigDocument& document);
-
-/// What reports call it: "cubic", "BP network 2-8", ...
-std::string method_name(const FitSpec& kind);
 
 }  // namespace beamgyro

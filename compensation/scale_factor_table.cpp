@@ -11,24 +11,25 @@
 
 namespace beamgyro {
 
-LookupTable fit_scale_factor(const std::vector<const Recording*>& recordings,
-                             double bin_width) {
+LookupTable fit_scale_factor(const RunSource& runs, double bin_width) {
   struct Bin {
     double temperature = 0.0, raw = 0.0, truth = 0.0;
   };
   std::map<double, Bin> bins;
-  for (const Recording* recording : recordings)
-    for (const PlateauSlope& slope : plateau_slopes(*recording, kTableRate)) {
+  runs.each([&](const TrainingRun& run) {
+    for (const PlateauSlope& slope :
+         plateau_slopes(run.recording, kTableRate)) {
       Bin& bin = bins[std::floor(slope.temperature / bin_width)];
       bin.temperature += slope.truth * slope.temperature;
       bin.raw += slope.raw;
       bin.truth += slope.truth;
     }
+  });
   if (bins.empty())
     throw std::invalid_argument(fmt::format(
         "a scale-factor table needs recordings whose true rate varies by {} "
         "deg/s at a steady temperature; none of the {} does",
-        kTableRate, recordings.size()));
+        kTableRate, runs.count));
   LookupTable table{Eigen::ArrayXd(static_cast<Eigen::Index>(bins.size())),
                     Eigen::ArrayXd(static_cast<Eigen::Index>(bins.size()))};
   Eigen::Index k = 0;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "compensation/cautions.h"
+#include "compensation/method_name.h"
 #include "compensation/scale_factor_table.h"
 #include "compensation/selection.h"
 
@@ -23,17 +24,41 @@ bool has_network(const ModelSpec& spec) {
   return spec.candidates.empty() && std::holds_alternative<BpSpec>(spec.kind);
 }
 
-void check_runs(const ModelSpec& spec, const std::vector<TrainingRun>& runs,
-                const std::vector<TrainingRun>& held_out,
+void check_runs(const ModelSpec& spec, const RunSource& runs,
+                const RunSource& held_out,
                 const std::optional<Grouping>& cross_validation) {
-  if (runs.empty())
+  if (runs.count == 0)
     throw std::invalid_argument("training needs at least one recording");
-  if (has_network(spec) && held_out.empty() && !cross_validation)
+  if (has_network(spec) && held_out.count == 0 && !cross_validation)
     throw std::invalid_argument(
         "a bp network needs held-out recordings to stop early on: pass "
         "--held-out RUN.h5, or --cv run|cycle|leg");
-  for (const TrainingRun& run : held_out)
-    for (const TrainingRun& other : runs)
+}
+
+// What is kept of the runs besides their rows.
+struct RunFacts {
+  std::vector<SourceFile> files;
+  double coarsest_resolution = 0.0;  // [K], of the temperature
+};
+
+// The same runs, noted as they pass.
+RunSource noting(const RunSource& runs, RunFacts& facts) {
+  return {runs.count, [&](const RunSource::Visitor& visit) {
+            runs.each([&](const TrainingRun& run) {
+              if (!run.sha256.empty())
+                facts.files.push_back({run.name, run.sha256});
+              facts.coarsest_resolution =
+                  std::max(facts.coarsest_resolution,
+                           temperature_resolution(run.recording));
+              visit(run);
+            });
+          }};
+}
+
+void check_held_out(const std::vector<SourceFile>& held_out,
+                    const std::vector<SourceFile>& training) {
+  for (const SourceFile& run : held_out)
+    for (const SourceFile& other : training)
       if (run.sha256 == other.sha256)
         throw std::invalid_argument(
             fmt::format("{} is held out but equals {}, which is trained on; a "
@@ -59,15 +84,23 @@ std::optional<RowGroups> groups_of(const ModelSpec& spec,
   return folds_of(rows, kLeastGroups);
 }
 
-std::vector<SourceFile> sources(const std::vector<TrainingRun>& runs) {
-  std::vector<SourceFile> files;
-  files.reserve(runs.size());
-  for (const TrainingRun& run : runs) files.push_back({run.name, run.sha256});
-  return files;
-}
-
 double rms_about(double value, const ArrayXd& bias) {
   return std::sqrt((bias - value).square().mean());
+}
+
+// Temperatures a model answers for whatever the rows hold.
+TemperatureRange known_range(const FitSpec& kind) {
+  const auto* adapted = std::get_if<AdaptedSpec>(&kind);
+  return adapted != nullptr ? adapted->population.range() : TemperatureRange{};
+}
+
+// A population's channels help to fit; the curve that comes out needs none.
+void leave_out_channels(const FitSpec& kind, Compensator& c) {
+  if (!std::holds_alternative<PopulationSpec>(kind) &&
+      !std::holds_alternative<AdaptedSpec>(kind))
+    return;
+  c.inputs.resize(1);
+  c.bias.input_scales.resize(1);
 }
 
 // Rms residuals of the model, the cubic and a constant.
@@ -94,13 +127,6 @@ CrossValidated summary_of(const RowGroups& groups, const Selected& selected) {
           rms_of(*selected.constant_errors)};
 }
 
-double coarsest_resolution(const std::vector<TrainingRun>& runs) {
-  double coarsest = 0.0;
-  for (const TrainingRun& run : runs)
-    coarsest = std::max(coarsest, temperature_resolution(run.recording));
-  return coarsest;
-}
-
 bool claims_nothing(const FitSpec& kind) {
   return std::holds_alternative<NoneSpec>(kind) ||
          std::holds_alternative<ConstantSpec>(kind);
@@ -124,24 +150,25 @@ std::string why_no_claim(const ModelSpec& spec,
 
 }  // namespace
 
-TrainResult train(const ModelSpec& spec, const std::vector<TrainingRun>& runs,
-                  const std::vector<TrainingRun>& held_out, std::uint64_t seed,
+TrainResult train(const ModelSpec& spec, const RunSource& runs,
+                  const RunSource& held_out, std::uint64_t seed,
                   std::optional<Grouping> cross_validation) {
   check_runs(spec, runs, held_out, cross_validation);
   TrainResult result;
   Compensator& c = result.compensator;
-  if (spec.scale_factor_bin_K) {
-    std::vector<const Recording*> recordings;
-    for (const TrainingRun& run : runs) recordings.push_back(&run.recording);
-    c.scale_factor = fit_scale_factor(recordings, *spec.scale_factor_bin_K);
-  }
+  if (spec.scale_factor_bin_K)
+    c.scale_factor = fit_scale_factor(runs, *spec.scale_factor_bin_K);
   const LookupTable* scale_factor = c.scale_factor ? &*c.scale_factor : nullptr;
-  const TrainingRows rows =
-      training_rows(runs, spec.inputs, spec.rows, {}, scale_factor);
+  RunFacts facts, unseen_facts;
+  const TemperatureRange known = known_range(spec.kind);
+  TrainingRows rows = training_rows(noting(runs, facts), spec.inputs, spec.rows,
+                                    known, scale_factor);
+  if (known != TemperatureRange{}) rows.range = known;
   TrainingRows unseen;
-  if (!held_out.empty())
-    unseen = training_rows(held_out, spec.inputs, spec.rows, rows.range,
-                           scale_factor);
+  if (held_out.count > 0)
+    unseen = training_rows(noting(held_out, unseen_facts), spec.inputs,
+                           spec.rows, rows.range, scale_factor);
+  check_held_out(unseen_facts.files, facts.files);
   result.rows = rows.size();
   result.held_out_rows = unseen.size();
 
@@ -154,15 +181,19 @@ TrainResult train(const ModelSpec& spec, const std::vector<TrainingRun>& runs,
 
   c.inputs = selected.candidate.inputs;
   c.bias = std::move(selected.fit.model);
-  c.temperature_range = rows.range;
+  leave_out_channels(selected.candidate.kind, c);
+  c.population = std::move(selected.fit.population);
+  c.temperature_range = c.population ? c.population->range() : rows.range;
   c.baseline = fit_baseline(rows);
   result.restarts = std::move(selected.fit.restarts);
   result.chosen = selected.fit.chosen;
 
   Provenance& p = c.provenance;
   p.method = method_name(selected.candidate.kind);
-  p.training = sources(runs);
-  p.held_out = sources(held_out);
+  p.training = std::move(facts.files);
+  p.held_out = std::move(unseen_facts.files);
+  p.training_set = runs.set;
+  p.held_out_set = held_out.set;
   p.model_text = spec.text;
   p.seed = seed;
   p.stop_reason = sentence(result.summary().stop_reason);
@@ -171,11 +202,19 @@ TrainResult train(const ModelSpec& spec, const std::vector<TrainingRun>& runs,
   const TrainingRows own_unseen = with_columns(unseen, spec.inputs, c.inputs);
   write_scores(c.bias, c.baseline, own, own_unseen, p);
   if (groups) p.cross_validated = summary_of(*groups, selected);
-  p.warnings = cautions({c.inputs, c.bias, c.baseline, own, own_unseen,
-                         coarsest_resolution(runs)});
+  p.warnings =
+      cautions({c.inputs, c.bias, c.baseline, own, own_unseen,
+                facts.coarsest_resolution, known != TemperatureRange{}});
   const std::string objection = why_no_claim(spec, groups, selected);
   if (!objection.empty()) p.warnings.push_back(objection);
   return result;
+}
+
+TrainResult train(const ModelSpec& spec, const std::vector<TrainingRun>& runs,
+                  const std::vector<TrainingRun>& held_out, std::uint64_t seed,
+                  std::optional<Grouping> cross_validation) {
+  return train(spec, source_of(runs), source_of(held_out), seed,
+               cross_validation);
 }
 
 }  // namespace beamgyro

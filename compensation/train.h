@@ -25,7 +25,8 @@ struct TrainResult {
 };
 
 /// Fits `spec` and the baseline, the cubic of equation (1), to the rows of
-/// `runs` (training_rows()). A network also stops early on the rows of
+/// `runs` (training_rows()), which are visited once, with a scale-factor table
+/// twice. A network also stops early on the rows of
 /// `held_out`, and of its restarts and weight decays the one with the lowest
 /// held-out rms is kept. With `cross_validation` every group of that kind is
 /// predicted by a fit to the others (cross_validate()); a network without
@@ -38,6 +39,9 @@ struct TrainResult {
 /// held-out runs nor cross-validation, a run is on both sides, the temperatures
 /// are too few or too close together, an input never varies, or as
 /// training_rows().
+TrainResult train(const ModelSpec& spec, const RunSource& runs,
+                  const RunSource& held_out, std::uint64_t seed,
+                  std::optional<Grouping> cross_validation = {});
 TrainResult train(const ModelSpec& spec, const std::vector<TrainingRun>& runs,
                   const std::vector<TrainingRun>& held_out, std::uint64_t seed,
                   std::optional<Grouping> cross_validation = {});

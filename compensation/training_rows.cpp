@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 
 namespace beamgyro {
@@ -152,6 +153,7 @@ class RowCollector {
     note_output(recording);
     int cycle = -1;
     ++run_count_;
+    const int device = device_number(run);
     for (const Block& block : blocks) {
       const ArrayXd measured = temperature(block.samples);
       check_finite(measured, "temperature", block, time);
@@ -174,6 +176,7 @@ class RowCollector {
         legs_.begin_cycle();
       }
       runs_.push_back(run_count_);
+      devices_.push_back(device);
       cycles_.push_back(cycle_count_);
       legs_.add(T.mean());
       const double mean = measured.mean();
@@ -198,10 +201,20 @@ class RowCollector {
             array_of(legs_.legs()),
             output_per_rate_,
             count > 0 ? fastest_ - slowest_ : 0.0,
-            array_of(outside_).cast<bool>()};
+            array_of(outside_).cast<bool>(),
+            array_of(devices_)};
   }
 
  private:
+  int device_number(const TrainingRun& run) {
+    const auto next = static_cast<int>(device_numbers_.size());
+    return device_numbers_
+        .emplace(run.device.empty() ? fmt::format("run {}", run_count_)
+                                    : fmt::format("device {}", run.device),
+                 next)
+        .first->second;
+  }
+
   // The output is a straight line over the rate: two samples tell its slope.
   void note_output(const Recording& recording) {
     const Column* output = find_column(recording, "output");
@@ -234,7 +247,8 @@ class RowCollector {
   const LookupTable* scale_factor_;
   Index inputs_;
   std::vector<double> values_;
-  std::vector<int> runs_, cycles_, outside_;  // one per row
+  std::vector<int> runs_, cycles_, outside_, devices_;  // one per row
+  std::map<std::string, int> device_numbers_;
   LegCounter legs_;
   int run_count_ = -1, cycle_count_ = -1;
   double output_per_rate_ = 0.0;                     // [V/(deg/s)]
@@ -245,30 +259,38 @@ class RowCollector {
 
 }  // namespace
 
-TrainingRows training_rows(const std::vector<TrainingRun>& runs,
+TrainingRows training_rows(const RunSource& runs,
                            const std::vector<Input>& inputs,
                            const RowOptions& options,
                            const TemperatureRange& range,
                            const LookupTable* scale_factor) {
   RowCollector collector(options, range, scale_factor, inputs.size());
-  for (const TrainingRun& run : runs) {
+  runs.each([&](const TrainingRun& run) {
     try {
       collector.add(run, inputs);
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(
           fmt::format("{}: {}", run.name, error.what()));
     }
-  }
+  });
   TrainingRows rows = collector.rows();
   if (rows.size() == 0)
     throw std::invalid_argument(fmt::format(
-        "the {} runs have no row{}", runs.size(),
+        "the {} runs have no row{}", runs.count,
         options.steady_K_per_min
             ? fmt::format(" whose temperature changes by {} K/min or less "
                           "(steady_K_per_min of the model file)",
                           *options.steady_K_per_min)
             : ""));
   return rows;
+}
+
+TrainingRows training_rows(const std::vector<TrainingRun>& runs,
+                           const std::vector<Input>& inputs,
+                           const RowOptions& options,
+                           const TemperatureRange& range,
+                           const LookupTable* scale_factor) {
+  return training_rows(source_of(runs), inputs, options, range, scale_factor);
 }
 
 TrainingRows selected(const TrainingRows& rows,
@@ -286,7 +308,8 @@ TrainingRows selected(const TrainingRows& rows,
           rows.leg(which),
           rows.output_per_rate,
           rows.true_rate_span,
-          rows.outside(which)};
+          rows.outside(which),
+          rows.device(which)};
 }
 
 TrainingRows with_columns(const TrainingRows& rows,

@@ -8,17 +8,10 @@
 #include "compensation/features.h"
 #include "compensation/input.h"
 #include "compensation/lookup_table.h"
-#include "compensation/model_file.h"
-#include "dataset/recording.h"
+#include "compensation/row_options.h"
+#include "compensation/run_source.h"
 
 namespace beamgyro {
-
-/// A recording given for training or held out from it.
-struct TrainingRun {
-  std::string name;    // file name, for messages and the provenance
-  std::string sha256;  // of the file
-  Recording recording;
-};
 
 /// Means over blocks of samples: what a model is fitted to.
 struct TrainingRows {
@@ -35,6 +28,7 @@ struct TrainingRows {
   double true_rate_span = 0.0;   // [deg/s], of the samples that were averaged
   // Whether the mean temperature measured lies beyond what it was clamped to.
   Eigen::Array<bool, Eigen::Dynamic, 1> outside;
+  Eigen::ArrayXi device;  // whose run it was
 
   Eigen::Index size() const { return bias.size(); }
 };
@@ -42,17 +36,23 @@ struct TrainingRows {
 /// A turn of the temperature by this much begins another leg.
 constexpr double kLegReversal = 2.0;  // [K]
 
-/// Rows of all runs. Inputs are computed at the rate of the recording and then
-/// averaged over consecutive blocks of `options.seconds` (0: every sample is a
-/// block), counted from each power-on, together with the label rate -
-/// true_rate. Samples without power, saturated or with a loop not locked are
-/// left out; so are blocks with less than half the samples of the fullest block
-/// of their run, and, with steady_K_per_min, blocks over which the slope of a
-/// straight line through the measured temperature is steeper. Temperatures are
-/// clamped to `range` as at run time. With `scale_factor`, s of the measured
-/// temperature, the label is rate - s true_rate. Throws std::invalid_argument
-/// naming the run and an input it lacks, a true_rate it lacks, a sample that is
-/// not finite, or that it has no usable sample; and when no row is left.
+/// Rows of all runs, which are visited once. Inputs are computed at the rate of
+/// the recording and then averaged over consecutive blocks of `options.seconds`
+/// (0: every sample is a block), counted from each power-on, together with the
+/// label rate - true_rate. Samples without power, saturated or with a loop not
+/// locked are left out; so are blocks with less than half the samples of the
+/// fullest block of their run, and, with steady_K_per_min, blocks over which
+/// the slope of a straight line through the measured temperature is steeper.
+/// Temperatures are clamped to `range` as at run time. With `scale_factor`, s
+/// of the measured temperature, the label is rate - s true_rate. Throws
+/// std::invalid_argument naming the run and an input it lacks, a true_rate it
+/// lacks, a sample that is not finite, or that it has no usable sample; and
+/// when no row is left.
+TrainingRows training_rows(const RunSource& runs,
+                           const std::vector<Input>& inputs,
+                           const RowOptions& options,
+                           const TemperatureRange& range = {},
+                           const LookupTable* scale_factor = nullptr);
 TrainingRows training_rows(const std::vector<TrainingRun>& runs,
                            const std::vector<Input>& inputs,
                            const RowOptions& options,

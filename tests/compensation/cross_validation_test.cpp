@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "compensation/method_name.h"
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/rows_of.h"

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "compensation/method_name.h"
 #include "tests/compensation/message_of.h"
 
 namespace beamgyro {

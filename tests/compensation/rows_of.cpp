@@ -26,6 +26,7 @@ TrainingRows rows_of(const std::vector<Leg>& legs,
       rows.leg(k) = static_cast<int>(n);
     }
   }
+  rows.device = rows.run;
   rows.outside.setConstant(count, false);
   rows.inputs.col(0) = rows.temperature;
   rows.range = {rows.temperature.minCoeff(), rows.temperature.maxCoeff()};

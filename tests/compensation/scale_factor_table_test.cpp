@@ -18,6 +18,13 @@ namespace {
 
 constexpr double kSoak = 1320.0;  // [s], two rounds of 11 rates of 60 s
 
+LookupTable table_of(const std::vector<Recording>& recordings, double width) {
+  std::vector<TrainingRun> runs;
+  for (const Recording& recording : recordings)
+    runs.push_back({"run.h5", "", recording});
+  return fit_scale_factor(source_of(runs), width);
+}
+
 double true_scale(double T) { return 1.0 + 1e-4 * (T - 25.0); }
 
 // A rate table at -35, -25, ... 45 degC with a bias that drifts within a soak
@@ -39,7 +46,7 @@ RecordedRun rate_tables(double offset = 0.0) {
 
 TEST(ScaleFactorTable, RecoversTheScaleFactorInSpiteOfDrift) {
   const Recording recording = rate_tables().recording();
-  const LookupTable table = fit_scale_factor({&recording}, 10.0);
+  const LookupTable table = table_of({recording}, 10.0);
   ASSERT_EQ(table.temperatures.size(), 9);
   for (Eigen::Index k = 0; k < 9; ++k) {
     EXPECT_NEAR(table.temperatures(k), -35.0 + 10.0 * double(k), 1e-9);
@@ -53,7 +60,7 @@ TEST(ScaleFactorTable, WithoutDriftItIsExactAndBinsAreJoined) {
   RecordedRun run = rate_tables();
   run.bias = [](double) { return -3.0; };
   const Recording one = run.recording();
-  const LookupTable table = fit_scale_factor({&one}, 20.0);
+  const LookupTable table = table_of({one}, 20.0);
   // [-40, -20), [-20, 0), ... two soaks each, the last one.
   ASSERT_EQ(table.temperatures.size(), 5);
   for (Eigen::Index k = 0; k < 5; ++k) {
@@ -70,7 +77,7 @@ TEST(ScaleFactorTable, LagBehindTheStepsOfTheRateIsNoScaleFactor) {
     return table(std::max(t - 1.0, 0.0)) - table(t);
   };
   const Recording recording = run.recording();
-  const LookupTable table = fit_scale_factor({&recording}, 10.0);
+  const LookupTable table = table_of({recording}, 10.0);
   for (Eigen::Index k = 0; k < table.values.size(); ++k)
     EXPECT_NEAR(table.values(k), true_scale(table.temperatures(k)), 1e-6) << k;
 }
@@ -79,7 +86,7 @@ TEST(ScaleFactorTable, ARateThatIsNeverHeldServesToo) {
   RecordedRun run = rate_tables();
   run.true_rate = [](double t) { return 90.0 * std::sin(0.7 * t); };
   const Recording recording = run.recording();
-  const LookupTable table = fit_scale_factor({&recording}, 10.0);
+  const LookupTable table = table_of({recording}, 10.0);
   ASSERT_EQ(table.values.size(), 9);
   for (Eigen::Index k = 0; k < 9; ++k)
     EXPECT_NEAR(table.values(k), true_scale(table.temperatures(k)), 1e-4) << k;
@@ -89,12 +96,12 @@ TEST(ScaleFactorTable, RecordingsAtRestAddNothing) {
   RecordedRun still = rate_tables();
   still.true_rate = [](double) { return 4.0; };
   const Recording rest = still.recording(), turning = rate_tables().recording();
-  EXPECT_NE(message_of([&] { fit_scale_factor({&rest}, 10.0); })
+  EXPECT_NE(message_of([&] { table_of({rest}, 10.0); })
                 .find("varies by 5 deg/s at a steady temperature; none of the "
                       "1 does"),
             std::string::npos);
-  EXPECT_TRUE((fit_scale_factor({&rest, &turning}, 10.0).values ==
-               fit_scale_factor({&turning}, 10.0).values)
+  EXPECT_TRUE((table_of({rest, turning}, 10.0).values ==
+               table_of({turning}, 10.0).values)
                   .all());
 }
 

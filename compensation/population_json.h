@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "compensation/json_node.h"
+#include "compensation/population.h"
+
+namespace beamgyro {
+
+/// The key `population` of a compensator file (docs/formats.md). Throws
+/// std::runtime_error for a number that is not finite.
+nlohmann::ordered_json population_json(const Population& population);
+
+/// Reads what population_json() wrote. Throws as JsonNode.
+Population read_population(const JsonNode& node);
+
+}  // namespace beamgyro

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+namespace beamgyro {
+
+/// Table [rows] of a model file: how samples become training rows.
+struct RowOptions {
+  // [s], length of the blocks that are averaged; 0 = every sample is a row
+  double seconds = 60.0;
+  // [K/min]; rows whose temperature changes faster are left out
+  std::optional<double> steady_K_per_min;
+};
+
+}  // namespace beamgyro
