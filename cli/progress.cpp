@@ -3,25 +3,30 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <utility>
 
 #include "cli/terminal.h"
 
 namespace beamgyro {
-
 namespace {
 
-std::string line(const std::string& activity, double share, double elapsed) {
-  if (share <= 0) return fmt::format("{}, {:.0f} s", activity, elapsed);
-  return fmt::format("{}, {:.0f} %, {:.0f} s, {:.0f} s left", activity,
-                     100 * share, elapsed, elapsed * (1 - share) / share);
-}
+using Clock = std::chrono::steady_clock;
+constexpr double kPatience = 2, kStep = 0.2, kMinute = 60;  // [s]
 
 }  // namespace
 
-Progress::Progress(std::string activity) : activity_(std::move(activity)) {
-  if (shows_progress()) thread_ = std::thread([this] { show(); });
+Progress::Progress(std::string activity)
+    : Progress(std::move(activity), nullptr) {}
+
+Progress::Progress(std::string activity, std::function<std::string()> detail)
+    : activity_(std::move(activity)),
+      detail_(std::move(detail)),
+      start_(Clock::now()) {
+  if (shows_progress()) {
+    thread_ = std::thread([this] { show(); });
+  } else if (detail_) {
+    thread_ = std::thread([this] { log(); });
+  }
 }
 
 Progress::~Progress() {
@@ -34,21 +39,36 @@ Progress::~Progress() {
   thread_.join();
 }
 
-void Progress::show() {
-  using Clock = std::chrono::steady_clock;
-  using std::chrono::milliseconds;
-  constexpr milliseconds kPatience(2000), kStep(200);
-  const Clock::time_point start = Clock::now();
+bool Progress::over_within(double seconds) {
   std::unique_lock lock(mutex_);
-  milliseconds wait = kPatience;
-  bool shown = false;
-  while (!ended_.wait_for(lock, wait, [this] { return over_; })) {
-    const std::chrono::duration<double> elapsed = Clock::now() - start;
-    print_progress(line(activity_, share_, elapsed.count()));
-    shown = true;
+  return ended_.wait_for(lock, std::chrono::duration<double>(seconds),
+                         [this] { return over_; });
+}
+
+std::string Progress::line() const {
+  const double elapsed =
+      std::chrono::duration<double>(Clock::now() - start_).count();
+  const double share = share_;
+  std::string text = activity_;
+  if (share > 0) text += fmt::format(", {:.0f} %", 100 * share);
+  text += fmt::format(", {:.0f} s", elapsed);
+  if (share > 0)
+    text += fmt::format(", {:.0f} s left", elapsed * (1 - share) / share);
+  if (detail_) text += ", " + detail_();
+  return text;
+}
+
+void Progress::show() {
+  double wait = kPatience;
+  while (!over_within(wait)) {
+    print_progress(line());
     wait = kStep;
   }
-  if (shown) print_progress("");
+  if (wait == kStep) print_progress("");
+}
+
+void Progress::log() {
+  while (!over_within(kMinute)) print_note(line());
 }
 
 }  // namespace beamgyro

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -15,6 +17,9 @@ namespace beamgyro {
 class Progress {
  public:
   explicit Progress(std::string activity);
+  /// Long work: the line ends in `detail`, asked for from another thread, and
+  /// where there is no terminal a plain line is printed once a minute.
+  Progress(std::string activity, std::function<std::string()> detail);
   ~Progress();
 
   /// How much of the work is done, 0 .. 1; shown with what is left.
@@ -25,9 +30,14 @@ class Progress {
 
  private:
   void show();
+  void log();
+  bool over_within(double seconds);
+  std::string line() const;
 
   std::string activity_;
+  std::function<std::string()> detail_;
   std::atomic<double> share_ = 0;
+  std::chrono::steady_clock::time_point start_;
   std::mutex mutex_;
   std::condition_variable ended_;
   bool over_ = false;

@@ -12,8 +12,7 @@
 #include "dataset/atomic_file.h"
 #include "dataset/recording_file.h"
 #include "sim/scenario/carrier_run.h"
-#include "sim/scenario/envelope_run.h"
-#include "sim/scenario/quasistatic_run.h"
+#include "sim/scenario/simulation.h"
 
 namespace beamgyro {
 namespace {
@@ -39,18 +38,6 @@ void require_consent(const Scenario& scenario, bool yes) {
       scenario.duration, cost / 3600));
 }
 
-void simulate(const Scenario& scenario, const Device& device,
-              const BlockSink& on_block) {
-  switch (scenario.fidelity) {
-    case Fidelity::kQuasistatic:
-      return on_block(simulate_quasistatic(scenario, device));
-    case Fidelity::kEnvelope:
-      return simulate_envelope(scenario, device, {}, on_block);
-    case Fidelity::kCarrier:
-      return simulate_carrier(scenario, device, {}, on_block);
-  }
-}
-
 int run(const RunArguments& arguments) {
   require_recording_name(arguments.output);
   std::vector<std::string> overrides = arguments.overrides;
@@ -67,7 +54,8 @@ int run(const RunArguments& arguments) {
   std::size_t done = 0;
   Progress progress("simulating " + arguments.scenario);
   std::optional<RecordingFile> file;
-  simulate(input.scenario, input.device, [&](Recording&& block) {
+  const Gyro gyro = make_gyro(input.device);
+  simulate(input.scenario, gyro, {}, [&](Recording&& block) {
     if (!file) {
       block.program_version = kProgramVersion;
       block.git_revision = kGitRevision;

@@ -223,9 +223,11 @@ Manifest read_manifest(const std::filesystem::path& path) {
   return std::move(manifest);
 }
 
-void start_manifest(const std::filesystem::path& path,
-                    const ManifestHead& head) {
-  publish_file(path, bytes_of(line_of(json_of(head))));
+void start_manifest(const std::filesystem::path& path, const ManifestHead& head,
+                    const std::vector<ManifestEntry>& entries) {
+  std::string text = line_of(json_of(head));
+  for (const ManifestEntry& entry : entries) text += line_of(json_of(entry));
+  publish_file(path, bytes_of(text));
 }
 
 void append_entry(const std::filesystem::path& path,

@@ -82,9 +82,9 @@ std::string part_name(std::uint32_t task, std::uint32_t tasks);
 /// format_version.
 Manifest read_manifest(const std::filesystem::path& path);
 
-/// A manifest with nothing but its head, in place of any other.
-void start_manifest(const std::filesystem::path& path,
-                    const ManifestHead& head);
+/// An unfinished manifest, in place of any other.
+void start_manifest(const std::filesystem::path& path, const ManifestHead& head,
+                    const std::vector<ManifestEntry>& entries = {});
 
 /// Adds a line in one write, and waits until it is on the disk. Throws
 /// std::runtime_error when that fails.

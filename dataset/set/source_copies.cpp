@@ -10,6 +10,7 @@
 
 #include "dataset/set/publish.h"
 #include "dataset/sha256.h"
+#include "dataset/text_file.h"
 
 namespace beamgyro {
 namespace {
@@ -35,6 +36,10 @@ fs::path common_directory(std::span<const SourceText> files) {
   return common;
 }
 
+std::string copy_name(const fs::path& common, const SourceText& file) {
+  return ("source" / placed(file.path).lexically_relative(common)).string();
+}
+
 void require_utf8(const std::string& name) {
   try {
     static_cast<void>(nlohmann::json(name).dump());
@@ -46,21 +51,28 @@ void require_utf8(const std::string& name) {
 
 }  // namespace
 
-std::vector<SourceEntry> copy_sources(const fs::path& directory,
-                                      std::span<const SourceText> files) {
-  const fs::path common = common_directory(files);
+std::vector<SourceEntry> source_entries(std::span<const SourceText> files) {
   std::vector<SourceEntry> entries;
-  std::set<fs::path> done;
+  std::set<std::string> done;
+  const fs::path common = common_directory(files);
   for (const SourceText& file : files) {
-    const fs::path name =
-        "source" / placed(file.path).lexically_relative(common);
+    const std::string name = copy_name(common, file);
     if (!done.insert(name).second) continue;
-    require_utf8(name.string());
-    fs::create_directories((directory / name).parent_path());
-    publish_file(directory / name, std::as_bytes(std::span(file.text)));
-    entries.push_back({name.string(), sha256(file.text)});
+    require_utf8(name);
+    entries.push_back({name, sha256(file.text)});
   }
   return entries;
+}
+
+void copy_sources(const fs::path& directory,
+                  std::span<const SourceText> files) {
+  const fs::path common = common_directory(files);
+  for (const SourceText& file : files) {
+    const fs::path copy = directory / copy_name(common, file);
+    if (fs::exists(copy) && read_text_file(copy) == file.text) continue;
+    fs::create_directories(copy.parent_path());
+    publish_file(copy, std::as_bytes(std::span(file.text)));
+  }
 }
 
 }  // namespace beamgyro

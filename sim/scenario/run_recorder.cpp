@@ -20,18 +20,6 @@ constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
 
 using Samples = std::vector<double>;
 
-std::string_view fidelity_name(Fidelity fidelity) {
-  switch (fidelity) {
-    case Fidelity::kQuasistatic:
-      return "quasistatic";
-    case Fidelity::kEnvelope:
-      return "envelope";
-    case Fidelity::kCarrier:
-      return "carrier";
-  }
-  return "";
-}
-
 // Power cycle of every sample, -1 while unpowered.
 std::vector<int> power_cycles(const Scenario& scenario, const Samples& times) {
   std::vector<int> cycle(times.size(), -1);

@@ -5,6 +5,18 @@
 
 namespace beamgyro {
 
+std::string_view fidelity_name(Fidelity fidelity) {
+  switch (fidelity) {
+    case Fidelity::kQuasistatic:
+      return "quasistatic";
+    case Fidelity::kEnvelope:
+      return "envelope";
+    case Fidelity::kCarrier:
+      return "carrier";
+  }
+  return "";
+}
+
 std::size_t sample_count(const Scenario& scenario) {
   // 0.3 s x 10 Hz is three samples, whatever the last bit of the product says.
   constexpr double kRoundoff = 1e-9;

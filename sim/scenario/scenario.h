@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/numerics/piecewise_linear.h"
@@ -39,6 +40,9 @@ struct Scenario {
       PiecewiseLinear::constant(0)};
   bool noise_enabled = true;
 };
+
+/// As files spell it: "quasistatic", "envelope", "carrier".
+std::string_view fidelity_name(Fidelity fidelity);
 
 /// Number of samples, floor(duration x output_rate).
 std::size_t sample_count(const Scenario& scenario);

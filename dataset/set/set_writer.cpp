@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: MIT
+#include "dataset/set/set_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "dataset/atomic_file.h"
+#include "dataset/set/publish.h"
+// VIEWS #include "dataset/set/set_view.h"
+#include "dataset/sha256.h"
+
+namespace beamgyro {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_part(const std::string& name) {
+  return name.starts_with("manifest.") && name.ends_with(".jsonl") &&
+         name != kManifestName;
+}
+
+std::vector<fs::path> files_of(const fs::path& directory) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory))
+    files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
+bool has_parts(const fs::path& directory) {
+  return std::ranges::any_of(files_of(directory), [](const fs::path& path) {
+    return is_part(path.filename().string());
+  });
+}
+
+// A part may be merged and removed while it is looked for.
+std::optional<Manifest> manifest_if_there(const fs::path& path) {
+  try {
+    return read_manifest(path);
+  } catch (const std::invalid_argument&) {
+    if (fs::exists(path)) throw;
+    return {};
+  }
+}
+
+void take(const fs::path& path, const Manifest& manifest,
+          std::optional<ManifestHead>& head, SetState& state) {
+  if (!manifest.head) return;
+  if (head && *head != *manifest.head)
+    throw std::invalid_argument(fmt::format(
+        "{}: is of another campaign or program than the other manifests there; "
+        "expected parts of one set",
+        path.string()));
+  head = manifest.head;
+  for (const ManifestEntry& entry : manifest.entries)
+    state.entries.insert_or_assign(entry.index, entry);
+}
+
+// The parts first: they may be merged while this reads.
+std::optional<SetContents> contents_if_set(const fs::path& directory) {
+  std::error_code error;
+  if (!fs::is_directory(directory, error)) return {};
+  std::optional<ManifestHead> head;
+  SetState state;
+  for (const fs::path& path : files_of(directory)) {
+    if (!is_part(path.filename().string())) continue;
+    if (const auto part = manifest_if_there(path))
+      take(path, *part, head, state);
+  }
+  const fs::path whole = directory / kManifestName;
+  if (const auto manifest =
+          fs::exists(whole) ? manifest_if_there(whole) : std::nullopt) {
+    take(whole, *manifest, head, state);
+    state.is_merged = manifest->is_finished;
+  }
+  if (!head) return {};
+  state.planned = file_count(*head);
+  return SetContents{*head, std::move(state)};
+}
+
+void require_same(const fs::path& directory, const ManifestHead& met,
+                  const ManifestHead& head) {
+  if (met == head) return;
+  if (met.program_version != head.program_version ||
+      met.git_revision != head.git_revision)
+    throw std::invalid_argument(fmt::format(
+        "{}: holds a set of beamgyro {} ({}), and this is {} ({}): another "
+        "program may not make the same bytes; expected the same program or "
+        "another directory",
+        directory.string(), met.program_version, met.git_revision,
+        head.program_version, head.git_revision));
+  throw std::invalid_argument(fmt::format(
+      "{}: holds a set of another campaign ({}, {} devices); expected the same "
+      "campaign, with the same scenarios, device and number of devices, or "
+      "another directory",
+      directory.string(), met.campaign, met.devices));
+}
+
+bool holds_files_of_a_set(const fs::path& directory) {
+  return std::ranges::any_of(files_of(directory), [](const fs::path& path) {
+    const std::string name = path.filename().string();
+    return name == kManifestName || is_part(name) || path.extension() == ".h5";
+  });
+}
+
+bool is_there(const fs::path& directory, const ManifestEntry& entry) {
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(directory / entry.file, error);
+  return !error && bytes == entry.bytes;
+}
+
+std::vector<std::uint32_t> lacking_files(const fs::path& directory,
+                                         const SetState& state,
+                                         const SetTask& task) {
+  std::vector<std::uint32_t> files;
+  for (std::uint32_t index = 0; index < state.planned; ++index) {
+    if (!task.makes(index)) continue;
+    const auto entry = state.entries.find(index);
+    if (entry == state.entries.end() || !is_there(directory, entry->second))
+      files.push_back(index);
+  }
+  return files;
+}
+
+// Throws std::invalid_argument when it can be no directory. Whether it is new.
+bool make_directory(const fs::path& directory) {
+  std::error_code error;
+  if (fs::is_directory(directory, error)) return false;
+  if (fs::exists(fs::symlink_status(directory)))
+    throw std::invalid_argument(
+        fmt::format("{}: is no directory; expected one, or a new name",
+                    directory.string()));
+  if (fs::create_directory(directory, error)) return true;
+  throw std::invalid_argument(fmt::format(
+      "{}: cannot make this directory: {}; expected a place in a directory "
+      "that is there and writable",
+      directory.string(), error.message()));
+}
+
+}  // namespace
+
+std::uint64_t SetState::device_runs() const {
+  std::uint64_t count = 0;
+  for (const auto& [index, entry] : entries) count += entry.devices;
+  return count;
+}
+
+std::uint64_t SetState::failures() const {
+  std::uint64_t count = 0;
+  for (const auto& [index, entry] : entries) count += entry.failures.size();
+  return count;
+}
+
+SetContents set_contents(const fs::path& directory) {
+  std::error_code error;
+  if (!fs::is_directory(directory, error))
+    throw std::invalid_argument(fmt::format(
+        "{}: {}; expected the directory of a set", directory.string(),
+        fs::exists(directory, error) ? "is no directory" : "is not there"));
+  std::optional<SetContents> contents = contents_if_set(directory);
+  if (!contents)
+    throw std::invalid_argument(fmt::format(
+        "{}: holds no set, or its manifests have lost their first lines; "
+        "expected a directory that generate made",
+        directory.string()));
+  return *std::move(contents);
+}
+
+SetWriter::SetWriter(const fs::path& directory, ManifestHead head,
+                     std::span<const SourceText> sources, const SetTask& task,
+                     bool resume)
+    : directory_(directory),
+      manifest_(directory / (task.is_whole()
+                                 ? std::string(kManifestName)
+                                 : part_name(task.number, task.of))),
+      head_(std::move(head)),
+      task_(task) {
+  made_directory_ = make_directory(directory_);
+  try {
+    enter(sources, resume);
+  } catch (...) {
+    lock_.reset();
+    std::error_code ignored;
+    if (made_directory_) fs::remove(directory_, ignored);
+    throw;
+  }
+}
+
+SetWriter::~SetWriter() = default;
+
+void SetWriter::enter(std::span<const SourceText> sources, bool resume) {
+  lock_.emplace(directory_,
+                task_.is_whole()
+                    ? std::string()
+                    : fmt::format("{}-of-{}", task_.number, task_.of));
+  if (task_.is_whole() && !resume && holds_files_of_a_set(directory_))
+    throw std::invalid_argument(
+        fmt::format("{}: holds a set; expected --resume to go on with it, or "
+                    "another directory",
+                    directory_.string()));
+  head_.sources = source_entries(sources);
+  const std::optional<SetContents> contents = contents_if_set(directory_);
+  if (contents) {
+    require_same(directory_, contents->head, head_);
+    before_ = contents->state;
+  }
+  before_.planned = file_count(head_);
+  remove_dead_partial_files(directory_, task_.is_whole());
+  copy_sources(directory_, sources);
+  if (lacking().empty() && contents) return;
+  // A merged manifest says that all is there, which is not so.
+  if (task_.is_whole() && before_.is_merged) {
+    std::erase_if(before_.entries, [&](const auto& entry) {
+      return !is_there(directory_, entry.second);
+    });
+    std::vector<ManifestEntry> kept;
+    for (const auto& [index, entry] : before_.entries) kept.push_back(entry);
+    start_manifest(manifest_, head_, kept);
+  }
+  if (!fs::exists(manifest_)) start_manifest(manifest_, head_);
+}
+
+std::vector<std::uint32_t> SetWriter::lacking() const {
+  return lacking_files(directory_, before_, task_);
+}
+
+void SetWriter::add(std::uint32_t index, std::span<const std::byte> bytes,
+                    const std::vector<DeviceFailure>& failures) {
+  ManifestEntry entry = expected_entry(head_, index);
+  entry.bytes = bytes.size();
+  entry.sha256 = sha256(std::string_view(
+      reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  entry.failures = failures;
+  publish_file(directory_ / entry.file, bytes);
+  const std::lock_guard lock(mutex_);
+  append_entry(manifest_, entry);
+}
+
+void SetWriter::merge(const SetState& state) {
+  Manifest merged;
+  merged.head = head_;
+  for (const auto& [index, entry] : state.entries)
+    merged.entries.push_back(entry);
+  // VIEWS merged.views = write_views(directory_, head_, merged.entries);
+  write_manifest(directory_ / kManifestName, merged);
+  for (const fs::path& path : files_of(directory_)) {
+    std::error_code ignored;
+    if (is_part(path.filename().string())) fs::remove(path, ignored);
+  }
+}
+
+SetState SetWriter::finish() {
+  SetState state = set_contents(directory_).state;
+  const bool all_there = lacking_files(directory_, state, {}).empty();
+  if (all_there && (!state.is_merged || has_parts(directory_))) {
+    merge(state);
+    state.is_merged = true;
+  }
+  return state;
+}
+
+std::string lacking_tasks(const fs::path& directory, const ManifestHead& head,
+                          std::uint32_t of) {
+  const std::optional<SetContents> contents = contents_if_set(directory);
+  SetState state;
+  if (contents) {
+    require_same(directory, contents->head, head);
+    state = contents->state;
+  }
+  state.planned = file_count(head);
+  // Tasks beyond the number of files have nothing to make.
+  const std::uint32_t tasks = std::min(of, state.planned);
+  std::vector<bool> lacks(tasks, false);
+  for (const std::uint32_t index : lacking_files(directory, state, {}))
+    lacks[index % of] = true;
+  std::string text;
+  for (std::uint32_t first = 0; first < tasks; ++first) {
+    if (!lacks[first]) continue;
+    std::uint32_t last = first;
+    while (last + 1 < tasks && lacks[last + 1]) ++last;
+    if (!text.empty()) text += ',';
+    text += first == last ? fmt::format("{}", first + 1)
+                          : fmt::format("{}-{}", first + 1, last + 1);
+    first = last;
+  }
+  return text;
+}
+
+}  // namespace beamgyro

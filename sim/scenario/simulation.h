@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "sim/dynamics/gyro.h"
+#include "sim/scenario/run_recorder.h"
+#include "sim/scenario/scenario.h"
+
+namespace beamgyro {
+
+/// A run at the fidelity of its scenario, block by block. Throws as
+/// simulate_quasistatic(), simulate_envelope() and simulate_carrier().
+void simulate(const Scenario& scenario, const Gyro& gyro, const RunKey& key,
+              const BlockSink& on_block);
+
+}  // namespace beamgyro
