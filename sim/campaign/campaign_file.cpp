@@ -132,6 +132,11 @@ class CampaignReader {
     check(state_.trims.offset, "offset", "readout.offset_trim_deg_per_s");
     check(state_.trims.scale_factor, "scale_factor",
           "readout.scale_factor_error");
+    if (!state_.trims.scale_factor && key == "readout.mode") {
+      tolerances.fail(key,
+                      "the modes have no common scale factor to be built "
+                      "with; remove this or trims.scale_factor = false");
+    }
   }
 
   std::vector<ConfigTable> require_runs() {

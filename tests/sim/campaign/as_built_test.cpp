@@ -45,7 +45,7 @@ TEST_P(AsBuilt, AUnitKeepsTheBaseUnitsSettings) {
   EXPECT_GT(std::abs(built.readout.quadrature_trim -
                      base.device.readout.quadrature_trim),
             10 * kDegree);
-  EXPECT_GT(std::abs(built.readout.scale_factor_error - 0.03), 1e-3);
+  EXPECT_GT(std::abs(built.readout.scale_factor_error - 0.03), 1e-4);
   const Gyro gyro = make_gyro(built);
   EXPECT_NEAR(gyro.stiffness_trim / base.stiffness_trim, 1, 1e-6);
   EXPECT_NEAR(std::abs(gyro.rate_axis) / std::abs(base.rate_axis), 1, 1e-9);
@@ -67,13 +67,10 @@ TEST_P(AsBuilt, WhatIsTrimmedStaysAsItIs) {
   EXPECT_EQ(trimmed.readout.offset_trim, drawn.readout.offset_trim);
 }
 
-INSTANTIATE_TEST_SUITE_P(Modes, AsBuilt,
-                         testing::Values("readout.mode=\"open_loop\"",
-                                         "readout.mode=\"force_rebalance\""),
-                         [](const auto& info) {
-                           return info.index == 0 ? "OpenLoop"
-                                                  : "ForceRebalance";
-                         });
+INSTANTIATE_TEST_SUITE_P(OpenLoop, AsBuilt,
+                         testing::Values("readout.mode=\"open_loop\""));
+INSTANTIATE_TEST_SUITE_P(ForceRebalance, AsBuilt,
+                         testing::Values("readout.mode=\"force_rebalance\""));
 
 }  // namespace
 }  // namespace beamgyro

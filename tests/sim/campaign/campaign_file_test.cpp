@@ -151,7 +151,7 @@ std::vector<BadCase> bad_heads() {
        "two tolerances or more"},
       {"CorrelatedNotPositive",
        with_tolerances(kTgPair + kBothTg + "matrix = [[1, 1], [1, 1]]\n"),
-       "c.toml:11:10: correlated[0].matrix: not positive definite"},
+       "c.toml:12:10: correlated[0].matrix: not positive definite"},
       {"CorrelatedNotSymmetric",
        with_tolerances(kTgPair + kBothTg + "matrix = [[1, 0.1], [0.2, 1]]\n"),
        "not symmetric"},
@@ -202,13 +202,6 @@ std::vector<BadCase> bad_tolerances() {
       bad_tolerance("WholeTable",
                     "\"beam\" = { uniform = { low = 0, high = 1 } }",
                     "expected a table"),
-      bad_tolerance("KeyInsideAnother",
-                    "\"thermal.oven\" = { discrete = { values = ["
-                    "{set_point_degC = 65, max_power_W = 3, "
-                    "proportional_W_per_K = 1, integral_time_s = 60}] } }\n"
-                    "\"thermal.oven.max_power_W\" = { discrete = { values = "
-                    "[3] } }",
-                    "max_power_W"),
       bad_distribution("Number", "3", "expected a table"),
       bad_distribution("NoForm", "{}", "no distribution"),
       bad_distribution("UnknownForm", "{ gauss = { mean = 0, sigma = 1 } }",
@@ -252,6 +245,11 @@ std::vector<BadCase> bad_tolerances() {
                      "\"readout.quadrature_trim_deg_per_s\" = { normal = { "
                      "mean = 0, sigma = 50 } }\n"),
        "trims.quadrature = false; remove one"},
+      {"ModesWithoutATrim",
+       campaign_text("[trims]\nscale_factor = false\n[tolerances]\n"
+                     "\"readout.mode\" = { discrete = { values = "
+                     "[\"open_loop\", \"force_rebalance\"] } }\n"),
+       "the modes have no common scale factor"},
       {"CentresTogether",
        with_tolerances("\"beam.side_m\" = { uniform = { low = 1e-3, high = "
                        "3.1e-3 } }\n\"patches.width_m\" = { uniform = { low = "
@@ -296,6 +294,11 @@ std::vector<BadCase> bad_runs() {
               "ambient_offset_K = { normal = { mean = 0, sigma = 1 } }\n" +
                   vary("ambient.offset_K", "1"),
               "is drawn already"),
+      bad_run("KeyInsideAnother",
+              vary("ambient", "{constant_degC = 20}") +
+                  "\"ambient.constant_degC\" = { discrete = { values = [1] } "
+                  "}\n",
+              "no key inside another"),
       bad_run("MissingProfile",
               vary("ambient", "{constant_degC = 20}, {file = \"no.csv\"}"),
               "is no file; expected a CSV file"),
@@ -342,7 +345,7 @@ TEST(CampaignFile, CopiesOfTheSourcesMakeTheSameCampaign) {
   for (const char* name : {"a", "b", "c"}) {
     folder.write(std::string("profiles/") + name + ".csv",
                  std::string("time_s,temperature_degC,rate_deg_per_s\n0,1") +
-                     name[0] % 10 + std::string(".5,1\n5,20,2\n"));
+                     std::to_string(name[0] % 10) + ".5,1\n5,20,2\n");
   }
   folder.write("rest.toml",
                "name = \"rest\"\ndevice = \"nominal.toml\"\nfidelity = "

@@ -46,8 +46,7 @@ void expect_same_unit(const Device& a, const Device& b) {
 
 class EitherSampling : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Samplings, EitherSampling,
-                         testing::Values("monte_carlo", "sobol"),
-                         [](const auto& info) { return info.param; });
+                         testing::Values("monte_carlo", "sobol"));
 
 std::string sampling(const std::string& name) {
   return "sampling = \"" + name + "\"\n";
@@ -96,23 +95,39 @@ TEST_P(EitherSampling, OverridesMakeTheSameUnitFromTheDeviceFile) {
       "[tolerances]\n" + std::string(kOffset) +
           "\"readout.adc_bits\" = { discrete = { values = [14, 16] } }\n"
           "\"readout.mode\" = { discrete = { values = [\"open_loop\", "
-          "\"force_rebalance\"] } }\n"
-          "[trims]\nquadrature = false\noffset = false\nscale_factor = "
-          "false\n",
+          "\"force_rebalance\"] } }\n",
       sampling(GetParam())));
-  bool both_modes[2] = {false, false};
+  bool modes[2] = {false, false};
   for (std::uint32_t i = 0; i < 12; ++i) {
     const VirtualDevice unit = c.device(i);
     ASSERT_TRUE(unit.device) << unit.failure;
-    EXPECT_EQ(lines(unit.overrides).size(), 6u);
+    EXPECT_EQ(lines(unit.overrides).size(), 3u);
     expect_same_unit(*unit.device, nominal_device(lines(unit.overrides)));
     EXPECT_EQ(unit.parameters[0], unit.device->patches.offset[0]);
     EXPECT_EQ(unit.parameters[4], unit.device->readout.adc_bits);
     EXPECT_EQ(unit.parameters[5],
               unit.device->readout.mode == ReadoutMode::kForceRebalance);
-    both_modes[unit.parameters[5] == 1] = true;
+    modes[unit.parameters[5] == 1] = true;
   }
-  EXPECT_TRUE(both_modes[0] && both_modes[1]);
+  EXPECT_TRUE(modes[0] && modes[1]);
+}
+
+TEST(Draws, OverridesHoldWhatWasNotTrimmed) {
+  const CampaignFolder folder;
+  const Campaign c = folder.campaign(campaign_text(
+      "[tolerances]\n" + std::string(kOffset) + kTransitions +
+      "[trims]\nquadrature = false\noffset = false\nscale_factor = false\n"));
+  const Gyro base = make_gyro(c.base_device());
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const VirtualDevice unit = c.device(i);
+    ASSERT_TRUE(unit.device) << unit.failure;
+    EXPECT_EQ(lines(unit.overrides).size(), 6u);
+    expect_same_unit(*unit.device, nominal_device(lines(unit.overrides)));
+    const Gyro gyro = make_gyro(*unit.device);
+    EXPECT_NEAR(gyro.offset, base.offset, 1e-9);
+    EXPECT_NE(unit.device->readout.offset_trim,
+              c.base_device().readout.offset_trim);
+  }
 }
 
 TEST(Draws, WhatAFileWouldRefuseIsAFailureOfTheDevice) {

@@ -61,8 +61,7 @@ Campaign shipped(const std::string& name) {
 // Random draws of warm_up, Sobol' points of large.
 class Population : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Samplings, Population,
-                         testing::Values("warm_up", "large"),
-                         [](const auto& info) { return info.param; });
+                         testing::Values("warm_up", "large"));
 
 TEST_P(Population, AThousandDevicesFollowTheirDistributions) {
   constexpr std::uint32_t kDevices = 1000;
