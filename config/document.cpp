@@ -80,7 +80,7 @@ ConfigDocument ConfigDocument::parse(std::string text,
         fmt::format("{}:{}:{}: not TOML: {}", state->name, error.position.line,
                     error.position.column, error.what()));
   }
-  state->file_root = state->root;
+  state->file_root = std::make_shared<const ConfigNode>(state->root);
   insert_all(*sets, *state);
   return ConfigDocument(std::move(state));
 }
@@ -91,7 +91,7 @@ ConfigDocument ConfigDocument::with(Overrides& overrides) const {
   state->name = state_->name;
   state->text = state_->text;
   state->file_root = state_->file_root;
-  state->root = state_->file_root;
+  state->root = *state_->file_root;
   state->overrides = overrides.state_;
   insert_all(*overrides.state_, *state);
   return ConfigDocument(std::move(state));

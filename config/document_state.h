@@ -19,7 +19,7 @@ struct DocumentState {
   std::string name;  // in messages
   std::string text;  // byte for byte as read
   ConfigNode root;
-  ConfigNode file_root;         // before the overrides
+  std::shared_ptr<const ConfigNode> file_root;  // before the overrides
   std::set<std::string> asked;  // dotted keys somebody asked for
   std::shared_ptr<OverrideSet> overrides;
 

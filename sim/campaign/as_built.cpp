@@ -9,14 +9,17 @@ void set_as_built(const Trims& trims, const Gyro& base, Device& device) {
   ReadoutParameters& readout = device.readout;
   if (!trims.quadrature)
     readout.quadrature_trim = built_quadrature(device, base.stiffness_trim);
+  if (trims.scale_factor && trims.offset) return;
+  if (!trims.scale_factor) readout.scale_factor_error = 0;
+  const Gyro gyro = make_gyro(device);
+  double gain = 1;
   if (!trims.scale_factor) {
-    readout.scale_factor_error = 0;
-    readout.scale_factor_error =
-        std::abs(make_gyro(device).rate_axis) / std::abs(base.rate_axis) - 1;
+    gain = std::abs(gyro.rate_axis) / std::abs(base.rate_axis);
+    readout.scale_factor_error = gain - 1;
   }
   if (!trims.offset) {
-    // make_gyro's offset is what takes the output to the trim.
-    readout.offset_trim += base.offset - make_gyro(device).offset;
+    const double untrimmed = readout.offset_trim - gyro.offset;  // [rad/s]
+    readout.offset_trim = gain * untrimmed + base.offset;
   }
 }
 

@@ -117,8 +117,8 @@ VirtualRun Campaign::run(std::size_t run, std::uint32_t device) const {
   result.parameters = std::move(drawn.parameters);
   Overrides overrides = overrides_of(plan, drawn.values);
   attempt(result, [&] {
-    result.scenario =
-        read_scenario(state_->scenario_documents[run].with(overrides));
+    result.scenario = read_scenario(
+        state_->scenario_documents[run].with(overrides), &state_->profiles);
     result.scenario->seed = seed();
   });
   result.overrides = overrides.text();

@@ -132,6 +132,11 @@ class CampaignReader {
     check(state_.trims.offset, "offset", "readout.offset_trim_deg_per_s");
     check(state_.trims.scale_factor, "scale_factor",
           "readout.scale_factor_error");
+    if (!state_.trims.scale_factor && key == "readout.mode") {
+      tolerances.fail(key,
+                      "the modes have no common scale factor to be built "
+                      "with; remove this or trims.scale_factor = false");
+    }
   }
 
   std::vector<ConfigTable> require_runs() {
@@ -269,7 +274,10 @@ class CampaignReader {
 
   void add_profiles(const ConfigDocument& document) {
     for (const std::filesystem::path& file : profile_files(document)) {
-      if (is_new(file)) state_.sources.push_back({file, read_text_file(file)});
+      if (!is_new(file)) continue;
+      state_.sources.push_back({file, read_text_file(file)});
+      state_.profiles.emplace(file.lexically_normal(),
+                              parse_csv(state_.sources.back().text, file));
     }
   }
 

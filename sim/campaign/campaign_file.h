@@ -9,6 +9,7 @@
 #include "config/document.h"
 #include "sim/campaign/as_built.h"
 #include "sim/campaign/campaign.h"
+#include "sim/scenario/profile_keys.h"
 
 namespace beamgyro {
 
@@ -21,6 +22,7 @@ struct CampaignState {
   Trims trims;
   UniformSource source;
   std::vector<SourceFile> sources;
+  ProfileTables profiles;  // of the scenarios, as they were read
 
   std::optional<ConfigDocument> device_document;
   Device device;

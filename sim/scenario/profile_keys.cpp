@@ -7,8 +7,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "dataset/csv_file.h"
-
 namespace beamgyro {
 namespace {
 
@@ -38,6 +36,25 @@ Knots read_rows(const ConfigTable& table, std::string_view key,
     knots.value.push_back(value * unit.factor + unit.offset);
   }
   return knots;
+}
+
+PiecewiseLinear profile_of(const CsvTable& csv, const ProfileUnit& unit) {
+  std::vector<double> time = csv.column("time_s");
+  std::vector<double> value = csv.column(unit.csv_column);
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    if (i > 0 && time[i] <= time[i - 1]) {
+      throw std::invalid_argument(fmt::format(
+          "{}: time_s {} does not come after {}; expected increasing times",
+          csv.place(i), time[i], time[i - 1]));
+    }
+    if (!unit.range.contains(value[i])) {
+      throw std::invalid_argument(
+          fmt::format("{}: {} {} is out of range; expected {}", csv.place(i),
+                      unit.csv_column, value[i], text_of(unit.range)));
+    }
+    value[i] = value[i] * unit.factor + unit.offset;
+  }
+  return {std::move(time), std::move(value)};
 }
 
 }  // namespace
@@ -76,29 +93,17 @@ PiecewiseLinear read_steps(const ConfigTable& table, const ProfileUnit& unit) {
 
 PiecewiseLinear read_profile_file(const ConfigTable& table,
                                   const ProfileUnit& unit,
-                                  const std::filesystem::path& folder) {
-  const std::filesystem::path path = folder / table.text("file");
+                                  const ProfileFolder& folder) {
+  const std::filesystem::path path = folder.path / table.text("file");
+  if (folder.tables != nullptr) {
+    const auto known = folder.tables->find(path.lexically_normal());
+    if (known != folder.tables->end()) return profile_of(known->second, unit);
+  }
   if (!std::filesystem::is_regular_file(path)) {
     table.fail("file", fmt::format("\"{}\" is no file; expected a CSV file",
                                    path.string()));
   }
-  const CsvTable csv = read_csv(path);
-  std::vector<double> time = csv.column("time_s");
-  std::vector<double> value = csv.column(unit.csv_column);
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    if (i > 0 && time[i] <= time[i - 1]) {
-      throw std::invalid_argument(fmt::format(
-          "{}: time_s {} does not come after {}; expected increasing times",
-          csv.place(i), time[i], time[i - 1]));
-    }
-    if (!unit.range.contains(value[i])) {
-      throw std::invalid_argument(
-          fmt::format("{}: {} {} is out of range; expected {}", csv.place(i),
-                      unit.csv_column, value[i], text_of(unit.range)));
-    }
-    value[i] = value[i] * unit.factor + unit.offset;
-  }
-  return {std::move(time), std::move(value)};
+  return profile_of(read_csv(path), unit);
 }
 
 }  // namespace beamgyro

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "config/table.h"
+#include "dataset/csv_file.h"
 #include "sim/numerics/piecewise_linear.h"
 
 namespace beamgyro {
@@ -30,10 +32,19 @@ PiecewiseLinear read_points(const ConfigTable& table, const ProfileUnit& unit);
 /// `steps = [[t_s, value], ...]`, each held until the next.
 PiecewiseLinear read_steps(const ConfigTable& table, const ProfileUnit& unit);
 
-/// `file = "profile.csv"` with the columns time_s and `unit.csv_column`, found
-/// relative to `folder`.
+/// Profile files read before, by their lexically normal path.
+using ProfileTables = std::map<std::filesystem::path, CsvTable>;
+
+/// Where profile files are: relative to `path`, and not read again when they
+/// are in `tables`, which may be null.
+struct ProfileFolder {
+  std::filesystem::path path;
+  const ProfileTables* tables;
+};
+
+/// `file = "profile.csv"` with the columns time_s and `unit.csv_column`.
 PiecewiseLinear read_profile_file(const ConfigTable& table,
                                   const ProfileUnit& unit,
-                                  const std::filesystem::path& folder);
+                                  const ProfileFolder& folder);
 
 }  // namespace beamgyro

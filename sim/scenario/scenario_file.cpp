@@ -108,7 +108,7 @@ PiecewiseLinear read_soaks(const ConfigTable& soaks, const ProfileUnit& unit) {
 }
 
 PiecewiseLinear read_ambient(const ConfigTable& ambient,
-                             const std::filesystem::path& folder) {
+                             const ProfileFolder& folder) {
   const std::string form =
       only_form(ambient, {"constant_degC", "points", "soaks", "file"});
   const double offset = ambient.number_or("offset_K", 0, between(-100, 100));
@@ -150,8 +150,8 @@ RandomRate read_random(const ConfigTable& random, const MotionKeys& keys,
 }
 
 RateProfile read_motion(const std::optional<ConfigTable>& axis,
-                        const MotionKeys& keys,
-                        const std::filesystem::path& folder, double duration) {
+                        const MotionKeys& keys, const ProfileFolder& folder,
+                        double duration) {
   if (!axis) return PiecewiseLinear::constant(0);
   const std::string constant = "constant_" + keys.suffix;
   const std::string form =
@@ -168,7 +168,7 @@ RateProfile read_motion(const std::optional<ConfigTable>& axis,
 
 template <std::size_t kAxes>
 void read_axes(const ConfigTable& table, const MotionKeys& keys,
-               const std::filesystem::path& folder, double duration,
+               const ProfileFolder& folder, double duration,
                std::array<RateProfile, kAxes>& axes) {
   constexpr std::array<std::string_view, 3> kNames = {"x", "y", "z"};
   for (std::size_t i = 0; i < kAxes; ++i) {
@@ -179,13 +179,14 @@ void read_axes(const ConfigTable& table, const MotionKeys& keys,
 
 }  // namespace
 
-Scenario read_scenario(const ConfigDocument& document) {
+Scenario read_scenario(const ConfigDocument& document,
+                       const ProfileTables* profiles) {
   const ConfigTable& root = document.root();
-  const std::filesystem::path folder = document.path().parent_path();
+  const ProfileFolder folder{document.path().parent_path(), profiles};
   Scenario scenario;
   scenario.name = root.text("name");
   scenario.description = root.text_or("description", "");
-  scenario.device_file = folder / root.text("device");
+  scenario.device_file = folder.path / root.text("device");
   scenario.fidelity = read_fidelity(root);
   scenario.duration = root.number("duration_s", positive());
   scenario.output_rate =

@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sim/campaign/campaign.h"
+#include "tests/config/rejection.h"
+#include "tests/sim/campaign/campaign_folder.h"
+#include "tests/sim/device/nominal_device.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr const char* kOffset =
+    "\"patches.offset_m\" = { normal = { mean = 0, sigma = 10e-6 } }\n";
+
+TEST(CampaignFile, MinimalCampaignHasTheDefaults) {
+  const CampaignFolder folder;
+  const Campaign c = folder.campaign(campaign_text(""));
+  EXPECT_EQ(c.name(), "test");
+  EXPECT_EQ(c.devices(), 100u);
+  EXPECT_EQ(c.devices_per_file(), 50u);
+  EXPECT_EQ(c.seed(), 3u);
+  EXPECT_TRUE(c.output().variables.empty());
+  EXPECT_FALSE(c.output().double_precision);
+  EXPECT_TRUE(c.output().compress);
+  EXPECT_EQ(c.output().truth_rate, 0);
+  ASSERT_EQ(c.runs().size(), 1u);
+  EXPECT_EQ(c.runs()[0].name, "rest");
+  EXPECT_TRUE(c.parameters().empty());
+  EXPECT_TRUE(c.run_parameters(0).empty());
+  EXPECT_EQ(c.part(7), Part::kTrain);
+  EXPECT_EQ(c.base_scenario(0).seed, 3u);
+  EXPECT_EQ(c.run(0, 5).scenario->seed, 3u);
+  EXPECT_EQ(c.device(5).device->beam.length, 0.04);
+}
+
+TEST(CampaignFile, EveryKeyArrives) {
+  const CampaignFolder folder;
+  const Campaign c = folder.campaign(campaign_text(
+      "[split]\ntrain = 0.5\nvalidation = 0.25\ntest = 0.25\n[tolerances]\n" +
+          std::string(kOffset) +
+          "\"readout.mode\" = { discrete = { values = [\"open_loop\", "
+          "\"force_rebalance\"] } }\n"
+          "[output]\nvariables = [\"rate\", \"true_bias\"]\n"
+          "precision = \"float64\"\ntruth_rate_Hz = 2\ncompress = false\n",
+      "description = \"d\"\ndevices_per_file = 7\nsampling = \"sobol\"\n",
+      "ambient_offset_K = { uniform = { low = -5, high = 5 } }\n"
+      "[run.vary]\n\"ambient.constant_degC\" = { normal = { mean = 20, sigma "
+      "= 3 } }\n"));
+  EXPECT_EQ(c.devices_per_file(), 7u);
+  EXPECT_EQ(c.output().variables,
+            (std::vector<std::string>{"rate", "true_bias"}));
+  EXPECT_TRUE(c.output().double_precision);
+  EXPECT_EQ(c.output().truth_rate, 2);
+  EXPECT_FALSE(c.output().compress);
+  ASSERT_EQ(c.parameters().size(), 5u);
+  EXPECT_EQ(c.parameters()[3].name, "patches_offset_m_3");
+  EXPECT_EQ(c.parameters()[3].units, "m");
+  EXPECT_EQ(c.parameters()[3].long_name, "drawn patches.offset_m[3]");
+  EXPECT_EQ(c.parameters()[4].name, "readout_mode");
+  EXPECT_EQ(c.parameters()[4].long_name,
+            "drawn readout.mode, index from 0 among: \"open_loop\" | "
+            "\"force_rebalance\"");
+  ASSERT_EQ(c.run_parameters(0).size(), 2u);
+  EXPECT_EQ(c.run_parameters(0)[0].name, "ambient_constant_degC");
+  EXPECT_EQ(c.run_parameters(0)[0].units, "degC");
+  EXPECT_EQ(c.run_parameters(0)[1].name, "ambient_offset_K");
+}
+
+TEST(CampaignFile, DevicesOfTheCommandReplaceThoseOfTheFile) {
+  const CampaignFolder folder;
+  folder.campaign(campaign_text(""));
+  EXPECT_EQ(Campaign::read(folder.path() / "c.toml", 3).devices(), 3u);
+  EXPECT_NE(rejection([&] {
+              Campaign::read(folder.path() / "c.toml", 0);
+            }).find("--devices 0: out of range"),
+            std::string::npos);
+}
+
+struct BadCase {
+  std::string name, text, message;  // a part of it
+};
+
+BadCase bad_tolerance(const std::string& name, const std::string& line,
+                      const std::string& message) {
+  return {name, with_tolerances(line + "\n"), message};
+}
+
+BadCase bad_distribution(const std::string& name,
+                         const std::string& distribution,
+                         const std::string& message) {
+  return bad_tolerance(name, "\"mount.axis_angle_deg\" = " + distribution,
+                       message);
+}
+
+BadCase bad_run(const std::string& name, const std::string& run,
+                const std::string& message) {
+  return {name, campaign_text("", "", run), message};
+}
+
+const std::string kTgPair =
+    "\"mount.glass_transition_degC\" = { normal = { mean = -48, sigma = 4 } }\n"
+    "\"bond.glass_transition_degC\" = { normal = { mean = 38, sigma = 4 } }\n" +
+    std::string(kOffset) + "[[correlated]]\n";
+const std::string kBothTg =
+    "keys = [\"mount.glass_transition_degC\", "
+    "\"bond.glass_transition_degC\"]\n";
+
+std::vector<BadCase> bad_heads() {
+  return {
+      {"UnknownKey", campaign_text("", "devises = 3"),
+       "c.toml:5:1: devises: unknown key; did you mean 'devices'?"},
+      {"Devices", "name = \"x\"\ndevice = \"nominal.toml\"\ndevices = 0\n",
+       "c.toml:3:11: devices: 0 is out of range"},
+      {"NoRun", "name = \"x\"\ndevice = \"nominal.toml\"\ndevices = 1\nseed=1",
+       "run: missing; expected at least one [[run]]"},
+      {"NoSuchDevice",
+       "name = \"x\"\ndevice = \"nothere.toml\"\ndevices = 1\nseed = 1\n",
+       "nothere.toml: cannot read"},
+      {"Sampling", campaign_text("", "sampling = \"latin\""),
+       "expected one of \"monte_carlo\", \"sobol\""},
+      {"Split", campaign_text("[split]\ntrain = 0.8\ntest = 0.1\n"),
+       "split: the shares sum to 0.9; expected 1"},
+      {"Trims", campaign_text("[trims]\nquadrature = 1\n"),
+       "expected true or false"},
+      {"TruthRate", campaign_text("[output]\ntruth_rate_Hz = 3\n"),
+       "3 does not divide the output rate 10 Hz of the run rest"},
+      {"TruthRateTooHigh", campaign_text("[output]\ntruth_rate_Hz = 20\n"),
+       "does not divide"},
+      {"Precision", campaign_text("[output]\nprecision = \"double\"\n"),
+       "output.precision"},
+      {"NoVariables", campaign_text("[output]\nvariables = []\n"),
+       "[] is empty"},
+      {"CorrelatedUnknown",
+       with_tolerances(kTgPair + "keys = [\"mount.glass_transition_degC\", "
+                                 "\"bond.glass_transition_deg\"]\n"
+                                 "correlation = 0.5\n"),
+       "did you mean 'bond.glass_transition_degC'?"},
+      {"CorrelatedArray",
+       with_tolerances(kTgPair + "keys = [\"mount.glass_transition_degC\", "
+                                 "\"patches.offset_m\"]\ncorrelation = 0.5\n"),
+       "is an array; expected keys of one number"},
+      {"CorrelatedAlone",
+       with_tolerances(kTgPair + "keys = [\"mount.glass_transition_degC\"]\n"
+                                 "correlation = 0.5\n"),
+       "two tolerances or more"},
+      {"CorrelatedNotPositive",
+       with_tolerances(kTgPair + kBothTg + "matrix = [[1, 1], [1, 1]]\n"),
+       "c.toml:12:10: correlated[0].matrix: not positive definite"},
+      {"CorrelatedNotSymmetric",
+       with_tolerances(kTgPair + kBothTg + "matrix = [[1, 0.1], [0.2, 1]]\n"),
+       "not symmetric"},
+      {"CorrelatedRows",
+       with_tolerances(kTgPair + kBothTg + "matrix = [[1, 0.1]]\n"),
+       "1 rows for 2 keys"},
+      {"CorrelatedTwice",
+       with_tolerances(kTgPair + kBothTg + "correlation = 0.5\n" +
+                       "[[correlated]]\n" + kBothTg + "correlation = 0.5\n"),
+       "is correlated already"},
+      {"CorrelatedUnknownKey",
+       with_tolerances(kTgPair + kBothTg +
+                       "corelation = 0.5\n"
+                       "correlation = 0.5\n"),
+       "did you mean 'correlation'?"},
+  };
+}
+
+std::vector<BadCase> bad_tolerances() {
+  return {
+      bad_tolerance("Misspelt",
+                    "\"mount.axis_angel_deg\" = { uniform = { low = 0, high = "
+                    "1 } }",
+                    "c.toml:7:26: mount.axis_angel_deg: "),
+      bad_tolerance("MisspeltSuggestion",
+                    "\"mount.axis_angel_deg\" = { uniform = { low = 0, high = "
+                    "1 } }",
+                    "did you mean 'mount.axis_angle_deg'?"),
+      bad_tolerance("WrongTable",
+                    "\"beam.axis_angle_deg\" = { uniform = { low = 0, high = 1 "
+                    "} }",
+                    "did you mean 'mount.axis_angle_deg'?"),
+      bad_tolerance("NotQuoted",
+                    "mount.axis_angle_deg = { uniform = { low = 0, high = 1 } "
+                    "}",
+                    "a dotted key in quotes"),
+      bad_tolerance("CentreOutOfRange",
+                    "\"beam.length_m\" = { normal = { mean = -1, sigma = 1 } }",
+                    "c.toml:7:19: beam.length_m: -1 is out of range"),
+      bad_tolerance("ChoiceOutOfRange",
+                    "\"readout.adc_bits\" = { discrete = { values = [14, 40] } "
+                    "}",
+                    "readout.adc_bits: 40 is out of range"),
+      bad_tolerance("NoInteger",
+                    "\"readout.adc_bits\" = { uniform = { low = 12, high = 16 "
+                    "} }",
+                    "expected an integer"),
+      bad_tolerance("WholeTable",
+                    "\"beam\" = { uniform = { low = 0, high = 1 } }",
+                    "expected a table"),
+      bad_distribution("Number", "3", "expected a table"),
+      bad_distribution("NoForm", "{}", "no distribution"),
+      bad_distribution("UnknownForm", "{ gauss = { mean = 0, sigma = 1 } }",
+                       "no distribution; expected one of"),
+      bad_distribution("TwoForms",
+                       "{ normal = { mean = 0, sigma = 1 }, uniform = { low = "
+                       "0, high = 1 } }",
+                       "no distribution; expected one of"),
+      bad_distribution("UnknownParameter",
+                       "{ normal = { mean = 0, sigma = 1, mode = 2 } }",
+                       "mode: unknown key"),
+      bad_distribution("NoSigma", "{ normal = { mean = 0 } }",
+                       "sigma: missing; expected a number > 0"),
+      bad_distribution("SigmaZero", "{ normal = { mean = 0, sigma = 0 } }",
+                       "sigma: 0 is out of range"),
+      bad_distribution("EndsSwapped", "{ uniform = { low = 1, high = 0 } }",
+                       "0 is not above low = 1"),
+      bad_distribution("EndsFarAway",
+                       "{ normal = { mean = 0, sigma = 1, low = 9, high = 10 } "
+                       "}",
+                       "less than a millionth"),
+      bad_distribution("MedianNegative",
+                       "{ lognormal = { median = -1, sigma = 1 } }",
+                       "median: -1 is out of range"),
+      bad_distribution("NoChoice", "{ discrete = { values = [] } }",
+                       "at least one value"),
+      bad_distribution("WeightCount",
+                       "{ discrete = { values = [1, 2], weights = [1] } }",
+                       "expected an array of 2 numbers"),
+      bad_distribution("WeightsZero",
+                       "{ discrete = { values = [1, 2], weights = [0, 0] } }",
+                       "all are 0"),
+      bad_distribution("WeightNegative",
+                       "{ discrete = { values = [1, 2], weights = [2, -1] } }",
+                       "-1 is out of range"),
+      bad_distribution("ChoiceOfWrongType",
+                       "{ discrete = { values = [1, \"x\"] } }",
+                       "\"x\" is wrong here; expected a number"),
+      {"UntrimmedTolerance",
+       campaign_text("[trims]\nquadrature = false\n[tolerances]\n"
+                     "\"readout.quadrature_trim_deg_per_s\" = { normal = { "
+                     "mean = 0, sigma = 50 } }\n"),
+       "trims.quadrature = false; remove one"},
+      {"ModesWithoutATrim",
+       campaign_text("[trims]\nscale_factor = false\n[tolerances]\n"
+                     "\"readout.mode\" = { discrete = { values = "
+                     "[\"open_loop\", \"force_rebalance\"] } }\n"),
+       "the modes have no common scale factor"},
+      {"CentresTogether",
+       with_tolerances("\"beam.side_m\" = { uniform = { low = 1e-3, high = "
+                       "3.1e-3 } }\n\"patches.width_m\" = { uniform = { low = "
+                       "1.9e-3, high = 2.7e-3 } }\n"),
+       "patches.width_m: "},
+  };
+}
+
+std::vector<BadCase> bad_runs() {
+  const auto vary = [](const std::string& key, const std::string& values) {
+    return "[run.vary]\n\"" + key + "\" = { discrete = { values = [" + values +
+           "] } }\n";
+  };
+  return {
+      bad_run("Name", "[[run]]\nname = \"Rest\"\nscenario = \"rest.toml\"",
+              "\"Rest\" is no name of files"),
+      bad_run("NameTwice", "[[run]]\nname = \"rest\"\nscenario = \"rest.toml\"",
+              "is the name of an earlier run"),
+      bad_run("NoScenario", "[[run]]\nname = \"other\"\n",
+              "run[1].scenario: missing"),
+      bad_run("UnknownKey", "speed = 3\n", "run[0].speed: unknown key"),
+      bad_run("Duration", vary("duration_s", "10, 20"),
+              "the same for all devices"),
+      bad_run("OutputRate", vary("output_rate_Hz", "10, 20"),
+              "the same for all devices"),
+      bad_run("Seed", vary("seed", "1, 2"), "the same for all devices"),
+      bad_run("Fidelity", vary("fidelity", "\"quasistatic\""),
+              "the same for all devices"),
+      bad_run("Device", vary("device", "\"nominal.toml\""),
+              "the same for all devices"),
+      bad_run("Noise", vary("noise.enabled", "true, false"),
+              "the same for all devices"),
+      bad_run("UnknownVariation", vary("ambient.constant_deg", "20"),
+              "did you mean 'ambient.constant_degC'?"),
+      bad_run("WrongForm", vary("ambient.points", "[[0, 20]]"), "only one of"),
+      bad_run("OutOfRange", vary("ambient.constant_degC", "20, 400"),
+              "ambient.constant_degC: 400 is out of range"),
+      bad_run("AmbientOffset",
+              "ambient_offset_K = { normal = { mean = 300, sigma = 1 } }\n",
+              "ambient.offset_K: 300 is out of range"),
+      bad_run("AmbientOffsetTwice",
+              "ambient_offset_K = { normal = { mean = 0, sigma = 1 } }\n" +
+                  vary("ambient.offset_K", "1"),
+              "is drawn already"),
+      bad_run("KeyInsideAnother",
+              vary("ambient", "{constant_degC = 20}") +
+                  "\"ambient.constant_degC\" = { discrete = { values = [1] } "
+                  "}\n",
+              "no key inside another"),
+      bad_run("MissingProfile",
+              vary("ambient", "{constant_degC = 20}, {file = \"no.csv\"}"),
+              "is no file; expected a CSV file"),
+  };
+}
+
+class BadCampaign : public testing::TestWithParam<BadCase> {};
+
+TEST_P(BadCampaign, IsRejectedWithTheKeyAtFault) {
+  const CampaignFolder folder;
+  const std::string message =
+      rejection([&] { folder.campaign(GetParam().text); });
+  EXPECT_NE(message.find(GetParam().message), std::string::npos) << message;
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+}
+
+std::string case_name(const testing::TestParamInfo<BadCase>& info) {
+  return info.param.name;
+}
+INSTANTIATE_TEST_SUITE_P(Head, BadCampaign, testing::ValuesIn(bad_heads()),
+                         case_name);
+INSTANTIATE_TEST_SUITE_P(Tolerance, BadCampaign,
+                         testing::ValuesIn(bad_tolerances()), case_name);
+INSTANTIATE_TEST_SUITE_P(Run, BadCampaign, testing::ValuesIn(bad_runs()),
+                         case_name);
+
+TEST(CampaignFile, TheBaseFilesAreCheckedAsAnyOther) {
+  const CampaignFolder folder;
+  folder.write("rest.toml",
+               "name = \"rest\"\ndevice = \"nominal.toml\"\nfidelity = "
+               "\"quasistatic\"\nduration_s = 10\noutput_rate_Hz = 10\nseed = "
+               "7\nspeed = 1\n[ambient]\nconstant_degC = 25\n");
+  EXPECT_NE(rejection([&] {
+              folder.campaign(campaign_text(""));
+            }).find("rest.toml:7:1: speed: unknown key"),
+            std::string::npos);
+}
+
+// Every file a device could read is among the sources, and copies of them in
+// the same places make the same campaign, whatever became of the originals.
+TEST(CampaignFile, CopiesOfTheSourcesMakeTheSameCampaign) {
+  const CampaignFolder folder;
+  std::filesystem::create_directories(folder.path() / "profiles");
+  for (const char* name : {"a", "b", "c"}) {
+    folder.write(std::string("profiles/") + name + ".csv",
+                 std::string("time_s,temperature_degC,rate_deg_per_s\n0,1") +
+                     std::to_string(name[0] % 10) + ".5,1\n5,20,2\n");
+  }
+  folder.write("rest.toml",
+               "name = \"rest\"\ndevice = \"nominal.toml\"\nfidelity = "
+               "\"quasistatic\"\nduration_s = 10\noutput_rate_Hz = 10\nseed = "
+               "7\n[ambient]\nfile = \"profiles/a.csv\"\n");
+  const std::string text = campaign_text(
+      "[tolerances]\n" + std::string(kOffset), "",
+      "[run.vary]\n\"ambient.file\" = { discrete = { values = "
+      "[\"profiles/a.csv\", \"profiles/b.csv\"] } }\n"
+      "\"rate\" = { discrete = { values = [{constant_deg_per_s = 1}, {file = "
+      "\"profiles/c.csv\"}] } }\n");
+  const Campaign original = folder.campaign(text);
+  ASSERT_EQ(original.sources().size(), 6u);
+  EXPECT_EQ(original.sources()[0].text, text);
+
+  const CampaignFolder copy;
+  std::filesystem::create_directories(copy.path() / "profiles");
+  std::filesystem::remove(copy.path() / "nominal.toml");
+  std::filesystem::remove(copy.path() / "rest.toml");
+  for (const SourceFile& source : original.sources()) {
+    copy.write(source.path.lexically_relative(folder.path()).string(),
+               source.text);
+  }
+  for (const char* name : {"a", "b", "c"})
+    std::filesystem::remove(folder.path() / "profiles" /
+                            (std::string(name) + ".csv"));
+  const Campaign again = Campaign::read(copy.path() / "c.toml");
+  bool differ = false;
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    EXPECT_EQ(original.device(i).overrides, again.device(i).overrides);
+    const VirtualRun a = original.run(0, i), b = again.run(0, i);
+    EXPECT_EQ(a.overrides, b.overrides);
+    ASSERT_TRUE(a.scenario && b.scenario) << a.failure << b.failure;
+    EXPECT_EQ(a.scenario->ambient.value(1), b.scenario->ambient.value(1));
+    differ |= a.scenario->ambient.value(1) !=
+              original.run(0, 0).scenario->ambient.value(1);
+  }
+  EXPECT_TRUE(differ);
+}
+
+TEST(CampaignFile, TheShippedCampaignsCanBeRead) {
+  for (const char* name : {"small", "paper", "warm_up", "large"}) {
+    const Campaign c = Campaign::read(std::string(BEAMGYRO_SCENARIOS) +
+                                      "/campaigns/" + name + ".toml");
+    EXPECT_EQ(c.name(), name);
+    for (std::uint32_t i = 0; i < 20; ++i) {
+      EXPECT_EQ(c.device(i).failure, "");
+      for (std::size_t r = 0; r < c.runs().size(); ++r)
+        EXPECT_EQ(c.run(r, i).failure, "");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace beamgyro

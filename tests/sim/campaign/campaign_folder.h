@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "sim/campaign/campaign.h"
+
+namespace beamgyro {
+
+/// A folder of its own with the nominal device, a short scenario at 25 degC
+/// and what a test writes into it; deleted at the end.
+class CampaignFolder {
+ public:
+  CampaignFolder();
+  ~CampaignFolder();
+  CampaignFolder(const CampaignFolder&) = delete;
+  CampaignFolder& operator=(const CampaignFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  void write(const std::string& file, const std::string& text) const;
+  /// Writes c.toml and reads it.
+  Campaign campaign(const std::string& text) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A campaign of 100 devices and one run "rest" of that scenario. `keys` are
+/// top-level keys, `tables` what follows; the run's own keys come last.
+std::string campaign_text(const std::string& tables,
+                          const std::string& keys = "",
+                          const std::string& run = "");
+
+/// campaign_text with [tolerances].
+std::string with_tolerances(const std::string& tolerances,
+                            const std::string& keys = "");
+
+}  // namespace beamgyro
