@@ -5,14 +5,21 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <climits>
+#include <csignal>
 #include <cstdio>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+
+#include "dataset/open_file.h"
 
 namespace beamgyro {
 namespace {
@@ -51,6 +58,8 @@ std::string reason(int error) { return std::generic_category().message(error); }
       fmt::format("{}: cannot write: {}", path.string(), reason(error)));
 }
 
+constexpr std::string_view kPartial = ".partial-";
+
 bool is_wrong_place(int error) {
   return error == EACCES || error == EPERM || error == EROFS ||
          error == ENOENT || error == ENOTDIR || error == EISDIR ||
@@ -75,6 +84,38 @@ fs::path checked_target(const fs::path& path) {
   return target;
 }
 
+struct Writer {
+  std::string host;
+  pid_t process = 0;
+};
+
+/// Who writes the partial file of this name, if it is one.
+std::optional<Writer> writer_of(const std::string& name) {
+  const std::size_t mark = name.rfind(kPartial);
+  if (mark == std::string::npos) return {};
+  const std::string text = name.substr(mark + kPartial.size());
+  const std::size_t attempt = text.rfind('-');
+  if (attempt == std::string::npos || attempt == 0) return {};
+  const std::size_t process = text.rfind('-', attempt - 1);
+  if (process == std::string::npos) return {};
+  Writer writer{text.substr(0, process), 0};
+  const char* const end = text.data() + attempt;
+  const auto read =
+      std::from_chars(text.data() + process + 1, end, writer.process);
+  if (read.ec != std::errc() || read.ptr != end || writer.process <= 0)
+    return {};
+  return writer;
+}
+
+/// Whether an AtomicFile of this process writes it.
+bool is_ours(const fs::path& partial) {
+  return std::any_of(
+      partial_files.begin(), partial_files.end(), [&](const Slot& slot) {
+        return slot.state == kTaken &&
+               fs::path(slot.path.data()).filename() == partial.filename();
+      });
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(const fs::path& path) : path_(checked_target(path)) {
@@ -83,7 +124,8 @@ AtomicFile::AtomicFile(const fs::path& path) : path_(checked_target(path)) {
   int file = -1;
   for (int attempt = 0; file < 0; ++attempt) {
     const std::string partial =
-        fmt::format("{}.partial-{}-{}", path_.string(), getpid(), attempt);
+        fmt::format("{}{}{}-{}-{}", path_.string(), kPartial, host_name(),
+                    getpid(), attempt);
     // Too long for the slot is too long for open() too.
     if (partial.size() < slot.path.size()) {
       partial.copy(slot.path.data(), partial.size());
@@ -122,20 +164,36 @@ void require_writable(const fs::path& path) { const AtomicFile probe(path); }
 
 void write_text_file(const fs::path& path, std::string_view text) {
   AtomicFile target(path);
-  const int file = open(target.partial_path().c_str(), O_WRONLY | O_CLOEXEC);
-  if (file < 0) fail(path, errno);
-  int error = 0;
-  while (!text.empty() && error == 0) {
-    const ssize_t written = write(file, text.data(), text.size());
-    if (written >= 0) {
-      text.remove_prefix(static_cast<std::size_t>(written));
-    } else if (errno != EINTR) {
-      error = errno;
-    }
+  try {
+    OpenFile file(target.partial_path(), O_WRONLY);
+    file.write(std::as_bytes(std::span(text)));
+    file.close();
+  } catch (const std::system_error& error) {
+    fail(path, error.code().value());
   }
-  if (close(file) != 0 && error == 0) error = errno;
-  if (error != 0) fail(path, error);
   target.publish();
+}
+
+std::string host_name() {
+  std::array<char, HOST_NAME_MAX + 1> name{};
+  if (gethostname(name.data(), name.size() - 1) != 0) return "localhost";
+  std::string text = name.data();
+  std::replace(text.begin(), text.end(), '/', '_');
+  return text;
+}
+
+void remove_dead_partial_files(const fs::path& directory, bool of_any_host) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(directory, ignored)) {
+    const std::optional<Writer> writer =
+        writer_of(entry.path().filename().string());
+    if (!writer || is_ours(entry.path())) continue;
+    const bool is_dead = writer->host == host_name() &&
+                         (writer->process == getpid() ||
+                          (kill(writer->process, 0) != 0 && errno == ESRCH));
+    if (is_dead || of_any_host) unlink(entry.path().c_str());
+  }
 }
 
 void remove_partial_files() noexcept {

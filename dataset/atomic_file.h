@@ -3,13 +3,15 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace beamgyro {
 
 /// A file that appears under its name only when it is complete. What is written
-/// goes to partial_path() in the same directory; publish() renames it. Until
-/// then the name asked for holds what it held before.
+/// goes to partial_path() in the same directory, a name with host and process;
+/// publish() renames it. Until then the name asked for holds what it held
+/// before.
 class AtomicFile {
  public:
   /// Creates the empty partial file. A symbolic link is followed, and what it
@@ -43,5 +45,14 @@ void write_text_file(const std::filesystem::path& path, std::string_view text);
 /// Removes the partial files of all AtomicFiles that live in this process. May
 /// be called from a signal handler that ends the process.
 void remove_partial_files() noexcept;
+
+/// Removes the partial files that writers left in `directory` when they died:
+/// those of this host whose process is gone, and of any writer but this process
+/// if nobody else can be writing there.
+void remove_dead_partial_files(const std::filesystem::path& directory,
+                               bool of_any_host);
+
+/// Of this machine, as partial files are named after it.
+std::string host_name();
 
 }  // namespace beamgyro

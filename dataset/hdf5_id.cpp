@@ -39,6 +39,11 @@ void check_hdf5(herr_t status, const std::string& action) {
                                 : fmt::format("cannot {}: {}", action, cause));
 }
 
+std::mutex& QuietHdf5::mutex() {
+  static std::mutex one;
+  return one;
+}
+
 H5Id property_list(hid_t kind) {
   return {H5Pcreate(kind), H5Pclose, "create a property list"};
 }

@@ -3,6 +3,7 @@
 
 #include <hdf5.h>
 
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -20,8 +21,10 @@ struct Hdf5Error : std::runtime_error {
 /// library's error stack when `status` is negative.
 void check_hdf5(herr_t status, const std::string& action);
 
-/// Keeps HDF5 from printing its error stack, and from tidying up at the end of
-/// the process, where 1.10 crashes after a full disk.
+/// HDF5 for this thread alone until the end of the scope; its high-level part
+/// has no lock of its own. Keeps it from printing its error stack, and from
+/// tidying up at the end of the process, where 1.10 crashes after a full disk.
+/// Two in one thread wait for ever.
 class QuietHdf5 {
  public:
   QuietHdf5() {
@@ -35,6 +38,9 @@ class QuietHdf5 {
   QuietHdf5& operator=(const QuietHdf5&) = delete;
 
  private:
+  static std::mutex& mutex();
+
+  std::lock_guard<std::mutex> alone_{mutex()};
   H5E_auto2_t print_ = nullptr;
   void* data_ = nullptr;
 };

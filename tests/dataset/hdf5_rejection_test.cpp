@@ -185,7 +185,7 @@ TEST_F(Hdf5Rejection, VariablesOfTwoDimensions) {
                         H5P_DEFAULT, H5P_DEFAULT));
     H5Sclose(space);
   });
-  EXPECT_EQ(rejected(), "time has 2 dimensions; expected time alone");
+  EXPECT_EQ(rejected(), "time has 2 dimensions; expected one");
 }
 
 TEST_F(Hdf5Rejection, VariablesWithoutTheirValues) {

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "dataset/hdf5_write.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "dataset/recording.h"
+
+namespace beamgyro {
+
+H5Id scalar_space() {
+  return {H5Screate(H5S_SCALAR), H5Sclose, "create a scalar"};
+}
+
+H5Id creation_properties(hid_t kind) {
+  constexpr unsigned kInOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
+  H5Id properties = property_list(kind);
+  check_hdf5(H5Pset_obj_track_times(properties, false),
+             "switch off time stamps");
+  check_hdf5(H5Pset_attr_creation_order(properties, kInOrder),
+             "order attributes");
+  if (kind != H5P_DATASET_CREATE) {
+    check_hdf5(H5Pset_link_creation_order(properties, kInOrder),
+               "order variables");
+  }
+  return properties;
+}
+
+void write_attribute(hid_t object, const char* name, hid_t type, hid_t space,
+                     const void* value) {
+  const std::string action = fmt::format("write attribute {}", name);
+  H5Id attribute(
+      H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+      action);
+  check_hdf5(H5Awrite(attribute, type, value), action);
+  attribute.close(action);
+}
+
+void write_text(hid_t object, const char* name, std::string_view text) {
+  const H5Id type(H5Tcopy(H5T_C_S1), H5Tclose, "copy a type");
+  // No HDF5 type has size 0: an empty text is one NUL, which padding is too.
+  check_hdf5(H5Tset_size(type, std::max<std::size_t>(text.size(), 1)),
+             "size text");
+  check_hdf5(H5Tset_strpad(type, H5T_STR_NULLPAD), "pad text");
+  check_hdf5(H5Tset_cset(type, H5T_CSET_UTF8), "choose UTF-8");
+  write_attribute(object, name, type, scalar_space(),
+                  text.empty() ? "" : text.data());
+}
+
+void write_status_bits(hid_t status) {
+  constexpr std::array<std::uint8_t, 3> kMasks = {kUnpowered, kOutputSaturated,
+                                                  kLoopNotLocked};
+  const hsize_t count = kMasks.size();
+  const H5Id space(H5Screate_simple(1, &count, nullptr), H5Sclose,
+                   "create a dimension");
+  write_attribute(status, "flag_masks", H5T_STD_U8LE, space, kMasks.data());
+  write_text(status, "flag_meanings",
+             "unpowered output_saturated loop_not_locked");
+}
+
+void write_meta(hid_t file, std::span<const NamedText> texts) {
+  H5Id group(H5Gcreate2(file, "meta", H5P_DEFAULT,
+                        creation_properties(H5P_GROUP_CREATE), H5P_DEFAULT),
+             H5Gclose, "create /meta");
+  const H5Id type(H5Tcopy(H5T_C_S1), H5Tclose, "copy a type");
+  check_hdf5(H5Tset_size(type, H5T_VARIABLE), "size text");
+  check_hdf5(H5Tset_cset(type, H5T_CSET_UTF8), "choose UTF-8");
+  const H5Id properties = creation_properties(H5P_DATASET_CREATE);
+  for (const NamedText& entry : texts) {
+    const std::string action = fmt::format("write /meta/{}", entry.name);
+    H5Id dataset(H5Dcreate2(group, entry.name, type, scalar_space(),
+                            H5P_DEFAULT, properties, H5P_DEFAULT),
+                 H5Dclose, action);
+    const std::string text(entry.text);
+    const char* bytes = text.c_str();
+    check_hdf5(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &bytes),
+               action);
+    dataset.close(action);
+  }
+  group.close("close /meta");
+}
+
+}  // namespace beamgyro

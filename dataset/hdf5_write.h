@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "dataset/hdf5_id.h"
+
+namespace beamgyro {
+
+// What every file of ours is made of: no time stamps, everything in the order
+// of creation, texts as fixed-length UTF-8. Each throws Hdf5Error.
+
+H5Id scalar_space();
+
+/// The properties of an object (H5P_FILE_CREATE, H5P_GROUP_CREATE or
+/// H5P_DATASET_CREATE).
+H5Id creation_properties(hid_t kind);
+
+/// `value` in memory is of `type`, too.
+void write_attribute(hid_t object, const char* name, hid_t type, hid_t space,
+                     const void* value);
+void write_text(hid_t object, const char* name, std::string_view text);
+
+/// The attributes that tell which bits `status` has.
+void write_status_bits(hid_t status);
+
+struct NamedText {
+  const char* name;
+  std::string_view text;  // without NUL
+};
+
+/// The group /meta with one variable-length text for each.
+void write_meta(hid_t file, std::span<const NamedText> texts);
+
+}  // namespace beamgyro

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+
+namespace beamgyro {
+
+/// Owner of a file descriptor. Failures are std::system_error without the name
+/// of the file.
+class OpenFile {
+ public:
+  /// `flags` as of open(2); O_CLOEXEC comes by itself.
+  OpenFile(const std::filesystem::path& path, int flags);
+  ~OpenFile();
+  OpenFile(OpenFile&& other) noexcept;
+  OpenFile& operator=(OpenFile&& other) = delete;
+
+  int descriptor() const { return descriptor_; }
+
+  /// All of `bytes`, from where the file stands.
+  void write(std::span<const std::byte> bytes);
+
+  /// Fills `bytes` from where the file stands. Returns how many there were;
+  /// fewer than asked for only at the end of the file.
+  std::size_t read(std::span<std::byte> bytes);
+
+  /// That what was written is on the disk.
+  void sync();
+
+  void close();
+
+ private:
+  int descriptor_;
+};
+
+}  // namespace beamgyro
