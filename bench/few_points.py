@@ -33,7 +33,7 @@ HOLD = 2700  # [s]
 STEADY = "\n[rows]\nsteady_K_per_min = 0.05\n"
 CUBIC = 'kind = "polynomial"\n' + STEADY
 BIAS_ONLY = 'inputs = ["temperature"]\n'
-THREE = [-33, -5, 45]
+THREE = [-36, -12, 36]
 SEVEN = [-40, -25, -10, 5, 20, 35, 50]
 DENSE = list(range(-40, 51))
 

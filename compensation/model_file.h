@@ -72,7 +72,7 @@ struct PopulationSpec {
 struct AdaptedSpec {
   Population population;
   std::string source;  // of it, for the provenance
-  RowNoise noise;
+  PointNoise noise;
 };
 
 using FitSpec = std::variant<NoneSpec, ConstantSpec, PolynomialSpec, TableSpec,

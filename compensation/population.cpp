@@ -7,6 +7,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 namespace beamgyro {
@@ -140,10 +141,42 @@ Index curve_number(const Population& population, const Input& input) {
   return 1 + (found - population.channels.begin());
 }
 
-// Prior and rows, one equation below the other.
+// Means of the rows within kPointWidth of each other.
+struct Points {
+  ArrayXd temperature, bias;
+  Eigen::ArrayXXd inputs;
+};
+Points points_of(const TrainingRows& rows) {
+  std::vector<Index> order(static_cast<std::size_t>(rows.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return rows.temperature(a) < rows.temperature(b);
+  });
+  std::vector<std::vector<Index>> groups;
+  for (const Index k : order) {
+    if (groups.empty() ||
+        rows.temperature(k) - rows.temperature(groups.back().front()) >=
+            kPointWidth)
+      groups.emplace_back();
+    groups.back().push_back(k);
+  }
+  const auto count = static_cast<Index>(groups.size());
+  Points points{ArrayXd(count), ArrayXd(count),
+                Eigen::ArrayXXd(count, rows.inputs.cols())};
+  for (Index k = 0; k < count; ++k) {
+    const std::vector<Index>& group = groups[static_cast<std::size_t>(k)];
+    points.temperature(k) = rows.temperature(group).mean();
+    points.bias(k) = rows.bias(group).mean();
+    for (Index i = 0; i < rows.inputs.cols(); ++i)
+      points.inputs(k, i) = rows.inputs.col(i)(group).mean();
+  }
+  return points;
+}
+
+// Prior and points, one equation below the other.
 Equations all_equations(const Population& p, const std::vector<Input>& inputs,
-                        const TrainingRows& rows, const RowNoise& noise) {
-  const Index modes = p.modes.cols(), count = rows.size();
+                        const Points& points, const PointNoise& noise) {
+  const Index modes = p.modes.cols(), count = points.bias.size();
   const auto curves = static_cast<Index>(inputs.size());
   Equations all{MatrixXd(modes + curves * count, modes),
                 VectorXd::Zero(modes + curves * count)};
@@ -152,9 +185,10 @@ Equations all_equations(const Population& p, const std::vector<Input>& inputs,
   for (Index i = 0; i < curves && count > 0; ++i) {
     const Index curve =
         i == 0 ? 0 : curve_number(p, inputs[static_cast<std::size_t>(i)]);
-    const ArrayXd measured = i == 0 ? rows.bias : ArrayXd(rows.inputs.col(i));
+    const ArrayXd measured =
+        i == 0 ? points.bias : ArrayXd(points.inputs.col(i));
     const Equations own = equations(
-        p, curve, rows.temperature, measured,
+        p, curve, points.temperature, measured,
         i == 0 ? noise.bias : noise.channel_share * unit(curve * p.grid()));
     all.H.middleRows(modes + i * count, count) = own.H;
     all.y.segment(modes + i * count, count) = own.y;
@@ -191,11 +225,12 @@ Population fit_population(const std::vector<Input>& inputs,
 
 AdaptedBias adapted_bias(const Population& population,
                          const std::vector<Input>& inputs,
-                         const TrainingRows& rows, const RowNoise& noise) {
+                         const TrainingRows& rows, const PointNoise& noise) {
   if (population.modes.cols() == 0)
     return {population.mean.head(population.grid()).array(),
             ArrayXd::Zero(population.grid())};
-  const Equations all = all_equations(population, inputs, rows, noise);
+  const Equations all =
+      all_equations(population, inputs, points_of(rows), noise);
   const Index modes = population.modes.cols(), grid = population.grid();
   // A = R^T R of the QR decomposition: its squares are never formed.
   const Eigen::HouseholderQR<MatrixXd> qr(all.H);

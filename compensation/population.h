@@ -39,22 +39,26 @@ struct Population {
 Population fit_population(const std::vector<Input>& inputs,
                           const TrainingRows& rows, double grid_K);
 
-/// 1-sigma of one row.
-struct RowNoise {
+constexpr double kPointWidth = 2.0;  // [K]
+
+/// 1-sigma of a point, the mean of rows within kPointWidth of each other: rows
+/// of a soak share slow noise and the turn-on offset, and many are no better
+/// than one.
+struct PointNoise {
   double bias = 0.03;  // [deg/s], > 0
   // [-], > 0, of a channel: over its spread within the population
   double channel_share = 0.01;
 };
 
-/// What the population knows of the bias of a device once some of its rows are
+/// What the population knows of the bias of a device once points of it are
 /// known, on the grid.
 struct AdaptedBias {
   Eigen::ArrayXd mean;       // [deg/s]
   Eigen::ArrayXd deviation;  // [deg/s], 1-sigma
 };
 
-/// The exact conditional of the Gaussian: E[b | rows] and its deviation, with
-/// H the rows' mu and Phi and R the noise,
+/// The exact conditional of the Gaussian: E[b | y] and its deviation, y being
+/// the points of the rows, mu and H theirs of the population, R the noise,
 ///
 ///   c | y ~ N(A^-1 H^T R^-1 (y - mu), A^-1),   A = I + H^T R^-1 H.
 ///
@@ -62,7 +66,7 @@ struct AdaptedBias {
 /// rows: the temperature, then some of the population's channels.
 AdaptedBias adapted_bias(const Population& population,
                          const std::vector<Input>& inputs,
-                         const TrainingRows& rows, const RowNoise& noise);
+                         const TrainingRows& rows, const PointNoise& noise);
 
 /// The spline through values of the bias [deg/s] on the grid.
 CubicSpline bias_curve(const Population& population,

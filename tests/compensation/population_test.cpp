@@ -105,7 +105,7 @@ TEST(Population, MeanAndCovarianceAreThoseOfTheCurves) {
   EXPECT_EQ(p.modes.cols(), 3);
 }
 
-TEST(Population, OneRowPullsTheMeanAsBayesSays) {
+TEST(Population, OnePointPullsTheMeanAsBayesSays) {
   const Population p = one_mode(false);
   TrainingRows rows =
       rows_of({{0, 0, 17.0, 17.0, 1}}, [](double, int) { return 2.7 + 1.5; });
@@ -121,13 +121,30 @@ TEST(Population, OneRowPullsTheMeanAsBayesSays) {
   }
 }
 
+TEST(Population, RowsOfASoakAreOnePoint) {
+  const Population p = one_mode(false);
+  const PointNoise noise{0.5, 0.01};
+  const AdaptedBias many =
+      adapted_bias(p, kTemperature,
+                   rows_of({{0, 0, 16.5, 17.5, 101}, {0, 0, 40.0, 40.0, 1}},
+                           [](double T, int) { return 2.5 + 0.1 * T; }),
+                   noise);
+  const AdaptedBias two =
+      adapted_bias(p, kTemperature,
+                   rows_of({{0, 0, 40.0, 40.0, 1}, {0, 0, 17.0, 17.0, 1}},
+                           [](double T, int) { return 2.5 + 0.1 * T; }),
+                   noise);
+  EXPECT_LT((many.mean - two.mean).abs().maxCoeff(), 1e-12);
+  EXPECT_LT((many.deviation - two.deviation).abs().maxCoeff(), 1e-12);
+}
+
 TEST(Population, AChannelTellsOfTheBias) {
   const Population p = one_mode(true);
   TrainingRows rows =
       rows_of({{0, 0, 17.0, 17.0, 1}}, [](double, int) { return 2.7 + 1.5; });
   rows.inputs.conservativeResize(1, 2);
   rows.inputs(0, 1) = 4.0;  // 0.4 of a deviation
-  const RowNoise noise{1.0, 0.5};
+  const PointNoise noise{1.0, 0.5};
   const AdaptedBias b = adapted_bias(p, kWithQuadrature, rows, noise);
   // c of precision 1 + (2 / 1)^2 + (10 / 5)^2.
   const double c = (2.0 * 1.5 + 10.0 * 4.0 / 25.0) / 9.0;
