@@ -60,12 +60,14 @@ int run_program(int argc, char** argv) {
   program.require_subcommand(1);
   add_characterise(program, action);
   add_run(program, action);
+  add_generate(program, action);
   add_import(program, action);
   add_train(program, action);
   add_compensate(program, action);
   add_export(program, action);
   add_validate(program, action);
   add_allan(program, action);
+  add_verify(program, action);
   add_info(program, action);
 
   check_command(program, argc, argv);

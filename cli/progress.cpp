@@ -18,13 +18,13 @@ constexpr double kPatience = 2, kStep = 0.2, kMinute = 60;  // [s]
 Progress::Progress(std::string activity)
     : Progress(std::move(activity), nullptr) {}
 
-Progress::Progress(std::string activity, std::function<std::string()> detail)
+Progress::Progress(std::string activity, std::function<Status()> status)
     : activity_(std::move(activity)),
-      detail_(std::move(detail)),
+      status_(std::move(status)),
       start_(Clock::now()) {
   if (shows_progress()) {
     thread_ = std::thread([this] { show(); });
-  } else if (detail_) {
+  } else if (status_) {
     thread_ = std::thread([this] { log(); });
   }
 }
@@ -48,13 +48,14 @@ bool Progress::over_within(double seconds) {
 std::string Progress::line() const {
   const double elapsed =
       std::chrono::duration<double>(Clock::now() - start_).count();
-  const double share = share_;
+  const Status status = status_ ? status_() : Status{share_, {}};
+  const double share = status.share;
   std::string text = activity_;
   if (share > 0) text += fmt::format(", {:.0f} %", 100 * share);
   text += fmt::format(", {:.0f} s", elapsed);
   if (share > 0)
     text += fmt::format(", {:.0f} s left", elapsed * (1 - share) / share);
-  if (detail_) text += ", " + detail_();
+  if (!status.detail.empty()) text += ", " + status.detail;
   return text;
 }
 

@@ -16,10 +16,16 @@ namespace beamgyro {
 /// and not when quiet.
 class Progress {
  public:
+  /// How much is done, 0 .. 1, and what else there is to tell.
+  struct Status {
+    double share;
+    std::string detail;
+  };
+
   explicit Progress(std::string activity);
-  /// Long work: the line ends in `detail`, asked for from another thread, and
-  /// where there is no terminal a plain line is printed once a minute.
-  Progress(std::string activity, std::function<std::string()> detail);
+  /// Long work: `status` is asked from another thread, and where there is no
+  /// terminal a plain line is printed once a minute.
+  Progress(std::string activity, std::function<Status()> status);
   ~Progress();
 
   /// How much of the work is done, 0 .. 1; shown with what is left.
@@ -35,7 +41,7 @@ class Progress {
   std::string line() const;
 
   std::string activity_;
-  std::function<std::string()> detail_;
+  std::function<Status()> status_;
   std::atomic<double> share_ = 0;
   std::chrono::steady_clock::time_point start_;
   std::mutex mutex_;

@@ -10,7 +10,8 @@
 
 #include "dataset/atomic_file.h"
 #include "dataset/set/publish.h"
-// VIEWS #include "dataset/set/set_view.h"
+#include "dataset/set/set_view.h"
+#include "dataset/set/shard_reader.h"
 #include "dataset/sha256.h"
 
 namespace beamgyro {
@@ -126,6 +127,21 @@ std::vector<std::uint32_t> lacking_files(const fs::path& directory,
   return files;
 }
 
+// A view of every run, over all files.
+std::vector<ManifestView> views_of(const fs::path& directory,
+                                   const ManifestHead& head,
+                                   const std::vector<ManifestEntry>& entries) {
+  std::vector<ManifestView> views;
+  for (std::size_t run = 0; run < head.runs.size(); ++run) {
+    std::vector<ManifestEntry> of_run;
+    for (std::size_t k = run; k < entries.size(); k += head.runs.size())
+      of_run.push_back(entries[k]);
+    const ShardFile first(directory / of_run.front().file);
+    views.push_back(write_view(directory, first.head(), of_run));
+  }
+  return views;
+}
+
 // Throws std::invalid_argument when it can be no directory. Whether it is new.
 bool make_directory(const fs::path& directory) {
   std::error_code error;
@@ -202,7 +218,6 @@ void SetWriter::enter(std::span<const SourceText> sources, bool resume) {
         fmt::format("{}: holds a set; expected --resume to go on with it, or "
                     "another directory",
                     directory_.string()));
-  head_.sources = source_entries(sources);
   const std::optional<SetContents> contents = contents_if_set(directory_);
   if (contents) {
     require_same(directory_, contents->head, head_);
@@ -232,8 +247,7 @@ void SetWriter::add(std::uint32_t index, std::span<const std::byte> bytes,
                     const std::vector<DeviceFailure>& failures) {
   ManifestEntry entry = expected_entry(head_, index);
   entry.bytes = bytes.size();
-  entry.sha256 = sha256(std::string_view(
-      reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  entry.sha256 = sha256(bytes);
   entry.failures = failures;
   publish_file(directory_ / entry.file, bytes);
   const std::lock_guard lock(mutex_);
@@ -245,7 +259,7 @@ void SetWriter::merge(const SetState& state) {
   merged.head = head_;
   for (const auto& [index, entry] : state.entries)
     merged.entries.push_back(entry);
-  // VIEWS merged.views = write_views(directory_, head_, merged.entries);
+  merged.views = views_of(directory_, head_, merged.entries);
   write_manifest(directory_ / kManifestName, merged);
   for (const fs::path& path : files_of(directory_)) {
     std::error_code ignored;
@@ -253,10 +267,10 @@ void SetWriter::merge(const SetState& state) {
   }
 }
 
-SetState SetWriter::finish() {
+SetState SetWriter::finish(bool anew) {
   SetState state = set_contents(directory_).state;
   const bool all_there = lacking_files(directory_, state, {}).empty();
-  if (all_there && (!state.is_merged || has_parts(directory_))) {
+  if (all_there && (anew || !state.is_merged || has_parts(directory_))) {
     merge(state);
     state.is_merged = true;
   }

@@ -54,11 +54,11 @@ SetContents set_contents(const std::filesystem::path& directory);
 /// them.
 class SetWriter {
  public:
-  /// Makes the directory, in one that is there, locks it and copies the
-  /// sources. Throws std::invalid_argument for a place that cannot hold a set,
-  /// for one that holds a set of another campaign or program, and for a whole
-  /// set where there are files of one, unless `resume`; std::runtime_error when
-  /// another process works at the same.
+  /// Makes the directory, in one that is there, locks it and copies `sources`,
+  /// if any, to where the head lists them. Throws std::invalid_argument for a
+  /// place that cannot hold a set, for one that holds a set of another campaign
+  /// or program, and for a whole set where there are files of one, unless
+  /// `resume`; std::runtime_error when another process works at the same.
   SetWriter(const std::filesystem::path& directory, ManifestHead head,
             std::span<const SourceText> sources, const SetTask& task,
             bool resume);
@@ -74,8 +74,9 @@ class SetWriter {
   void add(std::uint32_t index, std::span<const std::byte> bytes,
            const std::vector<DeviceFailure>& failures);
 
-  /// Merges manifests and writes the views when the set is whole.
-  SetState finish();
+  /// Merges manifests and writes the views when the set is whole, and `anew`
+  /// even if that was done before.
+  SetState finish(bool anew = false);
 
  private:
   void enter(std::span<const SourceText> sources, bool resume);

@@ -155,6 +155,13 @@ double bytes_of(Storage storage) {
 
 }  // namespace
 
+std::vector<SourceText> source_texts(const Campaign& campaign) {
+  std::vector<SourceText> texts;
+  for (const SourceFile& file : campaign.sources())
+    texts.push_back({file.path, file.text});
+  return texts;
+}
+
 ShardPlan::ShardPlan(const Campaign& campaign, const ProgramRevision& program)
     : campaign_(&campaign) {
   const std::vector<std::string>& wanted = campaign.output().variables;

@@ -12,6 +12,7 @@
 
 #include "dataset/set/manifest.h"
 #include "dataset/set/shard.h"
+#include "dataset/set/source_copies.h"
 #include "sim/campaign/campaign.h"
 #include "sim/dynamics/gyro.h"
 #include "sim/scenario/run_recorder.h"
@@ -23,6 +24,9 @@ struct ProgramRevision {
   std::string version, git_revision;
 };
 
+/// What the campaign was read from.
+std::vector<SourceText> source_texts(const Campaign& campaign);
+
 /// The files a campaign makes, in the order of the manifest: each holds the
 /// devices of one range in one run (docs/formats.md).
 class ShardPlan {
@@ -32,7 +36,6 @@ class ShardPlan {
   /// for a truth rate that is no part of an output rate.
   ShardPlan(const Campaign& campaign, const ProgramRevision& program);
 
-  /// Of the set, but for its sources.
   const ManifestHead& manifest_head() const { return manifest_head_; }
 
   std::uint32_t run_of(std::uint32_t file) const;

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <charconv>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+
+#include "cli/commands.h"
+#include "cli/generation_progress.h"
+#include "cli/terminal.h"
+#include "cli/version.h"
+#include "dataset/set/set_writer.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr int kSomeDevicesFailed = 4;
+
+struct GenerateArguments {
+  std::string campaign, output, shard;
+  std::optional<long> devices;
+  std::optional<std::uint32_t> lacking;
+  unsigned jobs = 0;
+  bool resume = false, strict = false;
+};
+
+// Whole number of `text` from 1 on, or nothing.
+std::optional<std::uint32_t> number(std::string_view text) {
+  std::uint32_t value = 0;
+  const char* const last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, value);
+  if (error != std::errc() || end != last || value == 0) return {};
+  return value;
+}
+
+SetTask task_of(std::string_view shard) {
+  if (shard.empty()) return {};
+  const std::size_t slash = shard.find('/');
+  if (slash != std::string_view::npos) {
+    const auto task = number(shard.substr(0, slash));
+    const auto of = number(shard.substr(slash + 1));
+    if (task && of && *task <= *of) return {*task, *of};
+  }
+  throw std::invalid_argument(
+      fmt::format("--shard {}: expected I/N with I = 1..N", shard));
+}
+
+// A file is made in memory.
+void require_moderate_files(const ShardPlan& plan) {
+  constexpr double kLargest = 1e9;  // [byte]
+  const double size = plan.largest_file();
+  if (size <= kLargest) return;
+  throw std::invalid_argument(fmt::format(
+      "devices_per_file: {} devices make files of {:.1f} GB; expected at most "
+      "{:g} GB, so fewer devices a file, fewer variables or lower rates",
+      plan.campaign().devices_per_file(), size / 1e9, kLargest / 1e9));
+}
+
+std::string sentence(const SetState& state, std::uint64_t made) {
+  std::string text =
+      fmt::format("{} of {} files, {} made now; {} device runs, {} failed\n",
+                  state.entries.size(), state.planned, made,
+                  state.device_runs(), state.failures());
+  text += state.is_merged ? "the set is whole\n"
+                          : fmt::format("{} files are lacking\n",
+                                        state.planned - state.entries.size());
+  return text;
+}
+
+int generate(const GenerateArguments& arguments) {
+  const SetTask task = task_of(arguments.shard);
+  const Campaign campaign =
+      Campaign::read(arguments.campaign, arguments.devices);
+  const ShardPlan plan(campaign, {kProgramVersion, kGitRevision});
+  require_moderate_files(plan);
+  if (arguments.lacking) {
+    print_result(lacking_tasks(arguments.output, plan.manifest_head(),
+                               *arguments.lacking) +
+                 "\n");
+    return 0;
+  }
+  SetWriter set(arguments.output, plan.manifest_head(), source_texts(campaign),
+                task, arguments.resume);
+  if (!set.died_before().empty())
+    print_note(fmt::format("{}: going on after {} ended without finishing",
+                           arguments.output, set.died_before()));
+  const std::vector<std::uint32_t> files = set.lacking();
+  generate_with_progress("generating " + arguments.output, plan, files,
+                         arguments.jobs,
+                         [&](std::uint32_t file, const MadeShard& shard) {
+                           set.add(file, shard.bytes, shard.failures);
+                         });
+  const SetState state = set.finish();
+  print_result(sentence(state, files.size()));
+  return arguments.strict && state.failures() > 0 ? kSomeDevicesFailed : 0;
+}
+
+}  // namespace
+
+void add_generate(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<GenerateArguments>();
+  CLI::App* command = program.add_subcommand(
+      "generate", "Simulate a population of devices into a directory");
+  command->add_option("campaign", arguments->campaign, "CAMPAIGN.toml")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "DIR")->required();
+  command->add_option("--devices", arguments->devices,
+                      "overrides the number of devices");
+  command
+      ->add_option("--jobs", arguments->jobs,
+                   "threads; as many as there are cores without it")
+      ->check(CLI::Range(1, 4096));
+  command->add_option("--shard", arguments->shard,
+                      "I/N, one of N tasks that share the directory");
+  command->add_flag("--resume", arguments->resume,
+                    "go on with the set that is there");
+  command->add_flag("--strict", arguments->strict,
+                    "exit with 4 when devices failed");
+  command
+      ->add_option("--lacking", arguments->lacking,
+                   "N, only list which of N tasks have something to do yet")
+      ->check(CLI::Range(1, 1000000));
+  command->callback([arguments, &action] {
+    action = [arguments] { return generate(*arguments); };
+  });
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <set>
+#include <stdexcept>
+
+#include "cli/commands.h"
+#include "cli/generation_progress.h"
+#include "cli/progress.h"
+#include "cli/terminal.h"
+#include "cli/version.h"
+#include "dataset/set/set_check.h"
+#include "dataset/set/set_writer.h"
+#include "dataset/sha256.h"
+
+namespace beamgyro {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kDamaged = 1;
+
+struct VerifyArguments {
+  std::string directory;
+  unsigned jobs = 0;
+  bool repair = false;
+};
+
+// Parts of tasks count until they are merged.
+Manifest manifest_of(const fs::path& directory) {
+  const fs::path whole = directory / kManifestName;
+  if (fs::exists(whole)) {
+    Manifest manifest = read_manifest(whole);
+    if (manifest.is_finished || !manifest.head) return manifest;
+  }
+  const SetContents contents = set_contents(directory);
+  Manifest manifest;
+  manifest.head = contents.head;
+  for (const auto& [index, entry] : contents.state.entries)
+    manifest.entries.push_back(entry);
+  return manifest;
+}
+
+std::vector<SetDefect> checked(const fs::path& directory,
+                               const Manifest& manifest) {
+  Progress progress("verifying " + directory.string());
+  return check_set(directory, manifest,
+                   [&](std::uint64_t done, std::uint64_t total) {
+                     progress.set_share(static_cast<double>(done) /
+                                        static_cast<double>(total));
+                   });
+}
+
+std::string listed(const std::vector<SetDefect>& defects) {
+  std::string text;
+  for (const SetDefect& defect : defects)
+    fmt::format_to(std::back_inserter(text), "{}: {}\n", defect.file,
+                   defect.what);
+  return text;
+}
+
+// The sources may have been named by paths that lead out of the set.
+void require_same_sources(const Campaign& campaign, const ManifestHead& head) {
+  std::set<std::string> expected, met;
+  for (const SourceEntry& source : head.sources) expected.insert(source.sha256);
+  for (const SourceFile& file : campaign.sources())
+    met.insert(sha256(file.text));
+  if (met != expected)
+    throw std::runtime_error(
+        "the files that the campaign names are not those that the set was made "
+        "of; run generate --resume with the right ones");
+}
+
+ManifestHead repairable_head(const fs::path& directory,
+                             const Manifest& manifest) {
+  if (!manifest.head || manifest.head->sources.empty())
+    throw std::runtime_error(fmt::format(
+        "{}: the manifest has lost what tells of the campaign; run generate "
+        "--resume with the campaign",
+        directory.string()));
+  if (manifest.head->program_version != kProgramVersion ||
+      manifest.head->git_revision != kGitRevision)
+    throw std::runtime_error(fmt::format(
+        "{}: was made by beamgyro {} ({}), and this is {} ({}), which may not "
+        "make the same bytes; repair it with the same program",
+        directory.string(), manifest.head->program_version,
+        manifest.head->git_revision, kProgramVersion, kGitRevision));
+  return *manifest.head;
+}
+
+void repair(const fs::path& directory, const Manifest& manifest,
+            const std::vector<SetDefect>& defects, unsigned jobs) {
+  const ManifestHead head = repairable_head(directory, manifest);
+  const Campaign campaign =
+      Campaign::read(directory / head.sources.front().file, head.devices);
+  require_same_sources(campaign, head);
+  const ShardPlan plan(campaign, {kProgramVersion, kGitRevision});
+  std::set<std::uint32_t> files;
+  for (const SetDefect& defect : defects) {
+    if (defect.index) files.insert(*defect.index);
+  }
+  std::map<std::uint32_t, std::string> hashes;
+  for (const ManifestEntry& entry : manifest.entries)
+    hashes.emplace(entry.index, entry.sha256);
+
+  SetWriter set(directory, head, {}, {}, true);
+  generate_with_progress(
+      "repairing " + directory.string(), plan, {files.begin(), files.end()},
+      jobs, [&](std::uint32_t file, const MadeShard& shard) {
+        const auto hash = hashes.find(file);
+        if (hash != hashes.end() && hash->second != sha256(shard.bytes))
+          throw std::runtime_error(fmt::format(
+              "{}: made again it has other bytes than the manifest says; "
+              "another kind of machine made it",
+              expected_entry(head, file).file));
+        set.add(file, shard.bytes, shard.failures);
+      });
+  set.finish(true);
+}
+
+int verify(const VerifyArguments& arguments) {
+  const fs::path directory = arguments.directory;
+  Manifest manifest = manifest_of(directory);
+  std::vector<SetDefect> defects = checked(directory, manifest);
+  print_result(listed(defects));
+  if (!defects.empty() && arguments.repair) {
+    repair(directory, manifest, defects, arguments.jobs);
+    manifest = manifest_of(directory);
+    defects = checked(directory, manifest);
+    print_result(defects.empty()
+                     ? "repaired\n"
+                     : "left after the repair:\n" + listed(defects));
+  }
+  if (!defects.empty()) {
+    print_error(
+        fmt::format("{}: {} defects", arguments.directory, defects.size()));
+    return kDamaged;
+  }
+  print_result(fmt::format("{}: whole, {} files, {} devices\n",
+                           arguments.directory, manifest.entries.size(),
+                           manifest.head->devices));
+  return 0;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<VerifyArguments>();
+  CLI::App* command = program.add_subcommand(
+      "verify", "Check every byte of a set against its manifest");
+  command->add_option("directory", arguments->directory, "DIR")->required();
+  command->add_flag("--repair", arguments->repair,
+                    "make damaged and missing files again");
+  command
+      ->add_option("--jobs", arguments->jobs,
+                   "threads of the repair; as many as there are cores without")
+      ->check(CLI::Range(1, 4096));
+  command->callback([arguments, &action] {
+    action = [arguments] { return verify(*arguments); };
+  });
+}
+
+}  // namespace beamgyro

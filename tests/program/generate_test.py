@@ -1,0 +1,431 @@
+# SPDX-License-Identifier: MIT
+"""generate, verify and info on sets: same bytes by any way, and bad input."""
+
+import json
+import os
+import pathlib
+import pty
+import re
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+from program import PROGRAM, ROOT, SCENARIOS, ProgramTest
+
+sys.path.insert(0, str(ROOT / "bench"))
+import set_faults  # noqa: E402
+
+CAMPAIGN = """\
+name = "tiny"
+device = "device.toml"
+devices = 7
+devices_per_file = 2
+seed = 5
+
+[tolerances]
+"patches.offset_m" = { normal = { mean = 0, sigma = 10e-6 } }
+"readout.quadrature_trim_deg_per_s" = { normal = { mean = 0, sigma = 50 } }
+
+[[run]]
+name = "rest"
+scenario = "rest.toml"
+
+[[run]]
+name = "ramp"
+scenario = "ramp.toml"
+ambient_offset_K = { uniform = { low = -5, high = 5 } }
+"""
+
+SCENARIO = """\
+name = "{name}"
+device = "device.toml"
+fidelity = "quasistatic"
+duration_s = 60
+output_rate_Hz = 2
+seed = 1
+
+[ambient]
+{ambient}
+"""
+
+
+class Set(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("rest.toml", SCENARIO.format(name="rest",
+                                                ambient="constant_degC = 25"))
+        self.write("ramp.toml", SCENARIO.format(
+            name="ramp", ambient="points = [[0, 0], [60, 10]]"))
+        self.write("campaign.toml", CAMPAIGN)
+
+    def contents(self, name):
+        return set_faults.contents(self.dir / name)
+
+    def generate(self, name, *arguments):
+        return self.ok("generate", "campaign.toml", "-o", name, *arguments)
+
+
+class Generate(Set):
+    def test_a_set_has_a_file_for_every_range_of_devices_and_run(self):
+        said = self.generate("set")
+        self.assertIn("8 files", said)
+        self.assertIn("14 device runs", said)
+        self.assertEqual(
+            sorted(self.contents("set")),
+            sorted([f"{run}_{k:05}.h5" for run in ["rest", "ramp"]
+                    for k in range(4)] + ["rest.nc", "ramp.nc",
+                                          "manifest.jsonl"]))
+
+    def test_jobs_tasks_and_their_order_do_not_change_a_byte(self):
+        self.generate("one", "--jobs", 1)
+        expected = self.contents("one")
+        for jobs in [2, 4]:
+            self.generate(f"jobs{jobs}", "--jobs", jobs)
+            self.assertEqual(self.contents(f"jobs{jobs}"), expected)
+        for name, tasks in [("shards", ["1/3", "2/3", "3/3"]),
+                            ("backwards", ["5/5", "2/5", "4/5", "1/5", "3/5"]),
+                            ("more_than_files", [f"{k}/11" for k in
+                                                 range(11, 0, -1)])]:
+            for task in tasks:
+                self.generate(name, "--shard", task)
+            self.assertEqual(self.contents(name), expected)
+
+    def test_tasks_at_once_share_a_directory(self):
+        self.generate("one")
+        tasks = [subprocess.Popen(
+            [str(PROGRAM), "generate", "campaign.toml", "-o", "shared",
+             "--shard", f"{k}/4"], cwd=self.dir, stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE, text=True) for k in range(1, 5)]
+        for task in tasks:
+            _, error = task.communicate()
+            self.assertEqual(task.returncode, 0, error)
+        self.assertEqual(self.contents("shared"), self.contents("one"))
+
+    def test_tasks_that_are_lacking_are_listed(self):
+        lacking = ["generate", "campaign.toml", "-o", "set", "--lacking", 4]
+        self.assertEqual(self.ok(*lacking), "1-4\n")
+        self.generate("set", "--shard", "2/4")
+        self.assertEqual(self.ok(*lacking), "1,3-4\n")
+        for k in [1, 3, 4]:
+            self.generate("set", "--shard", f"{k}/4")
+        self.assertEqual(self.ok(*lacking), "\n")
+
+    def test_fewer_devices_are_the_first_ones(self):
+        self.generate("all")
+        self.generate("some", "--devices", 4)
+        for k in range(2):
+            self.assertEqual(self.contents("some")[f"ramp_{k:05}.h5"],
+                             self.contents("all")[f"ramp_{k:05}.h5"])
+
+    def test_a_whole_run_goes_on_only_when_told(self):
+        self.generate("set")
+        before = self.contents("set")
+        self.rejected("generate", "campaign.toml", "-o", "set",
+                      says=["set", "--resume"])
+        (self.dir / "set/rest_00001.h5").unlink()
+        self.generate("set", "--resume")
+        self.assertEqual(self.contents("set"), before)
+
+    def test_a_set_of_another_campaign_is_left_alone(self):
+        self.generate("set")
+        self.write("campaign.toml", CAMPAIGN.replace("seed = 5", "seed = 6"))
+        for how in [["--resume"], ["--shard", "1/2"]]:
+            self.rejected("generate", "campaign.toml", "-o", "set", *how,
+                          says=["set", "another"])
+
+    def test_a_device_shows_what_run_shows_of_it(self):
+        """Without noise, whose streams are the device's own."""
+        for name in ["rest.toml", "ramp.toml"]:
+            self.write(name, (self.dir / name).read_text() +
+                       "\n[noise]\nenabled = false\n")
+        self.generate("set")
+        with h5py.File(self.dir / "set/rest_00001.h5") as file:
+            values = {name: file[name][1] for name in file
+                      if name.startswith(("patches_", "readout_"))}
+            drawn = {name: file[name][()] for name in ["status"]}
+            shown = {}
+            for name in ["output", "rate", "temperature", "quadrature",
+                         "drive_frequency", "drive_voltage", "true_bias"]:
+                row = file[name][1]
+                attributes = file[name].attrs
+                if "scale_factor" in attributes:
+                    row = row * attributes["scale_factor"] + \
+                        attributes["add_offset"]
+                shown[name] = row
+        offsets = [float(values[f"patches_offset_m_{k}"]) for k in range(4)]
+        trim = float(values["readout_quadrature_trim_deg_per_s"])
+        self.ok("run", "rest.toml", "-o", "run.h5", "--set",
+                f"patches.offset_m={offsets}", "--set",
+                f"readout.quadrature_trim_deg_per_s={trim}")
+        with h5py.File(self.dir / "run.h5") as file:
+            np.testing.assert_array_equal(drawn["status"][1], file["status"])
+            for name, row in shown.items():
+                tolerance = 2e-7 if name == "true_bias" else 1e-9
+                np.testing.assert_allclose(row, file[name], rtol=tolerance,
+                                           atol=tolerance, err_msg=name)
+
+    def test_a_device_that_cannot_be_is_flagged_with_its_reason(self):
+        self.write("campaign.toml", CAMPAIGN.replace(
+            '"readout.quadrature_trim_deg_per_s" = { normal = '
+            '{ mean = 0, sigma = 50 } }',
+            '"drive.voltage_limit_V" = { discrete = '
+            '{ values = [10, 1e-6], weights = [3, 1] } }')
+            .replace("devices = 7", "devices = 12"))
+        said = self.generate("set")
+        self.assertRegex(said, r"[1-9]\d* failed")
+        self.assertEqual(
+            self.beamgyro("generate", "campaign.toml", "-o", "strict",
+                          "--strict").returncode, 4)
+        failed = 0
+        for path in sorted((self.dir / "set").glob("rest_*.h5")):
+            with h5py.File(path) as file:
+                for i, status in enumerate(file["device_status"]):
+                    limit = file["drive_voltage_limit_V"][i]
+                    self.assertEqual(status != 0, limit < 1)
+                    if status:
+                        failed += 1
+                        self.assertTrue((file["status"][i] == 1).all())
+                        fill = file["output"].attrs["_FillValue"]
+                        self.assertTrue((file["output"][i] == fill).all())
+                reasons = file["meta/failures"][()].decode().splitlines()
+                self.assertEqual(
+                    len(reasons),
+                    np.count_nonzero(file["device_status"][()]))
+        self.assertGreater(failed, 0)
+        lines = [json.loads(line) for line in
+                 (self.dir / "set/manifest.jsonl").read_text().splitlines()]
+        reasons = [failure for line in lines
+                   for failure in line.get("failures", [])]
+        self.assertEqual(len(reasons), 2 * failed)
+        self.assertTrue(all(entry["reason"] for entry in reasons))
+        self.ok("verify", "set")
+
+    def test_termination_leaves_only_whole_files(self):
+        self.write("campaign.toml", CAMPAIGN.replace("devices = 7",
+                                                     "devices = 4000"))
+        process = subprocess.Popen(
+            [str(PROGRAM), "generate", "campaign.toml", "-o", "set"],
+            cwd=self.dir, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while not list(self.dir.glob("set/*.h5")):
+            self.assertIsNone(process.poll())
+            time.sleep(0.01)
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(process.wait(), 143)
+        self.assertEqual(list(self.dir.glob("set/*partial*")), [])
+
+    def test_a_terminal_shows_rate_time_left_and_failures(self):
+        self.write("campaign.toml", CAMPAIGN.replace("devices = 7",
+                                                     "devices = 40000"))
+        main, terminal = pty.openpty()
+        process = subprocess.Popen(
+            [str(PROGRAM), "generate", "campaign.toml", "-o", "set"],
+            cwd=self.dir, stdout=subprocess.DEVNULL, stderr=terminal)
+        os.close(terminal)
+        shown = b""
+        while b"device-hours/s" not in shown and process.poll() is None:
+            shown += os.read(main, 1000)
+        process.kill()
+        process.wait()
+        os.close(main)
+        self.assertRegex(shown.decode(), r"\d+ s left, \d+ device runs, "
+                         r"[\d.e+]+ device-hours/s, 0 failed")
+
+
+class BadInput(Set):
+    def test_wrong_arguments_are_refused(self):
+        refused = [
+            (["--shard", "0/3"], "--shard"), (["--shard", "4/3"], "--shard"),
+            (["--shard", "1"], "--shard"), (["--shard", "1/3x"], "--shard"),
+            (["--devices", "0"], "devices"), (["--jobs", "0"], "jobs"),
+            (["--devices", "many"], "devices")]
+        for arguments, says in refused:
+            with self.subTest(arguments):
+                self.rejected("generate", "campaign.toml", "-o", "set",
+                              *arguments, says=says)
+
+    def test_places_that_cannot_hold_a_set_are_refused(self):
+        self.write("file", "x")
+        self.rejected("generate", "campaign.toml", "-o", "file", says="file")
+        self.rejected("generate", "campaign.toml", "-o", "no/where/set",
+                      says="no/where")
+        self.rejected("generate", "campaign.toml", "-o", "/proc/set",
+                      says="/proc")
+
+    def test_unknown_variables_and_rates_are_refused(self):
+        for text, says in [
+                ('variables = ["outputs"]', "outputs"),
+                ("truth_rate_Hz = 0.7", "truth_rate_Hz")]:
+            with self.subTest(text):
+                self.write("campaign.toml", CAMPAIGN + f"\n[output]\n{text}\n")
+                self.rejected("generate", "campaign.toml", "-o", "set",
+                              says=says)
+
+    def test_verify_and_info_refuse_what_is_no_set(self):
+        (self.dir / "empty").mkdir()
+        for command in ["verify", "info"]:
+            self.rejected(command, "empty", says="empty")
+            self.rejected(command, "nowhere", says="nowhere")
+
+    def test_a_read_only_file_system_is_named(self):
+        if os.geteuid() != 0:
+            self.skipTest("mounting needs root")
+        mount = self.dir / "disk"
+        mount.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "ro", "tmpfs",
+                           str(mount)], check=False).returncode != 0:
+            self.skipTest("mounting is not allowed here")
+        self.addCleanup(subprocess.run, ["umount", str(mount)], check=True)
+        answer = self.beamgyro("generate", "campaign.toml", "-o", mount / "set")
+        self.assertEqual(answer.returncode, 2)
+        self.assertIn(str(mount / "set"), answer.stderr)
+        self.assertIn("ead-only", answer.stderr)
+
+    def test_too_little_memory_is_an_error_and_not_a_crash(self):
+        for kilobytes in [60_000, 80_000, 100_000, 150_000]:
+            answer = subprocess.run(
+                ["bash", "-c", f"ulimit -v {kilobytes}; exec \"$@\"", "-",
+                 str(PROGRAM), "generate", "campaign.toml", "-o", "memory",
+                 "--resume", "--jobs", "1"], cwd=self.dir, text=True,
+                check=False, capture_output=True)
+            self.assertIn(answer.returncode, [0, 1, 127], answer.stderr)
+            self.assertEqual(
+                [p for p in (self.dir / "memory").glob("*partial*")]
+                if (self.dir / "memory").exists() else [], [])
+        self.generate("memory", "--resume")
+        self.generate("free")
+        self.assertEqual(self.contents("memory"), self.contents("free"))
+
+    def test_a_name_that_is_no_utf8_serves(self):
+        folder = os.fsencode(self.dir) + b"/s\xe9t"
+        subprocess.run([os.fsencode(PROGRAM), b"generate", b"campaign.toml",
+                        b"-o", folder], cwd=self.dir, check=True,
+                       capture_output=True)
+        subprocess.run([os.fsencode(PROGRAM), b"verify", folder], check=True,
+                       capture_output=True)
+
+
+class Verify(Set):
+    def setUp(self):
+        super().setUp()
+        self.generate("set")
+        self.before = self.contents("set")
+
+    def found(self, *names):
+        answer = self.beamgyro("verify", "set")
+        self.assertEqual(answer.returncode, 1, answer.stderr)
+        for name in names:
+            self.assertIn(name, answer.stdout)
+        return answer.stdout
+
+    def repaired(self):
+        self.ok("verify", "set", "--repair")
+        self.assertEqual(self.contents("set"), self.before)
+        self.assertIn("whole", self.ok("verify", "set"))
+
+    def test_a_missing_file_is_made_again(self):
+        (self.dir / "set/ramp_00002.h5").unlink()
+        self.assertIn("missing", self.found("ramp_00002.h5"))
+        self.repaired()
+
+    def test_swapped_files_name_each_other(self):
+        one, other = (self.dir / f"set/rest_0000{k}.h5" for k in range(2))
+        content = one.read_bytes()
+        one.write_bytes(other.read_bytes())
+        other.write_bytes(content)
+        said = self.found(one.name, other.name)
+        self.assertRegex(said, rf"{one.name}.*{other.name}")
+        self.repaired()
+
+    def test_a_damaged_view_is_made_again(self):
+        (self.dir / "set/rest.nc").write_bytes(b"nothing")
+        self.found("rest.nc")
+        self.repaired()
+
+    def test_a_damaged_manifest_is_made_again(self):
+        manifest = self.dir / "set/manifest.jsonl"
+        text = manifest.read_text()
+        digest = re.search(r'"sha256": ?"([0-9a-f]{64})"', text).group(1)
+        manifest.write_text(text.replace(digest, digest[::-1]))
+        self.found("manifest.jsonl")
+        self.repaired()
+
+    def test_a_foreign_file_is_named_and_not_touched(self):
+        foreign = self.dir / "set/foreign.h5"
+        foreign.write_bytes(b"mine")
+        self.found("foreign.h5")
+        self.beamgyro("verify", "set", "--repair")
+        self.assertEqual(foreign.read_bytes(), b"mine")
+
+    def test_repair_needs_nothing_but_the_set(self):
+        for name in ["campaign.toml", "rest.toml", "ramp.toml", "device.toml"]:
+            (self.dir / name).unlink()
+        (self.dir / "set/ramp_00000.h5").write_bytes(b"")
+        self.repaired()
+
+    def test_a_clock_that_jumps_changes_nothing(self):
+        for path in (self.dir / "set").iterdir():
+            os.utime(path, (4e9, 4e9))
+        self.assertIn("whole", self.ok("verify", "set"))
+        self.generate("set", "--resume")
+        self.assertEqual(self.contents("set"), self.before)
+
+
+class Info(Set):
+    def test_a_set_is_summarised(self):
+        self.generate("set")
+        said = self.ok("info", "set")
+        for part in ["tiny", "7 devices", "rest", "ramp", "0 failed",
+                     "patches_offset_m_0", "whole"]:
+            self.assertIn(part, said)
+
+    def test_a_set_that_is_not_whole_says_what_it_lacks(self):
+        self.generate("set", "--shard", "1/2")
+        self.assertIn("4 of 8 files", self.ok("info", "set"))
+
+    def test_a_file_of_a_set_is_described(self):
+        self.generate("set")
+        said = self.ok("info", "set/rest_00003.h5")
+        for part in ["devices 6 to 6", "rest", "output", "true_bias"]:
+            self.assertIn(part, said)
+
+
+class Faults(unittest.TestCase):
+    """The short form of bench/set_faults.py."""
+
+    @classmethod
+    def setUpClass(cls):
+        import tempfile
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.faults = set_faults.Faults(PROGRAM, pathlib.Path(folder.name))
+
+    def test_twenty_kills_leave_the_bytes_of_an_uninterrupted_run(self):
+        self.assertEqual(self.faults.kills(20)["kills"], 20)
+
+    def test_terminations_do_too(self):
+        self.assertEqual(
+            self.faults.kills(10, with_signal=signal.SIGTERM)["kills"], 10)
+
+    def test_every_damage_is_found_and_mended(self):
+        self.assertEqual(sum(self.faults.damages(40).values()), 40)
+
+    def test_twenty_starts_have_one_winner(self):
+        self.assertEqual(self.faults.starts(20)["winners"], 1)
+
+    def test_full_disks_end_in_an_error_and_are_recovered_from(self):
+        if os.geteuid() != 0:
+            self.skipTest("a disk that fills up needs root to mount one")
+        try:
+            figures = self.faults.full_disks(20)
+        except subprocess.CalledProcessError:
+            self.skipTest("mounting a small disk is not allowed here")
+        self.assertEqual(figures["sizes"], 20)
+
+
+if __name__ == "__main__":
+    unittest.main()
