@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "sim/device/bending_mode.h"
 
-#include <Eigen/SparseLU>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 namespace beamgyro {
 namespace {
@@ -83,11 +84,10 @@ VectorXd uniform_beam_mode(const std::vector<BeamElement>& elements) {
   double z = 0;
   for (Eigen::Index i = 0; i < shape.size(); i += 2) {
     const double x = b * z;
-    shape(i) =
-        0.5 * (std::cosh(x) + std::cos(x) - s * (std::sinh(x) + std::sin(x)));
-    shape(i + 1) =
-        0.5 * b *
-        (std::sinh(x) - std::sin(x) - s * (std::cosh(x) + std::cos(x)));
+    const double cosh = std::cosh(x), sinh = std::sinh(x);
+    const double cos = std::cos(x), sin = std::sin(x);
+    shape(i) = 0.5 * (cosh + cos - s * (sinh + sin));
+    shape(i + 1) = 0.5 * b * (sinh - sin - s * (cosh + cos));
     const auto element = static_cast<std::size_t>(i / 2);
     if (element < elements.size()) z += elements[element].length;
   }
@@ -97,24 +97,20 @@ VectorXd uniform_beam_mode(const std::vector<BeamElement>& elements) {
 }  // namespace
 
 BeamMatrices assemble_beam(const std::vector<BeamElement>& elements) {
-  std::vector<Eigen::Triplet<double>> stiffness, mass;
-  stiffness.reserve(16 * elements.size());
-  mass.reserve(16 * elements.size());
+  const auto size = 2 * static_cast<Eigen::Index>(elements.size()) + 2;
+  BeamMatrices beam{SymmetricBand(size), SymmetricBand(size)};
+  ElementMatrices element;
   for (std::size_t k = 0; k < elements.size(); ++k) {
-    const ElementMatrices element = element_matrices(elements[k]);
-    const int first = 2 * static_cast<int>(k);
-    for (int i = 0; i < 4; ++i) {
-      for (int j = 0; j < 4; ++j) {
-        stiffness.emplace_back(first + i, first + j, element.stiffness(i, j));
-        mass.emplace_back(first + i, first + j, element.mass(i, j));
+    if (k == 0 || elements[k] != elements[k - 1])
+      element = element_matrices(elements[k]);
+    const auto first = 2 * static_cast<Eigen::Index>(k);
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j) {
+        beam.stiffness.diagonals(first + j, i - j) += element.stiffness(i, j);
+        beam.mass.diagonals(first + j, i - j) += element.mass(i, j);
       }
     }
   }
-  const auto size = 2 * static_cast<Eigen::Index>(elements.size()) + 2;
-  BeamMatrices beam{Eigen::SparseMatrix<double>(size, size),
-                    Eigen::SparseMatrix<double>(size, size)};
-  beam.stiffness.setFromTriplets(stiffness.begin(), stiffness.end());
-  beam.mass.setFromTriplets(mass.begin(), mass.end());
   return beam;
 }
 
@@ -135,16 +131,13 @@ BendingMode first_bending_mode(const std::vector<BeamElement>& elements) {
       return {std::sqrt(quotient), phi / phi(0)};
     }
     eigenvalue = quotient;
-    const Eigen::SparseMatrix<double> shifted =
-        beam.stiffness - quotient * beam.mass;
-    Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::NaturalOrdering<int>>
-        solver(shifted);
+    SymmetricBand shifted = beam.stiffness;
+    shifted.diagonals -= quotient * beam.mass.diagonals;
     // At convergence the shifted matrix is singular to roundoff, which is what
     // makes the last solve so accurate in direction.
-    if (solver.info() != Eigen::Success) {
-      return {std::sqrt(quotient), phi / phi(0)};
-    }
-    phi = solver.solve(M_phi);
+    std::optional<VectorXd> next = solved(shifted, M_phi);
+    if (!next) return {std::sqrt(quotient), phi / phi(0)};
+    phi = std::move(*next);
     phi /= phi.cwiseAbs().maxCoeff();
   }
   throw std::runtime_error(

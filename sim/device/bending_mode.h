@@ -2,8 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/SparseCore>
 #include <vector>
+
+#include "sim/numerics/symmetric_band.h"
 
 namespace beamgyro {
 
@@ -14,18 +15,19 @@ struct BeamElement {
   double shear_stiffness;    // kappa G A [N]; infinity = Euler-Bernoulli
   double line_density;       // rho A [kg/m]
   double rotary_inertia;     // rho I [kg m]; 0 = Euler-Bernoulli
+
+  bool operator==(const BeamElement&) const = default;
 };
 
 struct BeamMatrices {
-  Eigen::SparseMatrix<double> stiffness;  // [N/m N; N N m]
-  Eigen::SparseMatrix<double> mass;       // [kg kg m; kg m kg m2]
+  SymmetricBand stiffness;  // [N/m N; N N m]
+  SymmetricBand mass;       // [kg kg m; kg m kg m2]
 };
 
 /// Stiffness and consistent mass of a free-free beam from two-node elements
 /// that are exact under static end loads (Hermite cubics for shear stiffness
 /// infinity, else Timoshenko with Phi = 12 E I / (kappa G A h^2)). Degrees of
-/// freedom w_0, theta_0, w_1, theta_1, ...: both matrices have half
-/// bandwidth 3.
+/// freedom w_0, theta_0, w_1, theta_1, ...
 BeamMatrices assemble_beam(const std::vector<BeamElement>& elements);
 
 struct BendingMode {

@@ -19,7 +19,8 @@ Complex relaxation(double omega, double tau, double exponent) {
 
 // T - T_0 where the linear coefficients of the ceramic hold [K].
 double ceramic_temperature_difference(double T) {
-  return std::clamp(T, 233.15, 353.15) - kCalibrationTemperature;
+  return std::clamp(T, kColdestCeramic, kHottestCeramic) -
+         kCalibrationTemperature;
 }
 
 double d31_magnitude(const PatchParameters& patches, double T) {

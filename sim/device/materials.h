@@ -27,9 +27,11 @@ double thermoelastic_loss(const BeamParameters& beam, double T, double omega);
 /// thermoelastic loss at angular frequency `omega` [rad/s] (1.3).
 Complex beam_modulus(const BeamParameters& beam, double T, double omega);
 
-/// E_p* [Pa], complex short-circuit modulus of the patches (1.3). The linear
-/// temperature coefficients of the ceramic hold from -40 to +80 degC and are
-/// clamped outside.
+/// The linear temperature coefficients of the ceramic hold from -40 to +80 degC
+/// and are clamped outside.
+inline constexpr double kColdestCeramic = 233.15, kHottestCeramic = 353.15;
+
+/// E_p* [Pa], complex short-circuit modulus of the patches (1.3).
 Complex patch_modulus(const PatchParameters& patches, double T);
 
 /// |e31| [C/m2] real part rule and permittivity of the patches: e31* = |d31|

@@ -28,32 +28,31 @@ Matrix2d patch_second_moment(const Device& device, Patch patch) {
   return r * r.transpose() + Matrix2d(own.asDiagonal());
 }
 
-}  // namespace
+// Of ceramic and bond at one temperature.
+struct PatchMaterials {
+  Complex E_p;
+  PerPatch<Complex> S;  // shear_lag()
+};
 
-Vector2d patch_position(const Device& device, Patch patch) {
-  const auto p = static_cast<std::size_t>(patch);
-  const double h = lever_arm(device, device.bond.thickness[p]);
-  const double delta = device.patches.offset[p];
-  switch (patch) {
-    case kDrive:
-      return {h, delta};
-    case kFeedback:
-      return {-h, delta};
-    case kReadout:
-      return {delta, h};
-    default:
-      return {delta, -h};
+PatchMaterials patch_materials(const Device& device, double T, double omega) {
+  PatchMaterials materials{patch_modulus(device.patches, T), {}};
+  const Complex G_b = bond_modulus(device.bond, T, omega);
+  for (std::size_t p = 0; p < kPatchCount; ++p) {
+    const double thickness = device.bond.thickness[p];
+    materials.S[p] =
+        p > 0 && thickness == device.bond.thickness[p - 1]
+            ? materials.S[p - 1]
+            : shear_lag(device.patches, thickness, G_b, materials.E_p);
   }
+  return materials;
 }
 
-Matrix2cd complex_stiffness(const Device& device, const ProjectedBeam& beam,
-                            double T) {
+Matrix2cd stiffness_of(const Device& device, const ProjectedBeam& beam,
+                       const PatchMaterials& materials, double T) {
   const double omega = beam.timoshenko_frequency;
   const double ax = device.beam.side * (1 + device.beam.side_difference / 2);
   const double ay = device.beam.side * (1 - device.beam.side_difference / 2);
   const Complex E_b = beam_modulus(device.beam, T, omega);
-  const Complex E_p = patch_modulus(device.patches, T);
-  const Complex G_b = bond_modulus(device.bond, T, omega);
 
   Matrix2cd K = Matrix2cd::Zero();
   const Complex metal = E_b * beam.curvature_squared / 12.0;
@@ -62,11 +61,9 @@ Matrix2cd complex_stiffness(const Device& device, const ProjectedBeam& beam,
   const double weight = device.patches.width * device.patches.thickness *
                         beam.patch_curvature_squared;
   for (int i = 0; i < kPatchCount; ++i) {
-    const auto patch = static_cast<Patch>(i);
-    const Complex S =
-        shear_lag(device.patches,
-                  device.bond.thickness[static_cast<std::size_t>(i)], G_b, E_p);
-    K += (E_p * S * weight) * patch_second_moment(device, patch);
+    const Complex S = materials.S[static_cast<std::size_t>(i)];
+    K += (materials.E_p * S * weight) *
+         patch_second_moment(device, static_cast<Patch>(i));
   }
   K *= beam.stiffness_scale;
 
@@ -89,16 +86,47 @@ Matrix2cd complex_stiffness(const Device& device, const ProjectedBeam& beam,
   return K;
 }
 
+Vector2cd coupling_of(const Device& device, const ProjectedBeam& beam,
+                      const PatchMaterials& materials, Patch patch, double T) {
+  return (piezo_stress_constant(device.patches, T) * device.patches.width *
+          materials.S[static_cast<std::size_t>(patch)] * beam.patch_curvature) *
+         patch_position(device, patch);
+}
+
+}  // namespace
+
+Vector2d patch_position(const Device& device, Patch patch) {
+  const auto p = static_cast<std::size_t>(patch);
+  const double h = lever_arm(device, device.bond.thickness[p]);
+  const double delta = device.patches.offset[p];
+  switch (patch) {
+    case kDrive:
+      return {h, delta};
+    case kFeedback:
+      return {-h, delta};
+    case kReadout:
+      return {delta, h};
+    default:
+      return {delta, -h};
+  }
+}
+
+Matrix2cd complex_stiffness(const Device& device, const ProjectedBeam& beam,
+                            double T) {
+  return stiffness_of(device, beam,
+                      patch_materials(device, T, beam.timoshenko_frequency), T);
+}
+
 Vector2cd patch_coupling(const Device& device, const ProjectedBeam& beam,
                          Patch patch, double T) {
-  const Complex E_p = patch_modulus(device.patches, T);
-  const Complex G_b = bond_modulus(device.bond, T, beam.timoshenko_frequency);
-  const Complex S = shear_lag(
-      device.patches, device.bond.thickness[static_cast<std::size_t>(patch)],
-      G_b, E_p);
-  return (piezo_stress_constant(device.patches, T) * device.patches.width * S *
-          beam.patch_curvature) *
-         patch_position(device, patch);
+  return coupling_of(device, beam,
+                     patch_materials(device, T, beam.timoshenko_frequency),
+                     patch, T);
+}
+
+std::vector<double> modal_kinks(const Device& device) {
+  return {device.bond.glass_transition, device.mount.glass_transition,
+          kColdestCeramic, kHottestCeramic};
 }
 
 double patch_capacitance(const PatchParameters& patches, double T) {
@@ -109,7 +137,9 @@ double patch_capacitance(const PatchParameters& patches, double T) {
 ModalParameters modal_parameters(const Device& device,
                                  const ProjectedBeam& beam, double T,
                                  double stiffness_trim) {
-  const Matrix2cd K = complex_stiffness(device, beam, T);
+  const PatchMaterials materials =
+      patch_materials(device, T, beam.timoshenko_frequency);
+  const Matrix2cd K = stiffness_of(device, beam, materials, T);
   ModalParameters modal;
   modal.mass = beam.mass;
   modal.coriolis_mass = beam.angular_gain * beam.mass;
@@ -129,7 +159,7 @@ ModalParameters modal_parameters(const Device& device,
 
   for (int i = 0; i < kPatchCount; ++i) {
     modal.coupling[static_cast<std::size_t>(i)] =
-        patch_coupling(device, beam, static_cast<Patch>(i), T);
+        coupling_of(device, beam, materials, static_cast<Patch>(i), T);
   }
   return modal;
 }

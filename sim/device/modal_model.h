@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "sim/device/device.h"
 #include "sim/device/materials.h"
@@ -39,5 +40,10 @@ double patch_capacitance(const PatchParameters& patches, double T);
 ModalParameters modal_parameters(const Device& device,
                                  const ProjectedBeam& beam, double T,
                                  double stiffness_trim);
+
+/// Beam temperatures [K] where modal_parameters() may have a kink, in no order:
+/// glass transitions and the ends of the ceramic's linear range. It is analytic
+/// between them.
+std::vector<double> modal_kinks(const Device& device);
 
 }  // namespace beamgyro

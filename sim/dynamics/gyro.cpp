@@ -110,9 +110,9 @@ BeamSignal beam_signal(const Gyro& gyro, double T, const CaseMotion& motion) {
 }
 
 BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
-                       const CaseMotion& motion) {
+                       const CaseMotion& motion, double guess) {
   const StaticSolution solution = static_solution(
-      modal, gyro.loop, gyro.device.readout.feedthrough, motion);
+      modal, gyro.loop, gyro.device.readout.feedthrough, motion, guess);
   return {solution.signal / gyro.rate_axis, solution.drive_frequency,
           solution.drive_voltage, solution.amplitude_locked};
 }

@@ -45,10 +45,11 @@ struct BeamSignal {
   bool amplitude_locked;
 };
 
-/// Exact static response at beam temperature T [K] (2.10), uncached.
+/// Exact static response at beam temperature T [K] (2.10), uncached; `guess` as
+/// in static_solution().
 BeamSignal beam_signal(const Gyro& gyro, double T, const CaseMotion& motion);
 BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
-                       const CaseMotion& motion);
+                       const CaseMotion& motion, double guess = 0);
 
 /// Input-referred output and quadrature channel before filter, saturation and
 /// ADC [rad/s].

@@ -14,18 +14,16 @@
 namespace beamgyro {
 namespace {
 
-constexpr int kMaxRateDegree = 11;
-
 // Chebyshev node i of n on [-1, 1].
 double node(int i, int n) { return std::cos(std::numbers::pi * (i + 0.5) / n); }
 
-// T_0(x) .. T_{n-1}(x).
-template <class Vector>
-void chebyshev_basis(double x, Vector& basis) {
-  basis(0) = 1;
-  if (basis.size() > 1) basis(1) = x;
-  for (Eigen::Index k = 2; k < basis.size(); ++k)
-    basis(k) = 2 * x * basis(k - 1) - basis(k - 2);
+// T_0(x) .. T_{n-1}(x), a column each, one row for each x.
+template <class Column, class Basis>
+void chebyshev_basis(const Column& x, Basis& basis) {
+  basis.col(0).setOnes();
+  if (basis.cols() > 1) basis.col(1) = x;
+  for (Eigen::Index k = 2; k < basis.cols(); ++k)
+    basis.col(k) = 2 * x * basis.col(k - 1) - basis.col(k - 2);
 }
 
 // Matrix that turns values at n Chebyshev nodes into n coefficients.
@@ -42,7 +40,15 @@ Eigen::MatrixXd node_transform(int n) {
 
 // The error a table may have in frequency [rad/s] and voltage [V], per rad/s of
 // the signal's tolerance: 1e-6 deg/s go with 1e-6 Hz and 1e-7 V.
-const Eigen::Vector4d kChannelWeight(1, 1, 2.8e-3, 0.17);
+double weighted(const Eigen::Vector4d& error) {
+  return Eigen::Vector4d(1, 1, 2.8e-3, 0.17)
+      .cwiseProduct(error)
+      .cwiseAbs()
+      .maxCoeff();
+}
+
+constexpr int kFrequency = 2;            // channel
+constexpr double kSmallestPiece = 1e-3;  // [K]
 
 }  // namespace
 
@@ -59,36 +65,47 @@ StaticMap::StaticMap(const Gyro& gyro, double low, double high,
   low -= kMargin;
   high += kMargin;
   rate_degree_ = needed_rate_degree(low, high);
-  refine(low, high);
+  in_rate_ = node_transform(rate_degree_ + 1).transpose();
+  in_temperature_ = node_transform(kTemperatureNodes).transpose();
+  std::vector<double> cuts = modal_kinks(gyro.device);
+  std::erase_if(cuts, [&](double T) { return T <= low || T >= high; });
+  cuts.insert(cuts.end(), {low, high});
+  std::sort(cuts.begin(), cuts.end());
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    if (cuts[i] < cuts[i + 1]) refine(cuts[i], cuts[i + 1]);
+  }
 }
 
-Eigen::Vector4d StaticMap::exact(const ModalParameters& modal,
-                                 double rate) const {
+ModalParameters StaticMap::modal(double T) const {
+  return modal_parameters(gyro_.device, gyro_.beam, T, gyro_.stiffness_trim);
+}
+
+Eigen::Vector4d StaticMap::exact(const ModalParameters& modal, double rate,
+                                 double guess) const {
   CaseMotion motion;
   motion.z = rate;
-  const BeamSignal signal = beam_signal(gyro_, modal, motion);
+  const BeamSignal signal = beam_signal(gyro_, modal, motion, guess);
   return {signal.demodulated.real(), signal.demodulated.imag(),
           signal.drive_frequency, signal.drive_voltage};
 }
 
 int StaticMap::needed_rate_degree(double low, double high) const {
   if (rate_limit_ == 0) return 0;
-  const Eigen::MatrixXd transform = node_transform(kMaxRateDegree + 1);
+  const Eigen::MatrixXd transform = node_transform(kMaxRates);
   int degree = 0;
   for (const double T : {low, 0.5 * (low + high), high}) {
-    const ModalParameters modal =
-        modal_parameters(gyro_.device, gyro_.beam, T, gyro_.stiffness_trim);
-    Eigen::Matrix<double, kChannels, kMaxRateDegree + 1> values;
-    for (int i = 0; i <= kMaxRateDegree; ++i)
-      values.col(i) = exact(modal, rate_limit_ * node(i, kMaxRateDegree + 1));
+    const ModalParameters at_T = modal(T);
+    Eigen::Matrix<double, kChannels, kMaxRates> values;
+    for (int i = 0; i < kMaxRates; ++i) {
+      values.col(i) = exact(at_T, rate_limit_ * node(i, kMaxRates),
+                            i > 0 ? values(kFrequency, i - 1) : 0);
+    }
     const Eigen::MatrixXd coefficients = values * transform.transpose();
-    for (int k = kMaxRateDegree; k > degree; --k) {
-      const Eigen::Array4d size =
-          coefficients.col(k).cwiseProduct(kChannelWeight).cwiseAbs();
-      if (size.maxCoeff() > 0.1 * tolerance_) degree = k;
+    for (int k = kMaxRates - 1; k > degree; --k) {
+      if (weighted(coefficients.col(k)) > 0.1 * tolerance_) degree = k;
     }
   }
-  if (degree == kMaxRateDegree) {
+  if (degree == kMaxRates - 1) {
     throw std::runtime_error(fmt::format(
         "static map: rates of {:.0f} deg/s are too large for this device: the "
         "response is no smooth function of rate",
@@ -97,21 +114,39 @@ int StaticMap::needed_rate_degree(double low, double high) const {
   return degree;
 }
 
-StaticMap::Piece StaticMap::fitted(double low, double high) const {
+// None when the expansion at one of the rates shows that it is too short.
+std::optional<StaticMap::Piece> StaticMap::fitted(double low,
+                                                  double high) const {
   const int rates = rate_degree_ + 1;
-  const Eigen::MatrixXd in_rate = node_transform(rates);
-  Eigen::MatrixXd values(kChannels * rates, kTemperatureNodes);
-  Eigen::MatrixXd row(kChannels, rates);
-  for (int j = 0; j < kTemperatureNodes; ++j) {
-    const double T =
-        0.5 * (low + high) + 0.5 * (high - low) * node(j, kTemperatureNodes);
-    const ModalParameters modal =
-        modal_parameters(gyro_.device, gyro_.beam, T, gyro_.stiffness_trim);
-    for (int i = 0; i < rates; ++i)
-      row.col(i) = exact(modal, rate_limit_ * node(i, rates));
-    values.col(j) = (row * in_rate.transpose()).reshaped();
+  std::array<ModalParameters, kTemperatureNodes> at_node;
+  std::array<Eigen::Matrix<double, kChannels, kTemperatureNodes>, kMaxRates>
+      values;
+  for (int i = 0; i < rates; ++i) {
+    const auto rate = static_cast<std::size_t>(i);
+    for (int j = 0; j < kTemperatureNodes; ++j) {
+      ModalParameters& at_T = at_node[static_cast<std::size_t>(j)];
+      if (i == 0) {
+        at_T = modal(0.5 * (low + high) +
+                     0.5 * (high - low) * node(j, kTemperatureNodes));
+      }
+      values[rate].col(j) = exact(at_T, rate_limit_ * node(i, rates),
+                                  i > 0 ? values[rate - 1](kFrequency, j) : 0);
+    }
+    if (i > 0 || high - low < kSmallestPiece) continue;
+    const Eigen::Vector4d last =
+        values[rate] * in_temperature_.col(kTemperatureNodes - 1);
+    if (weighted(last) > tolerance_) return {};
   }
-  return {low, high, values * node_transform(kTemperatureNodes).transpose()};
+  Piece piece{low, high, Eigen::MatrixXd(kChannels * rates, kTemperatureNodes)};
+  for (int k = 0; k < rates; ++k) {
+    Eigen::Matrix<double, kChannels, kTemperatureNodes> sum =
+        values[0] * in_rate_(0, k);
+    for (int i = 1; i < rates; ++i)
+      sum += values[static_cast<std::size_t>(i)] * in_rate_(i, k);
+    piece.coefficients.middleRows<kChannels>(kChannels * k) =
+        sum * in_temperature_;
+  }
+  return piece;
 }
 
 double StaticMap::error(const Piece& piece) const {
@@ -122,27 +157,26 @@ double StaticMap::error(const Piece& piece) const {
   for (const double x : kProbes) {
     const double T =
         0.5 * (piece.low + piece.high) + 0.5 * (piece.high - piece.low) * x;
-    const ModalParameters modal =
-        modal_parameters(gyro_.device, gyro_.beam, T, gyro_.stiffness_trim);
-    const Collapsed in_rate = collapsed(piece, T);
+    const ModalParameters at_T = modal(T);
+    double guess = 0;
     for (const double rate : {0.0, -0.97 * rate_limit_, rate_limit_}) {
-      const Eigen::Array4d difference =
-          (evaluated(in_rate, rate) - exact(modal, rate))
-              .cwiseProduct(kChannelWeight)
-              .cwiseAbs();
-      largest = std::max(largest, difference.maxCoeff());
+      const Eigen::Vector4d want = exact(at_T, rate, guess);
+      const Channels have = channels(piece, {&T, 1}, {&rate, 1});
+      largest = std::max(
+          largest, weighted(have.at_rate.row(0).matrix().transpose() - want));
       if (rate_limit_ == 0) break;
+      guess = want(kFrequency);
     }
   }
   return largest;
 }
 
 void StaticMap::refine(double low, double high) {
-  constexpr double kSmallestPiece = 1e-3;  // [K]
-  Piece piece = fitted(low, high);
+  std::optional<Piece> piece = fitted(low, high);
   // The rest of the tolerance is left for the points between the probes.
-  if (high - low < kSmallestPiece || error(piece) <= 0.25 * tolerance_) {
-    pieces_.push_back(std::move(piece));
+  if (piece &&
+      (high - low < kSmallestPiece || error(*piece) <= 0.25 * tolerance_)) {
+    pieces_.push_back(std::move(*piece));
     return;
   }
   const double middle = 0.5 * (low + high);
@@ -150,22 +184,34 @@ void StaticMap::refine(double low, double high) {
   refine(middle, high);
 }
 
-StaticMap::Collapsed StaticMap::collapsed(const Piece& piece, double T) const {
-  Eigen::Matrix<double, kTemperatureNodes, 1> basis;
-  chebyshev_basis((2 * T - piece.low - piece.high) / (piece.high - piece.low),
-                  basis);
-  return piece.coefficients * basis;
-}
+StaticMap::Channels StaticMap::channels(const Piece& piece,
+                                        std::span<const double> T,
+                                        std::span<const double> rate) const {
+  using Samples = Eigen::Map<const Eigen::ArrayXd>;
+  const auto n = static_cast<Eigen::Index>(T.size());
+  Lanes<kTemperatureNodes> over_T(n, kTemperatureNodes);
+  chebyshev_basis((2 * Samples(T.data(), n) - piece.low - piece.high) /
+                      (piece.high - piece.low),
+                  over_T);
+  Lanes<Eigen::Dynamic> over_rate(n, rate_degree_ + 1);
+  if (rate_degree_ > 0)
+    chebyshev_basis(Samples(rate.data(), n) / rate_limit_, over_rate);
 
-Eigen::Vector4d StaticMap::evaluated(const Collapsed& in_rate,
-                                     double rate) const {
-  Eigen::Vector4d sum = in_rate.head<kChannels>();
-  if (rate_degree_ == 0) return sum;
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxRateDegree + 1, 1> basis(
-      rate_degree_ + 1);
-  chebyshev_basis(rate / rate_limit_, basis);
-  for (int k = 1; k <= rate_degree_; ++k)
-    sum += basis(k) * in_rate.segment<kChannels>(kChannels * k);
+  Channels sum{Lanes<kChannels>(n, kChannels), Lanes<kChannels>(n, kChannels)};
+  Lanes<1> value(n);
+  for (int c = 0; c < kChannels * (rate_degree_ + 1); ++c) {
+    const int channel = c % kChannels, k = c / kChannels;
+    value.setConstant(piece.coefficients(c, 0));
+    for (int j = 1; j < kTemperatureNodes; ++j)
+      value += piece.coefficients(c, j) * over_T.col(j);
+    if (k == 0) {
+      sum.at_rate.col(channel) = sum.at_rest.col(channel) = value;
+      continue;
+    }
+    sum.at_rate.col(channel) += over_rate.col(k) * value;
+    if (k % 2 == 0)  // T_k(0) = 1, 0, -1, 0, 1, ...
+      sum.at_rest.col(channel) += (k % 4 == 0 ? 1.0 : -1.0) * value;
+  }
   return sum;
 }
 
@@ -176,18 +222,43 @@ const StaticMap::Piece& StaticMap::piece_at(double T) const {
   return *(after - 1);
 }
 
+BeamSignal StaticMap::limited(const Eigen::Vector4d& v) const {
+  const bool locked = v(3) <= voltage_limit_;
+  const double share = locked ? 1.0 : voltage_limit_ / v(3);
+  return {share * Complex(v(0), v(1)), v(kFrequency), share * v(3), locked};
+}
+
 StaticMap::Signals StaticMap::at(double T, double rate) const {
-  assert(T > pieces_.front().low - 1e-6 && T < pieces_.back().high + 1e-6);
-  assert(std::abs(rate) <= rate_limit_ * (1 + 1e-9));
-  const Collapsed in_rate = collapsed(piece_at(T), T);
-  const auto limited = [&](const Eigen::Vector4d& v) {
-    const bool locked = v(3) <= voltage_limit_;
-    const double share = locked ? 1.0 : voltage_limit_ / v(3);
-    return BeamSignal{share * Complex(v(0), v(1)), v(2), share * v(3), locked};
-  };
-  const BeamSignal at_rest = limited(evaluated(in_rate, 0));
-  if (rate == 0) return {at_rest, at_rest.demodulated};
-  return {limited(evaluated(in_rate, rate)), at_rest.demodulated};
+  Signals signals;
+  sample({&T, 1}, {&rate, 1}, {&signals, 1});
+  return signals;
+}
+
+void StaticMap::sample(std::span<const double> T, std::span<const double> rate,
+                       std::span<Signals> signals) const {
+  assert(rate.size() == T.size() && signals.size() == T.size());
+  std::size_t count = 0;
+  for (std::size_t first = 0; first < T.size(); first += count) {
+    const Piece& piece = piece_at(T[first]);
+    const bool last = &piece == &pieces_.back();
+    count = 1;
+    while (count < kBlock && first + count < T.size() &&
+           (&piece == &pieces_.front() || T[first + count] >= piece.low) &&
+           (last || T[first + count] < piece.high))
+      ++count;
+    const Channels c =
+        channels(piece, T.subspan(first, count), rate.subspan(first, count));
+    for (std::size_t i = 0; i < count; ++i) {
+      assert(T[first + i] > pieces_.front().low - 1e-6 &&
+             T[first + i] < pieces_.back().high + 1e-6);
+      assert(std::abs(rate[first + i]) <= rate_limit_ * (1 + 1e-9));
+      const auto row = static_cast<Eigen::Index>(i);
+      const BeamSignal at_rest = limited(c.at_rest.row(row));
+      signals[first + i] = {
+          rate[first + i] == 0 ? at_rest : limited(c.at_rate.row(row)),
+          at_rest.demodulated};
+    }
+  }
 }
 
 }  // namespace beamgyro

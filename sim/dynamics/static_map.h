@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "sim/dynamics/gyro.h"
@@ -10,8 +12,9 @@ namespace beamgyro {
 
 /// Static response of one gyro over a range of beam temperatures and rates,
 /// tabulated so that a sample costs some ten nanoseconds: Chebyshev polynomials
-/// in temperature on pieces that are halved until the table agrees with the
-/// exact solution (2.10), times one Chebyshev polynomial in rate.
+/// in temperature on pieces that end at the kinks of the materials and are
+/// halved until the table agrees with the exact solution (2.10), times one
+/// Chebyshev polynomial in rate.
 class StaticMap {
  public:
   /// Covers [low, high] [K] and rates up to +-`rate_limit` [rad/s]. The error
@@ -27,33 +30,47 @@ class StaticMap {
   /// T must lie in the tabulated range (to 1e-6 K), |rate| below its limit.
   Signals at(double T, double rate) const;
 
+  /// at() of every pair; the three spans are equally long.
+  void sample(std::span<const double> T, std::span<const double> rate,
+              std::span<Signals> signals) const;
+
   int pieces() const { return static_cast<int>(pieces_.size()); }
   int rate_degree() const { return rate_degree_; }
 
  private:
   // Re, Im of the demodulated signal, drive frequency, voltage.
   static constexpr int kChannels = 4;
-  static constexpr int kTemperatureNodes = 8;
-  using Collapsed = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4 * 12, 1>;
+  static constexpr int kTemperatureNodes = 10, kMaxRates = 12;
+  static constexpr Eigen::Index kBlock = 64;  // samples at a time
+  template <int kColumns>
+  using Lanes = Eigen::Array<double, Eigen::Dynamic, kColumns, 0, kBlock,
+                             kColumns == Eigen::Dynamic ? kMaxRates : kColumns>;
 
   struct Piece {
     double low, high;              // [K]
     Eigen::MatrixXd coefficients;  // (channel x rate degree) x temperature node
   };
+  struct Channels {  // one row a sample
+    Lanes<kChannels> at_rate, at_rest;
+  };
 
-  Eigen::Vector4d exact(const ModalParameters& modal, double rate) const;
-  Piece fitted(double low, double high) const;
+  ModalParameters modal(double T) const;
+  Eigen::Vector4d exact(const ModalParameters& modal, double rate,
+                        double guess = 0) const;
+  std::optional<Piece> fitted(double low, double high) const;
   double error(const Piece& piece) const;
   void refine(double low, double high);
   int needed_rate_degree(double low, double high) const;
-  Collapsed collapsed(const Piece& piece, double T) const;
-  Eigen::Vector4d evaluated(const Collapsed& in_rate, double rate) const;
+  Channels channels(const Piece& piece, std::span<const double> T,
+                    std::span<const double> rate) const;
+  BeamSignal limited(const Eigen::Vector4d& channels) const;
   const Piece& piece_at(double T) const;
 
   Gyro gyro_;
   double rate_limit_, tolerance_;
   double voltage_limit_;
   int rate_degree_ = 0;
+  Eigen::MatrixXd in_rate_, in_temperature_;  // node_transform() of each
   std::vector<Piece> pieces_;
 };
 

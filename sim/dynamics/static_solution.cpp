@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -21,50 +20,73 @@ Complex charge_of(const Vector2cd& coupling, const Vector2cd& u) {
   return coupling.transpose() * u;
 }
 
+// 1/z of a z whose square is far from both ends of a double's range; the
+// library's division looks after those too and takes several times as long.
+Complex reciprocal(Complex z) { return std::conj(z) / std::norm(z); }
+
+// Position takes the Euler force in.
 ModeForces forces_of(const ModalParameters& modal, const CaseMotion& motion) {
-  return mode_forces(modal.stiffness / modal.mass, modal.damping / modal.mass,
-                     modal.coriolis_mass / modal.mass, motion);
+  const double gain = modal.coriolis_mass / modal.mass;
+  ModeForces forces = mode_forces(modal.stiffness / modal.mass,
+                                  modal.damping / modal.mass, gain, motion);
+  forces.position += euler_force(gain, motion);
+  return forces;
 }
+
+Matrix2cd stiffness_at(double omega, double mass, const ModeForces& forces) {
+  Matrix2cd S;
+  S.real() = mass * (forces.position - omega * omega * Matrix2d::Identity());
+  S.imag() = mass * omega * forces.velocity;
+  return S;
+}
+
+// What Newton's method solves again and again.
+struct Problem {
+  const ModalParameters& modal;
+  ModeForces forces;
+  Complex turn;  // -e^{i(90 deg - phi_pll)}
+  bool rebalance;
+  double feedthrough;
+};
 
 // Response per volt of the drive and its derivative in omega.
 struct Response {
-  Vector2cd u, du;      // [m/V]
-  Complex balance = 0;  // V_B per volt of the drive
-  Complex lock;         // -Theta_F^T u e^{i(90 deg - phi_pll)}, real: locked
-  Complex lock_slope;   // d lock / d omega
+  Vector2cd u, du;                     // [m/V]
+  Complex balance = 0, d_balance = 0;  // V_B per volt of the drive
+  Complex lock;                        // turn Theta_F^T u, real: locked
+  Complex lock_slope;                  // d lock / d omega
 };
 
 // Adds to the response to the drive that of the V_B which nulls the charge.
-void rebalance(const ModalParameters& modal, double feedthrough,
-               const Matrix2cd& inverse, const Matrix2cd& slope, Response& r) {
-  const Vector2cd& readout = modal.coupling[kReadout];
-  const Vector2cd b = inverse * modal.coupling[kDamping];
+void rebalance(const Problem& problem, const Matrix2cd& inverse,
+               const Matrix2cd& slope, Response& r) {
+  const Vector2cd& readout = problem.modal.coupling[kReadout];
+  const Vector2cd b = inverse * problem.modal.coupling[kDamping];
   const Vector2cd db = -inverse * (slope * b);
-  const Complex gain = charge_of(readout, b);
-  r.balance = -(charge_of(readout, r.u) + feedthrough) / gain;
-  const Complex d_balance =
-      -(charge_of(readout, r.du) + r.balance * charge_of(readout, db)) / gain;
+  const Complex per_gain = reciprocal(charge_of(readout, b));
+  r.balance = -(charge_of(readout, r.u) + problem.feedthrough) * per_gain;
+  r.d_balance =
+      -(charge_of(readout, r.du) + r.balance * charge_of(readout, db)) *
+      per_gain;
   r.u += r.balance * b;
-  r.du += r.balance * db + d_balance * b;
+  r.du += r.balance * db + r.d_balance * b;
 }
 
-Response response(const ModalParameters& modal, double omega,
-                  const DriveLoop& loop, double feedthrough,
-                  const CaseMotion& motion) {
-  const Matrix2cd inverse = dynamic_stiffness(modal, omega, motion).inverse();
-  const Matrix2cd slope =
-      modal.mass *
-      (Complex(0, 1) * forces_of(modal, motion).velocity.cast<Complex>() -
-       2 * omega * Matrix2cd::Identity());
+Response response(const Problem& problem, double omega) {
+  const ModalParameters& modal = problem.modal;
+  const Matrix2cd S = stiffness_at(omega, modal.mass, problem.forces);
+  Matrix2cd inverse;
+  inverse << S(1, 1), -S(0, 1), -S(1, 0), S(0, 0);
+  inverse *= reciprocal(S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0));
+  Matrix2cd slope;
+  slope.real() = -2 * omega * modal.mass * Matrix2d::Identity();
+  slope.imag() = modal.mass * problem.forces.velocity;
   Response r;
   r.u = inverse * modal.coupling[kDrive];
   r.du = -inverse * (slope * r.u);
-  if (loop.mode == ReadoutMode::kForceRebalance) {
-    rebalance(modal, feedthrough, inverse, slope, r);
-  }
-  const Complex turn = std::polar(1.0, std::numbers::pi / 2 - loop.pll_phase);
-  r.lock = -turn * charge_of(modal.coupling[kFeedback], r.u);
-  r.lock_slope = -turn * charge_of(modal.coupling[kFeedback], r.du);
+  if (problem.rebalance) rebalance(problem, inverse, slope, r);
+  r.lock = problem.turn * charge_of(modal.coupling[kFeedback], r.u);
+  r.lock_slope = problem.turn * charge_of(modal.coupling[kFeedback], r.du);
   return r;
 }
 
@@ -72,38 +94,41 @@ Response response(const ModalParameters& modal, double omega,
 
 Matrix2cd dynamic_stiffness(const ModalParameters& modal, double omega,
                             const CaseMotion& motion) {
-  const ModeForces forces = forces_of(modal, motion);
-  const Matrix2d real = forces.position +
-                        euler_force(modal.coriolis_mass / modal.mass, motion) -
-                        omega * omega * Matrix2d::Identity();
-  return modal.mass * (real.cast<Complex>() +
-                       Complex(0, omega) * forces.velocity.cast<Complex>());
+  return stiffness_at(omega, modal.mass, forces_of(modal, motion));
 }
 
 StaticSolution static_solution(const ModalParameters& modal,
                                const DriveLoop& loop, double feedthrough,
-                               const CaseMotion& motion) {
+                               const CaseMotion& motion, double guess) {
   constexpr int kMaxIterations = 60;
-  constexpr double kTolerance = 1e-13;  // of the frequency, relative
-  double omega = std::sqrt(modal.stiffness(0, 0) / modal.mass);
+  // Of the half width: what the last step leaves is its square.
+  constexpr double kTolerance = 1e-7;
+  const Problem problem{modal, forces_of(modal, motion),
+                        -std::polar(1.0, std::numbers::pi / 2 - loop.pll_phase),
+                        loop.mode == ReadoutMode::kForceRebalance, feedthrough};
+  double omega =
+      guess > 0 ? guess : std::sqrt(modal.stiffness(0, 0) / modal.mass);
   const double half_width = modal.damping(0, 0) / (2 * modal.mass);
   for (int i = 0; i < kMaxIterations; ++i) {
-    const Response r = response(modal, omega, loop, feedthrough, motion);
-    const double slope = (r.lock_slope / r.lock).imag();
+    Response r = response(problem, omega);
+    const double slope = (r.lock_slope * reciprocal(r.lock)).imag();
     const double step =
         std::clamp(-std::arg(r.lock) / slope, -half_width, half_width);
     omega += step;
-    if (std::abs(step) > kTolerance * omega) continue;
+    if (!(std::abs(step) <= kTolerance * half_width)) continue;
 
+    r.u += step * r.du;
+    r.balance += step * r.d_balance;
     StaticSolution solution;
-    const double wanted = loop.feedback_amplitude /
-                          std::abs(charge_of(modal.coupling[kFeedback], r.u));
+    const double wanted =
+        loop.feedback_amplitude /
+        std::sqrt(std::norm(charge_of(modal.coupling[kFeedback], r.u)));
     solution.drive_frequency = omega;
     solution.amplitude_locked = wanted <= loop.voltage_limit;
     solution.drive_voltage = std::min(wanted, loop.voltage_limit);
     solution.amplitude = r.u * solution.drive_voltage;
     solution.signal =
-        loop.mode == ReadoutMode::kForceRebalance
+        problem.rebalance
             ? r.balance * solution.drive_voltage
             : charge_of(modal.coupling[kReadout], solution.amplitude) +
                   feedthrough * solution.drive_voltage;

@@ -38,10 +38,11 @@ Eigen::Matrix2cd dynamic_stiffness(const ModalParameters& modal, double omega,
 /// arg(-Theta_F^T u) = phi_pll - 90 deg, u = S^-1 Theta_D V_D, and the voltage
 /// at which |Theta_F^T u| has its set value (2.1, 2.10). With force rebalance
 /// V_B is part of the solution (2.5). Newton on the phase
-/// with its exact derivative. Throws std::runtime_error when the loop finds no
-/// frequency to lock to.
+/// with its exact derivative, from `guess` [rad/s] or, with 0, the drive mode's
+/// own frequency. Throws std::runtime_error when the loop finds no frequency to
+/// lock to.
 StaticSolution static_solution(const ModalParameters& modal,
                                const DriveLoop& loop, double feedthrough,
-                               const CaseMotion& motion);
+                               const CaseMotion& motion, double guess = 0);
 
 }  // namespace beamgyro

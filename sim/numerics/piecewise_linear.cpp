@@ -78,8 +78,10 @@ std::vector<double> PiecewiseLinear::sample(
   std::size_t next = 0;
   for (const double t : times) {
     while (next < time_.size() && time_[next] <= t) ++next;
+    if (next == time_.size()) break;
     values.push_back(between(next, t));
   }
+  values.resize(times.size(), value_.back());
   return values;
 }
 

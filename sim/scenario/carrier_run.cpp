@@ -216,7 +216,11 @@ double carrier_cost(const Scenario& scenario) {
 
 void simulate_carrier(const Scenario& scenario, const Device& device,
                       const RunKey& key, const BlockSink& on_block) {
-  const Gyro gyro = make_gyro(device);
+  simulate_carrier(scenario, make_gyro(device), key, on_block);
+}
+
+void simulate_carrier(const Scenario& scenario, const Gyro& gyro,
+                      const RunKey& key, const BlockSink& on_block) {
   require_rate(scenario, gyro);
   const Motion motion(scenario, gyro, key);
   const RunTemperatures temperatures(scenario, gyro, kThermalStep);
@@ -224,7 +228,7 @@ void simulate_carrier(const Scenario& scenario, const Device& device,
   std::optional<CarrierTrajectory> twin;
   if (!motion.rate_is_zero())
     twin.emplace(scenario, gyro, motion, temperatures, true);
-  RunRecorder recorder(scenario, device, key);
+  RunRecorder recorder(scenario, gyro.device, key);
   std::optional<SensingNoise> noise;
   if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
   const std::vector<double> times = sample_times(scenario);

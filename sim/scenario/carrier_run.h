@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "sim/device/device.h"
+#include "sim/dynamics/gyro.h"
 #include "sim/scenario/run_recorder.h"
 #include "sim/scenario/scenario.h"
 
@@ -12,6 +12,8 @@ namespace beamgyro {
 /// as in a quasi-static run and are held over kCarrierTick. Otherwise as
 /// simulate_envelope(). Throws std::invalid_argument for an output rate above a
 /// quarter of the drive frequency.
+void simulate_carrier(const Scenario& scenario, const Gyro& gyro,
+                      const RunKey& key, const BlockSink& on_block);
 void simulate_carrier(const Scenario& scenario, const Device& device,
                       const RunKey& key, const BlockSink& on_block);
 

@@ -14,12 +14,16 @@ namespace beamgyro {
 
 void simulate_envelope(const Scenario& scenario, const Device& device,
                        const RunKey& key, const BlockSink& on_block) {
-  const Gyro gyro = make_gyro(device);
+  simulate_envelope(scenario, make_gyro(device), key, on_block);
+}
+
+void simulate_envelope(const Scenario& scenario, const Gyro& gyro,
+                       const RunKey& key, const BlockSink& on_block) {
   const Motion motion(scenario, gyro, key);
   EnvelopeTrajectory trajectory(scenario, gyro, motion, false);
   std::optional<EnvelopeTrajectory> twin;
   if (!motion.rate_is_zero()) twin.emplace(scenario, gyro, motion, true);
-  RunRecorder recorder(scenario, device, key);
+  RunRecorder recorder(scenario, gyro.device, key);
   std::optional<SensingNoise> noise;
   if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
 

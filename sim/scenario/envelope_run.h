@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "sim/device/device.h"
+#include "sim/dynamics/gyro.h"
 #include "sim/scenario/run_recorder.h"
 #include "sim/scenario/scenario.h"
 
@@ -13,6 +13,8 @@ namespace beamgyro {
 /// run. Starts at rest at each power-on. `on_block` takes the recording block
 /// by block, so that memory does not grow with the run. Throws
 /// std::runtime_error when the drive loop does not lock.
+void simulate_envelope(const Scenario& scenario, const Gyro& gyro,
+                       const RunKey& key, const BlockSink& on_block);
 void simulate_envelope(const Scenario& scenario, const Device& device,
                        const RunKey& key, const BlockSink& on_block);
 

@@ -2,8 +2,10 @@
 #include "sim/scenario/quasistatic_run.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -11,16 +13,45 @@
 #include "sim/dynamics/static_map.h"
 #include "sim/scenario/run_temperatures.h"
 #include "sim/scenario/square_acceleration.h"
+#include "sim/signal/readout.h"
 
 namespace beamgyro {
 namespace {
 
 using Samples = std::vector<double>;
 
-void show(const Gyro& gyro, const BeamSignal& at_rate, const Complex& at_rest,
-          std::size_t k, RunSamples& samples) {
-  const Electronics board =
-      electronics_at(gyro, samples.temperature[kBoard][k]);
+// electronics_at() of temperatures near each other: the phase from that of the
+// nearest of a grid, by series that are exact to roundoff.
+class Board {
+ public:
+  explicit Board(const Gyro& gyro)
+      : readout_(gyro.device.readout), offset_(gyro.offset) {}
+
+  Electronics at(double temperature) {
+    constexpr double kGrid = 0x1p-7;  // [rad]
+    const double dT = temperature - kCalibrationTemperature;
+    const double phase = (readout_.phase_tc + readout_.phase_tc2 * dT) * dT;
+    const double nearest = kGrid * rounded(phase / kGrid);
+    if (nearest != phase_) {
+      phase_ = nearest;
+      turn_ = std::polar(1.0, nearest);
+    }
+    const double d = phase - nearest, d2 = d * d;
+    const double cos = 1 - d2 / 2 * (1 - d2 / 12);
+    const double sin = d * (1 - d2 / 6 * (1 - d2 / 20));
+    return {turn_ * Complex(cos, sin),
+            offset_ + (readout_.offset_tc + readout_.offset_tc2 * dT) * dT};
+  }
+
+ private:
+  const ReadoutParameters& readout_;
+  double offset_;
+  double phase_ = 0;
+  Complex turn_ = 1;
+};
+
+void show(const Electronics& board, const BeamSignal& at_rate,
+          const Complex& at_rest, std::size_t k, RunSamples& samples) {
   const Output shown = board.output(at_rate.demodulated);
   samples.output[k] = shown.rate;
   samples.quadrature[k] = shown.quadrature;
@@ -38,9 +69,17 @@ void show_rate(const Gyro& gyro, const Samples& rate, RunSamples& samples) {
   double fastest = 0;
   for (const double r : rate) fastest = std::max(fastest, std::abs(r));
   const StaticMap map(gyro, *coldest, *hottest, fastest);
-  for (std::size_t k = 0; k < rate.size(); ++k) {
-    const StaticMap::Signals s = map.at(beam[k], rate[k]);
-    show(gyro, s.at_rate, s.at_rest, k, samples);
+  Board board(gyro);
+  std::array<StaticMap::Signals, 256> block;
+  for (std::size_t k = 0; k < rate.size(); k += block.size()) {
+    const std::size_t count = std::min(block.size(), rate.size() - k);
+    map.sample(std::span(beam).subspan(k, count),
+               std::span(rate).subspan(k, count),
+               std::span(block).first(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      show(board.at(samples.temperature[kBoard][k + i]), block[i].at_rate,
+           block[i].at_rest, k + i, samples);
+    }
   }
 }
 
@@ -98,21 +137,29 @@ FilteredMotion filtered_motion(const Scenario& scenario, double corner,
     filtered.acceleration[i] =
         sampled(profile, kAccelerationPurposes[i], samples.acceleration[i]);
   }
-  filtered.square = filtered_square_acceleration(scenario, corner, key);
+  if (std::any_of(scenario.acceleration.begin(), scenario.acceleration.end(),
+                  moves))
+    filtered.square = filtered_square_acceleration(scenario, corner, key);
   return filtered;
 }
 
 // Cross rates and accelerations: the exact solution for every sample.
 void show_motion(const Gyro& gyro, const FilteredMotion& filtered,
                  RunSamples& samples) {
+  Board board(gyro);
   for (std::size_t k = 0; k < samples.time.size(); ++k) {
     const ModalParameters modal =
         modal_parameters(gyro.device, gyro.beam, samples.temperature[kBeam][k],
                          gyro.stiffness_trim);
     CaseMotion motion = filtered.at(k, gyro.device.mount);
     const BeamSignal at_rate = beam_signal(gyro, modal, motion);
-    motion.z = 0;
-    show(gyro, at_rate, beam_signal(gyro, modal, motion).demodulated, k,
+    Complex at_rest = at_rate.demodulated;
+    if (motion.z != 0) {
+      motion.z = 0;
+      at_rest =
+          beam_signal(gyro, modal, motion, at_rate.drive_frequency).demodulated;
+    }
+    show(board.at(samples.temperature[kBoard][k]), at_rate, at_rest, k,
          samples);
   }
 }
@@ -121,13 +168,17 @@ void show_motion(const Gyro& gyro, const FilteredMotion& filtered,
 
 Recording simulate_quasistatic(const Scenario& scenario, const Device& device,
                                const RunKey& key) {
+  return simulate_quasistatic(scenario, make_gyro(device), key);
+}
+
+Recording simulate_quasistatic(const Scenario& scenario, const Gyro& gyro,
+                               const RunKey& key) {
   if (scenario.fidelity != Fidelity::kQuasistatic) {
     throw std::invalid_argument(
         "fidelity: a scenario of another fidelity was given to the "
         "quasi-static "
         "run; expected \"quasistatic\"");
   }
-  const Gyro gyro = make_gyro(device);
   RunSamples samples;
   samples.time = sample_times(scenario);
   const std::size_t count = samples.time.size();
@@ -138,8 +189,8 @@ Recording simulate_quasistatic(const Scenario& scenario, const Device& device,
   samples.temperature =
       run_temperatures(scenario, gyro, samples.time).temperature;
 
-  const FilteredMotion filtered =
-      filtered_motion(scenario, device.readout.corner_frequency, key, samples);
+  const FilteredMotion filtered = filtered_motion(
+      scenario, gyro.device.readout.corner_frequency, key, samples);
   if (filtered.has_other_axes()) {
     show_motion(gyro, filtered, samples);
   } else {
@@ -150,7 +201,7 @@ Recording simulate_quasistatic(const Scenario& scenario, const Device& device,
                           kCalibrationTemperature)
           .total() /
       std::numbers::sqrt2;
-  return RunRecorder(scenario, device, key, sensing_noise)
+  return RunRecorder(scenario, gyro.device, key, sensing_noise)
       .block(std::move(samples));
 }
 

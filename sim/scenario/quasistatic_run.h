@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dataset/recording.h"
-#include "sim/device/device.h"
+#include "sim/dynamics/gyro.h"
 #include "sim/scenario/run_recorder.h"
 #include "sim/scenario/scenario.h"
 
@@ -15,6 +15,8 @@ namespace beamgyro {
 /// temperature and rate change slowly against the sense mode (27 ms) and the
 /// loops. Fills every column of a recording (docs/formats.md) and `status`; the
 /// texts and versions are the caller's.
+Recording simulate_quasistatic(const Scenario& scenario, const Gyro& gyro,
+                               const RunKey& key = {});
 Recording simulate_quasistatic(const Scenario& scenario, const Device& device,
                                const RunKey& key = {});
 

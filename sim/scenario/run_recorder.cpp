@@ -20,20 +20,6 @@ constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
 
 using Samples = std::vector<double>;
 
-// Power cycle of every sample, -1 while unpowered.
-std::vector<int> power_cycles(const Scenario& scenario, const Samples& times) {
-  std::vector<int> cycle(times.size(), -1);
-  for (std::size_t i = 0; i < scenario.powered.size(); ++i) {
-    const PowerInterval& interval = scenario.powered[i];
-    const auto first =
-        std::lower_bound(times.begin(), times.end(), interval.on);
-    const auto last = std::lower_bound(first, times.end(), interval.off);
-    std::fill(cycle.begin() + (first - times.begin()),
-              cycle.begin() + (last - times.begin()), static_cast<int>(i));
-  }
-  return cycle;
-}
-
 NoiseParameters with(NoiseParameters noise, double sensing_noise) {
   noise.angle_random_walk = std::hypot(noise.angle_random_walk, sensing_noise);
   return noise;
@@ -45,7 +31,8 @@ Samples scaled(Samples values, double factor, double offset = 0) {
 }
 
 Samples quantised(Samples values, double factor, double resolution) {
-  for (double& v : values) v = quantise(v * factor, resolution);
+  for (double& v : values) v *= factor;
+  quantise(values, resolution);
   return values;
 }
 
@@ -79,23 +66,32 @@ Recording RunRecorder::block(RunSamples&& samples) {
   block.fidelity = fidelity_name(scenario_.fidelity);
   block.seed = scenario_.seed;
   block.time = std::move(samples.time);
-  const std::vector<int> cycle = power_cycles(scenario_, block.time);
-  if (scenario_.noise_enabled) add_noise(cycle, samples.output);
-  block.status.assign(cycle.size(), 0);
-  for (std::size_t k = 0; k < cycle.size(); ++k) {
-    if (cycle[k] < 0) block.status[k] = kUnpowered;
+  if (scenario_.noise_enabled) noise_.add_next(samples.output);
+  block.status.assign(block.time.size(), kUnpowered);
+  for (const PoweredSamples& part : powered(block.time)) {
+    for (std::size_t k = part.first; k < part.last; ++k) {
+      block.status[k] = 0;
+      if (scenario_.noise_enabled) samples.output[k] += part.turn_on;
+    }
   }
   add_measured(block, samples);
   add_truth(block, samples);
   return block;
 }
 
-void RunRecorder::add_noise(const std::vector<int>& cycle, Samples& output) {
-  noise_.add_next(output);
-  for (std::size_t k = 0; k < output.size(); ++k) {
-    if (cycle[k] >= 0)
-      output[k] += turn_on_[static_cast<std::size_t>(cycle[k])];
+std::vector<RunRecorder::PoweredSamples> RunRecorder::powered(
+    const Samples& times) const {
+  std::vector<PoweredSamples> parts;
+  for (std::size_t i = 0; i < scenario_.powered.size(); ++i) {
+    const PowerInterval& interval = scenario_.powered[i];
+    const auto first =
+        std::lower_bound(times.begin(), times.end(), interval.on);
+    const auto last = std::lower_bound(first, times.end(), interval.off);
+    parts.push_back({static_cast<std::size_t>(first - times.begin()),
+                     static_cast<std::size_t>(last - times.begin()),
+                     turn_on_[i]});
   }
+  return parts;
 }
 
 void RunRecorder::add_measured(Recording& block, RunSamples& samples) {

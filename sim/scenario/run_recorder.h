@@ -34,7 +34,7 @@ struct RunSamples {
   std::vector<double> bias;                // output of the twin [rad/s]
   std::vector<double> drive_frequency;     // [Hz]
   std::vector<double> drive_voltage;       // [V]
-  std::vector<bool> locked;
+  std::vector<std::uint8_t> locked;
   std::array<std::vector<double>, kThermalNodeCount> temperature;  // [K]
 
   // The motion of the case: rate about the input axis, and the axes that the
@@ -60,7 +60,13 @@ class RunRecorder {
   Recording block(RunSamples&& samples);
 
  private:
-  void add_noise(const std::vector<int>& cycle, std::vector<double>& output);
+  // Samples of a block with power, first to before last.
+  struct PoweredSamples {
+    std::size_t first, last;
+    double turn_on;  // [rad/s]
+  };
+  std::vector<PoweredSamples> powered(const std::vector<double>& times) const;
+
   void add_measured(Recording& block, RunSamples& samples);
   void add_truth(Recording& block, RunSamples& samples) const;
 

@@ -11,11 +11,11 @@ void simulate(const Scenario& scenario, const Gyro& gyro, const RunKey& key,
               const BlockSink& on_block) {
   switch (scenario.fidelity) {
     case Fidelity::kQuasistatic:
-      return on_block(simulate_quasistatic(scenario, gyro.device, key));
+      return on_block(simulate_quasistatic(scenario, gyro, key));
     case Fidelity::kEnvelope:
-      return simulate_envelope(scenario, gyro.device, key, on_block);
+      return simulate_envelope(scenario, gyro, key, on_block);
     case Fidelity::kCarrier:
-      return simulate_carrier(scenario, gyro.device, key, on_block);
+      return simulate_carrier(scenario, gyro, key, on_block);
   }
 }
 

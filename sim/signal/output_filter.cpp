@@ -71,6 +71,8 @@ std::vector<double> OutputFilter::response(const PiecewiseLinear& input,
   std::size_t next = 0;  // first break after `now`
   while (next < breaks.size() && breaks[next] <= 0.0) ++next;
 
+  if (next == breaks.size()) return std::vector(count, input.value(0.0));
+
   double now = 0.0;
   double start = 0.0, start_value = 0.0, slope = 0.0;  // of the linear piece
   const auto begin_piece = [&](double value) {

@@ -10,11 +10,16 @@
 namespace beamgyro {
 
 double quantise(double value, double resolution) {
+  quantise({&value, 1}, resolution);
+  return value;
+}
+
+void quantise(std::span<double> values, double resolution) {
   if (!(resolution >= 0.0) || !std::isfinite(resolution))
     throw std::invalid_argument(
         fmt::format("resolution is {}, must be 0 or more", resolution));
-  return resolution == 0.0 ? value
-                           : resolution * std::round(value / resolution);
+  if (resolution == 0.0) return;
+  for (double& v : values) v = resolution * rounded(v / resolution);
 }
 
 Readout::Readout(double full_scale, int adc_bits, double scale_factor,
@@ -40,7 +45,7 @@ Readout::Readout(double full_scale, int adc_bits, double scale_factor,
 
 ReadoutSample Readout::sample(double rate) const {
   const double clipped = std::clamp(rate, -full_scale_, full_scale_);
-  const double ideal_code = std::round(clipped / lsb_);
+  const double ideal_code = rounded(clipped / lsb_);
   const double code = std::clamp(ideal_code, lowest_, highest_);
   return {offset_ + scale_factor_ * lsb_ * code,
           std::abs(rate) > full_scale_ || ideal_code > highest_};

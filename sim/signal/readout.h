@@ -1,12 +1,24 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
+#include <span>
+
 namespace beamgyro {
+
+/// std::round(), bit by bit, without a call, so that loops vectorise.
+inline double rounded(double value) {
+  const double size = std::abs(value);
+  double whole = (size + 0x1p52) - 0x1p52;  // nearest, halves to even
+  whole += size - whole == 0.5 ? 1.0 : 0.0;
+  return size < 0x1p52 ? std::copysign(whole, value) : value;
+}
 
 /// The multiple of `resolution` nearest to `value`, halves away from zero; a
 /// resolution of 0 leaves the value as it is. Both in the same unit. Throws
 /// std::invalid_argument for a resolution below 0 or not finite.
 double quantise(double value, double resolution);
+void quantise(std::span<double> values, double resolution);
 
 struct ReadoutSample {
   double voltage;  // [V]

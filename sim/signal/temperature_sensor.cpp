@@ -33,10 +33,9 @@ std::vector<double> TemperatureSensor::readings(
   std::vector<double> readings(temperature.size(), 0.0);
   if (parameters_.noise > 0.0) stream_.fill_normal(readings);
   for (std::size_t i = 0; i < readings.size(); ++i)
-    readings[i] =
-        quantise((temperature[i] - kZeroCelsius) + parameters_.offset +
-                     parameters_.noise * readings[i],
-                 parameters_.resolution);
+    readings[i] = (temperature[i] - kZeroCelsius) + parameters_.offset +
+                  parameters_.noise * readings[i];
+  quantise(readings, parameters_.resolution);
   return readings;
 }
 

@@ -4,7 +4,6 @@
 
 import json
 import re
-import shutil
 import subprocess
 import unittest
 
@@ -14,7 +13,6 @@ PAGE = (ROOT / "docs/compensation.md").read_text()
 
 
 class Guide(ProgramTest):
-    @unittest.skipUnless(shutil.which("cc"), "no C compiler")
     def test_from_a_raw_log_to_firmware(self):
         script = re.search(r"```sh\n(.*?)```", PAGE, re.DOTALL)[1]
         self.assertIn("g=build/release/beamgyro\n", script)

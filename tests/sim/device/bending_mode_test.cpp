@@ -46,7 +46,7 @@ std::vector<BeamElement> timoshenko_beam(int n) {
 Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> dense_modes(
     const std::vector<BeamElement>& elements) {
   const BeamMatrices beam = assemble_beam(elements);
-  return {MatrixXd(beam.stiffness), MatrixXd(beam.mass)};
+  return {beam.stiffness.dense(), beam.mass.dense()};
 }
 
 // b L of an eigenvalue w^2 of the bare beam.
@@ -125,7 +125,7 @@ TEST(Verification, V4TwoRigidModesAndABendingModeThatMovesNothing) {
   const VectorXd M_shape = matrices.mass * shape;
   for (const VectorXd& rigid : {shift, turn}) {
     EXPECT_LT((matrices.stiffness * rigid).norm(),
-              1e-9 * MatrixXd(matrices.stiffness).norm() * rigid.norm());
+              1e-9 * matrices.stiffness.dense().norm() * rigid.norm());
     const double inertia =
         std::sqrt(rigid.dot(matrices.mass * rigid) * shape.dot(M_shape));
     EXPECT_LT(std::abs(rigid.dot(M_shape)) / inertia, 1e-9);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "tests/sim/device/nominal_device.h"
 
@@ -46,6 +47,34 @@ TEST_P(StaticMapAccuracy, AgreesWithTheExactSolutionEverywhere) {
 
 INSTANTIATE_TEST_SUITE_P(RateLimits, StaticMapAccuracy,
                          testing::Values(0.0, 2.0, 120.0, 1000.0));
+
+TEST(StaticMap, ManySamplesAtATimeAreThoseOneByOne) {
+  const double limit = 120 * kDegree;
+  const StaticMap map(make_gyro(nominal_device()), 228, 335, limit);
+  std::vector<double> T(1000), rate(1000);
+  for (std::size_t k = 0; k < T.size(); ++k) {
+    const auto x = static_cast<double>(k);
+    T[k] = k % 7 == 0 ? 311.15 : 228 + 0.107 * x;  // also a border, and back
+    rate[k] = k % 5 == 0 ? 0 : limit * std::sin(x);
+  }
+  std::vector<StaticMap::Signals> signals(T.size());
+  map.sample(T, rate, signals);
+  for (std::size_t k = 0; k < T.size(); ++k) {
+    const StaticMap::Signals one = map.at(T[k], rate[k]);
+    EXPECT_EQ(signals[k].at_rate.demodulated, one.at_rate.demodulated) << k;
+    EXPECT_EQ(signals[k].at_rate.drive_frequency, one.at_rate.drive_frequency);
+    EXPECT_EQ(signals[k].at_rate.drive_voltage, one.at_rate.drive_voltage);
+    EXPECT_EQ(signals[k].at_rest, one.at_rest) << k;
+  }
+}
+
+// Halving towards a kink would take some twenty pieces for each.
+TEST(StaticMap, PiecesEndAtTheKinksOfTheMaterials) {
+  const Gyro gyro =
+      make_gyro(nominal_device({"bond.glass_transition_degC=41.234",
+                                "mount.glass_transition_degC=-23.456"}));
+  EXPECT_LT(StaticMap(gyro, 228, 355, 0).pieces(), 30);
+}
 
 TEST(StaticMap, AVoltageLimitActsAsInTheExactSolution) {
   const Gyro gyro = make_gyro(nominal_device({"drive.voltage_limit_V=0.9"}));

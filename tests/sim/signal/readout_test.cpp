@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace beamgyro {
 namespace {
@@ -18,6 +21,27 @@ TEST(Quantise, GivesTheNearestMultipleWithHalvesAwayFromZero) {
   EXPECT_EQ(quantise(0.1, 0.25), 0.0);
   EXPECT_EQ(quantise(1.0 / 3.0, 0.0), 1.0 / 3.0);
   EXPECT_TRUE(std::isnan(quantise(NAN, 0.25)));
+}
+
+TEST(Rounded, IsTheRoundingOfTheStandardLibraryBitByBit) {
+  std::vector<double> values = {0.0,      0.49999999999999994,
+                                0x1p51,   0x1p51 + 0.5,
+                                0x1p52,   0x1p52 - 0.5,
+                                0x1p53,   1e300,
+                                INFINITY, NAN,
+                                5e-324};
+  for (int i = 0; i < 1000; ++i) {
+    values.push_back(0.5 * i);
+    values.push_back(std::nextafter(0.5 * i, 1e9));
+    values.push_back(0.37 * i * i);
+  }
+  for (const double value : values) {
+    for (const double signed_value : {value, -value}) {
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(rounded(signed_value)),
+                std::bit_cast<std::uint64_t>(std::round(signed_value)))
+          << signed_value;
+    }
+  }
 }
 
 TEST(Quantise, RejectsABadResolution) {
