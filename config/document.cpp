@@ -85,10 +85,11 @@ ConfigDocument ConfigDocument::parse(std::string text,
   return ConfigDocument(std::move(state));
 }
 
-ConfigDocument ConfigDocument::with(Overrides& overrides) const {
+ConfigDocument ConfigDocument::with(Overrides& overrides,
+                                    const std::string& name) const {
   auto state = std::make_shared<DocumentState>();
   state->path = state_->path;
-  state->name = state_->name;
+  state->name = name.empty() ? state_->name : name;
   state->text = state_->text;
   state->file_root = state_->file_root;
   state->root = *state_->file_root;

@@ -26,8 +26,9 @@ class ConfigDocument {
                               Overrides& overrides);
   static ConfigDocument parse(std::string_view text, const std::string& name);
 
-  /// The same text with other overrides, as if nobody had read it yet.
-  ConfigDocument with(Overrides& overrides) const;
+  /// The same text with other overrides, as if nobody had read it yet; called
+  /// `name` in messages unless that is empty.
+  ConfigDocument with(Overrides& overrides, const std::string& name = "") const;
 
   /// The value of a dotted key, or null; does not count as reading it.
   const ConfigNode* value(std::string_view dotted_key) const;

@@ -33,6 +33,12 @@ void attempt(Result& result, const Work& work) {
   }
 }
 
+// Named without its folder: failures are data, and the same data wherever the
+// files lie.
+ConfigDocument drawn_from(const ConfigDocument& file, Overrides& overrides) {
+  return file.with(overrides, file.path().filename().string());
+}
+
 void add_as_built(const CampaignState& campaign, Device device,
                   Overrides& overrides) {
   const Trims& trims = campaign.trims;
@@ -95,10 +101,10 @@ VirtualDevice Campaign::device(std::uint32_t index) const {
   Overrides overrides = overrides_of(plan, drawn.values);
   attempt(result, [&] {
     const ConfigDocument& document = *state_->device_document;
-    Device device = read_device(document.with(overrides));
+    Device device = read_device(drawn_from(document, overrides));
     if (state_->base_gyro) {
       add_as_built(*state_, device, overrides);
-      device = read_device(document.with(overrides));
+      device = read_device(drawn_from(document, overrides));
     }
     result.device = device;
   });

@@ -276,8 +276,9 @@ class CampaignReader {
     for (const std::filesystem::path& file : profile_files(document)) {
       if (!is_new(file)) continue;
       state_.sources.push_back({file, read_text_file(file)});
-      state_.profiles.emplace(file.lexically_normal(),
-                              parse_csv(state_.sources.back().text, file));
+      state_.profiles.emplace(
+          file.lexically_normal(),
+          parse_csv(state_.sources.back().text, file.filename()));
     }
   }
 

@@ -170,8 +170,8 @@ ReadoutParameters read_readout(const ConfigTable& readout) {
       .offset_trim = rate("offset_trim_deg_per_s"),
       .scale_factor =
           readout.number("scale_factor_V_per_deg_per_s", positive()) / kDegree,
-      .scale_factor_error = readout.number_or("scale_factor_error", 0,
-                                              {-0.5, 0.5, true, true}),
+      .scale_factor_error =
+          readout.number_or("scale_factor_error", 0, {-0.5, 0.5, true, true}),
       .offset = readout.number("offset_V"),
       .full_scale =
           readout.number("full_scale_deg_per_s", {0, 1e4, true, false}) *

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <optional>
 
+#include "config/config_node.h"
 #include "tests/config/rejection.h"
 
 namespace beamgyro {
@@ -70,6 +71,47 @@ TEST(Document, ATableOutlivesItsDocumentAndItsOverrides) {
     beam = document.root().table("beam");
   }
   EXPECT_EQ(beam->number("x"), 3.0);
+}
+
+TEST(Document, CopiesWithOtherOverridesStartUnread) {
+  Overrides first({"a.x=2"}), second({"a.y=3"});
+  const ConfigDocument document =
+      ConfigDocument::parse("[a]\nx = 1\ny = 1\n", "d.toml", first);
+  EXPECT_EQ(document.root().table("a").number("x"), 2);
+  const ConfigDocument copy = document.with(second);
+  EXPECT_EQ(copy.root().table("a").number("x"), 1);
+  EXPECT_FALSE(second.all_used());
+  EXPECT_EQ(copy.root().table("a").number("y"), 3);
+  EXPECT_TRUE(second.all_used());
+  EXPECT_EQ(document.root().table("a").number("y"), 1);
+  EXPECT_EQ(copy.text(), document.text());
+}
+
+TEST(Document, FindsTheValueOfADottedKey) {
+  const ConfigDocument document =
+      ConfigDocument::parse("[a.b]\nc = [1, 2]\n", "d.toml");
+  ASSERT_NE(document.value("a.b.c"), nullptr);
+  EXPECT_EQ(document.value("a.b.c")->children.size(), 2u);
+  EXPECT_EQ(document.value("a.c"), nullptr);
+  EXPECT_EQ(document.value("a.b.c.d"), nullptr);
+  EXPECT_THROW(document.reject_unknown_keys(), std::invalid_argument);
+}
+
+TEST(Document, ArraysOfTablesAreReadAndCheckedOneByOne) {
+  const ConfigDocument document = ConfigDocument::parse(
+      "[[run]]\nx = 1\n[[run]]\nx = 2\ny = 3\n", "d.toml");
+  const std::vector<ConfigTable> runs = document.root().tables("run");
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_EQ(runs[1].keys(), (std::vector<std::string>{"x", "y"}));
+  for (const ConfigTable& run : runs) run.number("x");
+  EXPECT_EQ(rejection([&] { document.reject_unknown_keys(); }),
+            "d.toml:5:1: run[1].y: unknown key; [run[1]] takes x");
+  EXPECT_TRUE(document.root().tables("none").empty());
+  EXPECT_EQ(rejection([] {
+              ConfigDocument::parse("run = [1]", "d.toml").root().tables("run");
+            }),
+            "d.toml:1:7: run: 1 is wrong here; expected an array of tables "
+            "[[run]]");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "config/config_node.h"
 #include "config/document.h"
 #include "tests/config/rejection.h"
 
@@ -171,6 +172,43 @@ TEST(Overrides, TheSameKeyTwiceIsRejected) {
 TEST(Overrides, TextHoldsOneArgumentPerLineInTheOrderGiven) {
   EXPECT_EQ(Overrides({"b.x=1", "a=\"q\""}).text(), "b.x=1\na=\"q\"\n");
   EXPECT_EQ(Overrides().text(), "");
+}
+
+// A value added as a node reads as its text on the command line does.
+TEST(Overrides, AddedValuesReadBackFromTheirText) {
+  const ConfigDocument values = ConfigDocument::parse(
+      "a = [0.1, 1e300, -5.0, 1e-5, 3]\nb = \"q\\\"\\\\\\t\"\nc = {d = true, "
+      "\"e f\" = [[1, 2]]}\n",
+      "values.toml");
+  Overrides added;
+  for (const char* key : {"a", "b", "c"})
+    added.add({key}, values.root().value(key));
+  EXPECT_EQ(
+      added.text(),
+      "a=[0.1, 1e+300, -5.0, 1e-05, 3]\nb=\"q\\\"\\\\\\u0009\"\nc={\"d\" = "
+      "true, \"e f\" = [[1, 2]]}\n");
+  Overrides typed({"a=[0.1, 1e+300, -5.0, 1e-05, 3]", "b=\"q\\\"\\\\\\u0009\"",
+                   "c={\"d\" = true, \"e f\" = [[1, 2]]}"});
+  for (Overrides* set : {&added, &typed}) {
+    const ConfigDocument document = ConfigDocument::parse("", "x.toml", *set);
+    const ConfigTable& root = document.root();
+    EXPECT_EQ(root.numbers("a"),
+              (std::vector<double>{0.1, 1e300, -5, 1e-5, 3}));
+    EXPECT_EQ(root.text("b"), "q\"\\\t");
+    EXPECT_TRUE(root.table("c").flag("d"));
+    EXPECT_EQ(root.table("c").rows("e f", 2)[0][1], 2);
+  }
+}
+
+TEST(Overrides, AnAddedValueIsBlamedAtItsPlace) {
+  Overrides set;
+  set.add({"beam", "x"}, number_node(-1), "c.toml:3:4");
+  const ConfigDocument document = ConfigDocument::parse("", "x.toml", set);
+  EXPECT_EQ(
+      rejection([&] { document.root().table("beam").number("x", positive()); }),
+      "c.toml:3:4: beam.x: -1 is out of range; expected a number > 0");
+  EXPECT_TRUE(set.all_used());
+  EXPECT_EQ(set.keys_asked(), (std::vector<std::string>{"beam", "beam.x"}));
 }
 
 }  // namespace

@@ -33,6 +33,19 @@ def keys(table, prefix=""):
             yield prefix + key
 
 
+def campaign_keys(table):
+    """Keys of a campaign as the page writes them."""
+    for key, value in table.items():
+        if key == "tolerances":
+            yield 'tolerances."KEY"'
+        elif key in ("run", "correlated"):
+            for entry in value:
+                yield from (f'{key}.vary."KEY"' if part == "vary"
+                            else f"{key}.{part}" for part in entry)
+        else:
+            yield from keys({key: value})
+
+
 def shipped(pattern):
     for path in sorted((ROOT / "scenarios").glob(pattern)):
         yield path, tomllib.loads(path.read_text())
@@ -49,6 +62,13 @@ class Formats(ProgramTest):
                 for key in keys(table):
                     with self.subTest(f"{path.name}: {key}"):
                         self.assertIn(key, documented)
+
+    def test_every_key_of_the_shipped_campaigns_is_documented(self):
+        documented = rows(section("Campaign file"))
+        for path, table in shipped("campaigns/*.toml"):
+            for key in campaign_keys(table):
+                with self.subTest(f"{path.name}: {key}"):
+                    self.assertIn(key, documented)
 
     def test_every_device_key_without_a_default_is_required(self):
         text = (ROOT / "scenarios/devices/nominal.toml").read_text()

@@ -134,8 +134,6 @@ std::vector<BadCase> bad_heads() {
        "does not divide"},
       {"Precision", campaign_text("[output]\nprecision = \"double\"\n"),
        "output.precision"},
-      {"NoVariables", campaign_text("[output]\nvariables = []\n"),
-       "[] is empty"},
       {"CorrelatedUnknown",
        with_tolerances(kTgPair + "keys = [\"mount.glass_transition_degC\", "
                                  "\"bond.glass_transition_deg\"]\n"
@@ -155,9 +153,6 @@ std::vector<BadCase> bad_heads() {
       {"CorrelatedNotSymmetric",
        with_tolerances(kTgPair + kBothTg + "matrix = [[1, 0.1], [0.2, 1]]\n"),
        "not symmetric"},
-      {"CorrelatedRows",
-       with_tolerances(kTgPair + kBothTg + "matrix = [[1, 0.1]]\n"),
-       "1 rows for 2 keys"},
       {"CorrelatedTwice",
        with_tolerances(kTgPair + kBothTg + "correlation = 0.5\n" +
                        "[[correlated]]\n" + kBothTg + "correlation = 0.5\n"),
@@ -231,9 +226,6 @@ std::vector<BadCase> bad_tolerances() {
       bad_distribution("WeightCount",
                        "{ discrete = { values = [1, 2], weights = [1] } }",
                        "expected an array of 2 numbers"),
-      bad_distribution("WeightsZero",
-                       "{ discrete = { values = [1, 2], weights = [0, 0] } }",
-                       "all are 0"),
       bad_distribution("WeightNegative",
                        "{ discrete = { values = [1, 2], weights = [2, -1] } }",
                        "-1 is out of range"),

@@ -151,6 +151,36 @@ TEST(Draws, WhatAFileWouldRefuseIsAFailureOfTheDevice) {
   EXPECT_GT(failures, 4);  // 31 % of 40
 }
 
+// A failure is data: it says the same wherever the files lie.
+TEST(Draws, FailuresNameFilesWithoutTheirFolder) {
+  const CampaignFolder folder;
+  folder.write("rest.toml",
+               "name = \"rest\"\ndevice = \"nominal.toml\"\nfidelity = "
+               "\"quasistatic\"\nduration_s = 10\noutput_rate_Hz = 10\nseed = "
+               "7\n[ambient]\nfile = \"hot.csv\"\n");
+  folder.write("hot.csv", "time_s,temperature_degC\n0,290\n");
+  const Campaign c = folder.campaign(campaign_text(
+      "[tolerances]\n\"beam.side_m\" = { discrete = { values = [0.003, 0.0035, "
+      "0.0021] } }\n\"patches.width_m\" = { discrete = { values = [0.002, "
+      "0.0029] } }\n",
+      "", "ambient_offset_K = { uniform = { low = -40, high = 40 } }\n"));
+  int devices = 0, runs = 0;
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    const std::string unit = c.device(i).failure, run = c.run(0, i).failure;
+    if (!unit.empty()) ++devices;
+    if (!run.empty()) ++runs;
+    EXPECT_EQ(unit.find(folder.path().string()), std::string::npos) << unit;
+    EXPECT_EQ(run.find(folder.path().string()), std::string::npos) << run;
+    if (!run.empty()) {
+      EXPECT_EQ(run,
+                "hot.csv:2: temperature_degC 290 is out of range; expected " +
+                    run.substr(run.find("a number in")));
+    }
+  }
+  EXPECT_GT(devices, 2);  // one in six
+  EXPECT_GT(runs, 6);     // three in eight
+}
+
 TEST(Draws, RunsVaryAndShiftTheirAmbient) {
   const CampaignFolder folder;
   const Campaign c = folder.campaign(campaign_text(

@@ -123,5 +123,26 @@ INSTANTIATE_TEST_SUITE_P(
                     "chamber.stirred"},
         BadScenario{kAmbient, "[chamber]\nstired=true\n", "stirred"}));
 
+TEST(ScenarioFile, AnAmbientOffsetShiftsEveryForm) {
+  const auto at = [](const std::string& ambient, double t) {
+    return scenario_from("", ambient + "offset_K = -10\n").ambient.value(t);
+  };
+  EXPECT_DOUBLE_EQ(at("[ambient]\nconstant_degC = 25\n", 0), 288.15);
+  EXPECT_DOUBLE_EQ(at("[ambient]\npoints = [[0, 20], [10, 30]]\n", 5), 288.15);
+  EXPECT_DOUBLE_EQ(at("[ambient]\nsoaks = {temperatures_degC = [40, 20], "
+                      "hold_s = 5, ramp_K_per_min = 60}\n",
+                      15),
+                   293.15);
+}
+
+TEST(ScenarioFile, TheShiftedAmbientStaysInRange) {
+  EXPECT_THROW(
+      scenario_from("", "[ambient]\nconstant_degC = 290\noffset_K = 11\n"),
+      std::invalid_argument);
+  EXPECT_THROW(
+      scenario_from("", "[ambient]\nconstant_degC = 25\noffset_K = 101\n"),
+      std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace beamgyro
