@@ -109,7 +109,7 @@ class Check {
   void check_file(const Listed& file) {
     const fs::path path = directory_ / file.file;
     std::error_code error;
-    const fs::file_status status = fs::symlink_status(path, error);
+    const fs::file_status status = fs::status(path, error);
     if (!fs::exists(status)) return add(file.file, "is missing", file.index);
     if (!fs::is_regular_file(status))
       return add(file.file, "is no ordinary file", file.index);

@@ -71,45 +71,38 @@ template <class Count>
                      kFill<Count> + 1, std::numeric_limits<Count>::max()));
 }
 
+template <class Value>
+void put(Value value, std::byte* out) {
+  std::memcpy(out, &value, sizeof value);
+}
+
 template <class Count>
-void encode_counts(const SetVariable& variable,
-                   const std::vector<double>& values, std::size_t step,
-                   Count* out) {
-  const double scale = variable.scale_factor, offset = variable.add_offset;
-  for (std::size_t k = 0; k < values.size(); k += step, ++out) {
-    const double x = (values[k] - offset) / scale;
-    if (is_count<Count>(x)) {
-      const double count = rounded(x);
-      *out = count <= kFill<Count> ? static_cast<Count>(kFill<Count> + 1)
-                                   : static_cast<Count>(count);
-    } else if (std::isnan(values[k])) {
-      *out = kFill<Count>;
-    } else {
-      refuse_counts<Count>(variable, values[k], k);
-    }
+Count encoded_count(const SetVariable& variable, double value,
+                    std::size_t sample) {
+  const double x = (value - variable.add_offset) / variable.scale_factor;
+  if (is_count<Count>(x)) {
+    const double count = rounded(x);
+    return count <= kFill<Count> ? static_cast<Count>(kFill<Count> + 1)
+                                 : static_cast<Count>(count);
   }
+  if (!std::isnan(value)) refuse_counts<Count>(variable, value, sample);
+  return kFill<Count>;
 }
 
 template <class Value>
 void encode(const SetVariable& variable, const std::vector<double>& values,
-            std::size_t step, Value* out) {
-  if constexpr (std::numeric_limits<Value>::is_integer) {
-    encode_counts(variable, values, step, out);
-  } else {
-    for (std::size_t k = 0; k < values.size(); k += step, ++out) {
-      *out = static_cast<Value>(values[k]);
-      if (std::isinf(*out))
+            std::size_t step, std::byte* out) {
+  for (std::size_t k = 0; k < values.size(); k += step, out += sizeof(Value)) {
+    if constexpr (std::numeric_limits<Value>::is_integer) {
+      put(encoded_count<Value>(variable, values[k], k), out);
+    } else {
+      const auto value = static_cast<Value>(values[k]);
+      if (std::isinf(value))
         refuse(variable, values[k], k,
                fmt::format("at most {}", std::numeric_limits<Value>::max()));
+      put(value, out);
     }
   }
-}
-
-template <class Value>
-std::vector<std::byte> bytes_of(const std::vector<Value>& values) {
-  std::vector<std::byte> bytes(values.size() * sizeof(Value));
-  std::memcpy(bytes.data(), values.data(), bytes.size());
-  return bytes;
 }
 
 }  // namespace
@@ -155,16 +148,20 @@ std::vector<std::byte> encoded_values(const SetVariable& variable,
                                       const std::vector<double>& values,
                                       std::size_t step) {
   return with_type(variable.storage, [&](auto kind) {
-    std::vector<decltype(kind)> encoded((values.size() + step - 1) / step);
-    encode(variable, values, step, encoded.data());
-    return bytes_of(encoded);
+    const std::size_t count = (values.size() + step - 1) / step;
+    std::vector<std::byte> bytes(count * sizeof kind);
+    encode<decltype(kind)>(variable, values, step, bytes.data());
+    return bytes;
   });
 }
 
 std::vector<std::byte> fill_values(const SetVariable& variable,
                                    std::size_t count) {
   return with_type(variable.storage, [&](auto kind) {
-    return bytes_of(std::vector<decltype(kind)>(count, kFill<decltype(kind)>));
+    std::vector<std::byte> bytes(count * sizeof kind);
+    for (std::size_t k = 0; k < count; ++k)
+      put(kFill<decltype(kind)>, bytes.data() + k * sizeof kind);
+    return bytes;
   });
 }
 

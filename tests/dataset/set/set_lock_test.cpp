@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "dataset/set/set_lock.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <thread>
+#include <vector>
+
+#include "dataset/atomic_file.h"
+#include "tests/dataset/rejection.h"
+#include "tests/dataset/set/set_directory.h"
+
+namespace beamgyro {
+namespace {
+
+using Lock = SetDirectory;
+
+TEST_F(Lock, ASecondStartIsToldWhoIsThere) {
+  {
+    const SetLock lock(directory, "");
+    EXPECT_EQ(lock.stale(), "");
+    const std::string message =
+        rejection<std::runtime_error>([&] { SetLock(directory, ""); });
+    EXPECT_EQ(message, directory.string() + ": in use by host " + host_name() +
+                           ", process " + std::to_string(getpid()));
+  }
+  EXPECT_TRUE(names().empty());
+  SetLock(directory, "");
+}
+
+TEST_F(Lock, TasksExcludeThemselvesAndWorkOnTheWhole) {
+  {
+    const SetLock first(directory, "1-of-2");
+    const SetLock second(directory, "2-of-2");
+    EXPECT_THROW(SetLock(directory, "1-of-2"), std::runtime_error);
+    EXPECT_THROW(SetLock(directory, ""), std::runtime_error);
+    SetLock(directory, "3-of-3");
+    EXPECT_THROW(SetLock(directory, ""), std::runtime_error);
+  }
+  EXPECT_TRUE(names().empty());
+  const SetLock whole(directory, "");
+  EXPECT_THROW(SetLock(directory, "1-of-2"), std::runtime_error);
+}
+
+/// A process that locks, says so and never ends by itself.
+pid_t locking_process(const std::filesystem::path& directory,
+                      const std::string& task) {
+  int ends[2];
+  if (pipe(ends) != 0) return -1;
+  const pid_t child = fork();
+  if (child == 0) {
+    const SetLock lock(directory, task);
+    if (write(ends[1], "x", 1) == 1) pause();
+    _exit(1);
+  }
+  char ready = 0;
+  EXPECT_EQ(read(ends[0], &ready, 1), 1);
+  close(ends[0]);
+  close(ends[1]);
+  return child;
+}
+
+TEST_F(Lock, TheLockOfADeadProcessIsTakenOver) {
+  for (const char* task : {"", "1-of-2"}) {
+    const pid_t child = locking_process(directory, task);
+    EXPECT_THROW(SetLock(directory, task), std::runtime_error);
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    const SetLock lock(directory, task);
+    EXPECT_EQ(lock.stale(),
+              "host " + host_name() + ", process " + std::to_string(child));
+  }
+  EXPECT_TRUE(names().empty());
+}
+
+TEST_F(Lock, OfTwentyStartsExactlyOneWins) {
+  for (int round = 0; round < 20; ++round) {
+    int start[2], done[2];
+    ASSERT_EQ(pipe(start), 0);
+    ASSERT_EQ(pipe(done), 0);
+    std::vector<pid_t> children;
+    for (int i = 0; i < 20; ++i) {
+      children.push_back(fork());
+      if (children.back() != 0) continue;
+      close(start[1]);
+      close(done[1]);
+      char byte = 0;
+      if (read(start[0], &byte, 1) != 0) _exit(2);
+      try {
+        const SetLock lock(directory, "");
+        // Held until all have had their turn.
+        if (read(done[0], &byte, 1) != 0) _exit(2);
+        _exit(0);
+      } catch (const std::runtime_error&) {
+        _exit(1);
+      }
+    }
+    close(start[0]);
+    close(start[1]);
+    close(done[0]);
+    int losers = 0, status = 0;
+    while (losers < 19 && wait(&status) > 0)
+      losers += WIFEXITED(status) && WEXITSTATUS(status) == 1;
+    EXPECT_EQ(losers, 19);
+    close(done[1]);
+    ASSERT_GT(wait(&status), 0);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  }
+}
+
+// Every holder removes the file that the next ones have open already.
+TEST_F(Lock, NeverTwoAtOnceWhileItComesAndGoes) {
+  std::atomic<int> inside{0}, worst{0}, wins{0};
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 8; ++i) {
+      threads.emplace_back([&] {
+        for (int n = 0; n < 2000; ++n) {
+          try {
+            const SetLock lock(directory, "");
+            const int now = ++inside;
+            if (now > worst) worst = now;
+            ++wins;
+            std::this_thread::yield();
+            --inside;
+          } catch (const std::runtime_error&) {
+          }
+        }
+      });
+    }
+  }
+  EXPECT_EQ(worst, 1);
+  EXPECT_GT(wins, 0);
+  EXPECT_TRUE(names().empty());
+}
+
+TEST_F(Lock, AMissingDirectoryIsNamed) {
+  const std::filesystem::path none = directory / "none";
+  EXPECT_EQ(rejection<std::runtime_error>([&] { SetLock(none, ""); }),
+            (none / "set.lock").string() +
+                ": cannot lock: No such file or directory");
+}
+
+}  // namespace
+}  // namespace beamgyro
