@@ -25,7 +25,7 @@ MAY_INCLUDE = {
     "sim/device": FILES | NUMERICS | {"sim/thermal", "sim/signal"},
     "sim/dynamics": FILES | SIM - {"sim/scenario"},
     "sim/scenario": FILES | SIM,
-    "compensation": FILES,
+    "compensation": FILES | {"dataset/set"},
     "cli": FILES | SIM | {"compensation"},
     "bench": FILES | SIM | {"compensation"},
     "agreement": FILES | SIM | {"compensation"},  # of tests/ only
