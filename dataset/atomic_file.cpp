@@ -182,6 +182,10 @@ std::string host_name() {
   return text;
 }
 
+bool is_partial_file(const std::string& name) {
+  return writer_of(name).has_value();
+}
+
 void remove_dead_partial_files(const fs::path& directory, bool of_any_host) {
   std::error_code ignored;
   for (const fs::directory_entry& entry :

@@ -46,6 +46,9 @@ void write_text_file(const std::filesystem::path& path, std::string_view text);
 /// be called from a signal handler that ends the process.
 void remove_partial_files() noexcept;
 
+/// Whether a file of this name is one that some AtomicFile has not published.
+bool is_partial_file(const std::string& name);
+
 /// Removes the partial files that writers left in `directory` when they died:
 /// those of this host whose process is gone, and of any writer but this process
 /// if nobody else can be writing there.

@@ -1,13 +1,36 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
 namespace beamgyro {
 
-/// SHA-256 (FIPS 180-4) of `bytes`, as 64 lower-case hexadecimal digits.
+/// SHA-256 (FIPS 180-4) of bytes that come piece by piece.
+class Sha256 {
+ public:
+  Sha256();
+  ~Sha256();
+  Sha256(const Sha256&) = delete;
+  Sha256& operator=(const Sha256&) = delete;
+
+  void add(std::span<const std::byte> bytes);
+
+  /// Of all pieces, as 64 lower-case hexadecimal digits; the end of it.
+  std::string digits();
+
+ private:
+  struct State;
+
+  std::unique_ptr<State> state_;
+};
+
+/// The digits of `bytes`.
+std::string sha256(std::span<const std::byte> bytes);
 std::string sha256(std::string_view bytes);
 
 /// The same of a file's content. Throws as read_text_file().

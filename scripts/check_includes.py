@@ -39,6 +39,7 @@ ONE_HOME = [
      ("dataset/hdf5_", "dataset/set/hdf5_", "tests/dataset/hdf5_",
       "tests/dataset/set/hdf5_")),
     (r"libdeflate\.h", ("dataset/set/chunk_filters.cpp",)),
+    (r"openssl/", ("dataset/sha256.cpp",)),
     (r"toml\+\+/|toml\.hpp", ("config/",)),
     (r"CLI/", ("cli/",)),
     (r"ceres/", ("compensation/lbfgs_trainer.cpp",)),

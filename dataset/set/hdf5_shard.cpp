@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <atomic>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <stdexcept>
@@ -10,25 +9,13 @@
 
 #include "dataset/hdf5_id.h"
 #include "dataset/hdf5_write.h"
+#include "dataset/set/hdf5_image.h"
 #include "dataset/set/hdf5_variable.h"
 #include "dataset/set/shard.h"
 #include "dataset/set/shard_encoding.h"
 
 namespace beamgyro {
 namespace {
-
-/// A file that is only in memory.
-H5Id make_file() {
-  constexpr std::size_t kIncrement = std::size_t{1} << 20;  // [byte]
-  const H5Id access = access_properties();
-  check_hdf5(H5Pset_fapl_core(access, kIncrement, false), "stay in memory");
-  // HDF5 looks for a file of this name first, and tells open files apart by it.
-  static std::atomic<std::uint64_t> count{0};
-  const std::string name = fmt::format("/dev/null/shard-{}", count++);
-  return {H5Fcreate(name.c_str(), H5F_ACC_TRUNC,
-                    creation_properties(H5P_FILE_CREATE), access),
-          H5Fclose, "create the file"};
-}
 
 /// How a variable of rows of `length` values is stored.
 H5Id row_properties(bool compress, std::size_t length) {
@@ -66,10 +53,11 @@ std::string failures_text(const ShardHead& head,
 
 class ShardBuilder::Image {
  public:
-  explicit Image(const ShardHead& head) : head_(head), file_(make_file()) {
+  explicit Image(const ShardHead& head) : head_(head), file_(make_image()) {
     write_root_attributes(file_, head);
-    axes_.push_back(make_axis({"device", "1", "number of the device"},
-                              H5T_STD_I64LE, head.devices));
+    axes_.push_back(
+        make_axis({"device", "1", "number of the device", Role::kTruth},
+                  H5T_STD_I64LE, head.devices));
     axes_.push_back(
         make_axis({"time", "s", "time"}, H5T_IEEE_F64LE, head.time.size()));
     if (head.slow_step > 1) {
@@ -102,13 +90,7 @@ class ShardBuilder::Image {
          {"failures", failures}}};
     write_meta(file_, texts);
     close_variables();
-    check_hdf5(H5Fflush(file_, H5F_SCOPE_GLOBAL), "complete the file");
-    const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
-    check_hdf5(size < 0 ? -1 : 0, "size the file");
-    void* handle = nullptr;
-    check_hdf5(H5Fget_vfd_handle(file_, H5P_DEFAULT, &handle), "find the file");
-    return {*static_cast<const std::byte* const*>(handle),
-            static_cast<std::size_t>(size)};
+    return image_bytes(file_);
   }
 
  private:
@@ -133,14 +115,10 @@ class ShardBuilder::Image {
   }
 
   void make_flags() {
-    flags_.push_back(make_device_variable(
-        {"part", "1", "part of the split", Role::kTruth}, H5T_STD_U8LE));
-    write_flags(flags_.back(), 3, "train validation test");
-    flags_.push_back(make_device_variable(
-        {"device_status", "1", "what became of the device", Role::kTruth},
-        H5T_STD_U8LE));
-    write_flags(flags_.back(), 4,
-                "ok invalid_parameters no_convergence not_finite");
+    flags_.push_back(make_device_variable(part_about(), H5T_STD_U8LE));
+    write_part_flags(flags_.back());
+    flags_.push_back(make_device_variable(device_status_about(), H5T_STD_U8LE));
+    write_device_status_flags(flags_.back());
   }
 
   Row make_row(const VariableAbout& about, hid_t type, bool slow,
@@ -161,9 +139,7 @@ class ShardBuilder::Image {
   // In the order of encode(), status first.
   void make_rows() {
     constexpr std::uint8_t kOff = kUnpowered;
-    rows_.push_back(
-        make_row({"status", "1", "state of the gyro", Role::kMeasured},
-                 H5T_STD_U8LE, false, &kOff));
+    rows_.push_back(make_row(status_about(), H5T_STD_U8LE, false, &kOff));
     write_status_bits(rows_.back().variable);
     for (const SetVariable& about : head_.variables) {
       rows_.push_back(make_row(
@@ -209,9 +185,7 @@ class ShardBuilder::Image {
     write_all(axes_[0], "device", H5T_STD_I64LE, devices.data());
     write_all(axes_[1], "time", H5T_IEEE_F64LE, head_.time.data());
     if (head_.slow_step == 1) return;
-    std::vector<double> slow;
-    for (std::size_t k = 0; k < head_.time.size(); k += head_.slow_step)
-      slow.push_back(head_.time[k]);
+    const std::vector<double> slow = slow_times(head_);
     write_all(axes_[2], "truth_time", H5T_IEEE_F64LE, slow.data());
   }
 

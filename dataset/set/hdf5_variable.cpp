@@ -11,6 +11,19 @@
 #include "dataset/set/shard_encoding.h"
 
 namespace beamgyro {
+namespace {
+
+/// flag_values 0, 1, ... with their meanings.
+void write_flags(hid_t variable, std::size_t count, std::string_view meanings) {
+  std::vector<std::uint8_t> values(count);
+  std::iota(values.begin(), values.end(), std::uint8_t{0});
+  const hsize_t length = count;
+  write_attribute(variable, "flag_values", H5T_STD_U8LE, space_of({&length, 1}),
+                  values.data());
+  write_text(variable, "flag_meanings", meanings);
+}
+
+}  // namespace
 
 hid_t file_type(Storage storage) {
   switch (storage) {
@@ -63,13 +76,25 @@ void write_scaling(hid_t variable, const SetVariable& about) {
                   fill_values(about, 1).data());
 }
 
-void write_flags(hid_t variable, std::size_t count, std::string_view meanings) {
-  std::vector<std::uint8_t> values(count);
-  std::iota(values.begin(), values.end(), std::uint8_t{0});
-  const hsize_t length = count;
-  write_attribute(variable, "flag_values", H5T_STD_U8LE, space_of({&length, 1}),
-                  values.data());
-  write_text(variable, "flag_meanings", meanings);
+VariableAbout status_about() {
+  return {"status", "1", "state of the gyro", Role::kMeasured};
+}
+
+VariableAbout part_about() {
+  return {"part", "1", "part of the split", Role::kTruth};
+}
+
+VariableAbout device_status_about() {
+  return {"device_status", "1", "what became of the device", Role::kTruth};
+}
+
+void write_part_flags(hid_t part) {
+  write_flags(part, 3, "train validation test");
+}
+
+void write_device_status_flags(hid_t device_status) {
+  write_flags(device_status, 4,
+              "ok invalid_parameters no_convergence not_finite");
 }
 
 void write_root_attributes(hid_t file, const ShardHead& head) {

@@ -32,8 +32,13 @@ H5Id make_variable(hid_t file, const VariableAbout& about, hid_t type,
 /// What tells how the counts of an integer variable read.
 void write_scaling(hid_t variable, const SetVariable& about);
 
-/// flag_values 0, 1, ... with their meanings.
-void write_flags(hid_t variable, std::size_t count, std::string_view meanings);
+VariableAbout status_about();
+VariableAbout part_about();
+VariableAbout device_status_about();
+
+/// What tells the meanings of their values.
+void write_part_flags(hid_t part);
+void write_device_status_flags(hid_t device_status);
 
 void write_root_attributes(hid_t file, const ShardHead& head);
 

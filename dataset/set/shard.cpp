@@ -89,6 +89,13 @@ EncodedDevice encode_device(const ShardHead& head, const DeviceRow& row,
 
 }  // namespace
 
+std::vector<double> slow_times(const ShardHead& head) {
+  std::vector<double> times;
+  for (std::size_t k = 0; k < head.time.size(); k += head.slow_step)
+    times.push_back(head.time[k]);
+  return times;
+}
+
 std::size_t slow_length(const ShardHead& head) {
   return (head.time.size() + head.slow_step - 1) / head.slow_step;
 }

@@ -109,7 +109,8 @@ class ShardBuilder {
   std::unique_ptr<Image> image_;
 };
 
-/// Values over truth_time: every slow_step-th of `time_values`.
+/// truth_time: every slow_step-th time.
+std::vector<double> slow_times(const ShardHead& head);
 std::size_t slow_length(const ShardHead& head);
 
 /// Of a chunk of a row of `values` values: rows are cut into equal parts of up

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "dataset/hdf5_id.h"
+#include "dataset/hdf5_read.h"
+#include "dataset/recording_defect.h"
+#include "dataset/set/hdf5_variable.h"
+#include "dataset/set/shard_encoding.h"
+#include "dataset/set/shard_reader.h"
+
+namespace beamgyro {
+namespace {
+
+template <class Value>
+std::vector<Value> read_all(hid_t file, const std::string& name,
+                            H5T_class_t expected, hid_t memory_type,
+                            std::size_t length) {
+  const H5Id variable = open_variable(file, name);
+  check_type(variable, name, expected, sizeof(Value));
+  const hsize_t found = lengths_of(variable, name, 1).front();
+  if (length != 0 && found != length)
+    throw Hdf5Error(
+        fmt::format("{} has {} values; expected {}", name, found, length));
+  std::vector<Value> values(found);
+  check_hdf5(H5Dread(variable, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                     values.data()),
+             "read " + name);
+  return values;
+}
+
+int rank_of(hid_t variable, const std::string& name) {
+  const H5Id space(H5Dget_space(variable), H5Sclose, "open " + name);
+  return H5Sget_simple_extent_ndims(space);
+}
+
+double number_attribute(hid_t variable, const std::string& owner,
+                        const char* name) {
+  const std::string action =
+      fmt::format("read attribute {} of {}", name, owner);
+  const H5Id attribute(H5Aopen(variable, name, H5P_DEFAULT), H5Aclose, action);
+  const H5Id space(H5Aget_space(attribute), H5Sclose, action);
+  const H5Id type(H5Aget_type(attribute), H5Tclose, action);
+  if (H5Tget_class(type) != H5T_FLOAT ||
+      H5Sget_simple_extent_npoints(space) != 1)
+    throw Hdf5Error(
+        fmt::format("attribute {} of {} is no number", name, owner));
+  double value = 0;
+  check_hdf5(H5Aread(attribute, H5T_NATIVE_DOUBLE, &value), action);
+  return value;
+}
+
+Storage storage_of(hid_t variable, const std::string& name) {
+  const H5Id type(H5Dget_type(variable), H5Tclose, "open " + name);
+  for (const Storage storage : {Storage::kFloat64, Storage::kFloat32,
+                                Storage::kInt16, Storage::kInt32}) {
+    if (H5Tequal(type, file_type(storage)) > 0) return storage;
+  }
+  throw Hdf5Error(name + " has a type that no variable of a set has");
+}
+
+/// Where slow_step is not 1 the second value of truth_time is that time.
+std::size_t step_between(const std::vector<double>& time,
+                         const std::vector<double>& slow) {
+  std::size_t step = time.size();
+  if (slow.size() > 1) {
+    step = static_cast<std::size_t>(
+        std::lower_bound(time.begin(), time.end(), slow[1]) - time.begin());
+  }
+  for (std::size_t k = 0; k < slow.size(); ++k) {
+    if (k * step >= time.size() || time[k * step] != slow[k])
+      throw Hdf5Error("truth_time is not every n-th time");
+  }
+  return std::max<std::size_t>(step, 1);
+}
+
+/// Sets the reason of every failed device from its line of /meta/failures.
+void read_failures(const std::string& text, const ShardHead& head,
+                   std::vector<DeviceRow>& rows) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const auto json = nlohmann::json::parse(line, nullptr, false);
+    if (!json.is_object() || !json.contains("device") ||
+        !json["device"].is_number_unsigned() || !json.contains("reason") ||
+        !json["reason"].is_string())
+      throw Hdf5Error("/meta/failures has a line that names no device");
+    const auto device = json["device"].get<std::uint64_t>();
+    if (device < head.first_device || device - head.first_device >= rows.size())
+      throw Hdf5Error(fmt::format(
+          "/meta/failures names device {}, not in the file", device));
+    rows[device - head.first_device].failure = json["reason"];
+  }
+  for (DeviceRow& row : rows) {
+    if (row.device_status != kDeviceOk && row.failure.empty())
+      row.failure = "unknown";
+  }
+}
+
+}  // namespace
+
+class ShardFile::File {
+ public:
+  explicit File(const std::string& path)
+      : file_(open_hdf5_file(path, kSetFiletype, "file of a set",
+                             kSetFormatVersion)) {
+    read_head();
+    read_rows();
+  }
+
+  const ShardHead& head() const { return head_; }
+  const std::vector<DeviceRow>& rows() const { return rows_; }
+
+  Recording read(std::uint32_t position, bool slow) const {
+    Recording recording;
+    const std::size_t step = slow ? head_.slow_step : 1;
+    std::vector<std::byte> status =
+        row_bytes("status", H5T_STD_U8LE, 1, position, head_.time.size());
+    for (std::size_t k = 0; k < head_.time.size(); k += step) {
+      recording.time.push_back(head_.time[k]);
+      recording.status.push_back(std::to_integer<std::uint8_t>(status[k]));
+    }
+    for (const SetVariable& about : head_.variables) {
+      if (about.slow != slow) continue;
+      recording.columns.push_back(
+          {about.name, about.units, about.long_name, about.role,
+           decoded_values(about, row_bytes(about.name, file_type(about.storage),
+                                           width_of(about.storage), position,
+                                           recording.time.size()))});
+    }
+    recording.fidelity = head_.fidelity;
+    recording.seed = head_.seed;
+    recording.program_version = head_.program_version;
+    recording.git_revision = head_.git_revision;
+    recording.scenario_text = head_.scenario_text;
+    recording.device_text = head_.device_text;
+    recording.overrides_text = head_.overrides_text;
+    const std::string defect = recording_defect(recording);
+    if (!defect.empty())
+      throw Hdf5Error(
+          fmt::format("device {}: {}", head_.first_device + position, defect));
+    return recording;
+  }
+
+ private:
+  void read_head() {
+    head_.program_version =
+        text_attribute(file_, "the file", "beamgyro_version");
+    head_.git_revision = text_attribute(file_, "the file", "git_revision");
+    head_.fidelity = text_attribute(file_, "the file", "fidelity");
+    head_.run = text_attribute(file_, "the file", "run");
+    head_.seed = integer_attribute(file_, "seed");
+    head_.campaign_text = meta_text(file_, "campaign");
+    head_.scenario_text = meta_text(file_, "scenario");
+    head_.device_text = meta_text(file_, "device");
+    head_.overrides_text = meta_text(file_, "overrides");
+    head_.time =
+        read_all<double>(file_, "time", H5T_FLOAT, H5T_NATIVE_DOUBLE, 0);
+    const auto numbers = read_all<std::int64_t>(file_, "device", H5T_INTEGER,
+                                                H5T_NATIVE_INT64, 0);
+    if (numbers.empty() || numbers.front() < 0 || numbers.back() > UINT32_MAX)
+      throw Hdf5Error("device has no numbers of devices");
+    head_.devices = static_cast<std::uint32_t>(numbers.size());
+    head_.first_device = static_cast<std::uint32_t>(numbers.front());
+    for (const std::string& name : variable_names(file_)) read_about(name);
+    const std::string defect = shard_head_defect(head_);
+    if (!defect.empty()) throw Hdf5Error(defect);
+  }
+
+  void read_about(const std::string& name) {
+    if (name == "device" || name == "time" || name == "part" ||
+        name == "device_status")
+      return;
+    if (name == "truth_time") {
+      head_.slow_step = step_between(
+          head_.time,
+          read_all<double>(file_, name, H5T_FLOAT, H5T_NATIVE_DOUBLE, 0));
+      return;
+    }
+    const H5Id variable = open_variable(file_, name);
+    if (rank_of(variable, name) == 1) {
+      head_.parameters.push_back({name, text_attribute(variable, name, "units"),
+                                  text_attribute(variable, name, "long_name")});
+      return;
+    }
+    check_layout(variable, name);
+    const std::vector<hsize_t> lengths = lengths_of(variable, name, 2);
+    const bool slow = lengths[1] != head_.time.size();
+    if (lengths[0] != head_.devices ||
+        (slow && lengths[1] != slow_length(head_)))
+      throw Hdf5Error(
+          fmt::format("{} has {} x {} values", name, lengths[0], lengths[1]));
+    if (name == "status") {
+      check_type(variable, name, H5T_INTEGER, 1);
+      return;
+    }
+    SetVariable about{name, text_attribute(variable, name, "units"),
+                      text_attribute(variable, name, "long_name"),
+                      role_of(text_attribute(variable, name, "role"), name),
+                      storage_of(variable, name)};
+    about.slow = slow;
+    if (H5Aexists(variable, "scale_factor") > 0) {
+      about.scale_factor = number_attribute(variable, name, "scale_factor");
+      about.add_offset = number_attribute(variable, name, "add_offset");
+    }
+    head_.variables.push_back(about);
+  }
+
+  void check_layout(hid_t variable, const std::string& name) {
+    const H5Id properties(H5Dget_create_plist(variable), H5Pclose,
+                          "open " + name);
+    const H5D_layout_t layout = H5Pget_layout(properties);
+    if (layout == H5D_VIRTUAL)
+      throw Hdf5Error(
+          "a view, which does not tell missing files from missing "
+          "values; expected a file of the set");
+    head_.compress = layout == H5D_CHUNKED;
+  }
+
+  void read_rows() {
+    rows_.resize(head_.devices);
+    for (const DeviceVariable& about : head_.parameters) {
+      const auto values = read_all<double>(file_, about.name, H5T_FLOAT,
+                                           H5T_NATIVE_DOUBLE, rows_.size());
+      for (std::size_t i = 0; i < rows_.size(); ++i)
+        rows_[i].parameters.push_back(values[i]);
+    }
+    const auto parts = read_all<std::uint8_t>(file_, "part", H5T_INTEGER,
+                                              H5T_NATIVE_UINT8, rows_.size());
+    const auto statuses = read_all<std::uint8_t>(
+        file_, "device_status", H5T_INTEGER, H5T_NATIVE_UINT8, rows_.size());
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      rows_[i].part = parts[i];
+      rows_[i].device_status = statuses[i];
+    }
+    read_failures(meta_text(file_, "failures"), head_, rows_);
+  }
+
+  std::vector<std::byte> row_bytes(const std::string& name, hid_t type,
+                                   std::size_t width, std::uint32_t position,
+                                   std::size_t length) const {
+    const std::string action = "read " + name;
+    const H5Id variable = open_variable(file_, name);
+    const H5Id there(H5Dget_space(variable), H5Sclose, action);
+    const std::array<hsize_t, 2> start = {position, 0};
+    const std::array<hsize_t, 2> count = {1, length};
+    check_hdf5(H5Sselect_hyperslab(there, H5S_SELECT_SET, start.data(), nullptr,
+                                   count.data(), nullptr),
+               action);
+    std::vector<std::byte> bytes(length * width);
+    check_hdf5(H5Dread(variable, type, space_of(count), there, H5P_DEFAULT,
+                       bytes.data()),
+               action);
+    return bytes;
+  }
+
+  H5Id file_;
+  ShardHead head_;
+  std::vector<DeviceRow> rows_;
+};
+
+namespace {
+
+[[noreturn]] void reject(const std::filesystem::path& path,
+                         const std::string& why) {
+  throw std::invalid_argument(fmt::format("{}: {}", path.string(), why));
+}
+
+}  // namespace
+
+ShardFile::ShardFile(const std::filesystem::path& path) : path_(path) {
+  require_file(path, "file of a set");
+  const QuietHdf5 quiet;
+  try {
+    file_ = std::make_unique<File>(path.string());
+  } catch (const Hdf5Error& error) {
+    reject(path, error.what());
+  }
+}
+
+ShardFile::~ShardFile() {
+  const QuietHdf5 quiet;
+  file_.reset();
+}
+
+const ShardHead& ShardFile::head() const { return file_->head(); }
+
+const DeviceRow& ShardFile::row(std::uint32_t position) const {
+  return file_->rows().at(position);
+}
+
+Recording ShardFile::recording(std::uint32_t position) const {
+  return read(position, false);
+}
+
+Recording ShardFile::slow_recording(std::uint32_t position) const {
+  return read(position, true);
+}
+
+Recording ShardFile::read(std::uint32_t position, bool slow) const {
+  const DeviceRow& about = row(position);
+  if (!about.failure.empty())
+    reject(path_, fmt::format("device {} has no values: {}",
+                              head().first_device + position, about.failure));
+  const QuietHdf5 quiet;
+  try {
+    return file_->read(position, slow);
+  } catch (const Hdf5Error& error) {
+    reject(path_, error.what());
+  }
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+#include "dataset/set/set_check.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <span>
+#include <system_error>
+
+#include "dataset/atomic_file.h"
+#include "dataset/open_file.h"
+#include "dataset/sha256.h"
+
+namespace beamgyro {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file the manifest tells of; `bytes` is not known of a source.
+struct Listed {
+  std::string file, sha256;
+  std::optional<std::uint64_t> bytes;
+  std::optional<std::uint32_t> index;
+};
+
+std::vector<Listed> listed_files(const Manifest& manifest) {
+  std::vector<Listed> files;
+  for (const ManifestEntry& entry : manifest.entries)
+    files.push_back({entry.file, entry.sha256, entry.bytes, entry.index});
+  for (const ManifestView& view : manifest.views)
+    files.push_back({view.file, view.sha256, view.bytes, {}});
+  if (manifest.head) {
+    for (const SourceEntry& source : manifest.head->sources)
+      files.push_back({source.file, source.sha256, {}, {}});
+  }
+  return files;
+}
+
+class Check {
+ public:
+  Check(const fs::path& directory, const Manifest& manifest,
+        const CheckProgress& progress)
+      : directory_(directory),
+        manifest_(manifest),
+        files_(listed_files(manifest)),
+        progress_(progress) {
+    for (const Listed& file : files_) {
+      total_ += file.bytes.value_or(0);
+      names_by_hash_.emplace(file.sha256, file.file);
+    }
+  }
+
+  std::vector<SetDefect> run() {
+    check_manifest();
+    for (const Listed& file : files_) check_file(file);
+    check_directory();
+    return std::move(defects_);
+  }
+
+ private:
+  void add(const std::string& file, const std::string& what,
+           std::optional<std::uint32_t> index = {}) {
+    defects_.push_back({file, what, index});
+  }
+
+  void check_manifest() {
+    for (const std::size_t line : manifest_.damaged_lines)
+      add(kManifestName, fmt::format("line {} is damaged", line));
+    if (!manifest_.is_finished) add(kManifestName, "is not finished");
+    if (!manifest_.head) {
+      add(kManifestName,
+          "has no first line, which tells what belongs to the set");
+      return;
+    }
+    check_entries(*manifest_.head);
+    if (!manifest_.is_finished) return;
+    for (const std::string& run : manifest_.head->runs) {
+      const std::string name = view_name(run);
+      if (std::none_of(manifest_.views.begin(), manifest_.views.end(),
+                       [&](const auto& view) { return view.file == name; }))
+        add(name, "is not in the manifest");
+    }
+  }
+
+  void check_entries(const ManifestHead& head) {
+    std::vector<bool> found(file_count(head));
+    for (const ManifestEntry& entry : manifest_.entries) {
+      if (entry.index >= found.size()) {
+        add(entry.file,
+            fmt::format("is number {} of {} files", entry.index, found.size()));
+        continue;
+      }
+      found[entry.index] = true;
+      const ManifestEntry expected = expected_entry(head, entry.index);
+      if (entry.file != expected.file ||
+          entry.first_device != expected.first_device ||
+          entry.devices != expected.devices)
+        add(expected.file, "stands otherwise in the manifest", entry.index);
+    }
+    for (std::uint32_t index = 0; index < found.size(); ++index) {
+      if (!found[index])
+        add(expected_entry(head, index).file, "is not in the manifest", index);
+    }
+  }
+
+  void check_file(const Listed& file) {
+    const fs::path path = directory_ / file.file;
+    std::error_code error;
+    const fs::file_status status = fs::symlink_status(path, error);
+    if (!fs::exists(status)) return add(file.file, "is missing", file.index);
+    if (!fs::is_regular_file(status))
+      return add(file.file, "is no ordinary file", file.index);
+    const std::uintmax_t size = fs::file_size(path, error);
+    const std::string hash = hash_of(path, file);
+    if (hash == file.sha256 || hash.empty()) return;
+    const auto owner = names_by_hash_.find(hash);
+    if (owner != names_by_hash_.end()) {
+      add(file.file, fmt::format("holds the bytes of {}", owner->second),
+          file.index);
+    } else if (file.bytes && size != *file.bytes) {
+      add(file.file,
+          fmt::format("has {} bytes; expected {}", size, *file.bytes),
+          file.index);
+    } else {
+      add(file.file, "holds other bytes than were written", file.index);
+    }
+  }
+
+  /// Empty when the file cannot be read, which is a defect of its own.
+  std::string hash_of(const fs::path& path, const Listed& file) {
+    try {
+      OpenFile opened(path, O_RDONLY);
+      Sha256 hash;
+      for (std::size_t got = piece_.size(); got == piece_.size();) {
+        got = opened.read(piece_);
+        hash.add(std::span(piece_).first(got));
+        done_ += got;
+        if (progress_) progress_(done_, std::max(done_, total_));
+      }
+      return hash.digits();
+    } catch (const std::system_error& error) {
+      add(file.file, "cannot be read: " + error.code().message(), file.index);
+      return {};
+    }
+  }
+
+  void check_directory() {
+    std::set<std::string> known;
+    for (const Listed& file : files_) known.insert(file.file);
+    if (manifest_.head) {
+      for (std::uint32_t i = 0; i < file_count(*manifest_.head); ++i)
+        known.insert(expected_entry(*manifest_.head, i).file);
+      for (const std::string& run : manifest_.head->runs)
+        known.insert(view_name(run));
+    }
+    std::vector<std::string> extra;
+    std::error_code error;
+    for (fs::recursive_directory_iterator next(directory_, error), end;
+         !error && next != end; next.increment(error)) {
+      if (next->is_directory(error) && !next->is_symlink(error)) continue;
+      const std::string name =
+          next->path().lexically_relative(directory_).string();
+      const std::string kind = next->path().extension().string();
+      const bool is_ours =
+          kind == ".h5" || kind == ".nc" || name.starts_with("source/");
+      if (is_ours && !is_partial_file(name) && !known.contains(name))
+        extra.push_back(name);
+    }
+    std::sort(extra.begin(), extra.end());
+    for (const std::string& name : extra)
+      add(name, "does not belong to the set");
+  }
+
+  const fs::path& directory_;
+  const Manifest& manifest_;
+  std::vector<Listed> files_;
+  const CheckProgress& progress_;
+  std::map<std::string, std::string> names_by_hash_;
+  std::uint64_t done_ = 0, total_ = 0;
+  std::vector<std::byte> piece_ = std::vector<std::byte>(std::size_t{1} << 20);
+  std::vector<SetDefect> defects_;
+};
+
+}  // namespace
+
+std::vector<SetDefect> check_set(const fs::path& directory,
+                                 const Manifest& manifest,
+                                 const CheckProgress& progress) {
+  return Check(directory, manifest, progress).run();
+}
+
+}  // namespace beamgyro

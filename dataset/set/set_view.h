@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "dataset/set/manifest.h"
+#include "dataset/set/shard.h"
+
+namespace beamgyro {
+
+/// Publishes directory/NAME.nc, NAME the run of `head`: all devices of the run
+/// as one dataset of the same variables, which HDF5 reads from the files that
+/// `entries` name. `head` is that of any file of the run; `entries` are those
+/// of this run, by device. What a file that is missing or damaged should hold
+/// reads back as NaN or the fill value, as unpowered, and 255 in part and
+/// device_status, without any error: HDF5 does not tell, the manifest does.
+/// Throws std::runtime_error when HDF5 fails and as publish_file().
+ManifestView write_view(const std::filesystem::path& directory,
+                        const ShardHead& head,
+                        std::span<const ManifestEntry> entries);
+
+}  // namespace beamgyro

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "dataset/recording.h"
+#include "dataset/set/shard.h"
+
+namespace beamgyro {
+
+/// A file of a set, open. Every call throws std::invalid_argument naming the
+/// file when it is missing, damaged, not HDF5, no file of a set, of a newer
+/// format_version, or its content has a defect. Which bytes are damaged only
+/// the manifest tells for sure (check_set()).
+class ShardFile {
+ public:
+  explicit ShardFile(const std::filesystem::path& path);
+  ~ShardFile();
+  ShardFile(const ShardFile&) = delete;
+  ShardFile& operator=(const ShardFile&) = delete;
+
+  const ShardHead& head() const;
+  std::uint32_t devices() const { return head().devices; }
+
+  /// `position` in the file, from 0. Throws std::out_of_range beyond it.
+  const DeviceRow& row(std::uint32_t position) const;
+
+  /// One device without its slow variables, as read_recording() would give it.
+  /// Reads nothing of the others. Throws std::invalid_argument for a device
+  /// that failed.
+  Recording recording(std::uint32_t position) const;
+
+  /// The same of the slow variables, over truth_time.
+  Recording slow_recording(std::uint32_t position) const;
+
+ private:
+  class File;
+
+  Recording read(std::uint32_t position, bool slow) const;
+
+  std::filesystem::path path_;
+  std::unique_ptr<File> file_;
+};
+
+}  // namespace beamgyro
