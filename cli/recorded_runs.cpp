@@ -2,6 +2,7 @@
 #include "cli/recorded_runs.h"
 
 #include <filesystem>
+#include <stdexcept>
 
 #include "dataset/hdf5_file.h"
 #include "dataset/sha256.h"
@@ -14,6 +15,16 @@ RunSource runs_of_files(const std::vector<std::string>& paths) {
               visit({std::filesystem::path(path).filename().string(),
                      sha256_of_file(path), read_recording(path)});
           }};
+}
+
+bool is_set(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths)
+    if (std::filesystem::is_directory(path)) {
+      if (paths.size() == 1) return true;
+      throw std::invalid_argument(
+          path + ": a directory among recordings; a set comes alone");
+    }
+  return false;
 }
 
 }  // namespace beamgyro

@@ -15,6 +15,7 @@
 #include "cli/recorded_runs.h"
 #include "cli/terminal.h"
 #include "compensation/compensator_file.h"
+#include "compensation/set_runs.h"
 #include "dataset/atomic_file.h"
 
 namespace beamgyro {
@@ -22,9 +23,40 @@ namespace {
 
 struct TrainArguments {
   std::vector<std::string> runs, held_out;
+  std::vector<std::string> set_runs;       // names, of a set
+  std::vector<std::uint32_t> set_devices;  // of a set
   std::string model, output, cross_validation;
   std::int64_t seed = 0;
 };
+
+struct Sources {
+  RunSource training, held_out;
+};
+
+// Of a set the training devices, its validation devices held out; or some
+// devices alone.
+Sources sources_of_set(const TrainArguments& arguments) {
+  if (!arguments.held_out.empty() || !arguments.cross_validation.empty())
+    throw std::invalid_argument(
+        "--held-out and --cv: of a set the validation devices are held out");
+  const auto of_part = [&](SetPartNumber part) {
+    return runs_of_set(arguments.runs[0], {part, arguments.set_runs});
+  };
+  if (arguments.set_devices.empty())
+    return {of_part(SetPartNumber::kTrain),
+            of_part(SetPartNumber::kValidation)};
+  return {runs_of_set(arguments.runs[0],
+                      {{}, arguments.set_runs, arguments.set_devices}),
+          {}};
+}
+
+Sources sources_of(const TrainArguments& arguments) {
+  if (is_set(arguments.runs)) return sources_of_set(arguments);
+  if (!arguments.set_runs.empty() || !arguments.set_devices.empty())
+    throw std::invalid_argument(
+        "--run and --device choose from a set, and there is none");
+  return {runs_of_files(arguments.runs), runs_of_files(arguments.held_out)};
+}
 
 std::string shown(const std::optional<double>& value) {
   return value ? fmt::format("{:.6f}", *value) : "-";
@@ -99,9 +131,9 @@ int run_training(const TrainArguments& arguments) {
   inputs.insert(inputs.end(), arguments.held_out.begin(),
                 arguments.held_out.end());
   require_output(arguments.output, inputs);
+  const Sources sources = sources_of(arguments);
   std::optional<Progress> progress("training " + arguments.output);
-  const TrainResult result = train(spec, runs_of_files(arguments.runs),
-                                   runs_of_files(arguments.held_out),
+  const TrainResult result = train(spec, sources.training, sources.held_out,
                                    static_cast<std::uint64_t>(arguments.seed),
                                    grouping(arguments.cross_validation));
   write_compensator(result.compensator, arguments.output);
@@ -117,8 +149,12 @@ int run_training(const TrainArguments& arguments) {
 void add_train(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<TrainArguments>();
   CLI::App* command = program.add_subcommand(
-      "train", "Fit a compensator to recordings of one gyro");
-  command->add_option("runs", arguments->runs, "RUN.h5...")->required();
+      "train",
+      "Fit a compensator to recordings of a gyro or to a set of gyros");
+  command
+      ->add_option("runs", arguments->runs,
+                   "RUN.h5..., or the directory of a set")
+      ->required();
   command->add_option("--model", arguments->model, "MODEL.toml")->required();
   command->add_option("--held-out", arguments->held_out,
                       "RUN.h5..., scored but not fitted; a network stops early "
@@ -129,6 +165,11 @@ void add_train(CLI::App& program, Action& action) {
                    "recordings, power cycles or legs between reversals of the "
                    "temperature")
       ->check(CLI::IsMember({"run", "cycle", "leg"}));
+  command->add_option("--run", arguments->set_runs,
+                      "NAME of a run of the set, all without");
+  command->add_option("--device", arguments->set_devices,
+                      "NUMBER of a device of the set: this one alone, in place "
+                      "of those for training");
   command->add_option("-o,--output", arguments->output, "COMPENSATOR.json")
       ->required();
   command->add_option("--seed", arguments->seed, "of the initial weights")

@@ -17,6 +17,7 @@ struct TrainingRun {
   std::string sha256;  // of the file; empty of a run of a set
   Recording recording;
   std::string device = {};  // whose run it is; empty: of a gyro of its own
+  std::string run = {};     // of a set: which of its runs
 };
 
 /// Recordings of many devices that a source yields runs of.

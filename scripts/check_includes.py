@@ -11,6 +11,7 @@ import sys
 
 NUMERICS = {"sim/numerics"}
 FILES = {"config", "dataset"}
+SETS = {"dataset/set"}
 SIM = {"sim/numerics", "sim/device", "sim/thermal", "sim/signal",
        "sim/dynamics", "sim/scenario", "sim/campaign"}
 
@@ -25,10 +26,10 @@ MAY_INCLUDE = {
     "sim/device": FILES | NUMERICS | {"sim/thermal", "sim/signal"},
     "sim/dynamics": FILES | SIM - {"sim/scenario", "sim/campaign"},
     "sim/scenario": FILES | SIM - {"sim/campaign"},
-    "sim/campaign": FILES | SIM,
-    "compensation": FILES,
-    "cli": FILES | SIM | {"compensation"},
-    "bench": FILES | SIM | {"compensation"},
+    "sim/campaign": FILES | SETS | SIM,
+    "compensation": FILES | SETS,
+    "cli": FILES | SETS | SIM | {"compensation"},
+    "bench": FILES | SETS | SIM | {"compensation"},
     "agreement": FILES | SIM | {"compensation"},  # of tests/ only
 }
 
