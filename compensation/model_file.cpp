@@ -190,6 +190,12 @@ void require_channels(const ConfigTable& root, const std::vector<Input>& inputs,
 
 AdaptedSpec read_adapted(const ConfigDocument& document) {
   const ConfigTable& root = document.root();
+  AdaptedSpec spec;
+  const ConfigTable table = root.table_or_empty("adapted");
+  spec.noise.bias =
+      table.number_or("noise_deg_per_s", spec.noise.bias, positive());
+  spec.noise.channel_share = table.number_or(
+      "channel_noise_share", spec.noise.channel_share, positive());
   const std::string name = root.text("population");
   const std::filesystem::path file = document.path().parent_path() / name;
   Compensator compensator;
@@ -203,15 +209,10 @@ AdaptedSpec read_adapted(const ConfigDocument& document) {
               fmt::format("\"{}\" is a compensator without a population; "
                           "train one of kind \"population\"",
                           name));
-  AdaptedSpec spec{std::move(*compensator.population), {}, {}};
+  spec.population = std::move(*compensator.population);
   spec.source =
       fmt::format("{}, {} devices, sha256 {}", file.filename().string(),
                   spec.population.devices, sha256_of_file(file));
-  const ConfigTable table = root.table_or_empty("adapted");
-  spec.noise.bias =
-      table.number_or("noise_deg_per_s", spec.noise.bias, positive());
-  spec.noise.channel_share = table.number_or(
-      "channel_noise_share", spec.noise.channel_share, positive());
   return spec;
 }
 

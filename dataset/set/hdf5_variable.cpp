@@ -16,7 +16,8 @@ namespace {
 /// flag_values 0, 1, ... with their meanings.
 void write_flags(hid_t variable, std::size_t count, std::string_view meanings) {
   std::vector<std::uint8_t> values(count);
-  std::iota(values.begin(), values.end(), std::uint8_t{0});
+  for (std::size_t k = 0; k < count; ++k)
+    values[k] = static_cast<std::uint8_t>(k);
   const hsize_t length = count;
   write_attribute(variable, "flag_values", H5T_STD_U8LE, space_of({&length, 1}),
                   values.data());

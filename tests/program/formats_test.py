@@ -176,9 +176,9 @@ class Formats(ProgramTest):
         documented = rows(page)
         optional = {name for name, rest in documented.items()
                     if rest.startswith("only with")}
-        self.assertEqual(optional, {"scale_factor"})
+        self.assertEqual(optional, {"scale_factor", "population"})
         for text, left_out in [(CUBIC, optional),
-                               (CUBIC + "[scale_factor]\n", set())]:
+                               (CUBIC + "[scale_factor]\n", {"population"})]:
             self.write("m.toml", text)
             self.ok("train", "run.h5", "--model", "m.toml", "-o", "c.json")
             answer = json.loads((self.dir / "c.json").read_text())
@@ -210,6 +210,8 @@ class Formats(ProgramTest):
             table = key.rpartition(".")[0]
             kind = table if table not in ("", "rows", "scale_factor") \
                 else "polynomial"
+            if key == "population":  # a file, of the kind that asks for it
+                kind = "adapted"
             text = {"kind": f'"{kind}"', "inputs": '["temperature"]'}
             if kind == "bp":
                 text["bp.hidden"] = "[2]"
