@@ -81,7 +81,7 @@ int generate(const GenerateArguments& arguments) {
                  "\n");
     return 0;
   }
-  SetWriter set(arguments.output, plan.manifest_head(), source_texts(campaign),
+  SetWriter set(arguments.output, plan.manifest_head(), campaign.sources(),
                 task, arguments.resume);
   if (!set.died_before().empty())
     print_note(fmt::format("{}: going on after {} ended without finishing",

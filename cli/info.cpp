@@ -3,15 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/set_info.h"
 #include "cli/terminal.h"
 #include "dataset/hdf5_file.h"
+#include "dataset/set/shard_reader.h"
 
 namespace beamgyro {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct Extent {
   double low = 0, high = 0;
@@ -41,6 +46,14 @@ std::string status_line(const Recording& recording) {
 }
 
 int info(const std::string& path) {
+  if (fs::is_directory(path)) {
+    print_result(info_on_set(path));
+    return 0;
+  }
+  if (is_shard_file(path)) {
+    print_result(info_on_shard(path));
+    return 0;
+  }
   const Recording recording = read_recording(path);
   std::string text;
   auto out = std::back_inserter(text);
@@ -79,8 +92,8 @@ int info(const std::string& path) {
 void add_info(CLI::App& program, Action& action) {
   auto path = std::make_shared<std::string>();
   CLI::App* command =
-      program.add_subcommand("info", "Say what a recording holds");
-  command->add_option("file", *path, "FILE.h5")->required();
+      program.add_subcommand("info", "Say what a recording or a set holds");
+  command->add_option("file", *path, "FILE.h5 or DIR")->required();
   command->callback(
       [path, &action] { action = [path] { return info(*path); }; });
 }

@@ -67,7 +67,7 @@ std::string listed(const std::vector<SetDefect>& defects) {
 void require_same_sources(const Campaign& campaign, const ManifestHead& head) {
   std::set<std::string> expected, met;
   for (const SourceEntry& source : head.sources) expected.insert(source.sha256);
-  for (const SourceFile& file : campaign.sources())
+  for (const SourceText& file : campaign.sources())
     met.insert(sha256(file.text));
   if (met != expected)
     throw std::runtime_error(

@@ -272,6 +272,16 @@ namespace {
 
 }  // namespace
 
+bool is_shard_file(const std::filesystem::path& path) {
+  const QuietHdf5 quiet;
+  try {
+    open_hdf5_file(path.string(), kSetFiletype, "set", kSetFormatVersion);
+    return true;
+  } catch (const Hdf5Error&) {
+    return false;
+  }
+}
+
 ShardFile::ShardFile(const std::filesystem::path& path) : path_(path) {
   require_file(path, "file of a set");
   const QuietHdf5 quiet;

@@ -10,6 +10,9 @@
 
 namespace beamgyro {
 
+/// Whether `path` is an HDF5 file that says it is one of a set.
+bool is_shard_file(const std::filesystem::path& path);
+
 /// A file of a set, open. Every call throws std::invalid_argument naming the
 /// file when it is missing, damaged, not HDF5, no file of a set, of a newer
 /// format_version, or its content has a defect. Which bytes are damaged only

@@ -82,7 +82,7 @@ const std::string& Campaign::device_text() const {
 const Scenario& Campaign::base_scenario(std::size_t run) const {
   return state_->scenarios.at(run);
 }
-const std::vector<SourceFile>& Campaign::sources() const {
+const std::vector<SourceText>& Campaign::sources() const {
   return state_->sources;
 }
 const std::vector<DrawnParameter>& Campaign::parameters() const {

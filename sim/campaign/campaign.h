@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "dataset/set/source_copies.h"
 #include "sim/campaign/draw_plan.h"
 #include "sim/device/device.h"
 #include "sim/scenario/scenario.h"
@@ -31,11 +32,6 @@ struct CampaignRun {
   std::string name;  // [a-z][a-z0-9_]*
   std::filesystem::path scenario_file;
   std::string scenario_text;  // byte for byte
-};
-
-struct SourceFile {
-  std::filesystem::path path;  // as opened, relative to the working folder
-  std::string text;            // byte for byte
 };
 
 struct VirtualDevice {
@@ -79,7 +75,7 @@ class Campaign {
   /// As the file says, with the campaign's seed.
   const Scenario& base_scenario(std::size_t run) const;
   /// Campaign, device, scenarios and their profiles in the order of reading.
-  const std::vector<SourceFile>& sources() const;
+  const std::vector<SourceText>& sources() const;
 
   const std::vector<DrawnParameter>& parameters() const;
   const std::vector<DrawnParameter>& run_parameters(std::size_t run) const;

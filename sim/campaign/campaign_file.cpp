@@ -284,7 +284,7 @@ class CampaignReader {
 
   bool is_new(const std::filesystem::path& path) const {
     return std::none_of(state_.sources.begin(), state_.sources.end(),
-                        [&](const SourceFile& source) {
+                        [&](const SourceText& source) {
                           return source.path.lexically_normal() ==
                                  path.lexically_normal();
                         });

@@ -21,7 +21,7 @@ struct CampaignState {
   Distribution split;  // of Part
   Trims trims;
   UniformSource source;
-  std::vector<SourceFile> sources;
+  std::vector<SourceText> sources;
   ProfileTables profiles;  // of the scenarios, as they were read
 
   std::optional<ConfigDocument> device_document;

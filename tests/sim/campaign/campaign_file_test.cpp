@@ -357,7 +357,7 @@ TEST(CampaignFile, CopiesOfTheSourcesMakeTheSameCampaign) {
   std::filesystem::create_directories(copy.path() / "profiles");
   std::filesystem::remove(copy.path() / "nominal.toml");
   std::filesystem::remove(copy.path() / "rest.toml");
-  for (const SourceFile& source : original.sources()) {
+  for (const SourceText& source : original.sources()) {
     copy.write(source.path.lexically_relative(folder.path()).string(),
                source.text);
   }

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "dataset/set/manifest.h"
+#include "dataset/set/shard.h"
+#include "sim/campaign/campaign.h"
+
+namespace beamgyro {
+
+/// Which program makes a set; part of its files.
+struct ProgramRevision {
+  std::string version, git_revision;
+};
+
+/// The files a campaign makes, in the order of the manifest: each holds the
+/// devices of one range in one run (docs/formats.md).
+class ShardPlan {
+ public:
+  /// Simulates two samples of every run with the base device to learn its
+  /// variables. Throws std::invalid_argument for a variable that no run has and
+  /// for a truth rate that is no part of an output rate.
+  ShardPlan(const Campaign& campaign, const ProgramRevision& program);
+
+  const ManifestHead& manifest_head() const { return manifest_head_; }
+
+  std::uint32_t run_of(std::uint32_t file) const;
+  std::uint32_t range_of(std::uint32_t file) const;
+  ShardHead head_of(std::uint32_t file) const;
+
+  /// Devices of `files` together.
+  std::uint64_t device_runs(const std::vector<std::uint32_t>& files) const;
+  /// Mean length of a run [s].
+  double run_duration() const;
+
+  /// Values of the largest file, before deflation [bytes].
+  double largest_file() const;
+
+  const Campaign& campaign() const { return *campaign_; }
+
+ private:
+  const Campaign* campaign_;
+  ManifestHead manifest_head_;
+  std::vector<ShardHead> heads_;  // one per run, for range 0
+};
+
+}  // namespace beamgyro
