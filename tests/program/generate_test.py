@@ -173,8 +173,8 @@ class Generate(Set):
         self.write("campaign.toml", CAMPAIGN.replace(
             '"readout.quadrature_trim_deg_per_s" = { normal = '
             '{ mean = 0, sigma = 50 } }',
-            '"drive.voltage_limit_V" = { discrete = '
-            '{ values = [10, 1e-6], weights = [3, 1] } }')
+            '"beam.side_difference" = { normal = '
+            '{ mean = -0.0095, sigma = 0.4 } }')
             .replace("devices = 7", "devices = 12"))
         said = self.generate("set")
         self.assertRegex(said, r"[1-9]\d* failed")
@@ -185,8 +185,8 @@ class Generate(Set):
         for path in sorted((self.dir / "set").glob("rest_*.h5")):
             with h5py.File(path) as file:
                 for i, status in enumerate(file["device_status"]):
-                    limit = file["drive_voltage_limit_V"][i]
-                    self.assertEqual(status != 0, limit < 1)
+                    drawn = file["beam_side_difference"][i]
+                    self.assertEqual(status == 1, abs(drawn) > 0.5)
                     if status:
                         failed += 1
                         self.assertTrue((file["status"][i] == 1).all())
@@ -232,7 +232,7 @@ class Generate(Set):
         process.kill()
         process.wait()
         os.close(main)
-        self.assertRegex(shown.decode(), r"\d+ s left, \d+ device runs, "
+        self.assertRegex(shown.decode(), r"\d+ s left, \d+ of 80000 device runs, "
                          r"[\d.e+]+ device-hours/s, 0 failed")
 
 
@@ -349,7 +349,8 @@ class Verify(Set):
     def test_a_damaged_manifest_is_made_again(self):
         manifest = self.dir / "set/manifest.jsonl"
         text = manifest.read_text()
-        digest = re.search(r'"sha256": ?"([0-9a-f]{64})"', text).group(1)
+        digest = re.search(r'"bytes":\d+,"sha256":"([0-9a-f]{64})"',
+                           text).group(1)
         manifest.write_text(text.replace(digest, digest[::-1]))
         self.found("manifest.jsonl")
         self.repaired()
@@ -379,7 +380,7 @@ class Info(Set):
     def test_a_set_is_summarised(self):
         self.generate("set")
         said = self.ok("info", "set")
-        for part in ["tiny", "7 devices", "rest", "ramp", "0 failed",
+        for part in ["campaign.toml", "7 devices", "rest", "ramp", "0 failed",
                      "patches_offset_m_0", "whole"]:
             self.assertIn(part, said)
 
