@@ -35,7 +35,11 @@ Manifest manifest_of(const fs::path& directory) {
   const fs::path whole = directory / kManifestName;
   if (fs::exists(whole)) {
     Manifest manifest = read_manifest(whole);
-    if (manifest.is_finished || !manifest.head) return manifest;
+    if (manifest.is_finished) return manifest;
+    if (!manifest.head && fs::exists(directory / kHeadCopyName)) {
+      manifest.head = read_manifest(directory / kHeadCopyName).head;
+      return manifest;
+    }
   }
   const SetContents contents = set_contents(directory);
   Manifest manifest;

@@ -12,6 +12,8 @@
 namespace beamgyro {
 
 inline constexpr const char* kManifestName = "manifest.jsonl";
+/// A manifest with a head alone, for when the other is lost.
+inline constexpr const char* kHeadCopyName = "source/head.jsonl";
 
 /// A file of the set that the campaign read, below source/.
 struct SourceEntry {

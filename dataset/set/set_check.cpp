@@ -75,6 +75,7 @@ class Check {
           "has no first line, which tells what belongs to the set");
       return;
     }
+    check_head_copy(*manifest_.head);
     check_entries(*manifest_.head);
     if (!manifest_.is_finished) return;
     for (const std::string& run : manifest_.head->runs) {
@@ -83,6 +84,14 @@ class Check {
                        [&](const auto& view) { return view.file == name; }))
         add(name, "is not in the manifest");
     }
+  }
+
+  void check_head_copy(const ManifestHead& head) {
+    if (!fs::exists(directory_ / kHeadCopyName))
+      return add(kHeadCopyName, "is missing");
+    const Manifest copy = read_manifest(directory_ / kHeadCopyName);
+    if (copy.head != head || !copy.damaged_lines.empty())
+      add(kHeadCopyName, "holds other bytes than were written");
   }
 
   void check_entries(const ManifestHead& head) {
@@ -150,6 +159,7 @@ class Check {
   void check_directory() {
     std::set<std::string> known;
     for (const Listed& file : files_) known.insert(file.file);
+    known.insert(kHeadCopyName);
     if (manifest_.head) {
       for (std::uint32_t i = 0; i < file_count(*manifest_.head); ++i)
         known.insert(expected_entry(*manifest_.head, i).file);

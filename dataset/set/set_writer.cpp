@@ -226,6 +226,10 @@ void SetWriter::enter(std::span<const SourceText> sources, bool resume) {
   before_.planned = file_count(head_);
   remove_dead_partial_files(directory_, task_.is_whole());
   copy_sources(directory_, sources);
+  const std::optional<Manifest> copy =
+      manifest_if_there(directory_ / kHeadCopyName);
+  if (!copy || copy->head != head_ || !copy->damaged_lines.empty())
+    start_manifest(directory_ / kHeadCopyName, head_);
   if (lacking().empty() && contents) return;
   // A merged manifest says that all is there, which is not so.
   if (task_.is_whole() && before_.is_merged) {
@@ -236,7 +240,10 @@ void SetWriter::enter(std::span<const SourceText> sources, bool resume) {
     for (const auto& [index, entry] : before_.entries) kept.push_back(entry);
     start_manifest(manifest_, head_, kept);
   }
-  if (!fs::exists(manifest_)) start_manifest(manifest_, head_);
+  const std::optional<Manifest> own = manifest_if_there(manifest_);
+  if (!own || !own->head)
+    start_manifest(manifest_, head_,
+                   own ? own->entries : std::vector<ManifestEntry>());
 }
 
 std::vector<std::uint32_t> SetWriter::lacking() const {

@@ -141,7 +141,8 @@ Manifest write_sample_set(const std::filesystem::path& directory) {
   set.devices = 5;
   set.devices_per_file = 2;
   set.runs = {"rest", "warm_up"};
-  set.sources = copy_sources(directory, std::span(&campaign, 1));
+  set.sources = source_entries(std::span(&campaign, 1));
+  copy_sources(directory, std::span(&campaign, 1));
   Manifest manifest;
   manifest.head = set;
   manifest.is_finished = true;
@@ -155,6 +156,7 @@ Manifest write_sample_set(const std::filesystem::path& directory) {
       entries.push_back(manifest.entries[i]);
     manifest.views.push_back(write_view(directory, head, entries));
   }
+  start_manifest(directory / kHeadCopyName, *manifest.head);
   write_manifest(directory / kManifestName, manifest);
   return manifest;
 }

@@ -55,7 +55,7 @@ TEST_F(CheckSet, FindsNothingInAWholeSet) {
 
 TEST_F(CheckSet, FindsEveryFlippedBitInEveryFile) {
   std::vector<std::string> files = {"rest.nc", "warm_up.nc",
-                                    "source/campaign.toml"};
+                                    "source/campaign.toml", kHeadCopyName};
   for (const ManifestEntry& entry : manifest.entries)
     files.push_back(entry.file);
   for (std::size_t f = 0; f < files.size(); ++f) {
@@ -66,7 +66,7 @@ TEST_F(CheckSet, FindsEveryFlippedBitInEveryFile) {
       const int bit = static_cast<int>(i % 8);
       flip(path, byte, bit);
       std::string expected = files[f] + " holds other bytes than were written";
-      if (f >= 3) expected += ' ' + std::to_string(f - 3);
+      if (f >= 4) expected += ' ' + std::to_string(f - 4);
       ASSERT_EQ(defect(), expected) << byte;
       flip(path, byte, bit);
     }
@@ -139,14 +139,23 @@ TEST_F(CheckSet, FindsFilesThatDoNotBelong) {
   EXPECT_TRUE(defects().empty());
 }
 
+TEST_F(CheckSet, FindsACopyOfTheHeadThatIsMissingOrOfAnotherSet) {
+  fs::remove(directory / kHeadCopyName);
+  EXPECT_EQ(defect(), "source/head.jsonl is missing");
+  ManifestHead other = *manifest.head;
+  ++other.seed;
+  start_manifest(directory / kHeadCopyName, other);
+  EXPECT_EQ(defect(), "source/head.jsonl holds other bytes than were written");
+}
+
 TEST_F(CheckSet, AnUnfinishedSetLacksWhatIsNotMadeYet) {
   fs::remove_all(directory);
   fs::create_directory(directory);
-  start_manifest(directory / kManifestName, [&] {
-    ManifestHead head = *manifest.head;
-    head.sources.clear();
-    return head;
-  }());
+  ManifestHead head = *manifest.head;
+  head.sources.clear();
+  fs::create_directory(directory / "source");
+  start_manifest(directory / kHeadCopyName, head);
+  start_manifest(directory / kManifestName, head);
   const std::vector<SetDefect> found = defects();
   ASSERT_EQ(found.size(), 7u);
   EXPECT_EQ(found[0].what, "is not finished");
