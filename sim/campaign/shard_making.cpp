@@ -52,9 +52,9 @@ void ShardMaker::prepare(std::uint32_t range) {
 }
 
 // Simulates one device in one run; `row` says why when that fails.
-Recording ShardMaker::simulated(const PreparedDevice& device,
-                                const VirtualRun& run, const RunKey& key,
-                                const ShardHead& head, DeviceRow& row) {
+Recording ShardMaker::recorded(const PreparedDevice& device,
+                               const VirtualRun& run, const RunKey& key,
+                               const ShardHead& head, DeviceRow& row) {
   Recording recording;
   if (!run.scenario) {
     row.failure = run.failure;
@@ -62,9 +62,7 @@ Recording ShardMaker::simulated(const PreparedDevice& device,
     return recording;
   }
   try {
-    recording = joined([&](const BlockSink& on_block) {
-      simulate(*run.scenario, *device.gyro, key, on_block);
-    });
+    recording = simulated(*run.scenario, *device.gyro, key);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::invalid_argument& error) {
@@ -106,7 +104,7 @@ MadeShard ShardMaker::make(std::uint32_t file, GenerationCounts& counts) {
                           drawn.parameters.end());
     Recording recording;
     if (row.failure.empty())
-      recording = simulated(device, drawn, {number, run}, head, row);
+      recording = recorded(device, drawn, {number, run}, head, row);
     if (row.failure.empty()) {
       made.file->add(row, &recording);
     } else {

@@ -48,9 +48,9 @@ class ShardMaker {
     DeviceRow row;  // its failure, if there is no gyro
   };
   void prepare(std::uint32_t range);
-  static Recording simulated(const PreparedDevice& device,
-                             const VirtualRun& run, const RunKey& key,
-                             const ShardHead& head, DeviceRow& row);
+  static Recording recorded(const PreparedDevice& device, const VirtualRun& run,
+                            const RunKey& key, const ShardHead& head,
+                            DeviceRow& row);
 
   const ShardPlan& plan_;
   std::optional<std::uint32_t> range_;

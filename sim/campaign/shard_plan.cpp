@@ -98,9 +98,7 @@ SetVariable set_variable(const Campaign& campaign, const Column& column) {
 // Two samples of a run, for its variables.
 Recording specimen(Scenario scenario, const Device& device) {
   scenario.duration = 2 / scenario.output_rate;
-  return joined([&](const BlockSink& on_block) {
-    simulate(scenario, make_gyro(device), {}, on_block);
-  });
+  return simulated(scenario, make_gyro(device));
 }
 
 std::vector<Column> columns_of(const Campaign& campaign, std::size_t run) {

@@ -19,4 +19,11 @@ void simulate(const Scenario& scenario, const Gyro& gyro, const RunKey& key,
   }
 }
 
+Recording simulated(const Scenario& scenario, const Gyro& gyro,
+                    const RunKey& key) {
+  return joined([&](const BlockSink& on_block) {
+    simulate(scenario, gyro, key, on_block);
+  });
+}
+
 }  // namespace beamgyro

@@ -12,4 +12,8 @@ namespace beamgyro {
 void simulate(const Scenario& scenario, const Gyro& gyro, const RunKey& key,
               const BlockSink& on_block);
 
+/// The whole of it in memory.
+Recording simulated(const Scenario& scenario, const Gyro& gyro,
+                    const RunKey& key = {});
+
 }  // namespace beamgyro
