@@ -226,7 +226,7 @@ class Faults:
         codes = [process.returncode for process in processes]
         require(codes.count(0) == 1, f"exit codes {codes}")
         self.require_same(folder)
-        held = sum("process" in error for _, error in answers)
+        held = sum("in use by" in error for _, error in answers)
         return {"starts": count, "winners": 1, "told_who_holds_it": held}
 
 

@@ -67,6 +67,18 @@ std::string listed(const std::vector<SetDefect>& defects) {
   return text;
 }
 
+// A copy that cannot be read is damage like any other.
+Campaign campaign_of(const fs::path& directory, const ManifestHead& head) {
+  try {
+    return Campaign::read(directory / head.sources.front().file, head.devices);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(
+        fmt::format("{}; run generate --resume with the campaign that the set "
+                    "was made of",
+                    error.what()));
+  }
+}
+
 // The sources may have been named by paths that lead out of the set.
 void require_same_sources(const Campaign& campaign, const ManifestHead& head) {
   std::set<std::string> expected, met;
@@ -99,8 +111,7 @@ ManifestHead repairable_head(const fs::path& directory,
 void repair(const fs::path& directory, const Manifest& manifest,
             const std::vector<SetDefect>& defects, unsigned jobs) {
   const ManifestHead head = repairable_head(directory, manifest);
-  const Campaign campaign =
-      Campaign::read(directory / head.sources.front().file, head.devices);
+  const Campaign campaign = campaign_of(directory, head);
   require_same_sources(campaign, head);
   const ShardPlan plan(campaign, {kProgramVersion, kGitRevision});
   std::set<std::uint32_t> files;

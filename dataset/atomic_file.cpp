@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <climits>
 #include <csignal>
 #include <cstdio>
@@ -18,6 +19,7 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <thread>
 
 #include "dataset/open_file.h"
 
@@ -37,13 +39,15 @@ struct Slot {
 static_assert(std::atomic<int>::is_always_lock_free);
 std::array<Slot, 64> partial_files;
 
+// With more threads than slots the last ones wait.
 std::size_t take_slot() {
-  for (std::size_t i = 0; i < partial_files.size(); ++i) {
-    int expected = kFree;
-    if (partial_files[i].state.compare_exchange_strong(expected, kFilling))
-      return i;
+  for (;; std::this_thread::sleep_for(std::chrono::milliseconds(1))) {
+    for (std::size_t i = 0; i < partial_files.size(); ++i) {
+      int expected = kFree;
+      if (partial_files[i].state.compare_exchange_strong(expected, kFilling))
+        return i;
+    }
   }
-  throw std::runtime_error("too many unfinished files at once");
 }
 
 std::string reason(int error) { return std::generic_category().message(error); }

@@ -28,6 +28,15 @@ task() {
     --shard "$SLURM_ARRAY_TASK_ID/$tasks" --jobs "${SLURM_CPUS_PER_TASK:-1}"
 }
 
+# With every file there. A task that was ended before it merged them is made up
+# for by the first one, which has nothing else to do.
+conclude() {
+  local program=$1 campaign=$2 dir=$3 tasks=$4 devices=$5
+  "$program" --quiet generate "$campaign" -o "$dir" ${devices:+--devices "$devices"} \
+    --shard "1/$tasks"
+  exec "$program" verify "$dir"
+}
+
 # After the array: whole, or once more.
 finish() {
   local self=$1 rounds=$2 program=$3 campaign=$4 dir=$5 tasks=$6 at_once=$7 devices=$8
@@ -36,7 +45,7 @@ finish() {
   lacking=$("$program" generate "$campaign" -o "$dir" ${devices:+--devices "$devices"} \
     --lacking "$tasks")
   if [ -z "$lacking" ]; then
-    exec "$program" verify "$dir"
+    conclude "$program" "$campaign" "$dir" "$tasks" "$devices"
   fi
   [ "$rounds" -gt 1 ] ||
     fail "$dir: tasks $lacking of $tasks left work undone; submit again when" \
@@ -53,7 +62,7 @@ submit() {
     --lacking "$tasks")
   if [ -z "$lacking" ]; then
     echo "slurm_generate: nothing is lacking in $dir" >&2
-    exec "$program" verify "$dir"
+    conclude "$program" "$campaign" "$dir" "$tasks" "$devices"
   fi
   mkdir -p "$dir/log"
   array=$(sbatch --parsable --job-name=beamgyro --requeue --open-mode=append \

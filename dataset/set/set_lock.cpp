@@ -9,9 +9,11 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <span>
 #include <stdexcept>
 #include <system_error>
+#include <thread>
 
 #include "dataset/atomic_file.h"
 
@@ -55,11 +57,18 @@ std::string holder(OpenFile& file) {
 }  // namespace
 
 SetLock::Held SetLock::acquire(const fs::path& path, int operation) {
-  for (;;) {
+  // The last of those who share a lock has it alone while it removes it.
+  constexpr int kMostTries = 50;
+  constexpr std::chrono::milliseconds kPause{20};
+  for (int tries = 1;;) {
     OpenFile file = open_lock(path);
     if (flock(file.descriptor(), operation | LOCK_NB) != 0) {
       if (errno == EINTR) continue;
       if (errno != EWOULDBLOCK) fail(path, errno);
+      if (operation == LOCK_SH && tries++ < kMostTries) {
+        std::this_thread::sleep_for(kPause);
+        continue;
+      }
       const std::string who = holder(file);
       throw std::runtime_error(
           fmt::format("{}: in use by {}", path.parent_path().string(),

@@ -144,13 +144,14 @@ std::vector<ManifestView> views_of(const fs::path& directory,
 
 // Throws std::invalid_argument when it can be no directory. Whether it is new.
 bool make_directory(const fs::path& directory) {
-  std::error_code error;
-  if (fs::is_directory(directory, error)) return false;
-  if (fs::exists(fs::symlink_status(directory)))
+  // Other tasks may make it at the same time.
+  std::error_code error, ignored;
+  if (fs::create_directory(directory, error)) return true;
+  if (fs::is_directory(directory, ignored)) return false;
+  if (fs::exists(fs::symlink_status(directory, ignored)))
     throw std::invalid_argument(
         fmt::format("{}: is no directory; expected one, or a new name",
                     directory.string()));
-  if (fs::create_directory(directory, error)) return true;
   throw std::invalid_argument(fmt::format(
       "{}: cannot make this directory: {}; expected a place in a directory "
       "that is there and writable",
@@ -240,6 +241,7 @@ void SetWriter::enter(std::span<const SourceText> sources, bool resume) {
     for (const auto& [index, entry] : before_.entries) kept.push_back(entry);
     start_manifest(manifest_, head_, kept);
   }
+  // Lines after a first one that is lost would not count.
   const std::optional<Manifest> own = manifest_if_there(manifest_);
   if (!own || !own->head)
     start_manifest(manifest_, head_,
@@ -276,11 +278,12 @@ void SetWriter::merge(const SetState& state) {
 
 SetState SetWriter::finish(bool anew) {
   SetState state = set_contents(directory_).state;
-  const bool all_there = lacking_files(directory_, state, {}).empty();
-  if (all_there && (anew || !state.is_merged || has_parts(directory_))) {
+  std::erase_if(state.entries, [&](const auto& entry) {
+    return !is_there(directory_, entry.second);
+  });
+  if (state.is_whole() && (anew || !state.is_merged || has_parts(directory_)))
     merge(state);
-    state.is_merged = true;
-  }
+  state.is_merged = state.is_whole();
   return state;
 }
 

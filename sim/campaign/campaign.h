@@ -22,6 +22,7 @@ enum class Part : std::uint8_t { kTrain, kValidation, kTest };
 /// What files of the set hold.
 struct CampaignOutput {
   std::vector<std::string> variables;  // names to keep; empty: all
+  std::string variables_place;         // file:line:column: key
   bool double_precision = false;       // truth as float64 in place of float32
   double truth_rate = 0;  // [Hz] of all truth but true_rate; 0: the output rate
   bool compress = true;

@@ -42,6 +42,7 @@ class CampaignReader {
     read_device_file();
     read_tolerances();
     for (const ConfigTable& run : require_runs()) read_run(run);
+    require_countable_files();
     read_output();
     read_sampling();
     document_.reject_unknown_keys();
@@ -146,6 +147,20 @@ class CampaignReader {
     return runs;
   }
 
+  // Files are numbered with 32 bits, and all of them are in one directory.
+  void require_countable_files() {
+    constexpr double kMostFiles = 1e7;
+    const double files = std::ceil(static_cast<double>(state_.devices) /
+                                   state_.devices_per_file) *
+                         static_cast<double>(state_.runs.size());
+    if (files <= kMostFiles) return;
+    root_.fail("devices_per_file",
+               fmt::format("{} devices, {} a file, make {:.0f} files; expected "
+                           "at most {:.0f}, so more devices a file",
+                           state_.devices, state_.devices_per_file, files,
+                           kMostFiles));
+  }
+
   std::string read_run_name(const ConfigTable& run) {
     const std::string name = run.text("name");
     const bool good =
@@ -227,6 +242,7 @@ class CampaignReader {
     CampaignOutput& result = state_.output;
     if (output.has("variables")) {
       result.variables = output.texts("variables");
+      result.variables_place = output.place("variables");
       if (result.variables.empty())
         output.fail("variables",
                     "[] is empty; expected names, or no key for "

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 
 namespace beamgyro {
@@ -30,7 +31,11 @@ void generate_shards(const ShardPlan& plan,
     const std::size_t threads =
         std::min<std::size_t>(std::max(1U, jobs), files.size());
     std::vector<std::jthread> others;
-    for (std::size_t n = 1; n < threads; ++n) others.emplace_back(work);
+    try {
+      for (std::size_t n = 1; n < threads; ++n) others.emplace_back(work);
+    } catch (const std::system_error&) {
+      // The system grants no more threads; fewer make the same files.
+    }
     if (threads > 0) work();
   }
   if (failure) std::rethrow_exception(failure);

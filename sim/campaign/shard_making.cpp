@@ -41,6 +41,8 @@ void ShardMaker::prepare(std::uint32_t range) {
     } else {
       try {
         device.gyro = make_gyro(*device.drawn.device);
+      } catch (const std::bad_alloc&) {
+        throw;
       } catch (const std::exception& error) {
         device.row.failure = first_line(error.what());
         device.row.device_status = kNoConvergence;

@@ -21,8 +21,7 @@ struct ProgramRevision {
 class ShardPlan {
  public:
   /// Simulates two samples of every run with the base device to learn its
-  /// variables. Throws std::invalid_argument for a variable that no run has and
-  /// for a truth rate that is no part of an output rate.
+  /// variables. Throws std::invalid_argument for a variable that no run has.
   ShardPlan(const Campaign& campaign, const ProgramRevision& program);
 
   const ManifestHead& manifest_head() const { return manifest_head_; }

@@ -131,6 +131,32 @@ class Generate(Set):
         self.generate("set", "--resume")
         self.assertEqual(self.contents("set"), before)
 
+    def test_a_manifest_that_lost_all_its_lines_is_begun_anew(self):
+        self.generate("set")
+        before = self.contents("set")
+        (self.dir / "set/manifest.jsonl").write_bytes(b"")
+        self.generate("set", "--resume")
+        self.assertEqual(self.contents("set"), before)
+
+    def test_a_set_that_lost_a_file_is_not_called_whole(self):
+        self.generate("set")
+        (self.dir / "set/rest_00000.h5").unlink()
+        said = self.generate("set", "--shard", "2/2")
+        self.assertIn("7 of 8 files", said)
+        self.assertNotIn("whole", said)
+
+    def test_a_step_too_fine_for_counts_is_stored_as_floating_point(self):
+        device = (self.dir / "device.toml").read_text()
+        fine = re.sub("(?m)^drive_frequency_resolution_Hz = .*",
+                      "drive_frequency_resolution_Hz = 1e-6", device)
+        self.assertNotEqual(fine, device)
+        self.write("device.toml", fine)
+        self.generate("set")
+        with h5py.File(self.dir / "set/rest_00000.h5") as file:
+            self.assertEqual(file["drive_frequency"].dtype, np.float64)
+            self.assertEqual(file["drive_voltage"].dtype, np.int32)
+            self.assertEqual(file["temperature"].dtype, np.int16)
+
     def test_a_set_of_another_campaign_is_left_alone(self):
         self.generate("set")
         self.write("campaign.toml", CAMPAIGN.replace("seed = 5", "seed = 6"))
@@ -263,7 +289,13 @@ class BadInput(Set):
             with self.subTest(text):
                 self.write("campaign.toml", CAMPAIGN + f"\n[output]\n{text}\n")
                 self.rejected("generate", "campaign.toml", "-o", "set",
-                              says=says)
+                              says=["campaign.toml:21:", says])
+
+    def test_more_files_than_can_be_numbered_are_refused(self):
+        self.write("campaign.toml", CAMPAIGN.replace("devices = 7",
+                                                     "devices = 4000000000"))
+        self.rejected("generate", "campaign.toml", "-o", "set",
+                      says=["campaign.toml:4:", "4000000000 files"])
 
     def test_verify_and_info_refuse_what_is_no_set(self):
         (self.dir / "empty").mkdir()
@@ -367,6 +399,14 @@ class Verify(Set):
             (self.dir / name).unlink()
         (self.dir / "set/ramp_00000.h5").write_bytes(b"")
         self.repaired()
+
+    def test_repair_from_a_damaged_source_is_failed_work(self):
+        (self.dir / "set/rest_00000.h5").unlink()
+        (self.dir / "set/source/campaign.toml").write_text("x\n")
+        answer = self.beamgyro("verify", "set", "--repair")
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn("source/campaign.toml", answer.stderr)
+        self.assertIn("--resume", answer.stderr)
 
     def test_a_clock_that_jumps_changes_nothing(self):
         for path in (self.dir / "set").iterdir():
