@@ -48,14 +48,16 @@ SetTask task_of(std::string_view shard) {
 }
 
 // A file is made in memory.
-void require_moderate_files(const ShardPlan& plan) {
+void require_moderate_files(const std::string& campaign,
+                            const ShardPlan& plan) {
   constexpr double kLargest = 1e9;  // [byte]
   const double size = plan.largest_file();
   if (size <= kLargest) return;
   throw std::invalid_argument(fmt::format(
-      "devices_per_file: {} devices make files of {:.1f} GB; expected at most "
-      "{:g} GB, so fewer devices a file, fewer variables or lower rates",
-      plan.campaign().devices_per_file(), size / 1e9, kLargest / 1e9));
+      "{}: devices_per_file: {} devices make files of {:.1f} GB; expected at "
+      "most {:g} GB, so fewer devices a file, fewer variables or lower rates",
+      campaign, plan.campaign().devices_per_file(), size / 1e9,
+      kLargest / 1e9));
 }
 
 std::string sentence(const SetState& state, std::uint64_t made) {
@@ -74,7 +76,7 @@ int generate(const GenerateArguments& arguments) {
   const Campaign campaign =
       Campaign::read(arguments.campaign, arguments.devices);
   const ShardPlan plan(campaign, {kProgramVersion, kGitRevision});
-  require_moderate_files(plan);
+  require_moderate_files(arguments.campaign, plan);
   if (arguments.lacking) {
     print_result(lacking_tasks(arguments.output, plan.manifest_head(),
                                *arguments.lacking) +

@@ -239,7 +239,8 @@ double ShardPlan::largest_file() const {
     for (const SetVariable& variable : head.variables)
       bytes += bytes_of(variable.storage) * samples /
                (variable.slow ? static_cast<double>(head.slow_step) : 1);
-    largest = std::max(largest, bytes * campaign_->devices_per_file());
+    largest = std::max(largest, bytes * std::min(campaign_->devices_per_file(),
+                                                 campaign_->devices()));
   }
   return largest;
 }

@@ -137,6 +137,27 @@ TEST_F(Lock, NeverTwoAtOnceWhileItComesAndGoes) {
   EXPECT_TRUE(names().empty());
 }
 
+// Who leaves last has the shared lock alone while it removes the file.
+TEST_F(Lock, TasksThatComeAndGoNeverRefuseEachOther) {
+  std::atomic<int> refused{0};
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 1; i <= 4; ++i) {
+      threads.emplace_back([&, i] {
+        for (int n = 0; n < 200; ++n) {
+          try {
+            SetLock(directory, std::to_string(i) + "-of-4");
+          } catch (const std::runtime_error&) {
+            ++refused;
+          }
+        }
+      });
+    }
+  }
+  EXPECT_EQ(refused, 0);
+  EXPECT_TRUE(names().empty());
+}
+
 TEST_F(Lock, AMissingDirectoryIsNamed) {
   const std::filesystem::path none = directory / "none";
   EXPECT_EQ(rejection<std::runtime_error>([&] { SetLock(none, ""); }),
