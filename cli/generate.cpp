@@ -114,16 +114,18 @@ void add_generate(CLI::App& program, Action& action) {
       ->add_option("--jobs", arguments->jobs,
                    "threads; as many as there are cores without it")
       ->check(CLI::Range(1, 4096));
-  command->add_option("--shard", arguments->shard,
-                      "I/N, one of N tasks that share the directory");
-  command->add_flag("--resume", arguments->resume,
-                    "go on with the set that is there");
-  command->add_flag("--strict", arguments->strict,
-                    "exit with 4 when devices failed");
+  CLI::Option* shard =
+      command->add_option("--shard", arguments->shard,
+                          "I/N, one of N tasks that share the directory");
+  CLI::Option* resume = command->add_flag("--resume", arguments->resume,
+                                          "go on with the set that is there");
+  CLI::Option* strict = command->add_flag("--strict", arguments->strict,
+                                          "exit with 4 when devices failed");
   command
       ->add_option("--lacking", arguments->lacking,
                    "N, only list which of N tasks have something to do yet")
-      ->check(CLI::Range(1, 1000000));
+      ->check(CLI::Range(1, 1000000))
+      ->excludes(shard, resume, strict);
   command->callback([arguments, &action] {
     action = [arguments] { return generate(*arguments); };
   });

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 
 #include "cli/commands.h"
 #include "cli/set_info.h"
@@ -45,11 +47,15 @@ std::string status_line(const Recording& recording) {
                      saturated, unlocked);
 }
 
-int info(const std::string& path) {
+int info(const std::string& path, std::optional<std::uint32_t> device) {
   if (fs::is_directory(path)) {
-    print_result(info_on_set(path));
+    print_result(device ? info_on_device(path, *device) : info_on_set(path));
     return 0;
   }
+  if (device)
+    throw std::invalid_argument(
+        fmt::format("--device {}: {} is no directory; expected that of a set",
+                    *device, path));
   if (is_shard_file(path)) {
     print_result(info_on_shard(path));
     return 0;
@@ -91,11 +97,15 @@ int info(const std::string& path) {
 
 void add_info(CLI::App& program, Action& action) {
   auto path = std::make_shared<std::string>();
+  auto device = std::make_shared<std::optional<std::uint32_t>>();
   CLI::App* command =
       program.add_subcommand("info", "Say what a recording or a set holds");
   command->add_option("file", *path, "FILE.h5 or DIR")->required();
-  command->callback(
-      [path, &action] { action = [path] { return info(*path); }; });
+  command->add_option("--device", *device,
+                      "of a set: what --set makes the same device");
+  command->callback([path, device, &action] {
+    action = [path, device] { return info(*path, *device); };
+  });
 }
 
 }  // namespace beamgyro

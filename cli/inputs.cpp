@@ -26,7 +26,12 @@ void require_output(const std::filesystem::path& output,
                     const std::vector<std::filesystem::path>& inputs) {
   for (const std::filesystem::path& input : inputs) {
     std::error_code ignored;
-    if (std::filesystem::equivalent(output, input, ignored)) {
+    const bool is_of_set =
+        std::filesystem::is_directory(input, ignored) &&
+        std::filesystem::exists(output, ignored) &&
+        std::filesystem::equivalent(
+            std::filesystem::absolute(output).parent_path(), input, ignored);
+    if (is_of_set || std::filesystem::equivalent(output, input, ignored)) {
       throw std::invalid_argument(
           fmt::format("{}: is read by this command; expected another name for "
                       "what it writes",

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <iterator>
+#include <stdexcept>
 #include <string_view>
 
 #include "dataset/set/set_writer.h"
 #include "dataset/set/shard_reader.h"
+#include "sim/campaign/campaign.h"
 
 namespace beamgyro {
 namespace {
@@ -117,6 +119,26 @@ std::string info_on_set(const fs::path& path) {
     parameters = drawn(file.head());
   }
   return text + "\ndrawn for every device\n" + parameters;
+}
+
+std::string info_on_device(const fs::path& path, std::uint32_t device) {
+  const ManifestHead head = set_contents(path).head;
+  if (device >= head.devices)
+    throw std::invalid_argument(
+        fmt::format("--device {}: {} has devices 0 to {}", device,
+                    path.string(), head.devices - 1));
+  const Campaign campaign =
+      Campaign::read(path / head.sources.front().file, head.devices);
+  const VirtualDevice drawn = campaign.device(device);
+  std::string text = fmt::format("device {}, drawn of {}\n{}", device,
+                                 head.campaign, drawn.overrides);
+  if (!drawn.failure.empty())
+    fmt::format_to(std::back_inserter(text), "failed: {}\n", drawn.failure);
+  for (std::size_t run = 0; run < campaign.runs().size(); ++run)
+    fmt::format_to(std::back_inserter(text), "\nrun {}\n{}",
+                   campaign.runs()[run].name,
+                   campaign.run(run, device).overrides);
+  return text;
 }
 
 }  // namespace beamgyro

@@ -81,6 +81,8 @@ class ShardBuilder {
   ShardBuilder(const ShardBuilder&) = delete;
   ShardBuilder& operator=(const ShardBuilder&) = delete;
 
+  const ShardHead& head() const { return head_; }
+
   /// The expensive part of adding the device of this position in the file; may
   /// be called from many threads at once and in any order. `recording` holds
   /// every variable (columns by name, one value per time of the head) and is

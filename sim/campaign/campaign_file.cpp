@@ -94,9 +94,17 @@ class CampaignReader {
                     trims.flag_or("scale_factor", true)};
   }
 
+  ConfigDocument read_named(const ConfigTable& table, const char* key) const {
+    const std::filesystem::path path = folder_ / table.text(key);
+    if (!std::filesystem::is_regular_file(path))
+      table.fail(key, fmt::format("there is no file {}; expected one, named "
+                                  "relative to the campaign",
+                                  path.string()));
+    return ConfigDocument::read(path);
+  }
+
   void read_device_file() {
-    state_.device_document =
-        ConfigDocument::read(folder_ / root_.text("device"));
+    state_.device_document = read_named(root_, "device");
     const ConfigDocument& document = *state_.device_document;
     state_.device = read_device(document);
     document.reject_unknown_keys();
@@ -184,8 +192,7 @@ class CampaignReader {
 
   void read_run(const ConfigTable& run) {
     const std::string name = read_run_name(run);
-    const ConfigDocument document =
-        ConfigDocument::read(folder_ / run.text("scenario"));
+    const ConfigDocument document = read_named(run, "scenario");
     Scenario scenario = read_scenario(document);
     document.reject_unknown_keys();
     scenario.seed = state_.source.seed;

@@ -96,6 +96,7 @@ DrawnParameter parameter(const Draw& draw, const std::string& run,
   }
   if (!run.empty()) result.long_name += fmt::format(" of the run {}", run);
   if (!draw.numeric) {
+    result.name += "_choice";  // `rate` itself is a signal
     std::vector<std::string> choices;
     for (const ConfigNode& value : draw.values)
       choices.push_back(toml_text(value));

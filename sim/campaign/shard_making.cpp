@@ -90,6 +90,24 @@ Recording ShardMaker::recorded(const PreparedDevice& device,
   return recording;
 }
 
+// A value that its storage cannot hold is a failure of the device, too.
+EncodedDevice ShardMaker::encoded(const ShardBuilder& file,
+                                  std::uint32_t position,
+                                  const PreparedDevice& device,
+                                  const VirtualRun& run, const RunKey& key,
+                                  DeviceRow& row) {
+  if (row.failure.empty()) {
+    const Recording recording = recorded(device, run, key, file.head(), row);
+    try {
+      if (row.failure.empty()) return file.encode(position, row, &recording);
+    } catch (const std::runtime_error& error) {
+      row.failure = first_line(error.what());
+      row.device_status = kNotFinite;
+    }
+  }
+  return file.encode(position, row, nullptr);
+}
+
 MadeShard ShardMaker::make(std::uint32_t file, GenerationCounts& counts) {
   const std::uint32_t run = plan_.run_of(file);
   const ShardHead head = plan_.head_of(file);
@@ -104,14 +122,9 @@ MadeShard ShardMaker::make(std::uint32_t file, GenerationCounts& counts) {
     row.parameters = device.drawn.parameters;
     row.parameters.insert(row.parameters.end(), drawn.parameters.begin(),
                           drawn.parameters.end());
-    Recording recording;
-    if (row.failure.empty())
-      recording = recorded(device, drawn, {number, run}, head, row);
-    if (row.failure.empty()) {
-      made.file->add(row, &recording);
-    } else {
+    made.file->add(encoded(*made.file, i, device, drawn, {number, run}, row));
+    if (!row.failure.empty()) {
       made.failures.push_back({number, row.failure});
-      made.file->add(row, nullptr);
       ++counts.failures;
     }
     ++counts.device_runs;

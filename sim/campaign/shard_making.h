@@ -48,6 +48,10 @@ class ShardMaker {
     DeviceRow row;  // its failure, if there is no gyro
   };
   void prepare(std::uint32_t range);
+  static EncodedDevice encoded(const ShardBuilder& file, std::uint32_t position,
+                               const PreparedDevice& device,
+                               const VirtualRun& run, const RunKey& key,
+                               DeviceRow& row);
   static Recording recorded(const PreparedDevice& device, const VirtualRun& run,
                             const RunKey& key, const ShardHead& head,
                             DeviceRow& row);

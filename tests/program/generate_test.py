@@ -1,74 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""generate, verify and info on sets: same bytes by any way, and bad input."""
+"""generate: the same bytes by any way, and bad input."""
 
 import json
 import os
-import pathlib
 import pty
 import re
 import signal
 import subprocess
-import sys
 import time
 import unittest
 
 import h5py
 import numpy as np
 
-from program import PROGRAM, ROOT, SCENARIOS, ProgramTest
-
-sys.path.insert(0, str(ROOT / "bench"))
-import set_faults  # noqa: E402
-
-CAMPAIGN = """\
-name = "tiny"
-device = "device.toml"
-devices = 7
-devices_per_file = 2
-seed = 5
-
-[tolerances]
-"patches.offset_m" = { normal = { mean = 0, sigma = 10e-6 } }
-"readout.quadrature_trim_deg_per_s" = { normal = { mean = 0, sigma = 50 } }
-
-[[run]]
-name = "rest"
-scenario = "rest.toml"
-
-[[run]]
-name = "ramp"
-scenario = "ramp.toml"
-ambient_offset_K = { uniform = { low = -5, high = 5 } }
-"""
-
-SCENARIO = """\
-name = "{name}"
-device = "device.toml"
-fidelity = "quasistatic"
-duration_s = 60
-output_rate_Hz = 2
-seed = 1
-
-[ambient]
-{ambient}
-"""
-
-
-class Set(ProgramTest):
-    def setUp(self):
-        super().setUp()
-        self.write("rest.toml", SCENARIO.format(name="rest",
-                                                ambient="constant_degC = 25"))
-        self.write("ramp.toml", SCENARIO.format(
-            name="ramp", ambient="points = [[0, 0], [60, 10]]"))
-        self.write("campaign.toml", CAMPAIGN)
-
-    def contents(self, name):
-        return set_faults.contents(self.dir / name)
-
-    def generate(self, name, *arguments):
-        return self.ok("generate", "campaign.toml", "-o", name, *arguments)
-
+from program import PROGRAM
+from sets import CAMPAIGN, Set
 
 class Generate(Set):
     def test_a_set_has_a_file_for_every_range_of_devices_and_run(self):
@@ -231,6 +177,17 @@ class Generate(Set):
         self.assertTrue(all(entry["reason"] for entry in reasons))
         self.ok("verify", "set")
 
+    def test_a_whole_table_may_be_drawn(self):
+        choices = ('[run.vary]\n"ambient" = { discrete = { values = ['
+                   "{ constant_degC = 5 }, { points = [[0, 0], [60, 40]] }"
+                   "] } }\n")
+        self.write("campaign.toml", CAMPAIGN.replace(
+            "ambient_offset_K = { uniform = { low = -5, high = 5 } }\n",
+            choices))
+        self.generate("set")
+        with h5py.File(self.dir / "set/ramp.nc") as file:
+            self.assertEqual(set(file["ambient_choice"][()]), {0.0, 1.0})
+
     def test_termination_leaves_only_whole_files(self):
         self.write("campaign.toml", CAMPAIGN.replace("devices = 7",
                                                      "devices = 4000"))
@@ -339,133 +296,6 @@ class BadInput(Set):
                        capture_output=True)
         subprocess.run([os.fsencode(PROGRAM), b"verify", folder], check=True,
                        capture_output=True)
-
-
-class Verify(Set):
-    def setUp(self):
-        super().setUp()
-        self.generate("set")
-        self.before = self.contents("set")
-
-    def found(self, *names):
-        answer = self.beamgyro("verify", "set")
-        self.assertEqual(answer.returncode, 1, answer.stderr)
-        for name in names:
-            self.assertIn(name, answer.stdout)
-        return answer.stdout
-
-    def repaired(self):
-        self.ok("verify", "set", "--repair")
-        self.assertEqual(self.contents("set"), self.before)
-        self.assertIn("whole", self.ok("verify", "set"))
-
-    def test_a_missing_file_is_made_again(self):
-        (self.dir / "set/ramp_00002.h5").unlink()
-        self.assertIn("missing", self.found("ramp_00002.h5"))
-        self.repaired()
-
-    def test_swapped_files_name_each_other(self):
-        one, other = (self.dir / f"set/rest_0000{k}.h5" for k in range(2))
-        content = one.read_bytes()
-        one.write_bytes(other.read_bytes())
-        other.write_bytes(content)
-        said = self.found(one.name, other.name)
-        self.assertRegex(said, rf"{one.name}.*{other.name}")
-        self.repaired()
-
-    def test_a_damaged_view_is_made_again(self):
-        (self.dir / "set/rest.nc").write_bytes(b"nothing")
-        self.found("rest.nc")
-        self.repaired()
-
-    def test_a_damaged_manifest_is_made_again(self):
-        manifest = self.dir / "set/manifest.jsonl"
-        text = manifest.read_text()
-        digest = re.search(r'"bytes":\d+,"sha256":"([0-9a-f]{64})"',
-                           text).group(1)
-        manifest.write_text(text.replace(digest, digest[::-1]))
-        self.found("manifest.jsonl")
-        self.repaired()
-
-    def test_a_foreign_file_is_named_and_not_touched(self):
-        foreign = self.dir / "set/foreign.h5"
-        foreign.write_bytes(b"mine")
-        self.found("foreign.h5")
-        self.beamgyro("verify", "set", "--repair")
-        self.assertEqual(foreign.read_bytes(), b"mine")
-
-    def test_repair_needs_nothing_but_the_set(self):
-        for name in ["campaign.toml", "rest.toml", "ramp.toml", "device.toml"]:
-            (self.dir / name).unlink()
-        (self.dir / "set/ramp_00000.h5").write_bytes(b"")
-        self.repaired()
-
-    def test_repair_from_a_damaged_source_is_failed_work(self):
-        (self.dir / "set/rest_00000.h5").unlink()
-        (self.dir / "set/source/campaign.toml").write_text("x\n")
-        answer = self.beamgyro("verify", "set", "--repair")
-        self.assertEqual(answer.returncode, 1)
-        self.assertIn("source/campaign.toml", answer.stderr)
-        self.assertIn("--resume", answer.stderr)
-
-    def test_a_clock_that_jumps_changes_nothing(self):
-        for path in (self.dir / "set").iterdir():
-            os.utime(path, (4e9, 4e9))
-        self.assertIn("whole", self.ok("verify", "set"))
-        self.generate("set", "--resume")
-        self.assertEqual(self.contents("set"), self.before)
-
-
-class Info(Set):
-    def test_a_set_is_summarised(self):
-        self.generate("set")
-        said = self.ok("info", "set")
-        for part in ["campaign.toml", "7 devices", "rest", "ramp", "0 failed",
-                     "patches_offset_m_0", "whole"]:
-            self.assertIn(part, said)
-
-    def test_a_set_that_is_not_whole_says_what_it_lacks(self):
-        self.generate("set", "--shard", "1/2")
-        self.assertIn("4 of 8 files", self.ok("info", "set"))
-
-    def test_a_file_of_a_set_is_described(self):
-        self.generate("set")
-        said = self.ok("info", "set/rest_00003.h5")
-        for part in ["devices 6 to 6", "rest", "output", "true_bias"]:
-            self.assertIn(part, said)
-
-
-class Faults(unittest.TestCase):
-    """The short form of bench/set_faults.py."""
-
-    @classmethod
-    def setUpClass(cls):
-        import tempfile
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.faults = set_faults.Faults(PROGRAM, pathlib.Path(folder.name))
-
-    def test_twenty_kills_leave_the_bytes_of_an_uninterrupted_run(self):
-        self.assertEqual(self.faults.kills(20)["kills"], 20)
-
-    def test_terminations_do_too(self):
-        self.assertEqual(
-            self.faults.kills(10, with_signal=signal.SIGTERM)["kills"], 10)
-
-    def test_every_damage_is_found_and_mended(self):
-        self.assertEqual(sum(self.faults.damages(40).values()), 40)
-
-    def test_twenty_starts_have_one_winner(self):
-        self.assertEqual(self.faults.starts(20)["winners"], 1)
-
-    def test_full_disks_end_in_an_error_and_are_recovered_from(self):
-        if os.geteuid() != 0:
-            self.skipTest("a disk that fills up needs root to mount one")
-        try:
-            figures = self.faults.full_disks(20)
-        except subprocess.CalledProcessError:
-            self.skipTest("mounting a small disk is not allowed here")
-        self.assertEqual(figures["sizes"], 20)
 
 
 if __name__ == "__main__":

@@ -62,7 +62,7 @@ TEST(CampaignFile, EveryKeyArrives) {
   EXPECT_EQ(c.parameters()[3].name, "patches_offset_m_3");
   EXPECT_EQ(c.parameters()[3].units, "m");
   EXPECT_EQ(c.parameters()[3].long_name, "drawn patches.offset_m[3]");
-  EXPECT_EQ(c.parameters()[4].name, "readout_mode");
+  EXPECT_EQ(c.parameters()[4].name, "readout_mode_choice");
   EXPECT_EQ(c.parameters()[4].long_name,
             "drawn readout.mode, index from 0 among: \"open_loop\" | "
             "\"force_rebalance\"");
@@ -121,7 +121,7 @@ std::vector<BadCase> bad_heads() {
        "run: missing; expected at least one [[run]]"},
       {"NoSuchDevice",
        "name = \"x\"\ndevice = \"nothere.toml\"\ndevices = 1\nseed = 1\n",
-       "nothere.toml: cannot read"},
+       "c.toml:2:10: device: there is no file "},
       {"Sampling", campaign_text("", "sampling = \"latin\""),
        "expected one of \"monte_carlo\", \"sobol\""},
       {"Split", campaign_text("[split]\ntrain = 0.8\ntest = 0.1\n"),
