@@ -34,7 +34,21 @@ Manifest finished_manifest(const std::filesystem::path& directory) {
     throw std::invalid_argument(fmt::format(
         "{}: the set is not finished; generate goes on where it stopped",
         directory.string()));
+  if (!manifest.damaged_lines.empty() ||
+      manifest.entries.size() != file_count(*manifest.head))
+    throw std::invalid_argument(fmt::format(
+        "{}: the manifest is damaged; verify tells more", directory.string()));
   return manifest;
+}
+
+// A file that was changed may still open and show other values.
+void check_bytes(const std::filesystem::path& file,
+                 const ManifestEntry& entry) {
+  if (sha256_of_file(file) != entry.sha256)
+    throw std::invalid_argument(
+        fmt::format("{}: holds other bytes than the manifest says; "
+                    "verify tells more",
+                    file.string()));
 }
 
 void check_selection(const ManifestHead& head, const SetSelection& selection,
@@ -83,6 +97,7 @@ RunSource runs_of_set(const std::filesystem::path& directory,
     const std::string& run = runs[entry.index % runs.size()];
     if (!selection.runs.empty() && !holds(selection.runs, run)) continue;
     FileMembers members{directory / entry.file, run, {}};
+    check_bytes(members.file, entry);
     const ShardFile shard(members.file);
     for (std::uint32_t k = 0; k < shard.devices(); ++k) {
       const std::uint32_t device = shard.head().first_device + k;

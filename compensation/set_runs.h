@@ -23,8 +23,10 @@ struct SetSelection {
 
 /// The runs of a set of virtual devices that were selected, each read when its
 /// turn comes, file by file. Devices that could not be simulated are left out.
+/// Every file of the runs is read once here and compared with the manifest.
 /// Throws std::invalid_argument when the directory holds no finished set, the
-/// set has no run of a name or no such device, or as ShardFile.
+/// manifest is damaged or a file holds other bytes, the set has no run of a
+/// name or no such device, or as ShardFile.
 RunSource runs_of_set(const std::filesystem::path& directory,
                       const SetSelection& selection);
 
