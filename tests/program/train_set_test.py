@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: MIT
+"""train and validate on a set: what is read of it, and what is refused."""
+
+import json
+import re
+import shutil
+import unittest
+
+import h5py
+import numpy as np
+
+from program import CUBIC, SCENARIOS, ProgramTest
+
+CAMPAIGN = """\
+name = "tiny"
+device = "device.toml"
+devices = 24
+devices_per_file = 6
+seed = 5
+
+[split]
+train = 0.6
+validation = 0.2
+test = 0.2
+
+[tolerances]
+"patches.offset_m" = { normal = { mean = 0, sigma = 10e-6 } }
+"readout.quadrature_trim_deg_per_s" = { normal = { mean = 0, sigma = 50 } }
+
+[[run]]
+name = "sweep"
+scenario = "sweep.toml"
+
+[[run]]
+name = "check"
+scenario = "check.toml"
+"""
+
+SCENARIO = """\
+name = "{name}"
+device = "device.toml"
+fidelity = "quasistatic"
+duration_s = {duration}
+output_rate_Hz = 0.1
+seed = 1
+
+[ambient.soaks]
+temperatures_degC = {temperatures}
+hold_s = 2700
+ramp_K_per_min = 1
+
+[chamber]
+stirred = true
+"""
+
+STEADY = """
+[rows]
+seconds = 60
+steady_K_per_min = 0.05
+"""
+
+POPULATION = """\
+kind = "population"
+inputs = ["temperature", "quadrature"]
+
+[rows]
+seconds = 60
+steady_K_per_min = 0.05
+
+[population]
+grid_K = 15
+"""
+
+TRAIN, VALIDATION, TEST = range(3)  # of the variable part
+
+
+class TrainSet(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("sweep.toml", SCENARIO.format(
+            name="sweep", temperatures=list(range(-35, 41, 15)),
+            duration=6 * 2700 + 75 * 60))
+        self.write("check.toml", SCENARIO.format(
+            name="check", temperatures=[-20, 0, 15, 30],
+            duration=4 * 2700 + 50 * 60))
+        self.write("campaign.toml", CAMPAIGN)
+        self.write("cubic.toml", CUBIC + STEADY)
+        self.write("population.toml", POPULATION)
+        shutil.copy(SCENARIOS / "population/adapted.toml", self.dir)
+        self.ok("generate", "campaign.toml", "-o", "set", "--jobs", 1)
+        with h5py.File(self.dir / "set/sweep.nc") as view:
+            self.part = view["part"][:]
+
+    def devices(self, part):
+        return [int(k) for k in np.flatnonzero(self.part == part)]
+
+    def train(self, model, name, *arguments):
+        """What a compensator trained on the set says of its training."""
+        self.ok("train", "set", "--model", model, "-o", name, *arguments)
+        return json.loads((self.dir / name).read_text())["training"]
+
+    def scores(self, name, *arguments):
+        answer = self.beamgyro("validate", name, "set", "--json",
+                               "scores.json", *arguments)
+        self.assertIn(answer.returncode, (0, 3), answer.stderr)
+        scores = json.loads((self.dir / "scores.json").read_text())
+        return answer.stdout, scores["devices"]
+
+
+class Split(TrainSet):
+    def test_training_devices_are_fitted_and_those_of_validation_held_out(self):
+        counts = [len(self.devices(k)) for k in (TRAIN, VALIDATION, TEST)]
+        self.assertTrue(all(counts) and len(set(counts)) > 1, counts)
+        said = self.train("cubic.toml", "cubic.json", "--run", "sweep")
+        self.assertEqual(said["set"]["devices"], counts[TRAIN])
+        self.assertEqual(said["held_out_set"]["devices"], counts[VALIDATION])
+
+    def test_devices_for_testing_do_not_change_a_compensator(self):
+        """Left out of a set by their number they leave the same curve."""
+        self.train("cubic.toml", "all.json", "--run", "sweep")
+        self.train("cubic.toml", "same.json", "--run", "sweep",
+                   "--device", *self.devices(TRAIN))
+        self.train("cubic.toml", "more.json", "--run", "sweep", "--device",
+                   *self.devices(TRAIN), *self.devices(TEST))
+        models = [json.loads((self.dir / f"{name}.json").read_text())
+                  ["parameters"] for name in ("all", "same", "more")]
+        self.assertEqual(models[0], models[1])
+        self.assertNotEqual(models[0], models[2])
+
+    def test_a_run_is_chosen_by_its_name(self):
+        rows = {}
+        for run in ("sweep", "check"):
+            text = self.ok("train", "set", "--run", run, "--model",
+                           "cubic.toml", "-o", f"{run}.json")
+            rows[run] = int(re.search(r"(\d+) rows", text)[1])
+        text = self.ok("train", "set", "--model", "cubic.toml", "-o",
+                       "both.json")
+        self.assertIn(f" {rows['sweep'] + rows['check']} rows", text)
+        self.assertGreater(rows["sweep"], rows["check"])
+
+    def test_scores_are_those_of_the_test_devices(self):
+        self.train("cubic.toml", "cubic.json", "--run", "sweep")
+        text, scores = self.scores("cubic.json", "--run", "check")
+        self.assertEqual([score["device"] for score in scores],
+                         [str(k) for k in self.devices(TEST)])
+        residuals = [score["residual_rms_deg_per_s"] for score in scores]
+        (line,) = [line for line in text.splitlines()
+                   if line.startswith("check ")]
+        self.assertEqual(line.split()[1:4],
+                         [str(len(scores)), f"{np.median(residuals):.4f}",
+                          f"{max(residuals):.4f}"])
+
+
+class Adapted(TrainSet):
+    def test_new_devices_are_closer_to_own_curves_than_to_the_mean(self):
+        said = self.train("population.toml", "population.json", "--run",
+                          "sweep")
+        self.assertEqual(said["set"]["devices"], len(self.devices(TRAIN)))
+        _, mean = self.scores("population.json", "--run", "sweep")
+        own = []
+        for device in self.devices(TEST):
+            said = self.train("adapted.toml", "mine.json", "--run", "check",
+                              "--device", device)
+            self.assertEqual(said["set"]["devices"], 1)
+            _, scores = self.scores("mine.json", "--run", "sweep",
+                                    "--device", device)
+            own += scores
+        self.assertEqual([score["device"] for score in own],
+                         [score["device"] for score in mean])
+        self.assertLess(*(np.median([score["residual_rms_deg_per_s"]
+                                     for score in scores])
+                          for scores in (own, mean)))
+
+
+class Refused(TrainSet):
+    def refused(self, *arguments, says):
+        self.rejected("train", "set", "--model", "cubic.toml", "-o",
+                      "cubic.json", *arguments, says=says)
+
+    def change(self, name):
+        """Turns one bit of a file of the set."""
+        path = self.dir / "set" / name
+        data = bytearray(path.read_bytes())
+        data[len(data) // 2] ^= 1
+        path.write_bytes(data)
+
+    def test_a_file_of_other_bytes_than_the_manifest_says(self):
+        self.train("cubic.toml", "before.json", "--run", "sweep")
+        self.change("sweep_00001.h5")
+        self.refused("--run", "sweep", says=["sweep_00001.h5", "verify"])
+        self.rejected("validate", "before.json", "set",
+                      says=["sweep_00001.h5", "verify"])
+        self.train("cubic.toml", "check.json", "--run", "check")  # unharmed
+
+    def test_a_file_in_the_place_of_another(self):
+        shutil.copy(self.dir / "set/sweep_00000.h5",
+                    self.dir / "set/sweep_00002.h5")
+        self.refused(says=["sweep_00002.h5", "other bytes"])
+
+    def test_a_line_of_the_manifest_that_was_changed(self):
+        path = self.dir / "set/manifest.jsonl"
+        text = path.read_text()
+        path.write_text(text.replace('"first_device":6', '"first_device":7'))
+        self.assertNotEqual(path.read_text(), text)
+        self.refused(says=["manifest"])
+
+    def test_a_set_that_is_not_finished(self):
+        shutil.rmtree(self.dir / "set")
+        self.ok("generate", "campaign.toml", "-o", "set", "--shard", "1/2")
+        self.refused(says=["set"])
+
+    def test_runs_devices_and_options_it_does_not_have(self):
+        self.refused("--run", "ramp", says=["ramp", "sweep, check"])
+        self.refused("--device", 24, says=["24", "0 to 23"])
+        self.refused("--held-out", "set/check_00000.h5", says="--held-out")
+        self.refused("--cv", "run", says="--cv")
+        self.rejected("train", "nowhere", "--model", "cubic.toml", "-o",
+                      "cubic.json", says="nowhere")
+
+
+if __name__ == "__main__":
+    unittest.main()
