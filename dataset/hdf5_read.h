@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <hdf5.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -24,6 +26,24 @@ std::vector<hsize_t> lengths_of(hid_t variable, const std::string& name,
 /// That values of class `expected` fit into `size` bytes each.
 void check_type(hid_t variable, const std::string& name, H5T_class_t expected,
                 std::size_t size);
+
+/// A variable over one dimension of `length`, or of any if that is 0.
+template <class Value>
+std::vector<Value> read_values(hid_t file, const std::string& name,
+                               H5T_class_t expected, hid_t memory_type,
+                               std::size_t length) {
+  const H5Id variable = open_variable(file, name);
+  check_type(variable, name, expected, sizeof(Value));
+  const hsize_t found = lengths_of(variable, name, 1).front();
+  if (length != 0 && found != length)
+    throw Hdf5Error(name + " has " + std::to_string(found) +
+                    " values; expected " + std::to_string(length));
+  std::vector<Value> values(found);
+  check_hdf5(H5Dread(variable, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                     values.data()),
+             "read " + name);
+  return values;
+}
 
 std::string text_attribute(hid_t object, const std::string& owner,
                            const char* name);

@@ -16,23 +16,6 @@
 namespace beamgyro {
 namespace {
 
-/// One value per time; `times` is 0 for the time axis itself.
-template <class Value>
-std::vector<Value> read_values(hid_t variable, const std::string& name,
-                               H5T_class_t expected, hid_t memory_type,
-                               std::size_t times) {
-  check_type(variable, name, expected, sizeof(Value));
-  const hsize_t length = lengths_of(variable, name, 1).front();
-  if (times != 0 && length != times)
-    throw Hdf5Error(
-        fmt::format("{} has {} values for {} times", name, length, times));
-  std::vector<Value> values(length);
-  check_hdf5(H5Dread(variable, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                     values.data()),
-             "read " + name);
-  return values;
-}
-
 Recording read_file(const std::string& name) {
   const H5Id file = open_hdf5_file(name, kRecordingFiletype, "recording",
                                    kRecordingFormatVersion);
@@ -46,12 +29,10 @@ Recording read_file(const std::string& name) {
   recording.device_text = meta_text(file, "device");
   recording.overrides_text = meta_text(file, "overrides");
 
-  const H5Id time = open_variable(file, "time");
   recording.time =
-      read_values<double>(time, "time", H5T_FLOAT, H5T_NATIVE_DOUBLE, 0);
+      read_values<double>(file, "time", H5T_FLOAT, H5T_NATIVE_DOUBLE, 0);
   const std::size_t times = recording.time.size();
-  const H5Id status = open_variable(file, "status");
-  recording.status = read_values<std::uint8_t>(status, "status", H5T_INTEGER,
+  recording.status = read_values<std::uint8_t>(file, "status", H5T_INTEGER,
                                                H5T_NATIVE_UINT8, times);
   for (const std::string& column : variable_names(file)) {
     if (column == "time" || column == "status") continue;
@@ -60,7 +41,7 @@ Recording read_file(const std::string& name) {
         {column, text_attribute(variable, column, "units"),
          text_attribute(variable, column, "long_name"),
          role_of(text_attribute(variable, column, "role"), column),
-         read_values<double>(variable, column, H5T_FLOAT, H5T_NATIVE_DOUBLE,
+         read_values<double>(file, column, H5T_FLOAT, H5T_NATIVE_DOUBLE,
                              times)});
   }
   const std::string defect = recording_defect(recording);

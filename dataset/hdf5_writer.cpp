@@ -96,15 +96,7 @@ Hdf5Layout make_file(const Recording& head, std::size_t samples,
       H5Fcreate(path.c_str(), H5F_ACC_TRUNC,
                 creation_properties(H5P_FILE_CREATE), access_properties()),
       H5Fclose, "create the file");
-  write_text(file, "Conventions", "CF-1.10");
-  write_text(file, "filetype", kRecordingFiletype);
-  const std::int32_t version = kRecordingFormatVersion;
-  write_attribute(file, "format_version", H5T_STD_I32LE, scalar_space(),
-                  &version);
-  write_text(file, "beamgyro_version", head.program_version);
-  write_text(file, "git_revision", head.git_revision);
-  write_attribute(file, "seed", H5T_STD_U64LE, scalar_space(), &head.seed);
-  write_text(file, "fidelity", head.fidelity);
+  write_origin(file, kRecordingFiletype, kRecordingFormatVersion, head);
   Hdf5Layout layout = make_variables(file, head, samples);
   const std::array<NamedText, 3> texts = {{{"scenario", head.scenario_text},
                                            {"device", head.device_text},

@@ -17,23 +17,6 @@
 namespace beamgyro {
 namespace {
 
-template <class Value>
-std::vector<Value> read_all(hid_t file, const std::string& name,
-                            H5T_class_t expected, hid_t memory_type,
-                            std::size_t length) {
-  const H5Id variable = open_variable(file, name);
-  check_type(variable, name, expected, sizeof(Value));
-  const hsize_t found = lengths_of(variable, name, 1).front();
-  if (length != 0 && found != length)
-    throw Hdf5Error(
-        fmt::format("{} has {} values; expected {}", name, found, length));
-  std::vector<Value> values(found);
-  check_hdf5(H5Dread(variable, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                     values.data()),
-             "read " + name);
-  return values;
-}
-
 int rank_of(hid_t variable, const std::string& name) {
   const H5Id space(H5Dget_space(variable), H5Sclose, "open " + name);
   return H5Sget_simple_extent_ndims(space);
@@ -159,9 +142,9 @@ class ShardFile::File {
     head_.device_text = meta_text(file_, "device");
     head_.overrides_text = meta_text(file_, "overrides");
     head_.time =
-        read_all<double>(file_, "time", H5T_FLOAT, H5T_NATIVE_DOUBLE, 0);
-    const auto numbers = read_all<std::int64_t>(file_, "device", H5T_INTEGER,
-                                                H5T_NATIVE_INT64, 0);
+        read_values<double>(file_, "time", H5T_FLOAT, H5T_NATIVE_DOUBLE, 0);
+    const auto numbers = read_values<std::int64_t>(file_, "device", H5T_INTEGER,
+                                                   H5T_NATIVE_INT64, 0);
     if (numbers.empty() || numbers.front() < 0 || numbers.back() > UINT32_MAX)
       throw Hdf5Error("device has no numbers of devices");
     head_.devices = static_cast<std::uint32_t>(numbers.size());
@@ -178,7 +161,7 @@ class ShardFile::File {
     if (name == "truth_time") {
       head_.slow_step = step_between(
           head_.time,
-          read_all<double>(file_, name, H5T_FLOAT, H5T_NATIVE_DOUBLE, 0));
+          read_values<double>(file_, name, H5T_FLOAT, H5T_NATIVE_DOUBLE, 0));
       return;
     }
     const H5Id variable = open_variable(file_, name);
@@ -224,14 +207,14 @@ class ShardFile::File {
   void read_rows() {
     rows_.resize(head_.devices);
     for (const DeviceVariable& about : head_.parameters) {
-      const auto values = read_all<double>(file_, about.name, H5T_FLOAT,
-                                           H5T_NATIVE_DOUBLE, rows_.size());
+      const auto values = read_values<double>(file_, about.name, H5T_FLOAT,
+                                              H5T_NATIVE_DOUBLE, rows_.size());
       for (std::size_t i = 0; i < rows_.size(); ++i)
         rows_[i].parameters.push_back(values[i]);
     }
-    const auto parts = read_all<std::uint8_t>(file_, "part", H5T_INTEGER,
-                                              H5T_NATIVE_UINT8, rows_.size());
-    const auto statuses = read_all<std::uint8_t>(
+    const auto parts = read_values<std::uint8_t>(
+        file_, "part", H5T_INTEGER, H5T_NATIVE_UINT8, rows_.size());
+    const auto statuses = read_values<std::uint8_t>(
         file_, "device_status", H5T_INTEGER, H5T_NATIVE_UINT8, rows_.size());
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       rows_[i].part = parts[i];

@@ -99,15 +99,7 @@ void write_device_status_flags(hid_t device_status) {
 }
 
 void write_root_attributes(hid_t file, const ShardHead& head) {
-  write_text(file, "Conventions", "CF-1.10");
-  write_text(file, "filetype", kSetFiletype);
-  const std::int32_t version = kSetFormatVersion;
-  write_attribute(file, "format_version", H5T_STD_I32LE, scalar_space(),
-                  &version);
-  write_text(file, "beamgyro_version", head.program_version);
-  write_text(file, "git_revision", head.git_revision);
-  write_attribute(file, "seed", H5T_STD_U64LE, scalar_space(), &head.seed);
-  write_text(file, "fidelity", head.fidelity);
+  write_origin(file, kSetFiletype, kSetFormatVersion, head);
   write_text(file, "run", head.run);
 }
 

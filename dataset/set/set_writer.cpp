@@ -58,10 +58,11 @@ void take(const fs::path& path, const Manifest& manifest,
         path.string()));
   head = manifest.head;
   for (const ManifestEntry& entry : manifest.entries)
-    state.entries.insert_or_assign(entry.index, entry);
+    state.entries.emplace(entry.index, entry);
 }
 
-// The parts first: they may be merged while this reads.
+// The parts first: they may be merged while this reads, and what they say is
+// newer.
 std::optional<SetContents> contents_if_set(const fs::path& directory) {
   std::error_code error;
   if (!fs::is_directory(directory, error)) return {};
@@ -260,6 +261,8 @@ void SetWriter::add(std::uint32_t index, std::span<const std::byte> bytes,
   entry.failures = failures;
   publish_file(directory_ / entry.file, bytes);
   const std::lock_guard lock(mutex_);
+  // Tasks of another division may have merged and removed it.
+  if (!fs::exists(manifest_)) start_manifest(manifest_, head_);
   append_entry(manifest_, entry);
 }
 

@@ -169,7 +169,7 @@ TEST_F(Hdf5Rejection, ValuesThatAreNotFinite) {
 
 TEST_F(Hdf5Rejection, VariablesOfAnotherLengthOrType) {
   damage([](hid_t id) { replace(id, "status", H5T_STD_U8LE, 7); });
-  EXPECT_EQ(rejected(), "status has 7 values for 20 times");
+  EXPECT_EQ(rejected(), "status has 7 values; expected 20");
   damage([](hid_t id) { replace(id, "status", H5T_IEEE_F64LE, kSamples); });
   EXPECT_EQ(rejected(), "status has another type; expected unsigned bytes");
   damage([](hid_t id) { replace(id, "time", H5T_C_S1, kSamples); });
