@@ -130,6 +130,23 @@ TEST_F(SetRuns, RowsKnowTheirDeviceAndTheProvenanceTheManifest) {
   EXPECT_NEAR(*p.held_out_rms, 20.25 - (0.25 + 50.0 / 3.0), 0.1);
 }
 
+TEST_F(SetRuns, RefuseFilesThatAreNotWhatTheManifestSays) {
+  const auto message = [&](const SetSelection& selection) {
+    return message_of([&] { runs_of_set(folder_, selection); });
+  };
+  // Whole, of the same devices, and of the other run.
+  std::filesystem::copy_file(folder_ / manifest_.entries[1].file,
+                             folder_ / manifest_.entries[0].file,
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_NE(message({{}, {"soaks"}}).find("other bytes than the manifest says"),
+            std::string::npos);
+  EXPECT_EQ(biases({{}, {"ramp"}, {0}}), std::vector<double>{0.5});
+  manifest_.entries.pop_back();
+  write_manifest(folder_ / kManifestName, manifest_);
+  EXPECT_NE(message({{}, {"ramp"}}).find("the manifest is damaged"),
+            std::string::npos);
+}
+
 TEST_F(SetRuns, RefuseWhatTheSetDoesNotHave) {
   const auto message = [&](const SetSelection& selection) {
     return message_of([&] { runs_of_set(folder_, selection); });

@@ -207,7 +207,12 @@ class Refused(TrainSet):
     def test_a_set_that_is_not_finished(self):
         shutil.rmtree(self.dir / "set")
         self.ok("generate", "campaign.toml", "-o", "set", "--shard", "1/2")
-        self.refused(says=["set"])
+        self.refused(says=["set", "manifest.jsonl"])
+        shutil.rmtree(self.dir / "set")
+        self.ok("generate", "campaign.toml", "-o", "set", "--jobs", 1)
+        path = self.dir / "set/manifest.jsonl"
+        path.write_bytes(path.read_bytes()[:-20])  # its last line is torn
+        self.refused(says=["set", "not finished"])
 
     def test_runs_devices_and_options_it_does_not_have(self):
         self.refused("--run", "ramp", says=["ramp", "sweep, check"])
