@@ -51,7 +51,11 @@ std::string sha256(std::string_view bytes) {
 }
 
 std::string sha256_of_file(const std::filesystem::path& path) {
-  return sha256(read_text_file(path));
+  Sha256 hash;
+  read_in_pieces(path, [&](std::string_view piece) {
+    hash.add(std::as_bytes(std::span(piece)));
+  });
+  return hash.digits();
 }
 
 }  // namespace beamgyro

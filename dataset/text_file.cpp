@@ -8,6 +8,7 @@
 #include <memory>
 #include <stdexcept>
 #include <system_error>
+#include <vector>
 
 namespace beamgyro {
 namespace {
@@ -18,7 +19,8 @@ struct CloseFile {
 
 }  // namespace
 
-std::string read_text_file(const std::filesystem::path& path) {
+void read_in_pieces(const std::filesystem::path& path,
+                    const std::function<void(std::string_view)>& take) {
   const auto reject = [&](int error) {
     throw std::invalid_argument(
         fmt::format("{}: cannot read: {}", path.string(),
@@ -36,16 +38,18 @@ std::string read_text_file(const std::filesystem::path& path) {
   const std::unique_ptr<std::FILE, CloseFile> file(
       std::fopen(path.c_str(), "rb"));
   if (!file) reject(errno);
-  std::string bytes;
-  constexpr std::size_t kBlock = std::size_t{1} << 20;
-  for (std::size_t got = kBlock; got == kBlock;) {
-    const std::size_t before = bytes.size();
-    bytes.resize(before + kBlock);
-    got = std::fread(bytes.data() + before, 1, kBlock, file.get());
+  std::vector<char> piece(std::size_t{1} << 20);
+  for (std::size_t got = piece.size(); got == piece.size();) {
+    got = std::fread(piece.data(), 1, piece.size(), file.get());
     if (std::ferror(file.get()) != 0) reject(errno);
-    bytes.resize(before + got);
+    take({piece.data(), got});
   }
-  return bytes;
+}
+
+std::string read_text_file(const std::filesystem::path& path) {
+  std::string text;
+  read_in_pieces(path, [&](std::string_view piece) { text += piece; });
+  return text;
 }
 
 }  // namespace beamgyro
