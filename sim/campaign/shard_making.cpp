@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "dataset/recording_defect.h"
 #include "sim/scenario/simulation.h"
 
 namespace beamgyro {
@@ -83,14 +82,11 @@ Recording ShardMaker::recorded(const PreparedDevice& device,
            std::vector<double>(recording.time.size(), 0.0)});
     }
   }
-  if (const std::string defect = recording_defect(recording); !defect.empty()) {
-    row.failure = defect;
-    row.device_status = kNotFinite;
-  }
   return recording;
 }
 
-// A value that its storage cannot hold is a failure of the device, too.
+// Values that are not finite or that their storage cannot hold are a failure of
+// the device, too.
 EncodedDevice ShardMaker::encoded(const ShardBuilder& file,
                                   std::uint32_t position,
                                   const PreparedDevice& device,
