@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "sim/campaign/parameter_units.h"
 
+#include <fmt/format.h>
+
 #include <map>
 
 namespace beamgyro {
@@ -40,12 +42,12 @@ std::string units_of(std::string_view key) {
     std::string_view rest = key;
     std::string_view word = take_last(rest);
     if (word == "sqrt") {
-      name = "sqrt(" + name + ')';
+      name = fmt::format("sqrt({})", name);
       key = rest;
       word = take_last(rest);
     }
     divided = word == "per";
-    units = (divided ? "/" : "") + name + units;
+    units = fmt::format("{}{}{}", divided ? "/" : "", name, units);
     if (divided) key = rest;
   }
   return units;

@@ -163,7 +163,7 @@ TEST_F(AdaptedModel, RefusesWhatIsNoPopulation) {
 TEST_F(AdaptedModel, RefusesADamagedPopulation) {
   std::string text = compensator_text(population());
   const auto at = text.find("\"modes\"");
-  text.insert(text.find("[", text.find("[", at) + 1) + 1, "1.0, ");
+  text.insert(text.find('[', text.find('[', at) + 1) + 1, "1.0, ");
   EXPECT_NE(message_of([&] {
               parse_compensator(text, "c.json");
             }).find("c.json: population.modes[0]: 39 numbers, must be 38"),
