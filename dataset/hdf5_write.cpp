@@ -2,12 +2,11 @@
 #include "dataset/hdf5_write.h"
 
 #include <fmt/format.h>
+#include <hdf5_hl.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-
-#include "dataset/recording.h"
 
 namespace beamgyro {
 
@@ -50,15 +49,49 @@ void write_text(hid_t object, const char* name, std::string_view text) {
                   text.empty() ? "" : text.data());
 }
 
+void write_flags(hid_t variable, const char* attribute,
+                 std::span<const std::uint8_t> flags,
+                 std::string_view meanings) {
+  const hsize_t length = flags.size();
+  write_attribute(variable, attribute, H5T_STD_U8LE, space_of({&length, 1}),
+                  flags.data());
+  write_text(variable, "flag_meanings", meanings);
+}
+
+H5Id space_of(std::span<const hsize_t> lengths) {
+  return {H5Screate_simple(static_cast<int>(lengths.size()), lengths.data(),
+                           nullptr),
+          H5Sclose, "create dimensions"};
+}
+
+H5Id make_variable(hid_t file, const VariableAbout& about, hid_t type,
+                   hid_t space, hid_t properties,
+                   std::span<const H5Id* const> axes) {
+  const std::string action = "write " + about.name;
+  H5Id variable(H5Dcreate2(file, about.name.c_str(), type, space, H5P_DEFAULT,
+                           properties, H5P_DEFAULT),
+                H5Dclose, action);
+  if (axes.empty())
+    check_hdf5(H5DSset_scale(variable, about.name.c_str()), action);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    check_hdf5(H5DSattach_scale(variable, *axes[i], static_cast<unsigned>(i)),
+               action);
+  }
+  write_text(variable, "units", about.units);
+  write_text(variable, "long_name", about.long_name);
+  write_text(variable, "role", role_name(about.role));
+  return variable;
+}
+
+VariableAbout status_about() {
+  return {"status", "1", "state of the gyro", Role::kMeasured};
+}
+
 void write_status_bits(hid_t status) {
   constexpr std::array<std::uint8_t, 3> kMasks = {kUnpowered, kOutputSaturated,
                                                   kLoopNotLocked};
-  const hsize_t count = kMasks.size();
-  const H5Id space(H5Screate_simple(1, &count, nullptr), H5Sclose,
-                   "create a dimension");
-  write_attribute(status, "flag_masks", H5T_STD_U8LE, space, kMasks.data());
-  write_text(status, "flag_meanings",
-             "unpowered output_saturated loop_not_locked");
+  write_flags(status, "flag_masks", kMasks,
+              "unpowered output_saturated loop_not_locked");
 }
 
 void write_meta(hid_t file, std::span<const NamedText> texts) {

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "dataset/hdf5_id.h"
+#include "dataset/recording.h"
 
 namespace beamgyro {
 
@@ -38,7 +39,27 @@ void write_origin(hid_t file, const char* filetype, std::int32_t version,
   write_text(file, "fidelity", head.fidelity);
 }
 
-/// The attributes that tell which bits `status` has.
+/// `attribute` (flag_values or flag_masks) and flag_meanings of a variable.
+void write_flags(hid_t variable, const char* attribute,
+                 std::span<const std::uint8_t> flags,
+                 std::string_view meanings);
+
+H5Id space_of(std::span<const hsize_t> lengths);
+
+/// A variable over the dimension scales `axes`, with its attributes.
+struct VariableAbout {
+  std::string name, units, long_name;
+  Role role = Role::kMeasured;
+};
+
+/// `properties`: of its creation. `axes` are dimension scales, one for each
+/// dimension, or none for a variable that becomes a scale itself.
+H5Id make_variable(hid_t file, const VariableAbout& about, hid_t type,
+                   hid_t space, hid_t properties,
+                   std::span<const H5Id* const> axes);
+
+/// The variable of states of the gyro, and the attributes that tell its bits.
+VariableAbout status_about();
 void write_status_bits(hid_t status);
 
 struct NamedText {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 #include <hdf5.h>
-#include <hdf5_hl.h>
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "dataset/hdf5_file.h"
@@ -21,8 +21,7 @@ class VariableMaker {
  public:
   VariableMaker(hid_t file, hsize_t length)
       : file_(file),
-        space_(H5Screate_simple(1, &length, nullptr), H5Sclose,
-               "create a dimension"),
+        space_(space_of({&length, 1})),
         properties_(creation_properties(H5P_DATASET_CREATE)) {
     check_hdf5(H5Pset_alloc_time(properties_, H5D_ALLOC_TIME_EARLY),
                "place values");
@@ -31,20 +30,9 @@ class VariableMaker {
   }
 
   /// Without `time` the variable becomes the time axis itself.
-  H5Id make(const Column& about, hid_t type, const H5Id* time) const {
-    const std::string action = "write " + about.name;
-    H5Id variable(H5Dcreate2(file_, about.name.c_str(), type, space_,
-                             H5P_DEFAULT, properties_, H5P_DEFAULT),
-                  H5Dclose, action);
-    if (time == nullptr) {
-      check_hdf5(H5DSset_scale(variable, about.name.c_str()), action);
-    } else {
-      check_hdf5(H5DSattach_scale(variable, *time, 0), action);
-    }
-    write_text(variable, "units", about.units);
-    write_text(variable, "long_name", about.long_name);
-    write_text(variable, "role", role_name(about.role));
-    return variable;
+  H5Id make(const VariableAbout& about, hid_t type, const H5Id* time) const {
+    const std::span<const H5Id* const> axes(&time, time == nullptr ? 0 : 1);
+    return make_variable(file_, about, type, space_, properties_, axes);
   }
 
  private:
@@ -59,9 +47,7 @@ std::uint64_t place_of(const H5Id& variable, const std::string& name) {
 }
 
 H5Id make_status(const VariableMaker& maker, const H5Id& time) {
-  H5Id status =
-      maker.make({"status", "1", "state of the gyro", Role::kMeasured, {}},
-                 H5T_STD_U8LE, &time);
+  H5Id status = maker.make(status_about(), H5T_STD_U8LE, &time);
   write_status_bits(status);
   return status;
 }
@@ -69,8 +55,7 @@ H5Id make_status(const VariableMaker& maker, const H5Id& time) {
 Hdf5Layout make_variables(hid_t file, const Recording& head,
                           std::size_t samples) {
   const VariableMaker maker(file, samples);
-  H5Id time = maker.make({"time", "s", "time", Role::kMeasured, {}},
-                         H5T_IEEE_F64LE, nullptr);
+  H5Id time = maker.make({"time", "s", "time"}, H5T_IEEE_F64LE, nullptr);
   Hdf5Layout layout;
   layout.time = place_of(time, "time");
   const std::size_t status_at = status_position(head);
@@ -82,7 +67,9 @@ Hdf5Layout make_variables(hid_t file, const Recording& head,
     }
     if (i == head.columns.size()) break;
     const Column& column = head.columns[i];
-    H5Id variable = maker.make(column, H5T_IEEE_F64LE, &time);
+    H5Id variable =
+        maker.make({column.name, column.units, column.long_name, column.role},
+                   H5T_IEEE_F64LE, &time);
     layout.columns.push_back(place_of(variable, column.name));
     variable.close("write " + column.name);
   }

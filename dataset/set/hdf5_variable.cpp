@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "dataset/set/hdf5_variable.h"
 
-#include <hdf5_hl.h>
-
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 #include "dataset/hdf5_write.h"
@@ -14,14 +11,11 @@ namespace beamgyro {
 namespace {
 
 /// flag_values 0, 1, ... with their meanings.
-void write_flags(hid_t variable, std::size_t count, std::string_view meanings) {
-  std::vector<std::uint8_t> values(count);
-  for (std::size_t k = 0; k < count; ++k)
-    values[k] = static_cast<std::uint8_t>(k);
-  const hsize_t length = count;
-  write_attribute(variable, "flag_values", H5T_STD_U8LE, space_of({&length, 1}),
-                  values.data());
-  write_text(variable, "flag_meanings", meanings);
+void write_values(hid_t variable, std::uint8_t count,
+                  std::string_view meanings) {
+  std::vector<std::uint8_t> values;
+  for (std::uint8_t k = 0; k < count; ++k) values.push_back(k);
+  write_flags(variable, "flag_values", values, meanings);
 }
 
 }  // namespace
@@ -40,31 +34,6 @@ hid_t file_type(Storage storage) {
   return H5T_STD_I32LE;
 }
 
-H5Id space_of(std::span<const hsize_t> lengths) {
-  return {H5Screate_simple(static_cast<int>(lengths.size()), lengths.data(),
-                           nullptr),
-          H5Sclose, "create dimensions"};
-}
-
-H5Id make_variable(hid_t file, const VariableAbout& about, hid_t type,
-                   hid_t space, hid_t properties,
-                   std::span<const H5Id* const> axes) {
-  const std::string action = "write " + about.name;
-  H5Id variable(H5Dcreate2(file, about.name.c_str(), type, space, H5P_DEFAULT,
-                           properties, H5P_DEFAULT),
-                H5Dclose, action);
-  if (axes.empty())
-    check_hdf5(H5DSset_scale(variable, about.name.c_str()), action);
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    check_hdf5(H5DSattach_scale(variable, *axes[i], static_cast<unsigned>(i)),
-               action);
-  }
-  write_text(variable, "units", about.units);
-  write_text(variable, "long_name", about.long_name);
-  write_text(variable, "role", role_name(about.role));
-  return variable;
-}
-
 void write_scaling(hid_t variable, const SetVariable& about) {
   if (about.storage != Storage::kInt16 && about.storage != Storage::kInt32)
     return;
@@ -77,10 +46,6 @@ void write_scaling(hid_t variable, const SetVariable& about) {
                   fill_values(about, 1).data());
 }
 
-VariableAbout status_about() {
-  return {"status", "1", "state of the gyro", Role::kMeasured};
-}
-
 VariableAbout part_about() {
   return {"part", "1", "part of the split", Role::kTruth};
 }
@@ -90,12 +55,12 @@ VariableAbout device_status_about() {
 }
 
 void write_part_flags(hid_t part) {
-  write_flags(part, 3, "train validation test");
+  write_values(part, 3, "train validation test");
 }
 
 void write_device_status_flags(hid_t device_status) {
-  write_flags(device_status, 4,
-              "ok invalid_parameters no_convergence not_finite");
+  write_values(device_status, 4,
+               "ok invalid_parameters no_convergence not_finite");
 }
 
 void write_root_attributes(hid_t file, const ShardHead& head) {
