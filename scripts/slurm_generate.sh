@@ -37,23 +37,7 @@ conclude() {
   exec "$program" verify "$dir"
 }
 
-# After the array: whole, or once more.
-finish() {
-  local self=$1 rounds=$2 program=$3 campaign=$4 dir=$5 tasks=$6 at_once=$7 devices=$8
-  shift 8
-  local lacking
-  lacking=$("$program" generate "$campaign" -o "$dir" ${devices:+--devices "$devices"} \
-    --lacking "$tasks")
-  if [ -z "$lacking" ]; then
-    conclude "$program" "$campaign" "$dir" "$tasks" "$devices"
-  fi
-  [ "$rounds" -gt 1 ] ||
-    fail "$dir: tasks $lacking of $tasks left work undone; submit again when" \
-      "the reason is mended"
-  submit "$self" $((rounds - 1)) "$program" "$campaign" "$dir" "$tasks" \
-    "$at_once" "$devices" "$@"
-}
-
+# Whole, or an array of what is lacking and this once more after it.
 submit() {
   local self=$1 rounds=$2 program=$3 campaign=$4 dir=$5 tasks=$6 at_once=$7 devices=$8
   shift 8
@@ -64,6 +48,9 @@ submit() {
     echo "slurm_generate: nothing is lacking in $dir" >&2
     conclude "$program" "$campaign" "$dir" "$tasks" "$devices"
   fi
+  [ "$rounds" -gt 0 ] ||
+    fail "$dir: tasks $lacking of $tasks left work undone; submit again when" \
+      "the reason is mended"
   mkdir -p "$dir/log"
   array=$(sbatch --parsable --job-name=beamgyro --requeue --open-mode=append \
     --signal=B:TERM@60 --output="$dir/log/task_%a.log" "$@" \
@@ -71,14 +58,14 @@ submit() {
     "$tasks" "$devices")
   end=$(sbatch --parsable --job-name=beamgyro-finish --open-mode=append \
     --output="$dir/log/finish.log" --dependency="afterany:$array" "$self" \
-    finish "$self" "$rounds" "$program" "$campaign" "$dir" "$tasks" "$at_once" \
+    submit "$self" $((rounds - 1)) "$program" "$campaign" "$dir" "$tasks" "$at_once" \
     "$devices" "$@")
   echo "array $array: tasks $lacking of $tasks"
   echo "then $end: merge and verify, see $dir/log/finish.log"
 }
 
 case "${1:-}" in
-  task | finish)
+  task | submit)
     step=$1
     shift
     "$step" "$@"
