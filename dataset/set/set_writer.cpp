@@ -197,13 +197,13 @@ SetWriter::SetWriter(const fs::path& directory, ManifestHead head,
                                  : part_name(task.number, task.of))),
       head_(std::move(head)),
       task_(task) {
-  made_directory_ = make_directory(directory_);
+  const bool is_new = make_directory(directory_);
   try {
     enter(sources, resume);
   } catch (...) {
     lock_.reset();
     std::error_code ignored;
-    if (made_directory_) fs::remove(directory_, ignored);
+    if (is_new) fs::remove(directory_, ignored);
     throw;
   }
 }

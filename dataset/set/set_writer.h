@@ -85,7 +85,6 @@ class SetWriter {
   std::filesystem::path directory_, manifest_;
   ManifestHead head_;
   SetTask task_;
-  bool made_directory_ = false;
   std::optional<SetLock> lock_;
   SetState before_;
   std::mutex mutex_;
