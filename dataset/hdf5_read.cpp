@@ -37,6 +37,26 @@ H5Id open_attribute(hid_t object, const std::string& owner, const char* name) {
           fmt::format("open attribute {} of {}", name, owner)};
 }
 
+/// A class of types and what a message calls it.
+struct NumberKind {
+  H5T_class_t type_class;
+  const char* name;
+};
+
+/// One number of `kind` into `value`, which is of `memory_type`.
+void read_number(hid_t object, const std::string& owner, const char* name,
+                 const NumberKind& kind, hid_t memory_type, void* value) {
+  const H5Id attribute = open_attribute(object, owner, name);
+  const H5Id type(H5Aget_type(attribute), H5Tclose, "read a type");
+  const H5Id space(H5Aget_space(attribute), H5Sclose, "read a size");
+  if (H5Tget_class(type) != kind.type_class ||
+      H5Sget_simple_extent_npoints(space) != 1)
+    throw Hdf5Error(
+        fmt::format("attribute {} of {} is no {}", name, owner, kind.name));
+  check_hdf5(H5Aread(attribute, memory_type, value),
+             fmt::format("read attribute {} of {}", name, owner));
+}
+
 }  // namespace
 
 H5Id open_variable(hid_t file, const std::string& name) {
@@ -84,14 +104,17 @@ std::string text_attribute(hid_t object, const std::string& owner,
 }
 
 std::uint64_t integer_attribute(hid_t file, const char* name) {
-  const H5Id attribute = open_attribute(file, "the file", name);
-  const H5Id type(H5Aget_type(attribute), H5Tclose, "read a type");
-  const H5Id space(H5Aget_space(attribute), H5Sclose, "read a size");
-  if (H5Tget_class(type) != H5T_INTEGER ||
-      H5Sget_simple_extent_npoints(space) != 1)
-    throw Hdf5Error(fmt::format("attribute {} is no integer", name));
   std::uint64_t value = 0;
-  check_hdf5(H5Aread(attribute, H5T_NATIVE_UINT64, &value), "read an integer");
+  read_number(file, "the file", name, {H5T_INTEGER, "integer"},
+              H5T_NATIVE_UINT64, &value);
+  return value;
+}
+
+double number_attribute(hid_t object, const std::string& owner,
+                        const char* name) {
+  double value = 0;
+  read_number(object, owner, name, {H5T_FLOAT, "number"}, H5T_NATIVE_DOUBLE,
+              &value);
   return value;
 }
 

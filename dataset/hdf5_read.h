@@ -48,6 +48,8 @@ std::vector<Value> read_values(hid_t file, const std::string& name,
 std::string text_attribute(hid_t object, const std::string& owner,
                            const char* name);
 std::uint64_t integer_attribute(hid_t file, const char* name);
+double number_attribute(hid_t object, const std::string& owner,
+                        const char* name);
 
 /// /meta/`name`, empty when there is none.
 std::string meta_text(hid_t file, const std::string& name);

@@ -22,22 +22,6 @@ int rank_of(hid_t variable, const std::string& name) {
   return H5Sget_simple_extent_ndims(space);
 }
 
-double number_attribute(hid_t variable, const std::string& owner,
-                        const char* name) {
-  const std::string action =
-      fmt::format("read attribute {} of {}", name, owner);
-  const H5Id attribute(H5Aopen(variable, name, H5P_DEFAULT), H5Aclose, action);
-  const H5Id space(H5Aget_space(attribute), H5Sclose, action);
-  const H5Id type(H5Aget_type(attribute), H5Tclose, action);
-  if (H5Tget_class(type) != H5T_FLOAT ||
-      H5Sget_simple_extent_npoints(space) != 1)
-    throw Hdf5Error(
-        fmt::format("attribute {} of {} is no number", name, owner));
-  double value = 0;
-  check_hdf5(H5Aread(attribute, H5T_NATIVE_DOUBLE, &value), action);
-  return value;
-}
-
 Storage storage_of(hid_t variable, const std::string& name) {
   const H5Id type(H5Dget_type(variable), H5Tclose, "open " + name);
   for (const Storage storage : {Storage::kFloat64, Storage::kFloat32,
