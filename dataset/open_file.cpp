@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace beamgyro {
 namespace {
@@ -40,6 +41,19 @@ void OpenFile::write(std::span<const std::byte> bytes) {
   }
 }
 
+void OpenFile::write_at(std::uint64_t place, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::pwrite(descriptor_, bytes.data(), bytes.size(),
+                                   static_cast<off_t>(place));
+    if (count >= 0) {
+      bytes = bytes.subspan(static_cast<std::size_t>(count));
+      place += static_cast<std::uint64_t>(count);
+    } else if (errno != EINTR) {
+      fail();
+    }
+  }
+}
+
 std::size_t OpenFile::read(std::span<std::byte> bytes) {
   std::size_t done = 0;
   while (done < bytes.size()) {
@@ -53,6 +67,15 @@ std::size_t OpenFile::read(std::span<std::byte> bytes) {
     }
   }
   return done;
+}
+
+void OpenFile::read_pieces(
+    const std::function<void(std::span<const std::byte>)>& take) {
+  std::vector<std::byte> piece(std::size_t{1} << 20);
+  for (std::size_t got = piece.size(); got == piece.size();) {
+    got = read(piece);
+    take(std::span(piece).first(got));
+  }
 }
 
 void OpenFile::sync() {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 
 namespace beamgyro {
@@ -22,9 +24,15 @@ class OpenFile {
   /// All of `bytes`, from where the file stands.
   void write(std::span<const std::byte> bytes);
 
+  /// All of `bytes`, from byte `place` of the file on.
+  void write_at(std::uint64_t place, std::span<const std::byte> bytes);
+
   /// Fills `bytes` from where the file stands. Returns how many there were;
   /// fewer than asked for only at the end of the file.
   std::size_t read(std::span<std::byte> bytes);
+
+  /// Calls `take` with the rest of the file, piece by piece.
+  void read_pieces(const std::function<void(std::span<const std::byte>)>& take);
 
   /// That what was written is on the disk.
   void sync();

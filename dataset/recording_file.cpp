@@ -3,21 +3,20 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <charconv>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <system_error>
-#include <utility>
 
 #include "dataset/atomic_file.h"
 #include "dataset/hdf5_id.h"
 #include "dataset/hdf5_layout.h"
+#include "dataset/open_file.h"
 #include "dataset/recording_defect.h"
 
 namespace beamgyro {
@@ -50,9 +49,7 @@ std::string described(const Column& column) {
 class RecordingFile::Body {
  public:
   explicit Body(const fs::path& path) : path_(path), target_(path) {}
-  virtual ~Body() {
-    if (file_ >= 0) close(file_);
-  }
+  virtual ~Body() = default;
   Body(const Body&) = delete;
   Body& operator=(const Body&) = delete;
 
@@ -60,8 +57,10 @@ class RecordingFile::Body {
   virtual void append(const Recording& block, std::size_t first) = 0;
 
   void publish() {
-    if (fsync(file_) != 0) fail();
-    if (close(std::exchange(file_, -1)) != 0) fail();
+    reporting([&] {
+      file_->sync();
+      file_->close();
+    });
     target_.publish();
   }
 
@@ -69,21 +68,13 @@ class RecordingFile::Body {
   const fs::path& partial_path() const { return target_.partial_path(); }
 
   void open_file() {
-    file_ = open(partial_path().c_str(), O_WRONLY | O_CLOEXEC);
-    if (file_ < 0) fail();
+    reporting([&] { file_.emplace(partial_path(), O_WRONLY); });
   }
 
   void write_at(std::uint64_t place, const void* bytes, std::size_t size) {
-    const char* next = static_cast<const char*>(bytes);
-    while (size > 0) {
-      const ssize_t count =
-          pwrite(file_, next, size, static_cast<off_t>(place));
-      if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) fail();
-      next += count;
-      size -= static_cast<std::size_t>(count);
-      place += static_cast<std::uint64_t>(count);
-    }
+    reporting([&] {
+      file_->write_at(place, {static_cast<const std::byte*>(bytes), size});
+    });
   }
 
   [[noreturn]] void fail(const std::string& reason) const {
@@ -91,14 +82,18 @@ class RecordingFile::Body {
   }
 
  private:
-  [[noreturn]] void fail() const {
-    fail("cannot write: " +
-         std::error_code(errno, std::generic_category()).message());
+  template <class Work>
+  void reporting(const Work& work) const {
+    try {
+      work();
+    } catch (const std::system_error& error) {
+      fail("cannot write: " + error.code().message());
+    }
   }
 
   fs::path path_;
   AtomicFile target_;
-  int file_ = -1;
+  std::optional<OpenFile> file_;
 };
 
 class RecordingFile::Hdf5Body : public Body {

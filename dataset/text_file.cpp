@@ -1,31 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "dataset/text_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstdio>
-#include <memory>
+#include <span>
 #include <stdexcept>
 #include <system_error>
-#include <vector>
+
+#include "dataset/open_file.h"
 
 namespace beamgyro {
-namespace {
-
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
-}  // namespace
 
 void read_in_pieces(const std::filesystem::path& path,
                     const std::function<void(std::string_view)>& take) {
-  const auto reject = [&](int error) {
-    throw std::invalid_argument(
-        fmt::format("{}: cannot read: {}", path.string(),
-                    std::generic_category().message(error)));
-  };
   std::error_code ignored;
   const auto kind = std::filesystem::status(path, ignored);
   if (std::filesystem::exists(kind) && !std::filesystem::is_directory(kind) &&
@@ -35,14 +23,13 @@ void read_in_pieces(const std::filesystem::path& path,
                     "expected a file",
                     path.string()));
   }
-  const std::unique_ptr<std::FILE, CloseFile> file(
-      std::fopen(path.c_str(), "rb"));
-  if (!file) reject(errno);
-  std::vector<char> piece(std::size_t{1} << 20);
-  for (std::size_t got = piece.size(); got == piece.size();) {
-    got = std::fread(piece.data(), 1, piece.size(), file.get());
-    if (std::ferror(file.get()) != 0) reject(errno);
-    take({piece.data(), got});
+  try {
+    OpenFile(path, O_RDONLY).read_pieces([&](std::span<const std::byte> piece) {
+      take({reinterpret_cast<const char*>(piece.data()), piece.size()});
+    });
+  } catch (const std::system_error& error) {
+    throw std::invalid_argument(fmt::format(
+        "{}: cannot read: {}", path.string(), error.code().message()));
   }
 }
 

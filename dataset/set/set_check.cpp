@@ -143,12 +143,11 @@ class Check {
     try {
       OpenFile opened(path, O_RDONLY);
       Sha256 hash;
-      for (std::size_t got = piece_.size(); got == piece_.size();) {
-        got = opened.read(piece_);
-        hash.add(std::span(piece_).first(got));
-        done_ += got;
+      opened.read_pieces([&](std::span<const std::byte> piece) {
+        hash.add(piece);
+        done_ += piece.size();
         if (progress_) progress_(done_, std::max(done_, total_));
-      }
+      });
       return hash.digits();
     } catch (const std::system_error& error) {
       add(file.file, "cannot be read: " + error.code().message(), file.index);
@@ -190,7 +189,6 @@ class Check {
   const CheckProgress& progress_;
   std::map<std::string, std::string> names_by_hash_;
   std::uint64_t done_ = 0, total_ = 0;
-  std::vector<std::byte> piece_ = std::vector<std::byte>(std::size_t{1} << 20);
   std::vector<SetDefect> defects_;
 };
 
