@@ -41,6 +41,14 @@ ManifestEntry sample_entry(std::uint32_t index) {
   return entry;
 }
 
+Manifest sample_manifest() {
+  Manifest manifest;
+  manifest.head = sample_manifest_head();
+  for (std::uint32_t i = 0; i < 6; ++i)
+    manifest.entries.push_back(sample_entry(i));
+  return manifest;
+}
+
 TEST_F(ManifestFile, FilesAreNumberedByRangeThenRun) {
   const ManifestHead head = sample_manifest_head();
   ASSERT_EQ(file_count(head), 6u);
@@ -111,10 +119,7 @@ TEST_F(ManifestFile, TheFinishedOneIsSortedAndDoesNotDependOnTheOrder) {
 }
 
 TEST_F(ManifestFile, EveryFlippedBitIsFoundAndCostsAtMostTwoLines) {
-  Manifest manifest;
-  manifest.head = sample_manifest_head();
-  for (std::uint32_t i = 0; i < 6; ++i)
-    manifest.entries.push_back(sample_entry(i));
+  const Manifest manifest = sample_manifest();
   write_manifest(file(), manifest);
   const std::string text = read_text_file(file());
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -129,10 +134,7 @@ TEST_F(ManifestFile, EveryFlippedBitIsFoundAndCostsAtMostTwoLines) {
 }
 
 TEST_F(ManifestFile, ALineThatIsLostOrMovedIsFound) {
-  Manifest manifest;
-  manifest.head = sample_manifest_head();
-  for (std::uint32_t i = 0; i < 6; ++i)
-    manifest.entries.push_back(sample_entry(i));
+  const Manifest manifest = sample_manifest();
   write_manifest(file(), manifest);
   const std::string text = read_text_file(file());
   const std::size_t second = text.find('\n') + 1;
