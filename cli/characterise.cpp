@@ -10,14 +10,12 @@
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
+#include "config/units.h"
 #include "dataset/atomic_file.h"
 #include "sim/dynamics/gyro.h"
 
 namespace beamgyro {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;  // [rad]
-constexpr double kZeroCelsius = 273.15;             // [K]
 
 struct CharacteriseArguments {
   std::string device, output;

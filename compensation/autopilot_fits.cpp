@@ -14,7 +14,7 @@ namespace {
 using Eigen::ArrayXd;
 using Eigen::Index;
 
-constexpr int kDegree = 3;
+constexpr int kCubicDegree = 3;
 constexpr Index kMedianSamples = 31;
 constexpr int kPx4Bins = 2000;
 constexpr double kAveragingTime = 2.0;    // [s]
@@ -54,8 +54,8 @@ BiasModel cubic_about(double reference, const ArrayXd& temperature,
   // told in kelvins about the reference, as the parameters are.
   const double half_width =
       std::max((temperature - reference).abs().maxCoeff(), 1e-3);
-  Polynomial p =
-      fit_polynomial((temperature - reference) / half_width, bias, kDegree);
+  Polynomial p = fit_polynomial((temperature - reference) / half_width, bias,
+                                kCubicDegree);
   for (std::size_t n = 0; n < p.coefficients.size(); ++n)
     p.coefficients[n] /= std::pow(half_width, n);
   return {{{reference, 1.0}}, {}, p};
@@ -139,11 +139,11 @@ BiasModel fit_as_ardupilot(const TrainingRows& samples, int least_samples) {
   for (std::size_t cycle = 0; cycle + 1 < bounds.size(); ++cycle)
     add_points(samples, bounds[cycle], bounds[cycle + 1], least_samples,
                points);
-  if (points.bias.size() <= kDegree)
+  if (points.bias.size() <= kCubicDegree)
     throw std::invalid_argument(fmt::format(
         "the temperature rises by {} K over {} samples {} times in training; "
         "ArduPilot's calibration learns while heating and needs {} such rises",
-        kTemperatureStep, least_samples, points.bias.size(), kDegree + 1));
+        kTemperatureStep, least_samples, points.bias.size(), kCubicDegree + 1));
   return cubic_about(kArduPilotReference, array_of(points.temperature),
                      array_of(points.bias));
 }

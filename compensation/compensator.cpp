@@ -8,7 +8,7 @@ namespace beamgyro {
 namespace {
 
 // Keeps the intermediate arrays in the cache; the result does not depend on it.
-constexpr Eigen::Index kBlockRows = 4096;
+constexpr Eigen::Index kFeatureBlockRows = 4096;
 
 std::vector<double> corrected_rate(const BiasModel& bias,
                                    const std::vector<Input>& inputs,
@@ -16,8 +16,8 @@ std::vector<double> corrected_rate(const BiasModel& bias,
                                    const Recording& recording) {
   std::vector<double> rate = column_values(recording, "rate");
   const Eigen::ArrayXXd x = features_of(inputs, recording, range);
-  for (Eigen::Index first = 0; first < x.rows(); first += kBlockRows) {
-    const Eigen::Index count = std::min(kBlockRows, x.rows() - first);
+  for (Eigen::Index first = 0; first < x.rows(); first += kFeatureBlockRows) {
+    const Eigen::Index count = std::min(kFeatureBlockRows, x.rows() - first);
     const Eigen::ArrayXd b = bias.predict(x.middleRows(first, count));
     Eigen::Map<Eigen::ArrayXd>(rate.data() + first, count) -= b;
   }

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "compensation/autopilot_fits.h"
+#include "config/units.h"
 
 namespace beamgyro {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr std::size_t kTerms = 4;  // of a cubic
 
 // What the parameters cannot say of this compensator; empty when nothing.
@@ -46,7 +46,7 @@ BiasModel as_polynomial(const BiasModel& bias) {
 std::vector<double> coefficients(const BiasModel& cubic, double reference) {
   std::vector<double> c = coefficients_about(cubic, reference);
   c.resize(kTerms, 0.0);
-  for (double& each : c) each *= kRadPerDeg;
+  for (double& each : c) each *= kDegree;
   return c;
 }
 

@@ -20,10 +20,10 @@ using Eigen::VectorXd;
 constexpr int kRank = 40;  // steps the inverse Hessian remembers
 
 // F and dF/dw.
-class Objective final : public ceres::FirstOrderFunction {
+class LbfgsObjective final : public ceres::FirstOrderFunction {
  public:
-  Objective(const ScaledRows& rows, const TrainOptions& options,
-            const BpNetwork& network)
+  LbfgsObjective(const ScaledRows& rows, const TrainOptions& options,
+                 const BpNetwork& network)
       : batch_(network.layer_sizes(), rows, options.threads),
         weights_(static_cast<int>(network.weights().size())),
         count_(static_cast<double>(rows.size())),
@@ -110,7 +110,7 @@ TrainSummary train_lbfgs(const ScaledRows& rows, const ScaledRows& held_out,
   solver.update_state_every_iteration = true;
   solver.callbacks.push_back(&watch);
   const ceres::GradientProblem problem(
-      new Objective(rows, options, network));  // which owns it
+      new LbfgsObjective(rows, options, network));  // which owns it
   ceres::GradientProblemSolver::Summary outcome;
   ceres::Solve(solver, problem, w.data(), &outcome);
   const StopReason otherwise = outcome.termination_type == ceres::NO_CONVERGENCE

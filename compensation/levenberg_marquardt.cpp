@@ -17,10 +17,10 @@ using Eigen::VectorXd;
 constexpr double kMaxAcceleration = 0.75;
 
 // F, its gradient and its Gauss-Newton matrix.
-class Objective {
+class LeastSquaresObjective {
  public:
-  Objective(const BpNetwork& network, const ScaledRows& rows,
-            const TrainOptions& options)
+  LeastSquaresObjective(const BpNetwork& network, const ScaledRows& rows,
+                        const TrainOptions& options)
       : batch_(network.layer_sizes(), rows, options.threads),
         penalty_(network, rows, options),
         count_(static_cast<double>(rows.size())),
@@ -75,7 +75,7 @@ struct Damping {
 };
 
 std::optional<StopReason> reason_to_stop(const TrainOptions& options,
-                                         const Objective& objective,
+                                         const LeastSquaresObjective& objective,
                                          const VectorXd& gradient) {
   if (options.goal > 0.0 && objective.rms() <= options.goal)
     return StopReason::kGoalReached;
@@ -92,7 +92,7 @@ TrainSummary train_levenberg_marquardt(const ScaledRows& rows,
                                        BpNetwork& network) {
   TrainSummary summary;
   BestWeights best(held_out, options.patience);
-  Objective objective(network, rows, options);
+  LeastSquaresObjective objective(network, rows, options);
   VectorXd w = network.weights(), gradient;
   MatrixXd matrix;
   double F = objective.value(w);

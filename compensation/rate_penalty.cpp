@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kBlockRows = 1024;  // J of a block stays in the cache
+constexpr Index kJacobianBlockRows = 1024;  // J of a block stays in the cache
 
 }  // namespace
 
@@ -52,8 +52,8 @@ void RatePenalty::add_to(const VectorXd& w, MatrixXd& matrix,
   network_.set_weights(w);
   const double scale = penalty_ / static_cast<double>(here_.rows());
   MatrixXd from, to;
-  for (Index first = 0; first < here_.rows(); first += kBlockRows) {
-    const Index count = std::min(kBlockRows, here_.rows() - first);
+  for (Index first = 0; first < here_.rows(); first += kJacobianBlockRows) {
+    const Index count = std::min(kJacobianBlockRows, here_.rows() - first);
     const auto per_step = inverse_step_.segment(first, count);
     const ArrayXd before =
         network_.predict_with_jacobian(here_.middleRows(first, count), from);

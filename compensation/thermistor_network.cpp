@@ -8,13 +8,14 @@
 #include <limits>
 #include <stdexcept>
 
+#include "config/units.h"
+
 namespace beamgyro {
 namespace {
 
 using Eigen::ArrayXd;
 
-constexpr double kZeroCelsius = 273.15;  // [K]
-constexpr double kNominal = 298.15;      // [K]
+constexpr double kNominal = 298.15;  // [K]
 
 ArrayXd thermistor(const Eigen::Ref<const ArrayXd>& x, double b_K) {
   return x.unaryExpr([b_K](double T) {

@@ -42,7 +42,7 @@ std::string text_of(const ConfigNode& node) {
 
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -70,7 +70,7 @@ std::string toml_text(const ConfigNode& node) {
   for (const ConfigNode& child : node.children) {
     const std::string text = toml_text(child);
     parts.push_back(node.kind == ConfigNode::Kind::kTable
-                        ? fmt::format("{} = {}", quoted(child.key), text)
+                        ? fmt::format("{} = {}", in_quotes(child.key), text)
                         : text);
   }
   switch (node.kind) {
@@ -79,7 +79,7 @@ std::string toml_text(const ConfigNode& node) {
     case ConfigNode::Kind::kArray:
       return fmt::format("[{}]", fmt::join(parts, ", "));
     case ConfigNode::Kind::kText:
-      return quoted(node.text);
+      return in_quotes(node.text);
     case ConfigNode::Kind::kInteger:
       return fmt::format("{}", node.integer);
     case ConfigNode::Kind::kFloat:

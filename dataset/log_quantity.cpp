@@ -4,13 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "config/units.h"
+
 namespace beamgyro {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kFastestRate = 20000.0;                // [deg/s]
 constexpr double kColdest = -100.0, kWarmest = 200.0;   // [degC]
-constexpr double kCelsiusZero = 273.15;                 // [K]
 constexpr double kFahrenheitZero = 32.0;                // [degF]
 constexpr double kKelvinPerFahrenheitStep = 5.0 / 9.0;  // [K]
 constexpr long kMostColumns = 100000;
@@ -100,7 +101,7 @@ LogQuantity read_log_temperature(const ConfigTable& table) {
     temperature.offset = kFahrenheitZero;
     temperature.scale = kKelvinPerFahrenheitStep;
   } else if (temperature.unit == "K") {
-    temperature.offset = kCelsiusZero;
+    temperature.offset = kZeroCelsius;
   }
   return temperature;
 }

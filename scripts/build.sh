@@ -18,6 +18,10 @@ fail() {
 
 [ -e "build/$preset/build.ninja" ] ||
   echo "build: preset '$preset', for the first time; takes some minutes" >&2
+# Compilations seen before are taken from ccache where that is installed.
+if [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] && command -v ccache >/dev/null; then
+  export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+fi
 cmake --preset "$preset" >"$log" 2>&1 || fail configuring
 cmake --build --preset "$preset" --parallel "$(nproc)" >>"$log" 2>&1 ||
   fail building

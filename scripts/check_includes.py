@@ -22,7 +22,7 @@ MAY_INCLUDE = {
     "dataset/set": FILES,
     "sim/numerics": set(),
     "sim/thermal": FILES | NUMERICS,
-    "sim/signal": {"dataset"} | NUMERICS,
+    "sim/signal": FILES | NUMERICS,
     "sim/device": FILES | NUMERICS | {"sim/thermal", "sim/signal"},
     "sim/dynamics": FILES | SIM - {"sim/scenario", "sim/campaign"},
     "sim/scenario": FILES | SIM - {"sim/campaign"},

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "config/units.h"
 #include "dataset/random_stream.h"
 #include "sim/campaign/campaign_file.h"
 #include "sim/device/device_file.h"
@@ -13,8 +14,6 @@
 
 namespace beamgyro {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;  // [rad]
 
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');

@@ -13,13 +13,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "config/units.h"
 #include "dataset/sha256.h"
 #include "sim/scenario/simulation.h"
 
 namespace beamgyro {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;  // [rad]
 
 bool varies(const Campaign& campaign, const std::vector<std::string>& names) {
   return std::ranges::any_of(

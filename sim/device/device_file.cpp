@@ -8,16 +8,13 @@
 #include <numbers>
 #include <vector>
 
+#include "config/units.h"
 #include "sim/thermal/thermal_file.h"
 
 namespace beamgyro {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;  // [rad]
-constexpr double kZeroCelsius = 273.15;             // [K]
-constexpr double kStandardGravity = 9.80665;        // [m/s2]
-
-constexpr Range kCelsius{-273.15, 1000, true, false};
+constexpr Range kCelsius{-kZeroCelsius, 1000, true, false};
 constexpr Range kExponent{0, 1, true, false};
 
 double kelvin(const ConfigTable& table, std::string_view key) {

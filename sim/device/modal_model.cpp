@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "config/units.h"
+
 namespace beamgyro {
 namespace {
 
@@ -81,7 +83,7 @@ Matrix2cd stiffness_of(const Device& device, const ProjectedBeam& beam,
     throw std::runtime_error(fmt::format(
         "complex stiffness at {:.2f} degC: its loss part is not positive "
         "definite; a material or mount parameter creates energy",
-        T - 273.15));
+        T - kZeroCelsius));
   }
   return K;
 }

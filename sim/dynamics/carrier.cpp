@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/dynamics/complex_form.h"
 #include "sim/dynamics/envelope.h"
 
 namespace beamgyro {
@@ -12,15 +13,6 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2cd;
 using Eigen::Vector2d;
-
-Complex complex_at(const Eigen::Ref<const Eigen::VectorXd>& y, Index i) {
-  return {y(i), y(i + 1)};
-}
-
-void put(Eigen::Ref<Eigen::VectorXd>& y, Index i, Complex value) {
-  y(i) = value.real();
-  y(i + 1) = value.imag();
-}
 
 }  // namespace
 

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "sim/dynamics/complex_form.h"
+
 namespace beamgyro {
 namespace {
 
@@ -10,14 +12,6 @@ using Eigen::Index;
 using Eigen::Matrix2d;
 using Eigen::Vector2cd;
 using State = Eigen::Ref<const Eigen::VectorXd>;
-
-Complex complex_at(const State& y, Index i) { return {y(i), y(i + 1)}; }
-
-template <class Vector>
-void put(Vector& y, Index i, Complex value) {
-  y(i) = value.real();
-  y(i + 1) = value.imag();
-}
 
 }  // namespace
 
@@ -82,12 +76,12 @@ EnvelopeMoment EnvelopeOde::moment(const EnvelopeCoefficients& now,
   m.force_rate = now.couplings.drive * m.voltage_rate;
   m.z = m.r2;
   if (loops_.rebalance) {
-    const double kI = loops_.rebalance_integral;
-    const Complex kP = loops_.rebalance_proportional;
+    const double integral = loops_.rebalance_integral;
+    const Complex proportional = loops_.rebalance_proportional;
     const Complex axis = loops_.voltage_axis * std::conj(now.turn);
-    m.z = -(kI * complex_at(y, kRebalance) + kP * m.r2);
+    m.z = -(integral * complex_at(y, kRebalance) + proportional * m.r2);
     m.V_B = axis * m.z;
-    m.V_B_rate = -axis * (kI * m.r2 + kP * wf * (m.r1 - m.r2));
+    m.V_B_rate = -axis * (integral * m.r2 + proportional * wf * (m.r1 - m.r2));
     m.force += now.couplings.damping * m.V_B;
     m.force_rate += now.couplings.damping * m.V_B_rate;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <array>
 
+#include "sim/dynamics/complex_form.h"
 #include "sim/dynamics/envelope.h"
 
 namespace beamgyro {
@@ -10,8 +11,6 @@ using Eigen::Index;
 using Eigen::Vector2cd;
 using State = Eigen::Ref<const Eigen::VectorXd>;
 using Matrix = Eigen::Ref<Eigen::MatrixXd>;
-
-constexpr Complex kI(0, 1);
 
 // d(complex at row)/d(complex at column) of z' = factor z.
 void put_block(Matrix& J, Index row, Index column, Complex factor) {

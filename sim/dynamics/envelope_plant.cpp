@@ -4,13 +4,13 @@
 #include <Eigen/LU>
 #include <complex>
 
+#include "sim/dynamics/complex_form.h"
+
 namespace beamgyro {
 namespace {
 
 using Eigen::Matrix2cd;
 using Eigen::Matrix2d;
-
-constexpr std::complex<double> kI(0, 1);
 
 }  // namespace
 

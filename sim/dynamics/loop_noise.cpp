@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "sim/dynamics/complex_form.h"
 #include "sim/dynamics/mechanical_noise.h"
 
 namespace beamgyro {
@@ -25,17 +26,6 @@ Eigen::Matrix<double, 2, 4> real_row(const Vector2cd& row) {
 }
 
 }  // namespace
-
-Eigen::Matrix4d real_form(const Matrix2cd& matrix) {
-  Eigen::Matrix4d real;
-  for (Index i = 0; i < 2; ++i) {
-    for (Index j = 0; j < 2; ++j) {
-      const Complex z = matrix(i, j);
-      real.block<2, 2>(2 * i, 2 * j) << z.real(), -z.imag(), z.imag(), z.real();
-    }
-  }
-  return real;
-}
 
 Eigen::VectorXd settled_state(const Gyro& gyro, const EnvelopeOde& ode,
                               const CaseMotion& motion, double T_beam,

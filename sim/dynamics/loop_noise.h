@@ -19,7 +19,4 @@ Eigen::VectorXd settled_state(const Gyro& gyro, const EnvelopeOde& ode,
 NoiseSystem loop_noise(const Gyro& gyro, EnvelopeOde& ode, double T_beam,
                        double T_board);
 
-/// A complex 2 x 2 matrix as a real one: [[a, -b], [b, a]] for each element.
-Eigen::Matrix4d real_form(const Eigen::Matrix2cd& matrix);
-
 }  // namespace beamgyro

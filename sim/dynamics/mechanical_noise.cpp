@@ -9,6 +9,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sim/dynamics/complex_form.h"
+
 namespace beamgyro {
 namespace {
 
@@ -17,8 +19,6 @@ using Eigen::Matrix2d;
 using Eigen::Matrix4d;
 using Eigen::Vector2cd;
 using Eigen::Vector4d;
-
-constexpr Complex kI(0, 1);
 
 void require_positive(double value, const char* what, const char* unit) {
   if (!(value > 0) || !std::isfinite(value)) {
@@ -43,17 +43,6 @@ Matrix2d force_root(const Matrix2d& density) {
          solver.eigenvectors().transpose();
 }
 
-Matrix4d real_form(const Matrix2cd& matrix) {
-  Matrix4d real;
-  for (Eigen::Index i = 0; i < 2; ++i) {
-    for (Eigen::Index j = 0; j < 2; ++j) {
-      const Complex z = matrix(i, j);
-      real.block<2, 2>(2 * i, 2 * j) << z.real(), -z.imag(), z.imag(), z.real();
-    }
-  }
-  return real;
-}
-
 Matrix2cd complex_form(const Matrix4d& real) {
   constexpr double kTolerance = 1e-6;
   Matrix2cd matrix;
@@ -71,10 +60,6 @@ Matrix2cd complex_form(const Matrix4d& real) {
         error));
   }
   return matrix;
-}
-
-Complex charge_of(const Vector2cd& coupling, const Vector2cd& u) {
-  return coupling.transpose() * u;
 }
 
 // What the loops hold, at a small change of anything.

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "config/units.h"
+
 namespace beamgyro {
 
 Eigen::Matrix2d stiffness_of(const ModalChannels& channels) {
@@ -113,7 +115,8 @@ ModalTable::Point ModalTable::at(double T) {
     throw std::runtime_error(
         fmt::format("beam temperature {:.2f} degC is outside the model's "
                     "{:.0f} to {:.0f} degC",
-                    T - 273.15, kColdestBeam - 273.15, kHottestBeam - 273.15));
+                    T - kZeroCelsius, kColdestBeam - kZeroCelsius,
+                    kHottestBeam - kZeroCelsius));
   }
   const auto i = static_cast<std::size_t>(place);
   const std::vector<Cubic>& parts = cell(i);

@@ -11,6 +11,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "config/units.h"
+
 namespace beamgyro {
 namespace {
 
@@ -109,7 +111,7 @@ int StaticMap::needed_rate_degree(double low, double high) const {
     throw std::runtime_error(fmt::format(
         "static map: rates of {:.0f} deg/s are too large for this device: the "
         "response is no smooth function of rate",
-        rate_limit_ * 180 / std::numbers::pi));
+        rate_limit_ / kDegree));
   }
   return degree;
 }

@@ -8,17 +8,14 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "sim/dynamics/complex_form.h"
+
 namespace beamgyro {
 namespace {
 
 using Eigen::Matrix2cd;
 using Eigen::Matrix2d;
 using Eigen::Vector2cd;
-
-// The unconjugated product Theta^T u.
-Complex charge_of(const Vector2cd& coupling, const Vector2cd& u) {
-  return coupling.transpose() * u;
-}
 
 // 1/z of a z whose square is far from both ends of a double's range; the
 // library's division looks after those too and takes several times as long.

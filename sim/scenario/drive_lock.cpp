@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "config/units.h"
+
 namespace beamgyro {
 
 bool is_locked(const DriveSignals& drive) {
@@ -28,7 +30,7 @@ void require_locked(const DriveSignals& drive, double t, double beam) {
       "drive loop: not locked {:g} s after power-on at {:g} s, beam at {:.2f} "
       "degC: amplitude {:.3g} % of its set value, phase off by {:.2g} rad, "
       "drive at {:.3g} V{}; the device does not oscillate as it should",
-      kLockTime, t - kLockTime, beam - 273.15, 100 * drive.amplitude,
+      kLockTime, t - kLockTime, beam - kZeroCelsius, 100 * drive.amplitude,
       drive.phase, drive.voltage, drive.limited ? ", its limit" : ""));
 }
 

@@ -10,11 +10,11 @@
 #include <string_view>
 #include <utility>
 
+#include "config/units.h"
+
 namespace beamgyro {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;  // [rad]
-constexpr double kZeroCelsius = 273.15;             // [K]
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
 

@@ -12,18 +12,16 @@
 #include <string_view>
 
 #include "config/config_node.h"
+#include "config/units.h"
 #include "sim/scenario/profile_keys.h"
 
 namespace beamgyro {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;  // [rad]
-constexpr double kZeroCelsius = 273.15;             // [K]
-constexpr double kLargestRecording = 5e7;           // samples, 12 GB at work
+constexpr double kLargestRecording = 5e7;  // samples, 12 GB at work
 
 const ProfileUnit kAmbient{"temperature_degC", 1, kZeroCelsius,
                            between(-150, 300)};
-constexpr double kStandardGravity = 9.80665;  // [m/s2]
 
 // Beyond this the models do not see what a motion does.
 constexpr Range kMotionFrequency{0, 1e3, true, false};  // [Hz]

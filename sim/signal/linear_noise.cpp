@@ -17,8 +17,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kShort = 0.25;  // |A| h of the first step
-constexpr int kDegree = 12;      // kShort^13 / 13! = 2e-18
+constexpr double kShort = 0.25;    // |A| h of the first step
+constexpr int kTaylorDegree = 12;  // kShort^13 / 13! = 2e-18
 constexpr Index kDrawnAhead = 64;
 
 void require_finite(const MatrixXd& matrix, const char* name) {
@@ -120,8 +120,8 @@ Step short_step(const MatrixXd& A, const MatrixXd& B, double h) {
   Step step;
   MatrixXd power = A * h, V = B * std::sqrt(h);
   step.growth = power;
-  MatrixXd W = MatrixXd::Zero(n, m * (kDegree + 1));
-  for (int j = 0; j <= kDegree; ++j) {
+  MatrixXd W = MatrixXd::Zero(n, m * (kTaylorDegree + 1));
+  for (int j = 0; j <= kTaylorDegree; ++j) {
     if (j > 0) V = MatrixXd(A * V) * (h / j);
     if (j > 1) {
       power = MatrixXd(A * power) * (h / j);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "config/units.h"
 #include "sim/signal/readout.h"
 
 namespace beamgyro {
@@ -29,7 +30,6 @@ TemperatureSensor::TemperatureSensor(
 
 std::vector<double> TemperatureSensor::readings(
     std::span<const double> temperature) {
-  constexpr double kZeroCelsius = 273.15;  // [K]
   std::vector<double> readings(temperature.size(), 0.0);
   if (parameters_.noise > 0.0) stream_.fill_normal(readings);
   for (std::size_t i = 0; i < readings.size(); ++i)

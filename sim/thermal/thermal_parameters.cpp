@@ -7,11 +7,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "config/units.h"
+
 namespace beamgyro {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-constexpr double kZeroCelsius = 273.15;  // [K]
 constexpr Range kPositive{0, kNoLimit, true};
 constexpr Range kNonNegative{0, kNoLimit};
 constexpr Range kFraction{0, 1};

@@ -1,0 +1,2 @@
+// SPDX-License-Identifier: MIT
+// Compiled for its precompiled headers alone: see CMakeLists.txt.
