@@ -28,8 +28,8 @@ struct Fit {
 /// Fits `kind` to rows whose input columns are `inputs`. A population's model
 /// is its mean, an adapted one the conditional mean: both depend on the first
 /// input alone, the temperature. A network stops early
-/// on `held_out`, which may be empty, and of its restarts and weight decays the
-/// one with the lowest held-out rms is kept, in-sample without held-out rows.
+/// on `held_out`, which may be empty; best_network() says which of its restarts
+/// and weight decays is kept.
 /// Restart k starts from the stream (seed, 0, k, kInitialWeights). Throws
 /// std::invalid_argument when the temperatures are too few or too close
 /// together, or an input never varies.

@@ -17,8 +17,8 @@ namespace beamgyro {
 /// (IMM-REP-1999-05): with rho the fall of F over the fall the quadratic model
 /// predicts for v, a kept step multiplies mu by max(1/3, 1 - (2 rho - 1)^3), a
 /// discarded one by 2, 4, 8, ... An epoch is one step tried. After every kept
-/// step the held-out rms is looked at. References: Marquardt, J. SIAM 11 (1963)
-/// 431; Transtrum and Sethna, arXiv:1201.5885.
+/// step the held-out error is looked at. References: Marquardt, J. SIAM 11
+/// (1963) 431; Transtrum and Sethna, arXiv:1201.5885.
 TrainSummary train_levenberg_marquardt(const ScaledRows& rows,
                                        const ScaledRows& held_out,
                                        const TrainOptions& options,

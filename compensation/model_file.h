@@ -58,8 +58,7 @@ struct FuzzySpec {
 struct BpSpec {
   std::vector<int> hidden;      // neurons of each hidden layer
   double goal_deg_per_s = 0.0;  // [deg/s], becomes TrainOptions::goal
-  std::vector<double> weight_decays = {
-      0.0};  // the best on held-out rows is kept
+  std::vector<double> weight_decays = {0.0};  // best_network() chooses
   TrainOptions training;
 };
 

@@ -36,7 +36,7 @@ enum class StopReason {
   kDampingLimit,   // damping > max_damping: no step lowers the error
   kRateSmall,  // learning rate < min_learning_rate: no step lowers the error
   kLineSearchFailed,  // no step along the L-BFGS direction lowers the error
-  kHeldOutRising,     // no new lowest held-out rms for `patience` epochs
+  kHeldOutRising,     // no new lowest held-out error for `patience` epochs
   kMaxEpochs,         // epochs = max_epochs
 };
 

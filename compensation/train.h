@@ -27,8 +27,8 @@ struct TrainResult {
 /// Fits `spec` and the baseline, the cubic of equation (1), to the rows of
 /// `runs` (training_rows()), which are visited once, with a scale-factor table
 /// twice. A network also stops early on the rows of
-/// `held_out`, and of its restarts and weight decays the one with the lowest
-/// held-out rms is kept. With `cross_validation` every group of that kind is
+/// `held_out`; best_network() says which of its restarts and weight decays is
+/// kept. With `cross_validation` every group of that kind is
 /// predicted by a fit to the others (cross_validate()); a network without
 /// held-out runs takes its weight decay from there and runs all its epochs. Of
 /// several candidates the choice is choose()'s by cross-validation, or without

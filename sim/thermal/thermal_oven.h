@@ -16,7 +16,7 @@ struct OvenAction {
 };
 
 /// PI control of the mount's temperature by a heater of limited power,
-/// equation (4.4), e = set point - T_mount, u = kP e + I:
+/// equation (4.3), e = set point - T_mount, u = kP e + I:
 ///
 ///   P = min(max(u, 0), P_max),   dI/dt = (kP / t_I) e w
 ///

@@ -8,7 +8,7 @@
 
 namespace beamgyro {
 
-/// Heater and controller of an oven around beam and mount; equation (4.4) in
+/// Heater and controller of an oven around beam and mount; equation (4.3) in
 /// thermal_oven.h. Its can and insulation are conductances of the network.
 struct ThermalOven {
   double set_point = 338.15;       // [K], of the mount

@@ -52,6 +52,28 @@ def shipped(pattern):
 
 
 class Formats(ProgramTest):
+    def test_every_option_of_every_command_is_on_the_page(self):
+        lines = section("Command line").splitlines()
+        for command in re.findall(r"^  (\w+)  ", self.ok("--help").split(
+                "Subcommands:")[1], re.MULTILINE):
+            documented = {
+                option for line in lines if line.startswith(f"| `{command} ")
+                for option in re.findall(r"--[A-Za-z-]+",
+                                         line.split(" | ")[0])}
+            offered = set(re.findall(r"^ +(--[A-Za-z-]+)",
+                                     self.ok(command, "--help"), re.MULTILINE))
+            with self.subTest(command):
+                self.assertEqual(offered - documented, set())
+                self.assertEqual(documented - offered, set())
+
+    def test_every_equation_that_the_code_cites_is_in_the_model(self):
+        page = (ROOT / "docs/model.md").read_text()
+        label = re.compile(r"equations? \(([1-6]\.[0-9]+)\)")
+        for path in sorted(ROOT.glob("sim/**/*.h")):
+            for cited in label.findall(path.read_text()):
+                with self.subTest(f"{path.name}: {cited}"):
+                    self.assertIn(f"({cited})", page)
+
     def test_every_shipped_key_is_documented(self):
         for pattern, title in [("*.toml", "Scenario file"),
                                ("devices/*.toml", "Device file"),

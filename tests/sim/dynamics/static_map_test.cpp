@@ -39,10 +39,10 @@ TEST_P(StaticMapAccuracy, AgreesWithTheExactSolutionEverywhere) {
     voltage = std::max(voltage,
                        std::abs(s.at_rate.drive_voltage - exact.drive_voltage));
   }
-  EXPECT_LT(signal / kDegree, 1e-5);  // [deg/s]
-  EXPECT_LT(at_rest / kDegree, 1e-5);
-  EXPECT_LT(frequency / (2 * std::numbers::pi), 1e-4);  // [Hz]
-  EXPECT_LT(voltage, 1e-5);                             // [V]
+  EXPECT_LT(signal / kDegree, 1e-6);  // [deg/s]
+  EXPECT_LT(at_rest / kDegree, 1e-6);
+  EXPECT_LT(frequency / (2 * std::numbers::pi), 1e-6);  // [Hz]
+  EXPECT_LT(voltage, 1e-7);                             // [V]
 }
 
 INSTANTIATE_TEST_SUITE_P(RateLimits, StaticMapAccuracy,
@@ -85,7 +85,7 @@ TEST(StaticMap, AVoltageLimitActsAsInTheExactSolution) {
     const BeamSignal tabulated = map.at(T, 0).at_rate;
     EXPECT_EQ(tabulated.amplitude_locked, exact.amplitude_locked);
     EXPECT_NEAR(std::abs(tabulated.demodulated - exact.demodulated) / kDegree,
-                0, 1e-5);
+                0, 1e-6);
     held += exact.amplitude_locked ? 0 : 1;
   }
   EXPECT_GT(held, 20);
