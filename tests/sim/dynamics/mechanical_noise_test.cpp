@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/dynamics/complex_form.h"
 #include "sim/dynamics/loop_noise.h"
 #include "sim/signal/linear_noise.h"
 #include "tests/sim/device/nominal_device.h"
