@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Configures and builds one preset: build.sh dev|asan|release
-# Quiet while it goes well; a failure shows what the tools said.
+# Configures and builds one preset: build.sh dev|asan|tsan|release [OPTION]...
+# An OPTION is given to cmake. Quiet while it goes well; a failure shows what
+# the tools said.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-preset=${1:?usage: build.sh dev|asan|release}
+preset=${1:?usage: build.sh PRESET [OPTION]...}
+shift
 
 mkdir -p build
 log=build/$preset.log
@@ -22,6 +24,6 @@ fail() {
 if [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] && command -v ccache >/dev/null; then
   export CMAKE_CXX_COMPILER_LAUNCHER=ccache
 fi
-cmake --preset "$preset" >"$log" 2>&1 || fail configuring
+cmake --preset "$preset" "$@" >"$log" 2>&1 || fail configuring
 cmake --build --preset "$preset" --parallel "$(nproc)" >>"$log" 2>&1 ||
   fail building

@@ -14,7 +14,9 @@ def outcome(case):
         return "passed"
     # CTest also files a test whose program is missing under "skipped".
     said = skipped.get("message") or ""
-    return "skipped" if said.startswith(("SKIP", "Disabled")) else "failed"
+    meant = skipped.get("type") == "pytest.skip" or said.startswith(
+        ("SKIP", "Disabled"))
+    return "skipped" if meant else "failed"
 
 
 def main():

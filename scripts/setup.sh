@@ -9,6 +9,7 @@ build=(g++ cmake ninja-build libeigen3-dev libsundials-dev libhdf5-dev
        librandom123-dev libboost-dev libceres-dev libdeflate-dev libssl-dev
        python3 python3-matplotlib python3-h5py)
 tests=(libgtest-dev libbenchmark-dev clang-format clang-tidy netcdf-bin
+       python3-pytest python3-pytest-xdist
        python3-xarray python3-h5netcdf python3-netcdf4 python3-scipy)
 
 case "${1:-}" in
