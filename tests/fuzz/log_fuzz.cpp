@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// A map, "=====", and the log that it describes.
+#include "dataset/log_import.h"
+#include "dataset/recording_defect.h"
+#include "tests/fuzz/fuzz_input.h"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace beamgyro;
+  const auto [map, log] = split(text_of(data, size));
+  accept_or_reject([&, map = map, log = log] {
+    const ImportedLog imported =
+        import_log(log, "fuzz.csv",
+                   read_log_map(ConfigDocument::parse(map, "map.toml"), ""));
+    const std::string defect = recording_defect(imported.recording);
+    if (!defect.empty()) throw std::logic_error("imported: " + defect);
+  });
+  return 0;
+}

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+// A model file.
+#include "compensation/model_file.h"
+#include "tests/fuzz/fuzz_input.h"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace beamgyro;
+  accept_or_reject([&] {
+    static_cast<void>(read_model(ConfigDocument::parse(
+        text_of(data, size), (scratch_folder() / "fuzz.toml").string())));
+  });
+  return 0;
+}
