@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: MIT
+"""A fault at the file-system calls of the commands that write.
+
+tests/faults/fault_shim.c lets one call of a process fail. Each command runs
+once in peace, then once for every chosen call and every fault that can strike
+it, and after each fault once more in peace. A call is chosen when it is the
+first or the last of its name on a kind of file; with BEAMGYRO_ALL_FAULTS=1 all
+are.
+"""
+
+import concurrent.futures
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+from program import PROGRAM, ROOT, ProgramTest
+from sets import CAMPAIGN, SCENARIO
+
+CHANGES = {"write", "fsync", "rename", "link", "mkdir", "ftruncate"}
+FAULTS = {  # and the calls that they can strike, None for all
+    "EIO": None,
+    "ENOSPC": CHANGES | {"open"},
+    "EINTR": {"write"},
+    "short": {"read", "write"},
+    "torn": {"write"},
+    "kill": None,
+}
+PARTIAL = re.compile(r"\.partial-.*")
+
+def files_in(folder):
+    return {str(path.relative_to(folder)): path.read_bytes()
+            for path in folder.rglob("*") if path.is_file()}
+
+
+def without_unfinished(files):
+    return {file: content for file, content in files.items()
+            if not PARTIAL.search(file)}
+
+
+class Command:
+    """A command in a folder, and what its files are after it ran in peace."""
+
+    def __init__(self, shim, folder, arguments, again):
+        self.shim, self.folder = shim, folder
+        self.arguments, self.again = arguments, again
+        self.before = files_in(folder)
+        with tempfile.TemporaryDirectory() as name:
+            log = pathlib.Path(name) / "calls"
+            place = pathlib.Path(name) / "peace"
+            shutil.copytree(folder, place)
+            answer = self.run(place, arguments, FAULT_LOG=str(log))
+            if answer.returncode != 0:
+                raise AssertionError(f"{arguments}: {answer.stderr}")
+            self.after = files_in(place)
+            self.calls = [line.split(" ", 2)
+                          for line in log.read_text().splitlines()]
+        self.calls = [(int(number), name, path.removeprefix(f"{place}/"))
+                      for number, name, path in self.calls]
+
+    def run(self, place, arguments, **plan):
+        environment = os.environ | plan
+        if plan:
+            environment |= {"LD_PRELOAD": str(self.shim),
+                            "FAULT_PREFIX": str(place)}
+        return subprocess.run(
+            [str(PROGRAM), *map(str, arguments)], cwd=place, text=True,
+            stdin=subprocess.DEVNULL, capture_output=True, check=False,
+            timeout=60, env=environment)
+
+    def chosen(self):
+        """Number, name and kind of file of the calls to strike."""
+        kinds = {}
+        for number, name, path in self.calls:
+            kind = re.sub(r"[^/]+?(?=\.)", "*", PARTIAL.sub(".partial", path),
+                          1)
+            kinds.setdefault((name, kind), []).append(number)
+        for (name, kind), numbers in kinds.items():
+            if "BEAMGYRO_ALL_FAULTS" not in os.environ:
+                numbers = {numbers[0], numbers[-1]}
+            for number in numbers:
+                yield number, name, kind
+
+    def complaints(self, fault, number, name):
+        """What a fault did that it must not do."""
+        with tempfile.TemporaryDirectory() as folder:
+            place = pathlib.Path(folder) / "struck"
+            shutil.copytree(self.folder, place)
+            answer = self.run(place, self.arguments, FAULT_KIND=fault,
+                              FAULT_CALL=str(number))
+            files = {file: content
+                     for file, content in files_in(place).items()
+                     if not file.endswith(".lock")}  # free without a process
+            if name == "unlink" or fault in ("kill", "torn"):
+                files = without_unfinished(files)
+            yield from self.wrong_status(fault, answer, files)
+            yield from self.wrong_files(files)
+            answer = self.run(place, self.again)
+            files = without_unfinished(files_in(place))
+            if answer.returncode != 0:
+                yield f"once more: status {answer.returncode}: {answer.stderr}"
+            elif files != self.after:
+                yield "once more: " + self.differences(files)
+
+    def wrong_status(self, fault, answer, files):
+        status = answer.returncode
+        if fault in ("kill", "torn"):
+            expected = [-9]
+        elif fault in ("EINTR", "short"):
+            expected = [0]
+        else:
+            expected = [0, 1, 2]
+        if status not in expected:
+            yield f"status {status}: {answer.stderr.strip()}"
+        elif status == 0 and files != self.after:
+            yield "status 0: " + self.differences(files)
+        elif status > 0 and len(answer.stderr.strip().splitlines()) != 1:
+            yield f"not one message: {answer.stderr!r}"
+
+    def wrong_files(self, files):
+        """Whole or as before under every name. The manifest of a set grows."""
+        for file, content in self.before.items():
+            if file not in files:
+                yield f"{file} is gone"
+            elif files[file] not in (content, self.after[file]):
+                yield f"{file} is damaged"
+        for file, content in files.items():
+            if (file not in self.before and content != self.after.get(file)
+                    and not file.endswith("manifest.jsonl")):
+                yield f"{file} should not be there with {len(content)} bytes"
+
+    def differences(self, files):
+        names = sorted(set(files) | set(self.after))
+        return "other files than in peace: " + ", ".join(
+            name for name in names if files.get(name) != self.after.get(name))
+
+
+class Faults(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.shim = pathlib.Path(folder.name) / "fault_shim.so"
+        subprocess.run(["cc", "-std=c11", "-O1", "-shared", "-fPIC",
+                        ROOT / "tests/faults/fault_shim.c", "-o", cls.shim,
+                        "-ldl"], check=True)
+
+    def setUp(self):
+        super().setUp()
+        self.write("ramp.toml", SCENARIO.format(
+            name="ramp", ambient="points = [[0, 0], [60, 60]]"))
+
+    def strike(self, *arguments, again=None, fewest_calls):
+        command = Command(self.shim, self.dir, arguments, again or arguments)
+        self.assertGreaterEqual(len(command.calls), fewest_calls)
+        plan = [(fault, call) for call in command.chosen()
+                for fault, struck in FAULTS.items()
+                if struck is None or call[1] in struck]
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            complaints = pool.map(
+                lambda task: [f"{task[0]} at {task[1]}: {complaint}"
+                              for complaint in command.complaints(
+                                  task[0], task[1][0], task[1][1])], plan)
+            found = [line for lines in complaints for line in lines]
+        if found:
+            self.fail(f"{len(plan)} faults, {len(found)} complaints\n"
+                      + "\n".join(found))
+
+    def recorded(self, *arguments):
+        self.ok("run", "ramp.toml", "-o", "run.h5")
+        self.write("mean.toml", 'kind = "constant"\n')
+        if arguments:
+            self.ok("train", "run.h5", "--model", "mean.toml", *arguments)
+
+    def test_run(self):
+        self.strike("run", "ramp.toml", "-o", "run.h5", fewest_calls=20)
+
+    def test_run_over_an_old_file(self):
+        self.write("run.csv", "time\n")
+        self.strike("run", "ramp.toml", "-o", "run.csv", fewest_calls=20)
+
+    def test_train(self):
+        self.recorded()
+        self.strike("train", "run.h5", "--model", "mean.toml", "-o", "mean.json",
+                    fewest_calls=20)
+
+    def test_compensate_over_an_old_file(self):
+        self.recorded("-o", "mean.json")
+        self.write("out.h5", "old")
+        self.strike("compensate", "mean.json", "run.h5", "-o", "out.h5",
+                    fewest_calls=20)
+
+    def test_generate(self):
+        self.write("rest.toml", SCENARIO.format(
+            name="rest", ambient="constant_degC = 25"))
+        self.write("campaign.toml",
+                   CAMPAIGN.replace("devices = 7", "devices = 3"))
+        generate = ["generate", "campaign.toml", "-o", "set", "--jobs", 1]
+        self.strike(*generate, again=[*generate, "--resume"], fewest_calls=100)
+
+    def test_verify(self):
+        self.write("rest.toml", SCENARIO.format(
+            name="rest", ambient="constant_degC = 25"))
+        self.write("campaign.toml",
+                   CAMPAIGN.replace("devices = 7", "devices = 3"))
+        self.ok("generate", "campaign.toml", "-o", "set")
+        self.strike("verify", "set", fewest_calls=30)
+
+
+if __name__ == "__main__":
+    unittest.main()
