@@ -27,7 +27,7 @@ struct ExportArguments {
   std::optional<std::string> axis;
   std::optional<int> instance;
   std::optional<long> device_id;
-  bool fit_cubic = false;
+  bool fit_cubic = false, force = false;
 };
 
 using NamedTexts = std::vector<std::pair<std::string, std::string>>;
@@ -41,7 +41,9 @@ AutopilotPlace place_of(const ExportArguments& arguments, int first_instance) {
 NamedTexts texts_of(const ExportArguments& arguments,
                     const Compensator& compensator, const std::string& name) {
   if (arguments.format == "c") {
-    const ExportedC c = export_c(compensator, name);
+    const ExportedC c = export_c(compensator, name, arguments.force);
+    for (const std::string& warning : c.warnings)
+      print_warning(fmt::format("{}: {}", arguments.compensator, warning));
     return {{name + ".h", c.header},
             {name + ".c", c.source},
             {name + "_selftest.c", c.self_test}};
@@ -64,7 +66,10 @@ void require_options(const ExportArguments& arguments) {
   };
   if (arguments.format != "px4")
     refuse(arguments.device_id.has_value(), "--device-id", "px4");
-  if (arguments.format != "c") return;
+  if (arguments.format != "c") {
+    refuse(arguments.force, "--force", "c");
+    return;
+  }
   refuse(arguments.axis.has_value(), "--axis", "px4 and ardupilot");
   refuse(arguments.instance.has_value(), "--instance", "px4 and ardupilot");
   refuse(arguments.fit_cubic, "--fit-cubic", "px4 and ardupilot");
@@ -156,6 +161,10 @@ void add_export(CLI::App& program, Action& action) {
   command->add_flag("--fit-cubic", arguments->fit_cubic,
                     "px4, ardupilot: of a compensator that is no cubic export "
                     "the cubic fitted to the same rows");
+  command->add_flag("--force", arguments->force,
+                    "c: export a compensator that cancels the rate, or that "
+                    "single precision changes by more than 1e-4 deg/s; the "
+                    "code carries the warning");
   command->callback([arguments, &action] {
     action = [arguments] { return run_export(*arguments); };
   });

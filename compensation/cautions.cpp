@@ -16,6 +16,7 @@ using Eigen::ArrayXd;
 using Eigen::Index;
 
 constexpr double kAtRest = 1.0;  // [deg/s], span of the true rate
+constexpr const char* kFeelsTheRate = "feels the rate and training was at rest";
 
 std::string span_caution(const TrainingRows& rows) {
   const double span = rows.range.highest - rows.range.lowest;
@@ -106,9 +107,9 @@ std::string rate_caution(const FittedCase& fitted) {
   if (input == fitted.inputs.end() || fitted.rows.true_rate_span > kAtRest)
     return "";
   return fmt::format(
-      "the input \"{}\" feels the rate and training was at rest: nothing keeps "
-      "the model from cancelling the rate; validate on runs with rate",
-      input_name(*input));
+      "the input \"{}\" {}: nothing keeps the model from cancelling the rate; "
+      "validate on runs with rate",
+      input_name(*input), kFeelsTheRate);
 }
 
 }  // namespace
@@ -121,6 +122,12 @@ std::vector<std::string> cautions(const FittedCase& fitted) {
                    hysteresis_caution(fitted), rate_caution(fitted)})
     if (!text.empty()) found.push_back(std::move(text));
   return found;
+}
+
+bool warned_of_rate(const std::vector<std::string>& warnings) {
+  return std::ranges::any_of(warnings, [](const std::string& warning) {
+    return warning.find(kFeelsTheRate) != std::string::npos;
+  });
 }
 
 double temperature_resolution(const Recording& recording) {

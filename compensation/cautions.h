@@ -35,6 +35,10 @@ struct FittedCase {
 /// training at rest.
 std::vector<std::string> cautions(const FittedCase& fitted);
 
+/// Whether cautions() warned of an input that feels the rate and a training at
+/// rest.
+bool warned_of_rate(const std::vector<std::string>& warnings);
+
 /// Smallest difference of two measured temperatures [K], 0 when all are equal.
 double temperature_resolution(const Recording& recording);
 

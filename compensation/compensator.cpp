@@ -35,10 +35,12 @@ std::vector<double> compensated_rate(const Compensator& compensator,
   std::vector<double> rate =
       corrected_rate(compensator.bias, compensator.inputs, range, recording);
   if (!compensator.scale_factor) return rate;
-  const auto& temperature = column_values(recording, "temperature");
+  // Clamped, and an error where it is not finite.
+  const Eigen::ArrayXXd temperature =
+      features_of({parse_input("temperature")}, recording, range);
   for (std::size_t k = 0; k < rate.size(); ++k)
-    rate[k] /= compensator.scale_factor->at(
-        std::clamp(temperature[k], range.lowest, range.highest));
+    rate[k] /=
+        compensator.scale_factor->at(temperature(static_cast<Eigen::Index>(k)));
   return rate;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "compensation/compensator.h"
 
@@ -13,11 +14,17 @@ struct ExportedC {
   std::string header;     // NAME.h
   std::string source;     // NAME.c
   std::string self_test;  // NAME_selftest.c, the only one with main()
+  std::vector<std::string> warnings;  // what `force` overrode
 };
 
-/// `name` is a C identifier. Bits are the same on every machine with IEEE-754
-/// single precision when the compiler does not contract a * b + c: gcc and
-/// clang want -ffp-contract=off. Throws as FirmwareModel.
-ExportedC export_c(const Compensator& compensator, const std::string& name);
+/// `name` is a C identifier. Throws std::invalid_argument with the first
+/// objection of findings_of(), unless with `force`, which carries objections as
+/// warnings into the text.
+///
+/// Bits are the same on every machine with IEEE-754 single precision when the
+/// compiler does not contract a * b + c: gcc and clang want -ffp-contract=off.
+/// Throws as findings_of().
+ExportedC export_c(const Compensator& compensator, const std::string& name,
+                   bool force = false);
 
 }  // namespace beamgyro

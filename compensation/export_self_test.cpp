@@ -136,7 +136,8 @@ int main(void) {{
     if (k % {2} == 0 && bits != golden[k / {2}]) ++wrong;
   }}
   if (wrong != 0 || ~crc != 0x{11:08x}u) {{
-    printf("{0}: %d of {3} answers differ, crc %08lx\n", wrong,
+    printf("{0}: %d of {3} answers differ, crc %08lx. Compile with "
+           "-ffp-contract=off and without -ffast-math\n", wrong,
            (unsigned long)~crc);
     return 1;
   }}

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cfloat>
 #include <cmath>
 #include <cstring>
 #include <iterator>
@@ -226,7 +227,7 @@ float FirmwareModel::step(const FirmwareSample& sample) {
   const std::uint32_t samples = state_->samples;
   if (state_->samples < 0xffffffffu) ++state_->samples;
   float T = sample.value[1];
-  if (std::isnan(T)) return T;
+  if (is_finite(T) == 0) return T - T;
   if (T < range[0]) T = range[0];
   if (T > range[1]) T = range[1];
   const int first = state_->started ? 0 : 1;
@@ -246,6 +247,9 @@ float FirmwareModel::step(const FirmwareSample& sample) {
       value = lowpass_lag(state_->filters[i].data(), first, T) / constants[i];
     x[i] = (value - centres[i]) * gains[i];
   }
+  if (kind_ != "none" && kind_ != "constant")  // which read no input
+    for (const float value : x)
+      if (is_finite(value) == 0) return value - value;
   const std::vector<float>& unit = array("unit");
   float rate = sample.value[0] - (unit[0] + unit[1] * bias(x));
   if (corrects_scale_factor_)

@@ -49,8 +49,9 @@ class FirmwareModel {
   /// At power-on; samples then come every `period` [s], > 0.
   void start(float period);
 
-  /// Compensated rate [deg/s]. Temperatures out of range are clamped; for one
-  /// that is NaN it is NaN, and filters wait for the next.
+  /// Compensated rate [deg/s]. Temperatures out of range are clamped. NaN for
+  /// an input that is not finite; when it is the temperature, filters wait for
+  /// the next.
   float step(const FirmwareSample& sample);
 
   const std::vector<FirmwareArray>& arrays() const { return arrays_; }
@@ -81,8 +82,8 @@ class FirmwareModel {
 std::uint32_t crc32(const std::vector<float>& values);
 
 /// Source text (C99) of the functions that the named section of the run-time
-/// holds: exp, lowpass, tanh, polynomial, table, spline, thermistor, fuzzy or
-/// crc. Throws std::logic_error for another name.
+/// holds: exp, lowpass, finite, tanh, polynomial, table, spline, thermistor,
+/// fuzzy or crc. Throws std::logic_error for another name.
 std::string firmware_runtime(std::string_view section);
 
 }  // namespace beamgyro

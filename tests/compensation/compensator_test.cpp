@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/compensation/message_of.h"
@@ -105,6 +106,21 @@ TEST(Compensator, ClampsTheTemperatureOfTheScaleFactorToo) {
       compensated_rate(scaling_compensator(), run.recording());
   EXPECT_NEAR(rate[0], (10.0 - 1.0) / 0.9, 1e-13);
   EXPECT_NEAR(rate[59], (10.0 - 5.0) / 1.06, 1e-13);
+}
+
+TEST(Compensator, ScaleFactorAtNoFiniteTemperatureIsAnError) {
+  Compensator c = scaling_compensator();
+  c.inputs = {parse_input("output")};  // the bias does not ask for it
+  c.bias = {{Scale{}}, {}, NoBias{}};
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    Recording recording = RecordedRun{}.recording();
+    std::ranges::find(recording.columns, "temperature", &Column::name)
+        ->values[7] = bad;
+    EXPECT_NE(message_of([&] {
+                compensated_rate(c, recording);
+              }).find("at t = 3.5 s though the gyro is powered"),
+              std::string::npos);
+  }
 }
 
 TEST(Compensator, NoKindAnswersWhereThereIsNoPower) {

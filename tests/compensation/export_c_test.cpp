@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "compensation/c_text.h"
+#include "compensation/firmware_difference.h"
 #include "compensation/firmware_model.h"
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/sample_compensators.h"
@@ -58,6 +59,64 @@ TEST(ExportedC, HeaderTellsTheChecksumTheInputsAndTheRange) {
   EXPECT_TRUE(holds(header, "x[1]: temperature_lowpass(0.1)\n"));
   EXPECT_TRUE(holds(header, "Valid from 0.33 to 50.70 degC"));
   EXPECT_TRUE(holds(header, "0.1429 deg/s rms, on held-out runs 0.2857 deg/s"));
+}
+
+TEST(ExportedC, HeaderHasMacrosOfTheRangeThePeriodsAndTheDifference) {
+  const Compensator compensator = network_compensator();
+  const std::string header = export_c(compensator, "gyro").header;
+  EXPECT_TRUE(holds(header, "#define gyro_TEMPERATURE_LOWEST 0.33333334f\n"));
+  EXPECT_TRUE(holds(header, "#define gyro_TEMPERATURE_HIGHEST 50.7f\n"));
+  EXPECT_TRUE(holds(header, "#define gyro_PERIOD_SHORTEST 0.0005f\n"));
+  EXPECT_TRUE(holds(header, "#define gyro_PERIOD_LONGEST 20.0f\n"));
+  EXPECT_TRUE(
+      holds(header, fmt::format("#define gyro_DIFFERENCE {}\n",
+                                c_literal(static_cast<float>(
+                                    firmware_difference(compensator))))));
+}
+
+TEST(ExportedC, HeaderCarriesTheWarningsOfTraining) {
+  Compensator c = spline_compensator();
+  c.provenance.warnings = {"first */ of two", "second"};
+  const std::string header = export_c(c, "g").header;
+  EXPECT_TRUE(
+      holds(header, "/* WARNING: first __ of two. */\n/* WARNING: second. */"));
+}
+
+TEST(ExportedC, SelfTestNamesTheOptionsThatChangeBits) {
+  const std::string text = export_c(spline_compensator(), "g").self_test;
+  EXPECT_TRUE(holds(text, "-ffp-contract=off and without -ffast-math"));
+}
+
+TEST(ExportedC, DifferencesBeyondTheLimitAreRefusedOrCarriedInTheCode) {
+  Compensator c = network_compensator();
+  auto& network = std::get<BpNetwork>(c.bias.function);
+  network.set_weights(100.0 * network.weights());
+  const std::string refusal = message_of([&] { export_c(c, "g"); });
+  EXPECT_TRUE(holds(refusal,
+                    "from those of compensate, and 0.0001 deg/s is "
+                    "the most"))
+      << refusal;
+  EXPECT_TRUE(holds(refusal, "--force exports it")) << refusal;
+  const ExportedC forced = export_c(c, "g", true);
+  ASSERT_EQ(forced.warnings.size(), 1u);
+  for (const std::string& text : {forced.header, forced.source})
+    EXPECT_TRUE(holds(text, "/* WARNING: its answers in single precision"));
+}
+
+TEST(ExportedC, CompensatorsThatCancelTheRateAreRefusedOrWarnedOfInTheCode) {
+  Compensator c = spline_compensator();
+  c.inputs.push_back(parse_input("rate"));
+  c.bias = {{{5.0, 45.0}, {0.0, 5.0}}, {}, Polynomial{{0.3, -0.2}, {4.9}}};
+  const std::string refusal = message_of([&] { export_c(c, "g"); });
+  EXPECT_TRUE(holds(refusal,
+                    "it cancels the rate: of a small rate it lets "
+                    "0.0200 through"))
+      << refusal;
+  const ExportedC forced = export_c(c, "g", true);
+  for (const std::string& text : {forced.header, forced.source})
+    EXPECT_TRUE(holds(text, "/* WARNING: it cancels the rate"));
+  std::get<Polynomial>(c.bias.function).slopes = {2.4};  // 0.52 are left
+  EXPECT_TRUE(export_c(c, "g").warnings.empty());
 }
 
 TEST(ExportedC, HoldsEveryParameterAsTheSameSingle) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "compensation/features.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -154,13 +155,19 @@ TEST(Features, TruthUnderTheNameOfAnInputIsRejected) {
                std::invalid_argument);
 }
 
-TEST(Features, NanAtAPoweredSampleIsAnErrorNotAGap) {
-  Recording recording = RecordedRun{}.recording();
-  recording.columns[2].values[7] = kNan;
-  const std::string message =
-      message_of([&] { features_of(inputs({"temperature"}), recording); });
-  EXPECT_NE(message.find("temperature is nan at t = 3.5 s"), std::string::npos)
-      << message;
+// An infinite temperature would count as the end of the range it is clamped to.
+TEST(Features, NoFiniteNumberAtAPoweredSampleIsAnErrorNotAGap) {
+  for (const double bad : {kNan, HUGE_VAL, -HUGE_VAL}) {
+    Recording recording = RecordedRun{}.recording();
+    recording.columns[2].values[7] = bad;
+    const std::string message = message_of([&] {
+      features_of(inputs({"temperature_lowpass(9)"}), recording,
+                  {.lowest = -40.0, .highest = 50.0});
+    });
+    EXPECT_NE(message.find(fmt::format("temperature is {} at t = 3.5 s", bad)),
+              std::string::npos)
+        << message;
+  }
 }
 
 TEST(Features, TemperatureRateOfARampIsItsSlopeOnceTheFilterHasSettled) {

@@ -62,7 +62,8 @@ double worst_error(const Compensator& compensator, const Recording& recording) {
           column_values(recording, kFirmwareSignals[s])[k] -
           (s == kFirmwareDriveFrequency ? model.drive_frequency() : 0));
     const double error = std::abs(model.step(sample) - expected[k]);
-    if (!(error <= worst)) worst = error;  // NaN is the worst
+    if (std::isnan(error)) return error;
+    worst = std::max(worst, error);
   }
   return worst;
 }
@@ -91,10 +92,21 @@ double chamber(double t) {
 
 TEST(FirmwareModel, AgreesWithDoublePrecisionOverPowerCycles) {
   const Recording recording = eventful_recording();
-  // A single holds 6e-8 of 100 deg/s and of biases of some deg/s, tanh 4e-6 of
-  // each neuron; 1.8e-5 deg/s was the worst.
+  // A single holds 6e-8 of 100 deg/s and of biases of some deg/s; 8e-6 deg/s
+  // was the worst.
   for (const NamedCompensator& each : one_of_each_kind())
-    EXPECT_LT(worst_error(each.compensator, recording), 1e-4) << each.name;
+    EXPECT_LT(worst_error(each.compensator, recording), 2e-5) << each.name;
+}
+
+// As training without weight decay leaves them: neurons that cancel.
+TEST(FirmwareModel, LargeWeightsOfANetworkAgreeTo1e4) {
+  Compensator c = network_compensator();
+  auto& network = std::get<BpNetwork>(c.bias.function);
+  Eigen::VectorXd w = network.weights();
+  const Eigen::Index last = w.size() - 5;  // weights of four neurons, bias
+  for (Eigen::Index k = 0; k < 4; ++k) w(last + k) = k % 2 == 0 ? 15.0 : -15.0;
+  network.set_weights(w);
+  EXPECT_LT(worst_error(c, eventful_recording()), 1e-4);
 }
 
 TEST(FirmwareModel, LowPassFollowsItsClosedFormFromShortToLongPeriods) {
@@ -102,9 +114,8 @@ TEST(FirmwareModel, LowPassFollowsItsClosedFormFromShortToLongPeriods) {
     FirmwareModel model(of_input("temperature_lowpass(7)"));
     model.start(static_cast<float>(period));
     LowPass exact(7.0);
-    // Of 60 degC a single holds 4e-6, in what goes in and what comes out; exp
-    // is good to 4e-6 of lags of some 10 K.
-    const double tolerance = period < 7.0 ? 8e-6 : 4e-5;
+    // Of 60 degC a single holds 4e-6, in what goes in and what comes out.
+    const double tolerance = 8e-6;
     for (int k = 0; k < 3000; ++k) {
       const double T = chamber(k * period);
       const double expected =
@@ -157,11 +168,10 @@ TEST(FirmwareModel, TimeSincePowerOnDecaysExponentially) {
   for (int k = 0; k < 30000; ++k)
     worst = std::max(
         worst, std::abs(-model.step(at(20.0f)) - std::exp(-k * 0.25 / 64.0)));
-  // Six squarings take the rounding of the approximant 64 times.
-  EXPECT_LT(worst, 64 * 6e-8);
+  EXPECT_LT(worst, 2e-7);  // half a last place of 1 is 6e-8
 }
 
-TEST(FirmwareModel, HyperbolicTangentIsGoodTo4e6) {
+TEST(FirmwareModel, HyperbolicTangentIsGoodTo5e7) {
   Compensator c = of_input("temperature");
   BpNetwork network({1, 1, 1});
   network.set_weights(Eigen::Vector4d(1.0, 0.0, 1.0, 0.0));
@@ -173,9 +183,10 @@ TEST(FirmwareModel, HyperbolicTangentIsGoodTo4e6) {
     const float x = 1e-4f * static_cast<float>(k);
     const double error =
         std::abs(-model.step(at(x)) - std::tanh(static_cast<double>(x)));
-    if (!(error <= worst)) worst = error;
+    ASSERT_FALSE(std::isnan(error)) << x;
+    worst = std::max(worst, error);
   }
-  EXPECT_LT(worst, 4e-6);
+  EXPECT_LT(worst, 5e-7);
   EXPECT_EQ(-model.step(at(300.0f)), 1.0f);
   EXPECT_EQ(-model.step(at(-300.0f)), -1.0f);
 }
@@ -199,6 +210,36 @@ TEST(FirmwareModel, TemperatureThatIsNoNumberGivesNoneAndHarmsNoFilter) {
   EXPECT_TRUE(std::isnan(model.step(at(kNan))));
   EXPECT_NEAR(model.step(at(25.0f)), before, 0.05);
   EXPECT_LT(model.step(at(25.0f)), -20.0f);
+}
+
+TEST(FirmwareModel, TemperatureThatIsInfiniteGivesNoneAndHarmsNoFilter) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Compensator c = of_input("temperature_lowpass(100)");
+  c.temperature_range = {.lowest = -40.0, .highest = 50.0};
+  for (const float infinite : {kInfinity, -kInfinity}) {
+    FirmwareModel model(c);
+    model.start(1.0f);
+    EXPECT_TRUE(std::isnan(model.step(at(infinite))));
+    EXPECT_EQ(model.step(at(20.0f)), -20.0f);  // the first of the filter
+    EXPECT_TRUE(std::isnan(model.step(at(infinite))));
+    EXPECT_EQ(model.step(at(20.0f)), -20.0f);
+  }
+}
+
+// A network would saturate at an infinite input, and answer.
+TEST(FirmwareModel, AnyInputThatIsNotFiniteGivesNone) {
+  const Compensator c = one_of_each_kind().back().compensator;
+  for (const float bad : {kNan, std::numeric_limits<float>::infinity(),
+                          -std::numeric_limits<float>::infinity()})
+    for (std::size_t s = 0; s < kFirmwareSignalCount; ++s) {
+      FirmwareModel model(c);
+      if (!model.reads(s)) continue;
+      model.start(1.0f);
+      FirmwareSample sample = at(20.0f);
+      sample.value[s] = bad;
+      EXPECT_TRUE(std::isnan(model.step(sample))) << kFirmwareSignals[s];
+      EXPECT_FALSE(std::isnan(model.step(at(20.0f)))) << kFirmwareSignals[s];
+    }
 }
 
 TEST(FirmwareModel, RateThatIsNoNumberGivesNone) {

@@ -8,8 +8,9 @@ import subprocess
 from program import CUBIC, ProgramTest, ramp
 
 # Rounding of a * b + c once instead of twice would change last bits.
-WARNINGS = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion",
-            "-Wdouble-promotion", "-Werror", "-ffp-contract=off"]
+WARNINGS = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow",
+            "-Wconversion", "-Wdouble-promotion", "-Wfloat-conversion",
+            "-Werror", "-ffp-contract=off"]
 
 INPUTS = """\
 inputs = ["temperature", "temperature_lowpass(100)", "temperature_rate(60)",
@@ -31,7 +32,8 @@ MODELS = {
     "px4": 'kind = "px4"\n',
     "ardupilot": 'kind = "ardupilot"\n[ardupilot]\nleast_samples = 10\n',
     "thermistor": 'kind = "thermistor"\n',
-    "fuzzy": 'kind = "fuzzy"\ninputs = ["temperature", "drive_voltage"]\n',
+    "fuzzy": 'kind = "fuzzy"\ninputs = ["temperature", "drive_voltage"]\n'
+             "[fuzzy]\nrules = 3\n",
     "network": f'kind = "bp"\n{INPUTS}[bp]\nhidden = [5, 3]\n{TRAINING}',
     "wide": 'kind = "bp"\ninputs = ["temperature"]\n'
             f"[bp]\nhidden = [12, 2]\n{TRAINING}",
