@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -23,8 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ExportArguments {
-  std::string compensator, format, output, name;
-  std::optional<std::string> axis;
+  std::vector<std::string> compensators, axes;
+  std::string format, output, name;
   std::optional<int> instance;
   std::optional<long> device_id;
   bool fit_cubic = false, force = false;
@@ -32,29 +33,90 @@ struct ExportArguments {
 
 using NamedTexts = std::vector<std::pair<std::string, std::string>>;
 
-AutopilotPlace place_of(const ExportArguments& arguments, int first_instance) {
-  return {arguments.axis.value_or("z")[0],
-          arguments.instance.value_or(first_instance),
-          arguments.device_id.value_or(0)};
+struct NamedCompensator {
+  fs::path file;
+  Compensator compensator;
+};
+
+// Errors of a compensator name its file.
+template <class Work>
+auto of_file(const fs::path& file, Work work) {
+  try {
+    return work();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(
+        fmt::format("{}: {}", file.string(), error.what()));
+  }
 }
 
-NamedTexts texts_of(const ExportArguments& arguments,
-                    const Compensator& compensator, const std::string& name) {
-  if (arguments.format == "c") {
-    const ExportedC c = export_c(compensator, name, arguments.force);
-    for (const std::string& warning : c.warnings)
-      print_warning(fmt::format("{}: {}", arguments.compensator, warning));
-    return {{name + ".h", c.header},
-            {name + ".c", c.source},
-            {name + "_selftest.c", c.self_test}};
+// One axis for each compensator.
+std::vector<char> axes_of(const ExportArguments& arguments) {
+  const std::size_t count = arguments.compensators.size();
+  std::vector<char> axes;
+  for (const std::string& axis : arguments.axes) axes.push_back(axis[0]);
+  if (axes.empty() && count == 1) axes = {'z'};
+  if (axes.empty() && count == 3) axes = {'x', 'y', 'z'};
+  if (axes.size() != count)
+    throw std::invalid_argument(
+        fmt::format("--axis: {} axes for {} compensators; one each, such as "
+                    "--axis x,y",
+                    axes.size(), count));
+  for (std::size_t k = 1; k < count; ++k)
+    if (std::find(axes.begin(), axes.begin() + static_cast<std::ptrdiff_t>(k),
+                  axes[k]) != axes.begin() + static_cast<std::ptrdiff_t>(k))
+      throw std::invalid_argument(fmt::format(
+          "--axis: {} twice; each compensator has an axis of its own",
+          axes[k]));
+  return axes;
+}
+
+void warn_of_ranges(const std::vector<AutopilotAxis>& axes) {
+  const TemperatureRange common = common_range(axes);
+  if (std::ranges::all_of(axes, [&](const AutopilotAxis& axis) {
+        return axis.range == common;
+      }))
+    return;
+  print_warning(fmt::format(
+      "the axes were trained over different temperatures: the autopilot will "
+      "clamp all of them to {:.2f} to {:.2f} degC, which all have seen",
+      common.lowest, common.highest));
+}
+
+NamedTexts parameter_texts(const ExportArguments& arguments,
+                           const std::vector<NamedCompensator>& compensators,
+                           const std::string& name) {
+  const std::vector<char> places = axes_of(arguments);
+  std::vector<AutopilotAxis> axes;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto& [file, compensator] = compensators[k];
+    axes.push_back(
+        {places[k],
+         of_file(
+             file,
+             [&] { return autopilot_cubic(compensator, arguments.fit_cubic); }),
+         compensator.temperature_range});
   }
-  const BiasModel cubic = autopilot_cubic(compensator, arguments.fit_cubic);
-  const TemperatureRange& range = compensator.temperature_range;
-  if (arguments.format == "px4")
-    return {{name + ".params",
-             px4_parameters(cubic, range, place_of(arguments, 0))}};
-  return {{name + ".parm",
-           ardupilot_parameters(cubic, range, place_of(arguments, 1))}};
+  const bool px4 = arguments.format == "px4";
+  const AutopilotGyro gyro{arguments.instance.value_or(px4 ? 0 : 1),
+                           arguments.device_id.value_or(0)};
+  NamedTexts texts = {
+      {name + (px4 ? ".params" : ".parm"), of_file(compensators[0].file, [&] {
+         return px4 ? px4_parameters(axes, gyro)
+                    : ardupilot_parameters(axes, gyro);
+       })}};
+  warn_of_ranges(axes);
+  return texts;
+}
+
+NamedTexts c_texts(const ExportArguments& arguments, const NamedCompensator& of,
+                   const std::string& name) {
+  const ExportedC c = of_file(
+      of.file, [&] { return export_c(of.compensator, name, arguments.force); });
+  for (const std::string& warning : c.warnings)
+    print_warning(fmt::format("{}: {}", of.file.string(), warning));
+  return {{name + ".h", c.header},
+          {name + ".c", c.source},
+          {name + "_selftest.c", c.self_test}};
 }
 
 void require_options(const ExportArguments& arguments) {
@@ -70,14 +132,16 @@ void require_options(const ExportArguments& arguments) {
     refuse(arguments.force, "--force", "c");
     return;
   }
-  refuse(arguments.axis.has_value(), "--axis", "px4 and ardupilot");
+  refuse(!arguments.axes.empty(), "--axis", "px4 and ardupilot");
   refuse(arguments.instance.has_value(), "--instance", "px4 and ardupilot");
   refuse(arguments.fit_cubic, "--fit-cubic", "px4 and ardupilot");
+  refuse(arguments.compensators.size() > 1, "several compensators",
+         "px4 and ardupilot");
 }
 
 // Before anything is made.
 void require_outputs(const fs::path& directory, const NamedTexts& texts,
-                     const fs::path& input) {
+                     const std::vector<fs::path>& inputs) {
   std::error_code ignored;
   if (!fs::exists(directory, ignored)) return;
   if (!fs::is_directory(directory, ignored))
@@ -85,7 +149,7 @@ void require_outputs(const fs::path& directory, const NamedTexts& texts,
         "{}: a file; expected a directory that is there or can be made",
         directory.string()));
   for (const auto& [called, text] : texts)
-    require_output(directory / called, {input});
+    require_output(directory / called, inputs);
 }
 
 // All of them or none.
@@ -110,18 +174,18 @@ void write_all(const fs::path& directory, const NamedTexts& texts) {
 
 int run_export(const ExportArguments& arguments) {
   require_options(arguments);
-  const fs::path file = arguments.compensator;
-  const Compensator compensator = read_compensator(file);
-  const std::string name = c_identifier(
-      arguments.name.empty() ? file.stem().string() : arguments.name);
-  NamedTexts texts;
-  try {
-    texts = texts_of(arguments, compensator, name);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(
-        fmt::format("{}: {}", file.string(), error.what()));
-  }
-  require_outputs(arguments.output, texts, file);
+  std::vector<NamedCompensator> compensators;
+  for (const std::string& file : arguments.compensators)
+    compensators.push_back({file, read_compensator(file)});
+  const std::string name =
+      c_identifier(arguments.name.empty() ? compensators[0].file.stem().string()
+                                          : arguments.name);
+  const NamedTexts texts = arguments.format == "c"
+                               ? c_texts(arguments, compensators[0], name)
+                               : parameter_texts(arguments, compensators, name);
+  require_outputs(
+      arguments.output, texts,
+      {arguments.compensators.begin(), arguments.compensators.end()});
   write_all(arguments.output, texts);
   if (arguments.format == "px4" && arguments.device_id.value_or(0) == 0)
     print_warning(
@@ -136,8 +200,11 @@ void add_export(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = program.add_subcommand(
       "export", "Write a compensator as C source or autopilot parameters");
-  command->add_option("compensator", arguments->compensator, "COMPENSATOR.json")
-      ->required();
+  command
+      ->add_option("compensator", arguments->compensators,
+                   "COMPENSATOR.json; for px4 and ardupilot one for each axis")
+      ->required()
+      ->expected(1, 3);
   command
       ->add_option("--format", arguments->format,
                    "c: NAME.h, NAME.c and NAME_selftest.c; px4: NAME.params; "
@@ -146,10 +213,13 @@ void add_export(CLI::App& program, Action& action) {
       ->check(CLI::IsMember({"c", "px4", "ardupilot"}));
   command->add_option("-o,--output", arguments->output, "DIR")->required();
   command->add_option("--name", arguments->name,
-                      "NAME; without it the compensator's file name");
+                      "NAME; without it the (first) compensator's file name");
   command
-      ->add_option("--axis", arguments->axis,
-                   "x, y or z: axis of the autopilot's gyro; z without it")
+      ->add_option("--axis", arguments->axes,
+                   "x, y or z: axis of the autopilot's gyro, one for each "
+                   "compensator (x,y); without it z of one, x,y,z of three")
+      ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::IsMember({"x", "y", "z"}));
   command
       ->add_option("--instance", arguments->instance,

@@ -18,9 +18,7 @@ BiasModel fit_as_px4(const TrainingRows& samples);
 /// averaged over 2 s, then a point for every rise of the temperature by 0.5 K
 /// or more over at least `least_samples` samples, at the mean of the rise's two
 /// ends, then least squares about 35 degC. While the temperature lies below the
-/// last point samples are passed over; each power-on begins anew. Its constant
-/// term is what
-/// INS_GYROFFS holds with a calibration temperature of 35 degC. Rows are
+/// last point samples are passed over; each power-on begins anew. Rows are
 /// samples. Throws std::invalid_argument when the temperature spans less than
 /// kArduPilotSpan or the rises give fewer than 4 points.
 BiasModel fit_as_ardupilot(const TrainingRows& samples, int least_samples);

@@ -2,16 +2,23 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "compensation/compensator.h"
 
 namespace beamgyro {
 
-/// Where a compensator goes in an autopilot.
-struct AutopilotPlace {
-  char axis = 'z';     // 'x', 'y' or 'z'
+/// Which gyro of an autopilot the parameters are for.
+struct AutopilotGyro {
   int instance = 0;    // PX4: 0 ... 3; ArduPilot: 1 ... 3
   long device_id = 0;  // PX4: TC_Gn_ID of the sensor
+};
+
+/// The bias of one of its axes.
+struct AutopilotAxis {
+  char axis = 'z';  // 'x', 'y' or 'z'
+  BiasModel cubic;  // autopilot_cubic()
+  TemperatureRange range;
 };
 
 /// The cubic an autopilot's parameters can hold: the compensator's own bias
@@ -21,26 +28,32 @@ struct AutopilotPlace {
 /// residual the cubic has in its place.
 BiasModel autopilot_cubic(const Compensator& compensator, bool fit_cubic);
 
+/// The temperatures [degC] all axes have seen: autopilots keep one range for a
+/// gyro. Throws std::invalid_argument when there are none.
+TemperatureRange common_range(const std::vector<AutopilotAxis>& axes);
+
 /// Parameter file of PX4: rows "1<TAB>1<TAB>NAME<TAB>VALUE<TAB>TYPE" with type
-/// 6 for int32 and 9 for float. With T clamped to TMIN ... TMAX
+/// 6 for int32 and 9 for float. With T clamped to TMIN ... TMAX, the
+/// common_range(),
 ///
 ///   corrected = raw - Σ_k X_k (T - TREF)^k   [rad/s]
 ///
-/// Throws std::invalid_argument for an instance PX4 does not have.
-std::string px4_parameters(const BiasModel& cubic,
-                           const TemperatureRange& range,
-                           const AutopilotPlace& place);
+/// Axes that are not given have X_k = 0. Throws std::invalid_argument for an
+/// instance PX4 does not have and as common_range().
+std::string px4_parameters(const std::vector<AutopilotAxis>& axes,
+                           const AutopilotGyro& gyro);
 
 /// Parameter file of ArduPilot: lines "NAME,VALUE". With
-/// P(x) = 1e-6 (c_1 x + c_2 x^2 + c_3 x^3) rad/s and T clamped to TMIN ... TMAX
+/// P(x) = 1e-6 (c_1 x + c_2 x^2 + c_3 x^3) rad/s, and T as well as CALTEMP
+/// clamped to TMIN ... TMAX, the common_range(),
 ///
 ///   corrected = raw - P(T - 35) + P(CALTEMP - 35) - GYROFFS   [rad/s]
 ///
-/// CALTEMP is 35 degC, so that GYROFFS is the constant term. Throws
-/// std::invalid_argument for an instance ArduPilot does not have and for a
-/// range it refuses: outside -70 ... 80 degC or under 10 K.
-std::string ardupilot_parameters(const BiasModel& cubic,
-                                 const TemperatureRange& range,
-                                 const AutopilotPlace& place);
+/// CALTEMP is 35 degC, or the end of the range next to it, and GYROFFS the bias
+/// there. Axes that are not given have c_k = GYROFFS = 0. Throws
+/// std::invalid_argument for an instance ArduPilot does not have, for a range
+/// it refuses (outside -70 ... 80 degC or under 10 K) and as common_range().
+std::string ardupilot_parameters(const std::vector<AutopilotAxis>& axes,
+                                 const AutopilotGyro& gyro);
 
 }  // namespace beamgyro

@@ -76,7 +76,8 @@ double px4_bias(const Parameters& p, const std::string& gyro, int axis,
   return offset * kDegPerRad;
 }
 
-// What ArduPilot takes off the rate [deg/s].
+// What ArduPilot takes off the rate [deg/s], as correct_sensor() of its
+// AP_InertialSensor_TCal does: it clamps the calibration temperature, too.
 double ardupilot_bias(const Parameters& p, int instance, char axis,
                       double temperature) {
   const std::string n = std::to_string(instance);
@@ -89,18 +90,21 @@ double ardupilot_bias(const Parameters& p, int instance, char axis,
           x;
     return 1e-6 * sum;
   };
-  const double T = std::clamp(temperature, at(p, calibration + "TMIN"),
-                              at(p, calibration + "TMAX"));
-  const double reference = at(p, "INS_GYR" + n + "_CALTEMP");
+  const double low = at(p, calibration + "TMIN"),
+               high = at(p, calibration + "TMAX");
+  const double T = std::clamp(temperature, low, high);
+  const double reference =
+      std::clamp(at(p, "INS_GYR" + n + "_CALTEMP"), low, high);
   const double offset =
       at(p, "INS_GYR" + (instance == 1 ? "" : n) + "OFFS_" + axis);
   return (polynomial(T - 35.0) - polynomial(reference - 35.0) + offset) *
          kDegPerRad;
 }
 
-double compensator_bias(const BiasModel& bias, double temperature) {
+double compensator_bias(const BiasModel& bias, double temperature,
+                        const TemperatureRange& range = kRange) {
   Eigen::ArrayXXd x(1, 1);
-  x(0, 0) = std::clamp(temperature, kRange.lowest, kRange.highest);
+  x(0, 0) = std::clamp(temperature, range.lowest, range.highest);
   return bias.predict(x)(0);
 }
 
@@ -126,14 +130,24 @@ std::vector<NamedCompensator> exportable() {
            of_bias({{{35.0, 1.0}}, {}, Polynomial{{-1.0, 5e-2, 2e-3, 3e-5}}})}};
 }
 
+std::string px4_of(const BiasModel& cubic, char axis = 'z',
+                   const AutopilotGyro& gyro = {.instance = 0}) {
+  return px4_parameters({{axis, cubic, kRange}}, gyro);
+}
+
+std::string ardupilot_of(const BiasModel& cubic, char axis = 'z',
+                         int instance = 1,
+                         const TemperatureRange& range = kRange) {
+  return ardupilot_parameters({{axis, cubic, range}}, {.instance = instance});
+}
+
 // Singles hold 6e-8 of terms of some 10 deg/s.
 constexpr double kRoundTrip = 1e-6;  // [deg/s]
 
 TEST(Px4Parameters, PublishedEquationGivesTheCompensatorsBias) {
   for (const NamedCompensator& each : exportable()) {
-    const Parameters p =
-        parse_px4(px4_parameters(autopilot_cubic(each.compensator, false),
-                                 kRange, {.axis = 'y', .instance = 2}));
+    const Parameters p = parse_px4(
+        px4_of(autopilot_cubic(each.compensator, false), 'y', {.instance = 2}));
     for (double T = -45.0; T <= 55.0; T += 0.25) {
       EXPECT_NEAR(px4_bias(p, "TC_G2_", 1, T),
                   compensator_bias(each.compensator.bias, T), kRoundTrip)
@@ -146,8 +160,7 @@ TEST(Px4Parameters, PublishedEquationGivesTheCompensatorsBias) {
 
 TEST(Px4Parameters, NamesTypesAndReferenceAreThoseOfTheFirmware) {
   const Parameters p = parse_px4(
-      px4_parameters(polynomial({1.0}), kRange,
-                     {.axis = 'z', .instance = 0, .device_id = 2162688}));
+      px4_of(polynomial({1.0}), 'z', {.instance = 0, .device_id = 2162688}));
   EXPECT_EQ(p.value.size(), 5u + 4u * 3u);
   EXPECT_EQ(p.value.at("TC_G_ENABLE"), 1.0f);
   EXPECT_EQ(p.value.at("TC_G0_ID"), 2162688.0f);
@@ -163,9 +176,8 @@ TEST(Px4Parameters, NamesTypesAndReferenceAreThoseOfTheFirmware) {
 TEST(ArduPilotParameters, PublishedEquationGivesTheCompensatorsBias) {
   for (const int instance : {1, 3})
     for (const NamedCompensator& each : exportable()) {
-      const Parameters p = parse_ardupilot(
-          ardupilot_parameters(autopilot_cubic(each.compensator, false), kRange,
-                               {.axis = 'x', .instance = instance}));
+      const Parameters p = parse_ardupilot(ardupilot_of(
+          autopilot_cubic(each.compensator, false), 'x', instance));
       for (double T = -45.0; T <= 55.0; T += 0.25) {
         EXPECT_NEAR(ardupilot_bias(p, instance, 'X', T),
                     compensator_bias(each.compensator.bias, T), kRoundTrip)
@@ -176,18 +188,74 @@ TEST(ArduPilotParameters, PublishedEquationGivesTheCompensatorsBias) {
 }
 
 TEST(ArduPilotParameters, NamesAndReferenceAreThoseOfTheFirmware) {
-  const Parameters first = parse_ardupilot(ardupilot_parameters(
-      polynomial({1.0}), kRange, {.axis = 'z', .instance = 1}));
+  const Parameters first = parse_ardupilot(ardupilot_of(polynomial({1.0})));
   EXPECT_EQ(first.value.size(), 3u + 3u * 3u + 1u + 3u);
   EXPECT_EQ(first.value.at("INS_TCAL1_ENABLE"), 1.0f);
   EXPECT_EQ(first.value.at("INS_TCAL1_TMIN"), -40.0f);
   EXPECT_EQ(first.value.at("INS_TCAL1_TMAX"), 50.0f);
   EXPECT_EQ(first.value.at("INS_GYR1_CALTEMP"), 35.0f);
   EXPECT_NEAR(at(first, "INS_GYROFFS_Z"), 2.5 / kDegPerRad, 4e-9);
-  const Parameters second = parse_ardupilot(ardupilot_parameters(
-      polynomial({1.0}), kRange, {.axis = 'z', .instance = 2}));
+  const Parameters second =
+      parse_ardupilot(ardupilot_of(polynomial({1.0}), 'z', 2));
   EXPECT_TRUE(second.value.contains("INS_GYR2OFFS_Z"));
   EXPECT_TRUE(second.value.contains("INS_TCAL2_GYR3_X"));
+}
+
+// The reference of the polynomial is 35 degC whether training saw it or not.
+TEST(ArduPilotParameters, RangesOnEitherSideOfTheReferenceGiveTheBias) {
+  const BiasModel cubic = polynomial({0.3, -1.2, 0.8, 1.1});
+  for (const auto& [range, reference] :
+       std::vector<std::pair<TemperatureRange, float>>{{{-30.0, 20.0}, 20.0f},
+                                                       {{-30.0, 34.99}, 34.99f},
+                                                       {{-30.0, 60.0}, 35.0f},
+                                                       {{35.01, 75.0}, 35.01f},
+                                                       {{45.3, 75.0}, 45.3f}}) {
+    const Parameters p = parse_ardupilot(ardupilot_of(cubic, 'y', 2, range));
+    EXPECT_EQ(p.value.at("INS_GYR2_CALTEMP"), reference);
+    for (double T = -40.0; T <= 80.0; T += 0.5)
+      EXPECT_NEAR(ardupilot_bias(p, 2, 'Y', T),
+                  compensator_bias(cubic, T, range), 3 * kRoundTrip)
+          << "up to " << range.highest << " at " << T;
+  }
+}
+
+// Three gyros, trained over different temperatures.
+std::vector<AutopilotAxis> three_axes() {
+  return {{'z', polynomial({0.3, -1.2, 0.8, 1.1}), {-40.0, 50.0}},
+          {'x', polynomial({-0.7, 0.2}), {-35.0, 55.0}},
+          {'y', polynomial({1.5, 0.0, -0.4}), {-42.0, 48.0}}};
+}
+
+TEST(AutopilotParameters, SeveralAxesShareAFileAndTheTemperaturesAllSaw) {
+  const std::vector<AutopilotAxis> axes = three_axes();
+  const TemperatureRange common{-35.0, 48.0};
+  EXPECT_EQ(common_range(axes), common);
+  const Parameters px4 =
+      parse_px4(px4_parameters(axes, {.instance = 1, .device_id = 7}));
+  const Parameters ardupilot =
+      parse_ardupilot(ardupilot_parameters(axes, {.instance = 3}));
+  EXPECT_EQ(px4.value.at("TC_G1_TMAX"), 48.0f);
+  EXPECT_EQ(ardupilot.value.at("INS_TCAL3_TMIN"), -35.0f);
+  for (const AutopilotAxis& axis : axes)
+    for (double T = -50.0; T <= 60.0; T += 0.5) {
+      const double expected = compensator_bias(axis.cubic, T, common);
+      EXPECT_NEAR(px4_bias(px4, "TC_G1_", axis.axis - 'x', T), expected,
+                  kRoundTrip);
+      EXPECT_NEAR(ardupilot_bias(ardupilot, 3,
+                                 static_cast<char>(axis.axis - 'x' + 'X'), T),
+                  expected, kRoundTrip);
+    }
+}
+
+TEST(AutopilotParameters, AxesWithoutACommonTemperatureAreRefused) {
+  const std::string message = message_of([&] {
+    px4_parameters({{'x', polynomial({1.0}), {-40.0, 10.0}},
+                    {'y', polynomial({1.0}), {20.0, 50.0}}},
+                   {.instance = 0});
+  });
+  EXPECT_NE(message.find("trained from 20.00 degC up and one up to 10.00 degC"),
+            std::string::npos)
+      << message;
 }
 
 std::string refusal(const Compensator& c) {
@@ -251,13 +319,10 @@ TEST(AutopilotParameters, InstancesThereAreNotAreRefused) {
   const BiasModel cubic = polynomial({1.0});
   for (const int instance : {-1, 4})
     EXPECT_EQ(
-        message_of(
-            [&] { px4_parameters(cubic, kRange, {.instance = instance}); }),
+        message_of([&] { px4_of(cubic, 'z', {.instance = instance}); }),
         "instance " + std::to_string(instance) + ": PX4 has the gyros 0 to 3");
   for (const int instance : {0, 4})
-    EXPECT_EQ(message_of([&] {
-                ardupilot_parameters(cubic, kRange, {.instance = instance});
-              }),
+    EXPECT_EQ(message_of([&] { ardupilot_of(cubic, 'z', instance); }),
               "instance " + std::to_string(instance) +
                   ": ArduPilot has the gyros 1 to 3");
 }
@@ -266,17 +331,14 @@ TEST(ArduPilotParameters, RangesTheFirmwareRefusesAreRefused) {
   for (const TemperatureRange& range :
        {TemperatureRange{20.0, 29.5}, {-71.0, 20.0}, {20.0, 81.0}})
     EXPECT_NE(
-        message_of([&] {
-          ardupilot_parameters(polynomial({1.0}), range, {.instance = 1});
-        })
+        message_of([&] { ardupilot_of(polynomial({1.0}), 'z', 1, range); })
             .find("that ArduPilot accepts: within -70 to 80 degC and 10 K "
                   "apart"),
         std::string::npos);
-  EXPECT_EQ(
-      message_of([&] {
-        ardupilot_parameters(polynomial({1.0}), {20.0, 30.0}, {.instance = 1});
-      }),
-      "no error");
+  EXPECT_EQ(message_of([&] {
+              ardupilot_of(polynomial({1.0}), 'z', 1, {20.0, 30.0});
+            }),
+            "no error");
 }
 
 }  // namespace

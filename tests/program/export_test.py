@@ -14,6 +14,7 @@ import numpy as np
 
 from exported import EVENTFUL, MODELS, WARNINGS, ExportTest
 from formats_test import rows, section
+from program import ramp
 
 SELF_TEST = ["net.c", "net_selftest.c", "-o", "selftest"]  # no -lm
 
@@ -298,6 +299,62 @@ class ExportParameters(ExportTest):
                 self.assertEqual(p["INS_GYR2_CALTEMP"], 35)
                 self.assertLess(np.max(np.abs(np.degrees(offset) - bias)), 1e-6)
 
+    def test_ardupilot_reference_is_clamped_as_the_autopilot_does(self):
+        """Training that ends below 35 degC: CALTEMP is the highest of it."""
+        cold = ramp(low=-40, high=10)
+        self.run_scenario("train", text=cold)
+        self.run_scenario("held_out", "--seed", 4, text=cold)
+        p = self.parameters("cubic", "ardupilot")
+        low, high = p["INS_TCAL1_TMIN"], p["INS_TCAL1_TMAX"]
+        self.assertLess(high, 35)
+        temperature, bias = self.bias("cubic")
+        reference = np.clip(p["INS_GYR1_CALTEMP"], low, high)
+        self.assertEqual(reference, p["INS_GYR1_CALTEMP"])
+
+        def polynomial(at):
+            return 1e-6 * sum(p[f"INS_TCAL1_GYR{k}_Z"] * (at - 35) ** k
+                              for k in (1, 2, 3))
+        offset = polynomial(np.clip(temperature, low, high)) \
+            - polynomial(reference) + p["INS_GYROFFS_Z"]
+        self.assertLess(np.max(np.abs(np.degrees(offset) - bias)), 3e-6)
+
+    def test_three_axes_in_one_file(self):
+        files = [self.train(kind) for kind in ["cubic", "constant", "px4"]]
+        single = {}
+        for axis, file in zip("xyz", files):
+            self.ok("export", file, "--format", "px4", "-o", "one", "--name",
+                    "net", "--axis", axis, "--device-id", 1)
+            single[axis] = (self.dir / "one/net.params").read_text()
+        self.ok("export", *files, "--format", "px4", "-o", "three",
+                "--device-id", 1)
+        merged = (self.dir / "three/cubic.params").read_text().splitlines()
+        for line in merged[1:]:
+            power, axis = re.match(r"1\t1\t(?:TC_G0_X(\d)_(\d)|\S+)\t",
+                                   line).groups()
+            for name, text in single.items():
+                if power is None or name == "xyz"[int(axis)]:
+                    self.assertIn(line, text.splitlines())
+        self.ok("export", *files[:2], "--format", "ardupilot", "-o", "two",
+                "--axis", "z,x")
+        two = (self.dir / "two/cubic.parm").read_text()
+        self.assertNotIn("INS_GYROFFS_Z,0\n", two)
+        self.assertIn("INS_GYROFFS_Y,0\n", two)
+        self.assertNotIn("INS_GYROFFS_X,0\n", two)
+
+    def test_axes_of_other_temperatures_share_what_all_saw(self):
+        self.ok("export", self.train("cubic"), "--format", "ardupilot", "-o",
+                "one")
+        text = (self.dir / "cubic.json").read_text()
+        start = text.index("[", text.index('"temperature_range_degC"'))
+        end = text.index("]", start)
+        self.write("other.json", text[:start] + "[-20.0, 60.0" + text[end:])
+        answer = self.beamgyro("export", "cubic.json", "other.json", "--format",
+                               "ardupilot", "-o", "two", "--axis", "x,y")
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertIn("clamp all of them to -20.00 to", answer.stderr)
+        self.assertIn("INS_TCAL1_TMIN,-20\n",
+                      (self.dir / "two/cubic.parm").read_text())
+
     def test_the_first_gyro_and_axis_z_without_options(self):
         p = self.parameters("cubic", "px4", "--device-id", 1)
         self.assertNotEqual(p["TC_G0_X0_2"], 0)
@@ -350,6 +407,16 @@ class BadExport(ExportTest):
                          says=[cubic, f"instance {instance}"])
         self.refused(cubic, "--format", "px4", *to, "--device-id", 2 ** 31,
                      says="--device-id")
+
+    def test_each_compensator_has_an_axis_of_its_own(self):
+        cubic = self.train("cubic")
+        to = ["--format", "px4", "-o", "out"]
+        self.refused(cubic, cubic, *to, says=["--axis", "0 axes for 2"])
+        self.refused(cubic, cubic, *to, "--axis", "x", says="1 axes for 2")
+        self.refused(cubic, cubic, *to, "--axis", "y,y", says="y twice")
+        self.refused(cubic, *to, "--axis", "x,y", says="2 axes for 1")
+        self.refused(cubic, cubic, "--format", "c", "-o", "out",
+                     says="several compensators")
 
     def test_options_of_another_format_are_refused(self):
         cubic = self.train("cubic")
