@@ -7,7 +7,7 @@
 
 #include "bench/shipped_device.h"
 #include "dataset/recording_file.h"
-#include "sim/scenario/quasistatic_run.h"
+#include "sim/scenario/simulation.h"
 
 namespace beamgyro {
 namespace {
@@ -33,8 +33,7 @@ void report_speed(benchmark::State& state) {
 void run_in_memory(benchmark::State& state, const RateProfile& rate) {
   const Device device = shipped_device();
   const Scenario scenario = warm_up(rate);
-  for (auto _ : state)
-    benchmark::DoNotOptimize(simulate_quasistatic(scenario, device));
+  for (auto _ : state) benchmark::DoNotOptimize(simulated(scenario, device));
   report_speed(state);
 }
 
@@ -42,8 +41,7 @@ void run_in_memory(benchmark::State& state, const RateProfile& rate) {
 void run_of_a_prepared_device(benchmark::State& state) {
   const Gyro gyro = make_gyro(shipped_device());
   const Scenario scenario = warm_up(PiecewiseLinear::constant(0));
-  for (auto _ : state)
-    benchmark::DoNotOptimize(simulate_quasistatic(scenario, gyro));
+  for (auto _ : state) benchmark::DoNotOptimize(simulated(scenario, gyro));
   report_speed(state);
 }
 
@@ -52,8 +50,7 @@ void run_to_file(benchmark::State& state) {
   const Scenario scenario = warm_up(PiecewiseLinear::constant(0));
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / "beamgyro_bench.h5";
-  for (auto _ : state)
-    write_recording(simulate_quasistatic(scenario, device), file);
+  for (auto _ : state) write_recording(simulated(scenario, device), file);
   std::filesystem::remove(file);
   report_speed(state);
 }

@@ -70,7 +70,7 @@ void file_written(benchmark::State& state, bool compress) {
     const auto file = built(compress);
     const std::span<const std::byte> image = file->finish();
     benchmark::DoNotOptimize(sha256(image));
-    publish_file(kFile, image);
+    publish_file(kFile.parent_path(), kFile.filename(), image);
     bytes = image.size();
   }
   report_bytes(state, bytes);

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 
@@ -15,112 +19,238 @@
 #include "compensation/noise_coefficients.h"
 #include "dataset/atomic_file.h"
 #include "dataset/csv_file.h"
-#include "dataset/hdf5_file.h"
 
 namespace beamgyro {
 namespace {
 
+constexpr const char* kRateUnit = "deg/s";
+constexpr double kSameRate = 0.01;  // [-], of two sample rates
+
 struct AllanArguments {
   std::string file, json;
-  std::optional<std::string> dataset;
+  std::optional<std::string> dataset, unit;
   std::optional<double> rate;
+  TimeWindow window;
 };
 
-GaplessSeries csv_series(const AllanArguments& arguments) {
-  if (!arguments.rate) {
-    throw std::invalid_argument(
-        fmt::format("{}: a CSV series has no sample rate; expected --rate-Hz",
-                    arguments.file));
-  }
-  const CsvTable csv = read_csv(arguments.file);
-  GaplessSeries series;
-  series.interval = 1 / *arguments.rate;
-  if (arguments.dataset) {
-    series.rates = csv.column(*arguments.dataset);
-  } else if (csv.columns.size() == 1) {
-    series.rates = csv.columns.front();
-  } else {
-    throw std::invalid_argument(
-        fmt::format("{}: has {} columns; expected --dataset NAME to choose one",
-                    arguments.file, csv.columns.size()));
-  }
-  return series;
+/// What the deviations are of.
+struct Signal {
+  Recording recording;  // holds the column
+  std::string column, unit;
+  std::vector<std::string> warnings;
+};
+
+bool is_time(const std::string& name) {
+  return name == "time" || name == "time_s";
 }
 
-GaplessSeries series_of(const AllanArguments& arguments) {
-  if (arguments.rate && !(*arguments.rate > 0 && *arguments.rate < 1e9)) {
+std::string csv_column(const AllanArguments& arguments, const CsvTable& csv) {
+  if (arguments.dataset) return *arguments.dataset;
+  std::vector<std::string> signals = csv.names;
+  std::erase_if(signals, is_time);
+  if (signals.size() == 1) return signals.front();
+  if (std::ranges::count(signals, "rate") == 1) return "rate";
+  throw std::invalid_argument(
+      fmt::format("{}: has {} columns; expected --dataset NAME to choose one",
+                  arguments.file, csv.columns.size()));
+}
+
+void require_increasing(const CsvTable& csv, const std::vector<double>& time) {
+  for (std::size_t k = 1; k < time.size(); ++k)
+    if (!(time[k] > time[k - 1]))
+      throw std::invalid_argument(
+          fmt::format("{}: the time {} s follows {} s; expected times that "
+                      "increase",
+                      csv.place(k), time[k], time[k - 1]));
+}
+
+std::vector<double> csv_time(const AllanArguments& arguments,
+                             const CsvTable& csv) {
+  const auto name = std::ranges::find_if(csv.names, is_time);
+  if (name != csv.names.end()) {
+    std::vector<double> time = csv.column(*name);
+    require_increasing(csv, time);
+    return time;
+  }
+  if (!arguments.rate)
+    throw std::invalid_argument(
+        fmt::format("{}: a CSV series without a column \"time\" [s] has no "
+                    "sample rate; expected --rate-Hz",
+                    arguments.file));
+  std::vector<double> time(csv.columns.front().size());
+  for (std::size_t k = 0; k < time.size(); ++k)
+    time[k] = static_cast<double>(k) / *arguments.rate;
+  return time;
+}
+
+/// Angular rates are converted to deg/s; of another unit the numbers stay.
+void convert(std::string& unit, std::vector<double>& values) {
+  const double scale = unit == "deg/h"   ? 1.0 / 3600.0
+                       : unit == "rad/s" ? 180.0 / std::numbers::pi
+                                         : 1.0;
+  if (scale != 1.0) {
+    for (double& value : values) value *= scale;
+    unit = kRateUnit;
+  }
+}
+
+Signal csv_signal(const AllanArguments& arguments) {
+  const CsvTable csv = read_csv(arguments.file);
+  Signal signal;
+  signal.unit = arguments.unit.value_or(kRateUnit);
+  std::vector<double> values;
+  if (csv.columns.size() == 1 && !arguments.dataset) {
+    signal.column = "rate";
+    values = csv.columns.front();
+  } else {
+    signal.column = csv_column(arguments, csv);
+    values = csv.column(signal.column);
+  }
+  convert(signal.unit, values);
+  signal.recording.time = csv_time(arguments, csv);
+  signal.recording.status.assign(values.size(), 0);
+  signal.recording.columns.push_back(
+      {signal.column, signal.unit, "", Role::kMeasured, std::move(values)});
+  if (!arguments.unit)
+    signal.warnings.push_back(fmt::format(
+        "{}: a CSV states no unit; taken as {}, --unit says otherwise",
+        arguments.file, kRateUnit));
+  return signal;
+}
+
+Signal recorded_signal(const AllanArguments& arguments) {
+  Signal signal;
+  signal.recording = load_recording(arguments.file);
+  signal.column = arguments.dataset.value_or("rate");
+  const Column* column = find_column(signal.recording, signal.column);
+  if (column != nullptr)
+    signal.unit = column->units == "degree/s" ? kRateUnit : column->units;
+  if (arguments.unit)
+    throw std::invalid_argument(
+        fmt::format("--unit {}: is for a CSV; {} says itself that it is in {}",
+                    *arguments.unit, arguments.file, signal.unit));
+  return signal;
+}
+
+void check_options(const AllanArguments& arguments) {
+  if (arguments.rate && !(*arguments.rate > 0 && *arguments.rate < 1e9))
     throw std::invalid_argument(fmt::format(
         "--rate-Hz {}: out of range; expected a number > 0", *arguments.rate));
-  }
-  if (std::filesystem::path(arguments.file).extension() == ".csv")
-    return csv_series(arguments);
-  GaplessSeries series = longest_gapless_series(
-      read_recording(arguments.file), arguments.dataset.value_or("rate"));
-  if (arguments.rate) {
+  if (!(arguments.window.from < arguments.window.to))
     throw std::invalid_argument(
-        fmt::format("--rate-Hz {}: the recording says {:g} Hz itself; expected "
-                    "no --rate-Hz",
-                    *arguments.rate, 1 / series.interval));
-  }
-  return series;
+        fmt::format("--from {} --to {}: empty; expected --from below --to",
+                    arguments.window.from, arguments.window.to));
 }
 
-constexpr const char* kRateUnit = "deg/s";
-
-// Unit of the series; a CSV series is one of rates.
-std::string unit_of(const AllanArguments& arguments) {
-  if (std::filesystem::path(arguments.file).extension() == ".csv")
-    return kRateUnit;
-  const Recording recording = read_recording(arguments.file);
-  const Column* column =
-      find_column(recording, arguments.dataset.value_or("rate"));
-  if (column == nullptr || column->units == "degree/s") return kRateUnit;
-  return column->units;
+void check_rate(const AllanArguments& arguments, const EvenSeries& series) {
+  if (arguments.rate &&
+      std::abs(*arguments.rate * series.interval - 1.0) > kSameRate)
+    throw std::invalid_argument(fmt::format(
+        "--rate-Hz {}: the times of {} say {:g} Hz; expected no --rate-Hz",
+        *arguments.rate, arguments.file, 1.0 / series.interval));
 }
 
-std::string allan_table(const std::vector<AllanPoint>& plain,
-                        const std::vector<AllanPoint>& overlapping,
-                        const std::string& unit) {
+std::string use_text(const EvenSeries& series) {
+  return fmt::format(
+      "{} samples at {:g} Hz from {:g} to {:g} s, {} stretch{}, {} missing "
+      "between them, {} left out\n",
+      series.samples, 1.0 / series.interval, series.first, series.last,
+      series.stretches.size(), series.stretches.size() == 1 ? "" : "es",
+      series.missing, series.left_out);
+}
+
+std::string allan_table(const AllanCurve& curve, const std::string& unit) {
   std::string text =
       fmt::format("{:>12} {:>14} {:>14} {:>10} {:>8}\n", "tau s",
                   "adev " + unit, "oadev " + unit, "clusters", "+-%");
-  for (std::size_t i = 0; i < plain.size(); ++i) {
-    const bool known = plain[i].clusters > 1;
+  for (std::size_t i = 0; i < curve.plain.size(); ++i) {
+    const AllanPoint& plain = curve.plain[i];
+    const AllanPoint& overlapping = curve.overlapping[i];
+    const bool known = plain.clusters > 1;
     fmt::format_to(
         std::back_inserter(text),
-        "{:>12.6g} {:>14.6g} {:>14.6g} {:>10} {:>8}\n", plain[i].tau,
-        plain[i].deviation, overlapping[i].deviation, plain[i].clusters,
-        known ? fmt::format("{:.1f}", 100 * relative_uncertainty(plain[i]))
+        "{:>12.6g} {:>14.6g} {:>14.6g} {:>10} {:>8}\n", plain.tau,
+        plain.deviation, overlapping.deviation, plain.clusters,
+        known ? fmt::format("{:.1f}", 100 * relative_uncertainty(overlapping))
               : "-");
   }
   return text;
 }
 
+std::string noise_table(const NoiseCoefficients& found,
+                        const std::string& unit) {
+  std::string text;
+  auto out = std::back_inserter(text);
+  for (const CoefficientReport& report : reports(found, unit)) {
+    const std::string name = fmt::format("{} {}", report.name, report.symbol);
+    if (!report.per_second) {
+      fmt::format_to(out, "{:<22}{:>12}\n", name, "-");
+      continue;
+    }
+    const auto [value, uncertainty] = *report.per_second;
+    fmt::format_to(out, "{:<22}{:>12.4g} {:<14} {:.4g} {}, +- {:.1f} %\n", name,
+                   value * report.hours_per_second_unit, report.unit_per_hour,
+                   value, report.unit_per_second, 100 * uncertainty / value);
+  }
+  fmt::format_to(out, "{:<22}{:>12.4g} {} at {:g} s{}\n", "lowest deviation",
+                 found.lowest.deviation, unit, found.lowest.tau,
+                 found.still_falling ? ", still falling" : "");
+  fmt::format_to(out, "fitted to {} taus, {:g} to {:g} s, which it misses by ",
+                 found.taus.size(), found.taus.front(), found.taus.back());
+  text += found.misfit > 0.0
+              ? fmt::format("{:.2g} % beyond chance\n", 100 * found.misfit)
+              : "no more than chance\n";
+  for (const LeftOutTau& tau : found.left_out)
+    fmt::format_to(out, "left out: {:g} s, {} of the fit\n", tau.tau,
+                   std::isfinite(tau.ratio) ? fmt::format("{:.3g}", tau.ratio)
+                                            : "nothing");
+  if (found.band_limit)
+    fmt::format_to(out, "band of the white noise limited as by {:.3g} s\n",
+                   *found.band_limit);
+  return text;
+}
+
+nlohmann::ordered_json series_json(const EvenSeries& series,
+                                   const Signal& signal) {
+  return {{"dataset", signal.column},
+          {"unit", signal.unit},
+          {"rate_Hz", 1.0 / series.interval},
+          {"from_s", series.first},
+          {"to_s", series.last},
+          {"stretches", series.stretches.size()},
+          {"samples", series.samples},
+          {"missing", series.missing},
+          {"left_out", series.left_out}};
+}
+
 int allan(const AllanArguments& arguments) {
-  const GaplessSeries series = series_of(arguments);
+  check_options(arguments);
   if (!arguments.json.empty()) require_output(arguments.json, {arguments.file});
-  const std::vector<double> taus =
-      octave_taus(series.rates.size(), series.interval);
-  const std::vector<AllanPoint> plain =
-      adev(series.rates, series.interval, taus);
-  const std::vector<AllanPoint> overlapping =
-      oadev(series.rates, series.interval, taus);
-  if (series.left_out > 0) {
-    print_warning(fmt::format(
-        "{}: {} samples left out; the longest gapless powered stretch has {}",
-        arguments.file, series.left_out, series.rates.size()));
-  }
-  const std::string unit = unit_of(arguments);
-  std::string text = allan_table(plain, overlapping, unit);
-  // Fewer points than the coefficients need leave the curve itself, and only
-  // those of a rate have names.
-  if (unit == kRateUnit && has_noise_coefficients(overlapping)) {
+  const bool csv = std::filesystem::path(arguments.file).extension() == ".csv";
+  Signal signal = csv ? csv_signal(arguments) : recorded_signal(arguments);
+  const EvenSeries series =
+      even_series(signal.recording, signal.column, arguments.window);
+  check_rate(arguments, series);
+  if (series.missing + series.left_out > 0)
+    signal.warnings.push_back(fmt::format(
+        "{}: {} of {} samples used; {} missing between them", arguments.file,
+        series.samples, series.samples + series.left_out, series.missing));
+  const AllanCurve curve = allan_curve(series, octave_taus(series));
+  std::string text = use_text(series) + allan_table(curve, signal.unit);
+  nlohmann::ordered_json json = to_json(curve);
+  json["series"] = series_json(series, signal);
+  json["noise"] = nullptr;
+  // Fewer points than the coefficients need leave the curve itself.
+  if (has_noise_coefficients(curve.overlapping)) {
+    const NoiseCoefficients found = noise_coefficients(curve.overlapping);
     text += '\n';
-    text += table(noise_coefficients(overlapping));
+    text += noise_table(found, signal.unit);
+    json["noise"] = to_json(found, signal.unit);
   }
-  if (!arguments.json.empty()) {
-    write_text_file(arguments.json, to_json(plain, overlapping).dump(2) + "\n");
-  }
+  json["warnings"] = signal.warnings;
+  for (const std::string& warning : signal.warnings) print_warning(warning);
+  if (!arguments.json.empty())
+    write_text_file(arguments.json, json.dump(2) + "\n");
   print_result(text);
   return 0;
 }
@@ -135,8 +265,17 @@ void add_allan(CLI::App& program, Action& action) {
       ->required();
   command->add_option("--dataset", arguments->dataset,
                       "NAME of the variable or column; rate by default");
-  command->add_option("--rate-Hz", arguments->rate, "sample rate of a CSV");
-  command->add_option("--json", arguments->json, "FILE for the curve");
+  command->add_option("--rate-Hz", arguments->rate,
+                      "sample rate of a CSV without a column time [s]");
+  command->add_option("--unit", arguments->unit,
+                      "of a CSV; deg/s, deg/h and rad/s are rates, any other "
+                      "text is printed as it is; deg/s without it");
+  command->add_option("--from", arguments->window.from,
+                      "[s], first time to use; the first sample without it");
+  command->add_option("--to", arguments->window.to,
+                      "[s], last time to use; the last sample without it");
+  command->add_option("--json", arguments->json,
+                      "FILE for the curve, the coefficients and what was used");
   command->callback([arguments, &action] {
     action = [arguments] { return allan(*arguments); };
   });

@@ -10,7 +10,6 @@
 #include "cli/terminal.h"
 #include "compensation/compensator_file.h"
 #include "dataset/atomic_file.h"
-#include "dataset/hdf5_file.h"
 #include "dataset/recording_file.h"
 
 namespace beamgyro {
@@ -32,7 +31,7 @@ std::vector<double> answers(const Compensator& compensator,
 
 int compensate(const CompensateArguments& arguments) {
   const Compensator compensator = read_compensator(arguments.compensator);
-  Recording recording = read_recording(arguments.run);
+  Recording recording = load_recording(arguments.run);
   require_output(arguments.output, {arguments.compensator, arguments.run});
   if (find_column(recording, kColumn)) {
     throw std::invalid_argument(fmt::format(

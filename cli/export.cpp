@@ -16,6 +16,7 @@
 #include "compensation/compensator_file.h"
 #include "compensation/export_c.h"
 #include "compensation/export_parameters.h"
+#include "config/file_error.h"
 #include "dataset/atomic_file.h"
 
 namespace beamgyro {
@@ -142,9 +143,9 @@ void require_options(const ExportArguments& arguments) {
 // Before anything is made.
 void require_outputs(const fs::path& directory, const NamedTexts& texts,
                      const std::vector<fs::path>& inputs) {
-  std::error_code ignored;
-  if (!fs::exists(directory, ignored)) return;
-  if (!fs::is_directory(directory, ignored))
+  const fs::file_status status = status_of(directory);
+  if (!fs::exists(status)) return;
+  if (!fs::is_directory(status))
     throw std::invalid_argument(fmt::format(
         "{}: a file; expected a directory that is there or can be made",
         directory.string()));
@@ -157,9 +158,8 @@ void write_all(const fs::path& directory, const NamedTexts& texts) {
   std::error_code error;
   fs::create_directories(directory, error);
   if (error)
-    throw std::invalid_argument(
-        fmt::format("{}: {}; expected a directory that is there or can be made",
-                    directory.string(), error.message()));
+    throw_file_error(directory, "cannot make this directory", error,
+                     "one that is there or can be made");
   std::vector<fs::path> written;
   try {
     for (const auto& [called, text] : texts) {

@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/generation_progress.h"
+#include "cli/inputs.h"
 #include "cli/terminal.h"
 #include "cli/version.h"
 #include "dataset/set/set_writer.h"
@@ -47,17 +48,16 @@ SetTask task_of(std::string_view shard) {
       fmt::format("--shard {}: expected I/N with I = 1..N", shard));
 }
 
-// A file is made in memory.
-void require_moderate_files(const std::string& campaign,
-                            const ShardPlan& plan) {
-  constexpr double kLargest = 1e9;  // [byte]
-  const double size = plan.largest_file();
-  if (size <= kLargest) return;
-  throw std::invalid_argument(fmt::format(
-      "{}: devices_per_file: {} devices make files of {:.1f} GB; expected at "
-      "most {:g} GB, so fewer devices a file, fewer variables or lower rates",
-      campaign, plan.campaign().devices_per_file(), size / 1e9,
-      kLargest / 1e9));
+// Files of the task that were there and are gone.
+void require_nothing_lost(const std::string& output, const SetTask& task,
+                          const ManifestHead& head, const SetState& state) {
+  for (std::uint32_t index = 0; index < state.planned; ++index) {
+    if (task.makes(index) && !state.entries.contains(index))
+      throw std::runtime_error(fmt::format(
+          "{}: {} has vanished or changed since it was made; --resume makes it "
+          "again",
+          output, expected_entry(head, index).file));
+  }
 }
 
 std::string sentence(const SetState& state, std::uint64_t made) {
@@ -83,8 +83,11 @@ int generate(const GenerateArguments& arguments) {
                  "\n");
     return 0;
   }
+  require_set_output(arguments.output, plan.manifest_head(),
+                     campaign.sources());
   SetWriter set(arguments.output, plan.manifest_head(), campaign.sources(),
                 task, arguments.resume);
+  warn_without_lock(set, arguments.output);
   if (!set.died_before().empty())
     print_note(fmt::format("{}: going on after {} ended without finishing",
                            arguments.output, set.died_before()));
@@ -96,6 +99,7 @@ int generate(const GenerateArguments& arguments) {
                          });
   const SetState state = set.finish();
   print_result(sentence(state, files.size()));
+  require_nothing_lost(arguments.output, task, plan.manifest_head(), state);
   return arguments.strict && state.failures() > 0 ? kSomeDevicesFailed : 0;
 }
 

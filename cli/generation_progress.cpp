@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
-#include <thread>
+#include <stdexcept>
 
 #include "cli/progress.h"
+#include "cli/terminal.h"
 
 namespace beamgyro {
 
@@ -30,8 +30,27 @@ void generate_with_progress(const std::string& activity, const ShardPlan& plan,
                                         counts.failures.load())};
   };
   const Progress progress(activity, done);
-  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  generate_shards(plan, files, jobs == 0 ? cores : jobs, counts, publish);
+  generate_shards(plan, files, jobs, counts, publish);
+}
+
+void require_moderate_files(const std::string& campaign,
+                            const ShardPlan& plan) {
+  constexpr double kLargest = 1e9;  // [byte]
+  const double size = plan.largest_file();
+  if (size <= kLargest) return;
+  throw std::invalid_argument(fmt::format(
+      "{}: devices_per_file: {} devices make files of {:.1f} GB; expected at "
+      "most {:g} GB, so fewer devices a file, fewer variables or lower rates",
+      campaign, plan.campaign().devices_per_file(), size / 1e9,
+      kLargest / 1e9));
+}
+
+void warn_without_lock(const SetWriter& set, const std::string& directory) {
+  if (!set.is_locked())
+    print_warning(fmt::format(
+        "{}: the file system has no locks (flock); start nothing else there "
+        "that makes the same files, on another host least of all",
+        directory));
 }
 
 }  // namespace beamgyro

@@ -10,9 +10,10 @@
 #include <stdexcept>
 
 #include "cli/commands.h"
+#include "cli/inputs.h"
 #include "cli/set_info.h"
 #include "cli/terminal.h"
-#include "dataset/hdf5_file.h"
+#include "config/file_error.h"
 #include "dataset/set/shard_reader.h"
 
 namespace beamgyro {
@@ -48,7 +49,7 @@ std::string status_line(const Recording& recording) {
 }
 
 int info(const std::string& path, std::optional<std::uint32_t> device) {
-  if (fs::is_directory(path)) {
+  if (fs::is_directory(status_of(path))) {
     print_result(device ? info_on_device(path, *device) : info_on_set(path));
     return 0;
   }
@@ -60,7 +61,7 @@ int info(const std::string& path, std::optional<std::uint32_t> device) {
     print_result(info_on_shard(path));
     return 0;
   }
-  const Recording recording = read_recording(path);
+  const Recording recording = load_recording(path);
   std::string text;
   auto out = std::back_inserter(text);
   const std::size_t count = recording.time.size();

@@ -2,15 +2,81 @@
 #include "cli/inputs.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
+#include <cerrno>
+#include <map>
+#include <optional>
+#include <set>
 #include <stdexcept>
+#include <system_error>
+#include <utility>
 
+#include "cli/terminal.h"
 #include "config/document.h"
+#include "config/file_error.h"
 #include "dataset/atomic_file.h"
+#include "dataset/hdf5_file.h"
+#include "dataset/sha256.h"
 #include "sim/device/device_file.h"
 #include "sim/scenario/scenario_file.h"
 
 namespace beamgyro {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Device and number of a file, which all its names share.
+using FileIdentity = std::pair<dev_t, ino_t>;
+
+/// Links followed; nothing when there is no such file.
+std::optional<FileIdentity> identity_of(const fs::path& path) {
+  struct stat facts {};
+  if (uninterrupted([&] { return ::stat(path.c_str(), &facts); }) == 0)
+    return FileIdentity{facts.st_dev, facts.st_ino};
+  const std::error_code error(errno, std::generic_category());
+  if (!is_wrong_name(error)) throw_file_error(path, "cannot read", error);
+  return {};
+}
+
+template <class Visit>
+void for_each_below(const fs::path& directory, const Visit& visit) {
+  std::error_code error;
+  for (fs::recursive_directory_iterator next(directory, error), end;
+       !error && next != end; next.increment(error)) {
+    if (!next->is_directory(error)) visit(next->path());
+  }
+  if (error && !is_wrong_name(error))
+    throw_file_error(directory, "cannot read", error);
+}
+
+bool is_below(const fs::path& directory, const FileIdentity& identity) {
+  if (!fs::is_directory(status_of(directory))) return false;
+  bool is_there = false;
+  for_each_below(directory, [&](const fs::path& file) {
+    is_there = is_there || identity_of(file) == identity;
+  });
+  return is_there;
+}
+
+[[noreturn]] void refuse(const fs::path& output, const char* expected) {
+  throw std::invalid_argument(fmt::format("{}: is read by this command; {}",
+                                          output.string(), expected));
+}
+
+}  // namespace
+
+Recording load_recording(const std::filesystem::path& path) {
+  bool has_checksum = false;
+  Recording recording = read_recording(path, &has_checksum);
+  if (!has_checksum) {
+    keep_warning(fmt::format(
+        "{}: has no checksum, since another program made or changed it: damage "
+        "in it would not be noticed",
+        path.string()));
+  }
+  return recording;
+}
 
 void require_recording_name(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
@@ -22,23 +88,41 @@ void require_recording_name(const std::filesystem::path& path) {
   }
 }
 
-void require_output(const std::filesystem::path& output,
-                    const std::vector<std::filesystem::path>& inputs) {
-  for (const std::filesystem::path& input : inputs) {
-    std::error_code ignored;
-    const bool is_of_set =
-        std::filesystem::is_directory(input, ignored) &&
-        std::filesystem::exists(output, ignored) &&
-        std::filesystem::equivalent(
-            std::filesystem::absolute(output).parent_path(), input, ignored);
-    if (is_of_set || std::filesystem::equivalent(output, input, ignored)) {
-      throw std::invalid_argument(
-          fmt::format("{}: is read by this command; expected another name for "
-                      "what it writes",
-                      output.string()));
+void require_output(const fs::path& output,
+                    const std::vector<fs::path>& inputs) {
+  if (const auto there = identity_of(output)) {
+    for (const fs::path& input : inputs) {
+      if (identity_of(input) == there || is_below(input, *there))
+        refuse(output, "expected another name for what it writes");
     }
   }
   require_writable(output);
+}
+
+void require_set_output(const fs::path& directory, const ManifestHead& head,
+                        const std::vector<SourceText>& inputs) {
+  std::set<FileIdentity> read;
+  for (const SourceText& input : inputs)
+    if (const auto identity = identity_of(input.path)) read.insert(*identity);
+  // Copies that are as they should be are left alone.
+  std::map<std::string, std::string> copies;
+  for (const SourceEntry& source : head.sources)
+    copies.emplace(source.file, source.sha256);
+  for_each_below(directory, [&](const fs::path& file) {
+    const std::string name = file.lexically_relative(directory).string();
+    const std::string kind = file.extension().string();
+    const auto copy = copies.find(name);
+    const bool is_written =
+        copy != copies.end()
+            ? sha256_of_file(file) != copy->second
+            : name == kHeadCopyName ||
+                  (!file.lexically_relative(directory).has_parent_path() &&
+                   (kind == ".h5" || kind == ".nc" || kind == ".jsonl" ||
+                    kind == ".lock"));
+    if (!is_written) return;
+    if (const auto there = identity_of(file); there && read.contains(*there))
+      refuse(file, "expected another directory for what it writes");
+  });
 }
 
 LoadedDevice load_device(const std::filesystem::path& path,
@@ -61,7 +145,10 @@ LoadedScenario load_scenario(const std::filesystem::path& path,
   const Device device = read_device(unit);
   unit.reject_unknown_keys();
   set.check_all_used();
-  return {scenario, device, document.text(), unit.text(), set.text()};
+  std::vector<fs::path> files = profile_files(document);
+  files.insert(files.end(), {path, scenario.device_file});
+  return {scenario,    device,     document.text(),
+          unit.text(), set.text(), std::move(files)};
 }
 
 }  // namespace beamgyro

@@ -79,7 +79,9 @@ int run_program(int argc, char** argv) {
     throw std::invalid_argument(first_line(error.what()));
   }
   set_quiet(quiet);
-  return action();
+  const int status = action();
+  print_kept_warnings();
+  return status;
 }
 
 }  // namespace

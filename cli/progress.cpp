@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <system_error>
 #include <utility>
 
 #include "cli/terminal.h"
@@ -22,10 +23,14 @@ Progress::Progress(std::string activity, std::function<Status()> status)
     : activity_(std::move(activity)),
       status_(std::move(status)),
       start_(Clock::now()) {
-  if (shows_progress()) {
-    thread_ = std::thread([this] { show(); });
-  } else if (status_) {
-    thread_ = std::thread([this] { log(); });
+  try {
+    if (shows_progress()) {
+      thread_ = std::thread([this] { show(); });
+    } else if (status_) {
+      thread_ = std::thread([this] { log(); });
+    }
+  } catch (const std::system_error&) {
+    // The system grants no thread to tell of the work; it goes on untold.
   }
 }
 

@@ -4,7 +4,8 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "dataset/hdf5_file.h"
+#include "cli/inputs.h"
+#include "config/file_error.h"
 #include "dataset/sha256.h"
 
 namespace beamgyro {
@@ -13,13 +14,13 @@ RunSource runs_of_files(const std::vector<std::string>& paths) {
   return {paths.size(), [&paths](const RunSource::Visitor& visit) {
             for (const std::string& path : paths)
               visit({std::filesystem::path(path).filename().string(),
-                     sha256_of_file(path), read_recording(path)});
+                     sha256_of_file(path), load_recording(path)});
           }};
 }
 
 bool is_set(const std::vector<std::string>& paths) {
   for (const std::string& path : paths)
-    if (std::filesystem::is_directory(path)) {
+    if (std::filesystem::is_directory(status_of(path))) {
       if (paths.size() == 1) return true;
       throw std::invalid_argument(
           path + ": a directory among recordings; a set comes alone");

@@ -46,8 +46,7 @@ int run(const RunArguments& arguments) {
   if (arguments.fidelity)
     overrides.push_back(fmt::format("fidelity=\"{}\"", *arguments.fidelity));
   const LoadedScenario input = load_scenario(arguments.scenario, overrides);
-  require_output(arguments.output,
-                 {arguments.scenario, input.scenario.device_file});
+  require_output(arguments.output, input.files);
   require_consent(input.scenario, arguments.yes);
 
   const std::size_t samples = sample_count(input.scenario);

@@ -114,7 +114,7 @@ std::string info_on_set(const fs::path& path) {
         state.entries,
         [&](const auto& entry) { return entry.first % runs == run; });
     if (first == state.entries.end()) continue;
-    const ShardFile file(path / first->second.file);
+    const ShardFile file(path, first->second.file);
     text += "\n" + described(file.head());
     parameters = drawn(file.head());
   }
@@ -128,7 +128,7 @@ std::string info_on_device(const fs::path& path, std::uint32_t device) {
         fmt::format("--device {}: {} has devices 0 to {}", device,
                     path.string(), head.devices - 1));
   const Campaign campaign =
-      Campaign::read(path / head.sources.front().file, head.devices);
+      Campaign::of_copies(read_copies(path, head), head.devices);
   const VirtualDevice drawn = campaign.device(device);
   std::string text = fmt::format("device {}, drawn of {}\n{}", device,
                                  head.campaign, drawn.overrides);

@@ -88,7 +88,15 @@ void print_restarts(const TrainResult& result, std::string& text) {
   }
 }
 
-std::string report(const TrainResult& result) {
+// One line for each group.
+void print_groups(const CrossValidated& cv, std::string& text) {
+  for (std::size_t k = 0; k < cv.group_rms.size(); ++k)
+    fmt::format_to(std::back_inserter(text),
+                   "{} {}: rms {:.6f} deg/s unseen, of a constant {:.6f}\n",
+                   cv.by, k + 1, cv.group_rms[k], cv.constant_group_rms[k]);
+}
+
+std::string report(const TrainResult& result, bool every_group) {
   const Provenance& source = result.compensator.provenance;
   std::string text =
       fmt::format("{}, {} rows, {} held-out rows\n", source.method, result.rows,
@@ -101,12 +109,14 @@ std::string report(const TrainResult& result) {
   fmt::format_to(out, "stopped: {}\n", source.stop_reason);
   fmt::format_to(out, "rms in-sample {:.6f}, held-out {} deg/s\n",
                  source.in_sample_rms, shown(source.held_out_rms));
-  if (const auto& cv = source.cross_validated)
+  if (const auto& cv = source.cross_validated) {
+    if (every_group) print_groups(*cv, text);
     fmt::format_to(out,
                    "rms cross-validated over {} {}s {:.6f} +- {:.6f} deg/s, of "
                    "a constant {:.6f} deg/s\n",
                    cv->groups, cv->by, cv->rms, cv->standard_error,
                    cv->constant_rms);
+  }
   fmt::format_to(out, "cubic: rms in-sample {:.6f}, held-out {} deg/s\n",
                  source.baseline_in_sample_rms,
                  shown(source.baseline_held_out_rms));
@@ -126,7 +136,7 @@ std::optional<Grouping> grouping(const std::string& name) {
 
 int run_training(const TrainArguments& arguments) {
   const ModelSpec spec = read_model(arguments.model);
-  std::vector<std::filesystem::path> inputs = {arguments.model};
+  std::vector<std::filesystem::path> inputs = spec.files;
   inputs.insert(inputs.end(), arguments.runs.begin(), arguments.runs.end());
   inputs.insert(inputs.end(), arguments.held_out.begin(),
                 arguments.held_out.end());
@@ -140,7 +150,7 @@ int run_training(const TrainArguments& arguments) {
   progress.reset();
   for (const std::string& warning : result.compensator.provenance.warnings)
     print_warning(warning);
-  print_result(report(result));
+  print_result(report(result, !arguments.cross_validation.empty()));
   return 0;
 }
 

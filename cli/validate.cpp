@@ -19,7 +19,6 @@
 #include "compensation/set_scores.h"
 #include "compensation/validation_report.h"
 #include "dataset/atomic_file.h"
-#include "dataset/hdf5_file.h"
 #include "dataset/sha256.h"
 
 namespace beamgyro {
@@ -32,47 +31,45 @@ struct ValidateArguments {
   std::vector<std::string> runs;
   std::vector<std::string> set_runs;       // names, of a set
   std::vector<std::uint32_t> set_devices;  // of a set
+  std::optional<double> full_scale;        // [deg/s]
 };
 
-bool was_trained_on(const Provenance& provenance, const std::string& path) {
-  const std::string hash = sha256_of_file(path);
-  const auto is_it = [&](const SourceFile& file) {
-    return file.sha256 == hash;
-  };
-  return std::any_of(provenance.training.begin(), provenance.training.end(),
-                     is_it) ||
-         std::any_of(provenance.held_out.begin(), provenance.held_out.end(),
-                     is_it);
+Specification specification_of(const ValidateArguments& arguments) {
+  return {.full_scale = arguments.full_scale};
+}
+
+std::vector<std::filesystem::path> inputs_of(
+    const ValidateArguments& arguments) {
+  std::vector<std::filesystem::path> inputs(arguments.runs.begin(),
+                                            arguments.runs.end());
+  inputs.emplace_back(arguments.compensator);
+  return inputs;
 }
 
 // Scores of the devices nothing was trained on, or of those asked for.
 int validate_on_set(const ValidateArguments& arguments,
                     const Compensator& compensator) {
   if (!arguments.json.empty())
-    require_output(arguments.json, {arguments.compensator});
+    require_output(arguments.json, inputs_of(arguments));
   SetSelection selection{{}, arguments.set_runs, arguments.set_devices};
   if (arguments.set_devices.empty()) selection.part = SetPartNumber::kTest;
   const RunSource source = runs_of_set(arguments.runs[0], selection);
   std::optional<Progress> progress("validating " + arguments.compensator);
-  const std::vector<DeviceScore> scores = score_devices(compensator, source);
+  const std::vector<DeviceScore> scores =
+      score_devices(compensator, source, specification_of(arguments));
+  const std::vector<std::string> warnings =
+      warnings_of(compensator, source, scores);
   if (!arguments.json.empty())
     write_text_file(
         arguments.json,
         nlohmann::ordered_json{{"set", source.set->name},
                                {"manifest_sha256", source.set->manifest_sha256},
+                               {"warnings", warnings},
                                {"devices", to_json(scores)}}
                 .dump(2) +
             "\n");
   progress.reset();
-  const auto clamped =
-      std::count_if(scores.begin(), scores.end(),
-                    [](const DeviceScore& score) { return score.clamped > 0; });
-  if (clamped > 0)
-    print_warning(fmt::format(
-        "{} of {} runs have samples outside {:g} to {:g} degC, the "
-        "temperatures seen in training; clamped",
-        clamped, scores.size(), compensator.temperature_range.lowest,
-        compensator.temperature_range.highest));
+  for (const std::string& warning : warnings) print_warning(warning);
   print_result(device_table(scores));
   const bool passed =
       std::all_of(scores.begin(), scores.end(),
@@ -89,41 +86,22 @@ int run_validation(const ValidateArguments& arguments) {
   std::optional<Progress> progress("validating " + arguments.compensator);
   std::deque<Recording> recordings;  // stable addresses
   std::vector<NamedRecording> runs;
-  std::size_t clamped = 0, seen = 0;
   for (const std::string& path : arguments.runs) {
-    recordings.push_back(read_recording(path));
-    runs.push_back(
-        {std::filesystem::path(path).filename().string(), &recordings.back()});
-    clamped += clamped_samples(compensator, recordings.back());
-    if (was_trained_on(compensator.provenance, path)) ++seen;
+    recordings.push_back(load_recording(path));
+    runs.push_back({std::filesystem::path(path).filename().string(),
+                    &recordings.back(), sha256_of_file(path)});
   }
-  if (!arguments.json.empty()) {
-    std::vector<std::filesystem::path> inputs(arguments.runs.begin(),
-                                              arguments.runs.end());
-    inputs.emplace_back(arguments.compensator);
-    require_output(arguments.json, inputs);
-  }
+  if (!arguments.json.empty())
+    require_output(arguments.json, inputs_of(arguments));
 
   const Validation validation = validate(
       compensator, std::filesystem::path(arguments.compensator).stem().string(),
-      runs);
+      runs, specification_of(arguments));
   if (!arguments.json.empty()) {
     write_text_file(arguments.json, to_json(validation).dump(2) + "\n");
   }
   progress.reset();
-  if (clamped > 0) {
-    print_warning(fmt::format(
-        "{} samples lie outside {:g} to {:g} degC, the temperatures seen in "
-        "training; clamped",
-        clamped, compensator.temperature_range.lowest,
-        compensator.temperature_range.highest));
-  }
-  if (seen > 0) {
-    print_warning(fmt::format(
-        "{} of {} runs were used in training: these scores are in-sample and "
-        "flatter the compensator",
-        seen, runs.size()));
-  }
+  for (const std::string& warning : validation.warnings) print_warning(warning);
   print_result(table(validation));
   return validation.passed() ? 0 : kSpecificationNotMet;
 }
@@ -147,6 +125,11 @@ void add_validate(CLI::App& program, Action& action) {
   command->add_option("--device", arguments->set_devices,
                       "NUMBER of a device of the set, in place of those for "
                       "testing");
+  command
+      ->add_option("--full-scale", arguments->full_scale,
+                   "DEG_PER_S, the largest rate replayed; without, what the "
+                   "recording's device file says, else 150")
+      ->check(CLI::PositiveNumber);
   command->add_option("--json", arguments->json,
                       "FILE, every score in machine-readable form");
   command->callback([arguments, &action] {

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <new>
 #include <set>
 #include <stdexcept>
 
@@ -13,8 +14,11 @@
 #include "cli/progress.h"
 #include "cli/terminal.h"
 #include "cli/version.h"
+#include "config/file_error.h"
 #include "dataset/set/set_check.h"
+#include "dataset/set/set_files.h"
 #include "dataset/set/set_writer.h"
+#include "dataset/set/view_check.h"
 #include "dataset/sha256.h"
 
 namespace beamgyro {
@@ -30,20 +34,22 @@ struct VerifyArguments {
   bool repair = false;
 };
 
-// Parts of tasks count until they are merged.
+// Parts of tasks count until they are merged. Of a set whose manifests are lost
+// the copy of the first line still tells what belongs to it.
 Manifest manifest_of(const fs::path& directory) {
-  const fs::path whole = directory / kManifestName;
-  if (fs::exists(whole)) {
-    Manifest manifest = read_manifest(whole);
+  Manifest manifest;
+  if (fs::is_directory(status_of(directory))) {
+    if (find_in_set(directory, kManifestName))
+      manifest = read_manifest(directory, kManifestName);
     if (manifest.is_finished) return manifest;
-    if (!manifest.head && fs::exists(directory / kHeadCopyName)) {
-      manifest.head = read_manifest(directory / kHeadCopyName).head;
-      return manifest;
+    if (!find_set(directory) && find_in_set(directory, kHeadCopyName)) {
+      manifest.head = read_manifest(directory, kHeadCopyName).head;
+      if (manifest.head) return manifest;
     }
   }
   const SetContents contents = set_contents(directory);
-  Manifest manifest;
   manifest.head = contents.head;
+  manifest.entries.clear();
   for (const auto& [index, entry] : contents.state.entries)
     manifest.entries.push_back(entry);
   return manifest;
@@ -52,11 +58,17 @@ Manifest manifest_of(const fs::path& directory) {
 std::vector<SetDefect> checked(const fs::path& directory,
                                const Manifest& manifest) {
   Progress progress("verifying " + directory.string());
-  return check_set(directory, manifest,
-                   [&](std::uint64_t done, std::uint64_t total) {
-                     progress.set_share(static_cast<double>(done) /
-                                        static_cast<double>(total));
-                   });
+  std::vector<SetDefect> defects = check_set(
+      directory, manifest, [&](std::uint64_t done, std::uint64_t total) {
+        progress.set_share(static_cast<double>(done) /
+                           static_cast<double>(total));
+      });
+  // Another program may make views of other bytes.
+  if (manifest.head && manifest.head->program_version == kProgramVersion &&
+      manifest.head->git_revision == kGitRevision)
+    std::ranges::copy(check_views(directory, manifest, defects),
+                      std::back_inserter(defects));
+  return defects;
 }
 
 std::string listed(const std::vector<SetDefect>& defects) {
@@ -65,30 +77,6 @@ std::string listed(const std::vector<SetDefect>& defects) {
     fmt::format_to(std::back_inserter(text), "{}: {}\n", defect.file,
                    defect.what);
   return text;
-}
-
-// A copy that cannot be read is damage like any other.
-Campaign campaign_of(const fs::path& directory, const ManifestHead& head) {
-  try {
-    return Campaign::read(directory / head.sources.front().file, head.devices);
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(
-        fmt::format("{}; run generate --resume with the campaign that the set "
-                    "was made of",
-                    error.what()));
-  }
-}
-
-// The sources may have been named by paths that lead out of the set.
-void require_same_sources(const Campaign& campaign, const ManifestHead& head) {
-  std::set<std::string> expected, met;
-  for (const SourceEntry& source : head.sources) expected.insert(source.sha256);
-  for (const SourceText& file : campaign.sources())
-    met.insert(sha256(file.text));
-  if (met != expected)
-    throw std::runtime_error(
-        "the files that the campaign names are not those that the set was made "
-        "of; run generate --resume with the right ones");
 }
 
 ManifestHead repairable_head(const fs::path& directory,
@@ -108,12 +96,36 @@ ManifestHead repairable_head(const fs::path& directory,
   return *manifest.head;
 }
 
+Campaign campaign_of(const fs::path& directory, const Manifest& manifest) try {
+  restore_copies(directory, manifest);
+  return Campaign::of_copies(read_copies(directory, *manifest.head),
+                             manifest.head->devices);
+} catch (const FileError&) {
+  throw;
+} catch (const std::bad_alloc&) {
+  throw;
+} catch (const std::exception& error) {
+  // What cannot be read is damage like any other.
+  throw std::runtime_error(
+      fmt::format("{}; run generate --resume with the campaign that the set "
+                  "was made of",
+                  error.what()));
+}
+
 void repair(const fs::path& directory, const Manifest& manifest,
             const std::vector<SetDefect>& defects, unsigned jobs) {
   const ManifestHead head = repairable_head(directory, manifest);
-  const Campaign campaign = campaign_of(directory, head);
-  require_same_sources(campaign, head);
+  const Campaign campaign = campaign_of(directory, manifest);
   const ShardPlan plan(campaign, {kProgramVersion, kGitRevision});
+  // The campaign alone decides what is written. A manifest that says otherwise,
+  // such as one from somebody else, is not followed.
+  if (plan.manifest_head() != head)
+    throw std::runtime_error(
+        fmt::format("{}: the manifest is not that of the campaign beside it; "
+                    "run generate --resume with the campaign that the set was "
+                    "made of",
+                    directory.string()));
+  require_moderate_files(directory.string(), plan);
   std::set<std::uint32_t> files;
   for (const SetDefect& defect : defects) {
     if (defect.index) files.insert(*defect.index);
@@ -123,6 +135,7 @@ void repair(const fs::path& directory, const Manifest& manifest,
     hashes.emplace(entry.index, entry.sha256);
 
   SetWriter set(directory, head, {}, {}, true);
+  warn_without_lock(set, directory);
   generate_with_progress(
       "repairing " + directory.string(), plan, {files.begin(), files.end()},
       jobs, [&](std::uint32_t file, const MadeShard& shard) {
@@ -143,7 +156,11 @@ int verify(const VerifyArguments& arguments) {
   std::vector<SetDefect> defects = checked(directory, manifest);
   print_result(listed(defects));
   if (!defects.empty() && arguments.repair) {
-    repair(directory, manifest, defects, arguments.jobs);
+    try {
+      repair(directory, manifest, defects, arguments.jobs);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(error.what());  // of the set, not of the caller
+    }
     manifest = manifest_of(directory);
     defects = checked(directory, manifest);
     print_result(defects.empty()

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
-#include <string_view>
 #include <vector>
 
+#include "compensation/even_series.h"
 #include "compensation/sample_ranges.h"
 #include "dataset/recording.h"
 
@@ -15,59 +15,61 @@ namespace beamgyro {
 struct AllanPoint {
   double tau;            // [s]
   double deviation;      // [deg/s], or whatever unit the rates have
-  std::size_t clusters;  // floor(N / m), averages that do not overlap
+  std::size_t clusters;  // one more than neighbouring averages that share none
+  double gap_noise = 1.0;  // [-], variance as measured over that without gaps
 };
 
 /// 1-sigma uncertainty of a deviation over the deviation [-]:
-/// 1 / sqrt(2 (clusters - 1)).
+/// gap_noise / sqrt(2 (clusters - 1)).
 double relative_uncertainty(const AllanPoint& point);
 
 /// m = 1, 2, 4, ... samples [s] as long as `samples` hold two clusters.
 std::vector<double> octave_taus(std::size_t samples, double interval);
+/// The same for the longest stretch.
+std::vector<double> octave_taus(const EvenSeries& series);
 
-/// Plain Allan deviation of N rates y_k taken every `interval` tau_0 [s] (IEEE
-/// 952, NIST SP 1065 for frequency data), tau = m tau_0, over the averages Y_i
-/// of the M = floor(N / m) clusters that do not overlap:
+/// Both Allan deviations at the same taus.
+struct AllanCurve {
+  std::vector<AllanPoint> plain, overlapping;
+};
+
+/// Allan deviations of rates y_k taken every tau_0 (IEEE 952, NIST SP 1065 for
+/// frequency data), tau = m tau_0, from the means Y_k of the m samples that
+/// start at k:
 ///
-///   sigma^2(tau) = Σ_{i=1}^{M-1} (Y_{i+1} - Y_i)^2 / (2 (M - 1))
+///   sigma^2(tau) = mean_k (Y_{k+m} - Y_k)^2 / 2
 ///
-/// Throws std::invalid_argument for a rate that is not finite (with its index),
-/// fewer than two rates, an interval that is not positive, or a tau that is no
-/// multiple of the interval to 1e-6 or leaves fewer than two clusters.
+/// over k = 0, m, 2m, ... of each stretch (plain), over all k (overlapping).
+///
+/// In a stretch with gaps Y_k is the mean of the n_k samples that are there,
+/// and a difference counts when both means have half of their samples or more.
+/// Such means are noisier than whole ones: taken off is
+///
+///   W mean_k (1/n_k + 1/n_{k+m} - 2/m) / 2,
+///
+/// W the variance of white noise that neighbours and next neighbours allow (the
+/// lesser of half their mean square differences). `gap_noise` tells how much.
+/// A tau without a difference, or of which nothing is left, has no point.
+///
+/// Throws std::invalid_argument for a tau that is no multiple of the interval
+/// to 1e-6 or leaves fewer than two clusters.
+AllanCurve allan_curve(const EvenSeries& series, std::span<const double> taus);
+
+/// The plain and the overlapping deviation of rates without a gap, every
+/// `interval` [s]. Both also throw std::invalid_argument for a rate that is not
+/// finite (with its index), fewer than two rates, or an interval that is not
+/// positive.
 std::vector<AllanPoint> adev(std::span<const double> rates, double interval,
                              std::span<const double> taus);
-
-/// Overlapping Allan deviation, from the angles x_k = tau_0 Σ_{j<k} y_j:
-///
-///   sigma^2(tau) = Σ_{k=0}^{N-2m} (x_{k+2m} - 2 x_{k+m} + x_k)^2
-///                  / (2 tau^2 (N - 2m + 1))
-///
-/// Throws as adev().
 std::vector<AllanPoint> oadev(std::span<const double> rates, double interval,
                               std::span<const double> taus);
 
 /// The longest stretch that is powered, finite in `values` (one per time) and
-/// without a step in time of more than 1.5 times the usual one; empty when
-/// there is none. An Allan deviation needs even steps, and joining stretches
-/// would put jumps into it.
+/// without a gap; empty when there is none.
 SampleRange longest_gapless_range(const Recording& recording,
                                   std::span<const double> values);
 
-/// Rates at even steps without a hole.
-struct GaplessSeries {
-  std::vector<double> rates;  // [deg/s]
-  double interval = 0.0;      // [s], the mean step
-  double start = 0.0;         // [s]
-  std::size_t left_out = 0;   // samples of the recording not in `rates`
-};
-
-/// The column `name` over its longest_gapless_range(). Throws
-/// std::invalid_argument when there is no such column or no two samples.
-GaplessSeries longest_gapless_series(const Recording& recording,
-                                     std::string_view name);
-
 /// {"adev": [{"tau_s", "deviation", "clusters"}, ...], "oadev": [...]}
-nlohmann::ordered_json to_json(const std::vector<AllanPoint>& plain,
-                               const std::vector<AllanPoint>& overlapping);
+nlohmann::ordered_json to_json(const AllanCurve& curve);
 
 }  // namespace beamgyro

@@ -2,8 +2,8 @@
 #include "compensation/batch_network.h"
 
 #include <algorithm>
-#include <atomic>
-#include <thread>
+
+#include "parallel/work_queue.h"
 
 namespace beamgyro {
 namespace {
@@ -61,15 +61,8 @@ SampleBlock BatchNetwork::block(Index k) {
 // Calls f(chunk) for every chunk, on the threads there are.
 template <class F>
 void BatchNetwork::for_each_chunk(const F& f) {
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t c = next++; c < chunks_.size(); c = next++) f(chunks_[c]);
-  };
-  std::vector<std::jthread> helpers;
-  const auto wanted =
-      std::min(static_cast<std::size_t>(threads_), chunks_.size());
-  for (std::size_t n = 1; n < wanted; ++n) helpers.emplace_back(work);
-  work();
+  for_each_task(chunks_.size(), static_cast<std::size_t>(threads_),
+                [&](std::size_t c, std::size_t) { f(chunks_[c]); });
 }
 
 double BatchNetwork::sum_of_squares(const VectorXd& w) {

@@ -55,6 +55,14 @@ Eigen::ArrayXd BiasModel::predict(
          bias_scale.half_width * std::visit(Predict{scaled}, function);
 }
 
+BiasModel averaged_with_constant(BiasModel model, double constant,
+                                 double weight) {
+  Scale& scale = model.bias_scale;
+  scale = {(1.0 - weight) * constant + weight * scale.centre,
+           weight * scale.half_width};
+  return model;
+}
+
 std::string kind_name(const BiasModel& model) {
   constexpr const char* kNames[] = {"none",  "constant", "polynomial",
                                     "table", "spline",   "thermistor",

@@ -50,6 +50,11 @@ struct BiasModel {
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
 };
 
+/// (1 - weight) constant + weight b, b as `model` predicts it: the same
+/// function with another bias scale.
+BiasModel averaged_with_constant(BiasModel model, double constant,
+                                 double weight);
+
 /// "none", "constant", "polynomial", "table", "spline", "thermistor", "fuzzy"
 /// or "bp".
 std::string kind_name(const BiasModel& model);

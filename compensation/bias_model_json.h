@@ -6,7 +6,7 @@
 #include <string>
 
 #include "compensation/bias_model.h"
-#include "compensation/json_node.h"
+#include "dataset/json_node.h"
 
 namespace beamgyro {
 

@@ -207,13 +207,21 @@ std::string objection_to_claim(const std::optional<GroupErrors>& model,
   if (!model || !constant)
     return "no held-out data: every score here is in-sample and claims nothing";
   const GroupErrors gain = *constant - *model;
+  const double rms = rms_of(*model), plain = rms_of(*constant);
+  const std::string figures = fmt::format(
+      "no improvement to claim: {:.4g} deg/s rms on unseen data, a constant "
+      "{:.4g}",
+      rms, plain);
+  if (gain.size() < kLeastGroups)
+    return fmt::format("{}; fewer than {} groups are no evidence", figures,
+                       kLeastGroups);
+  if (rms > (1.0 - kUsefulGain) * plain)
+    return fmt::format("{}; a useful gain is {:g} %", figures,
+                       100.0 * kUsefulGain);
   const double error = standard_error(gain);
   if (gain.mean() > error) return "";
-  const double rms = rms_of(*model), plain = rms_of(*constant);
-  return fmt::format(
-      "no improvement to claim: {:.4g} deg/s rms on unseen data, a constant "
-      "{:.4g}; the standard error of the difference is {:.2g} deg/s",
-      rms, plain, error / (rms + plain));
+  return fmt::format("{}; the standard error of the difference is {:.2g} deg/s",
+                     figures, error / (rms + plain));
 }
 
 }  // namespace beamgyro

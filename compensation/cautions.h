@@ -55,9 +55,9 @@ std::optional<Hysteresis> hysteresis(const TrainingRows& rows,
                                      const Eigen::ArrayXd& residual);
 
 /// Why the model must not claim to be better than a constant bias: nothing was
-/// unseen, or its mean square residual on unseen groups is not below the
-/// constant's by more than the standard error of the difference. Empty when it
-/// may.
+/// unseen; fewer than kLeastGroups were; its rms on unseen groups is not below
+/// the constant's by kUsefulGain; or its mean square is not below by more than
+/// the standard error of the difference. Empty when it may.
 std::string objection_to_claim(const std::optional<GroupErrors>& model,
                                const std::optional<GroupErrors>& constant);
 

@@ -20,6 +20,8 @@ namespace beamgyro {
 struct SourceFile {
   std::string name;
   std::string sha256;  // 64 hexadecimal digits
+  // measured_sha256() of the recording; empty in files of older programs.
+  std::string measured_sha256 = {};
 
   bool operator==(const SourceFile&) const = default;
 };
@@ -32,6 +34,8 @@ struct CrossValidated {
   double rms = 0.0;             // [deg/s], root of the mean of the groups'
   double standard_error = 0.0;  // [deg/s], of it
   double constant_rms = 0.0;    // [deg/s], of a constant bias
+  // [deg/s], of each group in turn; empty in files of older programs
+  std::vector<double> group_rms, constant_group_rms;
 
   bool operator==(const CrossValidated&) const = default;
 };

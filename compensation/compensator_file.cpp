@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <stdexcept>
+#include <system_error>
 
 #include "compensation/bias_model_json.h"
-#include "compensation/json_node.h"
 #include "compensation/population_json.h"
 #include "dataset/atomic_file.h"
+#include "dataset/json_node.h"
 #include "dataset/text_file.h"
 
 namespace beamgyro {
@@ -18,6 +20,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFiletype = "beamgyro-compensator";
 constexpr long kFormatVersion = 2;
+constexpr long kLargestDevice = 4294967295;
+constexpr std::size_t kMostDevices = 100000000;
 
 Json to_json(const std::optional<double>& value) {
   return value ? finite_json(*value) : Json();
@@ -26,8 +30,22 @@ Json to_json(const std::optional<double>& value) {
 Json to_json(const std::vector<SourceFile>& files) {
   Json array = Json::array();
   for (const SourceFile& file : files)
-    array.push_back({{"name", file.name}, {"sha256", file.sha256}});
+    array.push_back({{"name", file.name},
+                     {"sha256", file.sha256},
+                     {"measured_sha256", file.measured_sha256}});
   return array;
+}
+
+/// [first, last] of each stretch of increasing numbers without a gap.
+Json ranges_of(const std::vector<std::uint32_t>& numbers) {
+  Json ranges = Json::array();
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    if (k > 0 && numbers[k] == numbers[k - 1] + 1)
+      ranges.back()[1] = numbers[k];
+    else
+      ranges.push_back({numbers[k], numbers[k]});
+  }
+  return ranges;
 }
 
 Json to_json(const std::optional<SetPart>& set) {
@@ -35,16 +53,23 @@ Json to_json(const std::optional<SetPart>& set) {
   return {{"name", set->name},
           {"manifest_sha256", set->manifest_sha256},
           {"devices", set->devices},
-          {"files", set->files}};
+          {"files", set->files},
+          {"campaign_sha256", set->campaign_sha256},
+          {"seed", set->seed},
+          {"runs", set->runs},
+          {"device_ranges", ranges_of(set->device_numbers)}};
 }
 
 Json to_json(const std::optional<CrossValidated>& cv) {
   if (!cv) return {};
-  return {{"by", cv->by},
-          {"groups", cv->groups},
-          {"rms_deg_per_s", finite_json(cv->rms)},
-          {"standard_error_deg_per_s", finite_json(cv->standard_error)},
-          {"constant_rms_deg_per_s", finite_json(cv->constant_rms)}};
+  return {
+      {"by", cv->by},
+      {"groups", cv->groups},
+      {"rms_deg_per_s", finite_json(cv->rms)},
+      {"standard_error_deg_per_s", finite_json(cv->standard_error)},
+      {"constant_rms_deg_per_s", finite_json(cv->constant_rms)},
+      {"group_rms_deg_per_s", numbers_json(cv->group_rms)},
+      {"constant_group_rms_deg_per_s", numbers_json(cv->constant_group_rms)}};
 }
 
 Json to_json(const Provenance& p) {
@@ -71,29 +96,60 @@ Json to_json(const Provenance& p) {
 
 std::vector<SourceFile> read_files(const JsonNode& node) {
   std::vector<SourceFile> files;
-  for (const JsonNode& file : node.elements())
+  for (const JsonNode& file : node.elements()) {
     files.push_back({file.at("name").text(), file.at("sha256").text()});
+    if (file.has("measured_sha256"))
+      files.back().measured_sha256 = file.at("measured_sha256").text();
+  }
   return files;
 }
 
-// Files from before there were sets lack the key.
+std::vector<std::uint32_t> read_ranges(const JsonNode& node) {
+  std::vector<std::uint32_t> numbers;
+  for (const JsonNode& range : node.elements()) {
+    const std::vector<JsonNode> ends = range.elements();
+    if (ends.size() != 2) range.fail("must be [first, last]");
+    const long first = ends[0].integer(0, kLargestDevice);
+    const long last = ends[1].integer(first, kLargestDevice);
+    if (numbers.size() + static_cast<std::size_t>(last - first) >= kMostDevices)
+      range.fail(fmt::format("more than {} devices", kMostDevices));
+    for (long k = first; k <= last; ++k)
+      numbers.push_back(static_cast<std::uint32_t>(k));
+  }
+  return numbers;
+}
+
+// Files from before there were sets lack the key, later ones what tells which
+// devices.
 std::optional<SetPart> read_set(const JsonNode& node, const std::string& key) {
   if (!node.has(key) || node.at(key).is_null()) return std::nullopt;
   const JsonNode set = node.at(key);
-  return SetPart{
+  SetPart part{
       set.at("name").text(), set.at("manifest_sha256").text(),
-      static_cast<std::size_t>(set.at("devices").integer(0, 4294967295)),
-      static_cast<std::size_t>(set.at("files").integer(0, 4294967295))};
+      static_cast<std::size_t>(set.at("devices").integer(0, kLargestDevice)),
+      static_cast<std::size_t>(set.at("files").integer(0, kLargestDevice))};
+  if (set.has("device_ranges")) {
+    part.campaign_sha256 = set.at("campaign_sha256").text();
+    part.seed = set.at("seed").unsigned_integer();
+    part.runs = set.at("runs").texts();
+    part.device_numbers = read_ranges(set.at("device_ranges"));
+  }
+  return part;
 }
 
 std::optional<CrossValidated> read_cross_validation(const JsonNode& node) {
   if (node.is_null()) return std::nullopt;
+  const auto numbers = [&](const char* key) {
+    return node.has(key) ? node.at(key).numbers() : std::vector<double>{};
+  };
   return CrossValidated{
       node.at("by").text(),
       static_cast<std::size_t>(node.at("groups").integer(1, 1000000000)),
       node.at("rms_deg_per_s").number(),
       node.at("standard_error_deg_per_s").number(),
-      node.at("constant_rms_deg_per_s").number()};
+      node.at("constant_rms_deg_per_s").number(),
+      numbers("group_rms_deg_per_s"),
+      numbers("constant_group_rms_deg_per_s")};
 }
 
 Provenance read_provenance(const JsonNode& node) {
@@ -202,16 +258,7 @@ std::string compensator_text(const Compensator& compensator) {
 
 Compensator parse_compensator(const std::string& text,
                               const std::string& name) {
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::exception& error) {
-    const std::string what =
-        error.what();  // "[json...] at line L, column C:.."
-    throw std::invalid_argument(fmt::format("{}: not a whole JSON file: {}",
-                                            name,
-                                            what.substr(what.find("] ") + 2)));
-  }
+  const Json json = parse_json(text, name);
   return read_root(JsonNode(json, name));
 }
 
@@ -221,6 +268,13 @@ void write_compensator(const Compensator& compensator,
 }
 
 Compensator read_compensator(const std::filesystem::path& file) {
+  constexpr std::uintmax_t kLargest = std::uintmax_t{16} << 20;  // [bytes]
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+  if (!unknown && size > kLargest)
+    throw std::invalid_argument(fmt::format(
+        "{}: {} bytes; expected a compensator, which has at most {}",
+        file.string(), size, kLargest));
   return parse_compensator(read_text_file(file), file.string());
 }
 

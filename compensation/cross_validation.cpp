@@ -4,18 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <stdexcept>
-#include <thread>
+
+#include "parallel/work_queue.h"
 
 namespace beamgyro {
 namespace {
 
 using Eigen::ArrayXd;
 using Eigen::Index;
+using Mask = Eigen::Array<bool, Eigen::Dynamic, 1>;
 
 TrainingRows clamped(TrainingRows rows, const std::vector<Input>& inputs,
                      const TemperatureRange& range) {
@@ -32,7 +32,6 @@ TrainingRows clamped(TrainingRows rows, const std::vector<Input>& inputs,
 
 // Rows between the temperatures of the other groups; all rows of a group that
 // has none.
-using Mask = Eigen::Array<bool, Eigen::Dynamic, 1>;
 Mask covered_by_others(const TrainingRows& rows, const RowGroups& groups) {
   Mask covered = Mask::Constant(rows.size(), false);
   for (int group = 0; group < groups.count; ++group) {
@@ -51,13 +50,13 @@ struct Fold {
   TrainingRows rows, unseen;
 };
 
-Fold fold_without(int group, const TrainingRows& rows, const RowGroups& groups,
-                  const Mask& covered) {
+Fold fold_without(int group, const TrainingRows& rows,
+                  const RowGroups& groups) {
   Fold fold;
   fold.rows = selected(rows, groups.of_row != group);
   fold.rows.range = {fold.rows.temperature.minCoeff(),
                      fold.rows.temperature.maxCoeff()};
-  fold.unseen = selected(rows, covered && groups.of_row == group);
+  fold.unseen = selected(rows, groups.of_row == group);
   return fold;
 }
 
@@ -68,44 +67,6 @@ FitSpec as_in_fold(FitSpec kind, int cores) {
   }
   return kind;
 }
-
-// Folds by number on several threads; of those that fail the first is told.
-class FoldWork {
- public:
-  FoldWork(int count, int threads)
-      : count_(count),
-        cores_(threads > 0 ? threads
-                           : static_cast<int>(std::max(
-                                 1u, std::thread::hardware_concurrency()))),
-        at_once_(std::min(cores_, count)) {}
-
-  int cores_of_each() const { return std::max(1, cores_ / at_once_); }
-
-  template <class F>
-  void run(const F& fold) {
-    std::vector<std::exception_ptr> failures(static_cast<std::size_t>(count_));
-    std::atomic<int> next = 0;
-    const auto work = [&] {
-      for (int k = next++; k < count_; k = next++) {
-        try {
-          fold(k);
-        } catch (...) {
-          failures[static_cast<std::size_t>(k)] = std::current_exception();
-        }
-      }
-    };
-    {
-      std::vector<std::jthread> others;
-      for (int n = 1; n < at_once_; ++n) others.emplace_back(work);
-      work();
-    }
-    for (const std::exception_ptr& failure : failures)
-      if (failure) std::rethrow_exception(failure);
-  }
-
- private:
-  int count_, cores_, at_once_;
-};
 
 }  // namespace
 
@@ -118,18 +79,23 @@ double standard_error(const GroupErrors& errors) {
                    count);
 }
 
-GroupErrors group_errors(const BiasModel& model, const TrainingRows& rows,
+Predictions predict_all(const BiasModel& model, const TrainingRows& rows) {
+  return {model.predict(rows.inputs), Mask::Constant(rows.size(), true)};
+}
+
+GroupErrors group_errors(const Predictions& predictions, const ArrayXd& bias,
                          const RowGroups& groups) {
-  const ArrayXd square = (rows.bias - model.predict(rows.inputs)).square();
+  const ArrayXd square = (bias - predictions.bias).square();
   GroupErrors sum = GroupErrors::Zero(groups.count), count = sum;
-  for (Index k = 0; k < rows.size(); ++k) {
+  for (Index k = 0; k < bias.size(); ++k) {
+    if (!predictions.scored(k)) continue;
     sum(groups.of_row(k)) += square(k);
     count(groups.of_row(k)) += 1.0;
   }
   return sum / count;
 }
 
-GroupErrors cross_validate(const FitSpec& kind,
+Predictions predict_unseen(const FitSpec& kind,
                            const std::vector<Input>& inputs,
                            const TrainingRows& rows, const RowGroups& groups,
                            std::uint64_t seed, int threads) {
@@ -137,38 +103,64 @@ GroupErrors cross_validate(const FitSpec& kind,
     throw std::invalid_argument(fmt::format(
         "cross-validation by {} needs two or more; the recordings have {}",
         grouping_name(groups.by), groups.count));
-  GroupErrors errors(groups.count);
-  const Mask covered = covered_by_others(rows, groups);
-  FoldWork work(groups.count, threads);
-  const FitSpec cheap = as_in_fold(kind, work.cores_of_each());
-  work.run([&](int group) {
+  std::vector<ArrayXd> of_group(static_cast<std::size_t>(groups.count));
+  const auto folds = static_cast<std::size_t>(groups.count);
+  const std::size_t cores =
+      thread_count(static_cast<unsigned>(std::max(threads, 0)));
+  const std::size_t at_once = std::min(cores, folds);
+  const FitSpec cheap = as_in_fold(kind, static_cast<int>(cores / at_once));
+  for_each_task(folds, at_once, [&](std::size_t k, std::size_t) {
+    const auto group = static_cast<int>(k);
     try {
-      const Fold fold = fold_without(group, rows, groups, covered);
+      const Fold fold = fold_without(group, rows, groups);
       const Fit fit = fit_model(cheap, inputs, fold.rows, {}, seed);
-      const double rms = rms_residual(
-          fit.model, clamped(fold.unseen, inputs, fold.rows.range));
-      errors(group) = rms * rms;
+      of_group[static_cast<std::size_t>(group)] = fit.model.predict(
+          clamped(fold.unseen, inputs, fold.rows.range).inputs);
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fmt::format("without {} {}: {}",
                                               grouping_name(groups.by),
                                               group + 1, error.what()));
     }
   });
-  return errors;
+  Predictions predictions{ArrayXd(rows.size()),
+                          covered_by_others(rows, groups)};
+  std::vector<Index> next(of_group.size(), 0);
+  for (Index k = 0; k < rows.size(); ++k) {
+    const auto group = static_cast<std::size_t>(groups.of_row(k));
+    predictions.bias(k) = of_group[group](next[group]++);
+  }
+  return predictions;
+}
+
+GroupErrors cross_validate(const FitSpec& kind,
+                           const std::vector<Input>& inputs,
+                           const TrainingRows& rows, const RowGroups& groups,
+                           std::uint64_t seed, int threads) {
+  return group_errors(predict_unseen(kind, inputs, rows, groups, seed, threads),
+                      rows.bias, groups);
+}
+
+Predictions averaged(const Predictions& constant, const Predictions& model,
+                     double weight) {
+  return {(1.0 - weight) * constant.bias + weight * model.bias, model.scored};
+}
+
+// The errors are quadratic in the weight w: e(0) - 2 w a + w^2 q, with q the
+// mean square of model - constant.
+double stacking_weight(const Predictions& constant, const Predictions& model,
+                       const ArrayXd& bias, const RowGroups& groups) {
+  const double q = group_errors(model, constant.bias, groups).mean();
+  const double a = 0.5 * (group_errors(constant, bias, groups).mean() + q -
+                          group_errors(model, bias, groups).mean());
+  return q > 0.0 ? std::clamp(a / q, 0.0, 1.0) : 0.0;
 }
 
 std::size_t choose(const std::vector<Scored>& models) {
-  const auto best = std::min_element(models.begin(), models.end(),
-                                     [](const Scored& a, const Scored& b) {
-                                       return a.errors.mean() < b.errors.mean();
-                                     });
-  const double limit = rms_of(best->errors) * (1.0 + kAllowedExcess);
-  const auto good_enough = [&](const Scored& model) {
-    const GroupErrors excess = model.errors - best->errors;
-    return excess.mean() <= standard_error(excess) &&
-           rms_of(model.errors) <= limit;
-  };
-  const auto chosen = std::find_if(models.begin(), models.end(), good_enough);
+  const auto rms = [](const Scored& model) { return rms_of(model.errors); };
+  const auto best = std::ranges::min_element(models, {}, rms);
+  const double limit = (1.0 + kAllowedExcess) * rms(*best);
+  const auto chosen = std::ranges::find_if(
+      models, [&](const Scored& model) { return rms(model) <= limit; });
   return static_cast<std::size_t>(std::min(chosen, best) - models.begin());
 }
 

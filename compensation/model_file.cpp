@@ -350,10 +350,13 @@ ModelSpec read_model(const ConfigDocument& document) {
   const ConfigTable& root = document.root();
   ModelSpec spec;
   spec.text = document.text();
+  spec.files = {document.path()};
   const std::string kind = root.choice("kind", kKinds);
   spec.rows = read_rows(root.table_or_empty("rows"), kind);
   if (kind == "adapted") {
     AdaptedSpec adapted = read_adapted(document);
+    spec.files.push_back(document.path().parent_path() /
+                         root.text("population"));
     spec.inputs = adapted_inputs(root, adapted.population);
     spec.kind = std::move(adapted);
   } else {

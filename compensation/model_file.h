@@ -93,6 +93,7 @@ struct ModelSpec {
   std::vector<Candidate> candidates = {};  // simplest first; empty = `kind`
   std::optional<double> scale_factor_bin_K = {};  // [scale_factor], > 0
   std::string text = {};                          // model file as read
+  std::vector<std::filesystem::path> files = {};  // all that was read
 };
 
 /// Reads a model file (docs/formats.md). Throws std::invalid_argument with

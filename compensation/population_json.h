@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "compensation/json_node.h"
 #include "compensation/population.h"
+#include "dataset/json_node.h"
 
 namespace beamgyro {
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "compensation/rate_departure.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <utility>
 
 namespace beamgyro {
 namespace {
@@ -15,30 +14,90 @@ Eigen::VectorXd to_unit(const Eigen::VectorXd& values) {
   return largest > 0.0 ? Eigen::VectorXd(values / largest) : values;
 }
 
-/// The three terms of a sample that are not zero: hats `left` and `left` + 1,
-/// and the temperature, the last of all terms.
-struct Terms {
-  std::array<Eigen::Index, 3> index;
-  std::array<double, 3> value;
+/// The hats of a sample that are not zero: `left` and the next one.
+struct Hats {
+  Eigen::Index left;
+  double share_left, share_right;
 };
 
-std::vector<Terms> drift_terms(const std::vector<double>& time,
-                               const Eigen::VectorXd& temperature,
-                               Eigen::Index pieces) {
+std::vector<Hats> drift_hats(const std::vector<double>& time,
+                             Eigen::Index pieces) {
   const double piece =
       (time.back() - time.front()) / static_cast<double>(pieces);
-  std::vector<Terms> all;
+  std::vector<Hats> all;
   all.reserve(time.size());
-  for (std::size_t k = 0; k < time.size(); ++k) {
-    const double knots = piece > 0.0 ? (time[k] - time.front()) / piece : 0.0;
+  for (const double t : time) {
+    const double knots = piece > 0.0 ? (t - time.front()) / piece : 0.0;
     const auto left =
         std::min(static_cast<Eigen::Index>(std::floor(knots)), pieces - 1);
     const double right_share = knots - static_cast<double>(left);
-    all.push_back({{left, left + 1, pieces + 1},
-                   {1.0 - right_share, right_share,
-                    temperature(static_cast<Eigen::Index>(k))}});
+    all.push_back({left, 1.0 - right_share, right_share});
   }
   return all;
+}
+
+/// Normal equations A p = b of the hats and of one term over all samples: hats
+/// meet their neighbours only, so that A is tridiagonal but for its last row
+/// and column.
+struct NormalEquations {
+  Eigen::VectorXd diagonal;  // A(j, j) of the hats
+  Eigen::VectorXd next;      // A(j, j + 1) of the hats, unused past the end
+  Eigen::VectorXd last;      // A(j, last)
+  Eigen::VectorXd right;     // b of the hats
+  double last_diagonal = 0.0, last_right = 0.0;
+
+  explicit NormalEquations(Eigen::Index hats)
+      : diagonal(Eigen::VectorXd::Zero(hats)),
+        next(Eigen::VectorXd::Zero(hats)),
+        last(Eigen::VectorXd::Zero(hats)),
+        right(Eigen::VectorXd::Zero(hats)) {}
+
+  void add(const Hats& hats, double term, double value) {
+    const auto [j, left, right_share] = hats;
+    diagonal(j) += left * left;
+    diagonal(j + 1) += right_share * right_share;
+    next(j) += left * right_share;
+    last(j) += left * term;
+    last(j + 1) += right_share * term;
+    last_diagonal += term * term;
+    right(j) += left * value;
+    right(j + 1) += right_share * value;
+    last_right += term * value;
+  }
+
+  void damp(double damping) {
+    diagonal.array() += damping;
+    last_diagonal += damping;
+  }
+};
+
+struct Drift {
+  Eigen::VectorXd knots;  // p_j
+  double term;            // of the term over all samples
+};
+
+/// Gaussian elimination from the first hat on, which fills nothing in. A is
+/// positive definite once it is damped, so that no pivots are sought.
+Drift solved(NormalEquations A) {
+  const Eigen::Index hats = A.diagonal.size();
+  for (Eigen::Index j = 0; j < hats; ++j) {
+    if (j + 1 < hats) {
+      const double factor = A.next(j) / A.diagonal(j);
+      A.diagonal(j + 1) -= factor * A.next(j);
+      A.last(j + 1) -= factor * A.last(j);
+      A.right(j + 1) -= factor * A.right(j);
+    }
+    const double factor = A.last(j) / A.diagonal(j);
+    A.last_diagonal -= factor * A.last(j);
+    A.last_right -= factor * A.right(j);
+  }
+  Drift drift{Eigen::VectorXd(hats), A.last_right / A.last_diagonal};
+  for (Eigen::Index j = hats; j-- > 0;) {
+    const double after = j + 1 < hats ? A.next(j) * drift.knots(j + 1) : 0.0;
+    drift.knots(j) =
+        (A.right(j) - after - A.last(j) * drift.term) / A.diagonal(j);
+  }
+  return drift;
 }
 
 }  // namespace
@@ -56,26 +115,18 @@ Eigen::VectorXd without_drift(const Eigen::VectorXd& rate,
   const auto pieces = std::max<Eigen::Index>(
       1, static_cast<Eigen::Index>(
              std::ceil((time.back() - time.front()) / kDriftKnots)));
-  const auto terms = drift_terms(time, to_unit(temperature), pieces);
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(pieces + 2, pieces + 2);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(pieces + 2);
+  const auto hats = drift_hats(time, pieces);
+  const Eigen::VectorXd term = to_unit(temperature);
+  NormalEquations equations(pieces + 1);
   for (Eigen::Index k = 0; k < rate.size(); ++k) {
-    const auto& [index, value] = terms[static_cast<std::size_t>(k)];
-    for (std::size_t i = 0; i < index.size(); ++i) {
-      right(index[i]) += value[i] * rate(k);
-      for (std::size_t j = 0; j < index.size(); ++j) {
-        normal(index[i], index[j]) += value[i] * value[j];
-      }
-    }
+    equations.add(hats[static_cast<std::size_t>(k)], term(k), rate(k));
   }
-  normal.diagonal().array() += kDriftDamping * static_cast<double>(rate.size());
-  const Eigen::VectorXd found = normal.ldlt().solve(right);
-  Eigen::VectorXd left_over = rate;
+  equations.damp(kDriftDamping * static_cast<double>(rate.size()));
+  const Drift drift = solved(std::move(equations));
+  Eigen::VectorXd left_over = rate - drift.term * term;
   for (Eigen::Index k = 0; k < rate.size(); ++k) {
-    const auto& [index, value] = terms[static_cast<std::size_t>(k)];
-    for (std::size_t i = 0; i < index.size(); ++i) {
-      left_over(k) -= value[i] * found(index[i]);
-    }
+    const auto& [j, left, right] = hats[static_cast<std::size_t>(k)];
+    left_over(k) -= left * drift.knots(j) + right * drift.knots(j + 1);
   }
   return left_over;
 }

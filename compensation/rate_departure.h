@@ -22,7 +22,8 @@ Eigen::VectorXd without_temperature(const Eigen::VectorXd& rate,
 ///
 /// Steps and swings of a rate are left, a drift is not. c and p_j are damped by
 /// kDriftDamping, so that a rate which is itself such a line shrinks but keeps
-/// its shape. `time` [s] increases, one per rate.
+/// its shape. `time` [s] increases, one per rate. Takes time and memory in
+/// proportion to the samples.
 Eigen::VectorXd without_drift(const Eigen::VectorXd& rate,
                               const Eigen::VectorXd& temperature,
                               const std::vector<double>& time);

@@ -2,14 +2,13 @@
 #include "compensation/restarts.h"
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <limits>
-#include <thread>
 
 #include "compensation/rate_penalty.h"
+#include "parallel/work_queue.h"
 
 namespace beamgyro {
+
 std::size_t best_network(const std::vector<BpNetwork>& networks,
                          const ScaledRows& rows, const ScaledRows& held_out,
                          const TrainOptions& options) {
@@ -42,37 +41,18 @@ Restarts train_from_restarts(const std::vector<int>& layer_sizes,
   const auto count = static_cast<std::size_t>(options.restarts);
   std::vector<BpNetwork> networks(count, BpNetwork(layer_sizes));
   std::vector<TrainSummary> summaries(count);
-  std::vector<std::exception_ptr> failures(count);
   const std::size_t cores =
-      options.cores > 0 ? static_cast<std::size_t>(options.cores)
-                        : std::max(1u, std::thread::hardware_concurrency());
+      thread_count(static_cast<unsigned>(std::max(options.cores, 0)));
   const std::size_t at_once = std::min(cores, count);
   TrainOptions of_one = options;
   of_one.threads = std::max(options.threads, static_cast<int>(cores / at_once));
-  const auto train_one = [&](std::size_t k) {
+  for_each_task(count, at_once, [&](std::size_t k, std::size_t) {
     const auto run = static_cast<std::uint32_t>(k);
     RandomStream initial(seed, 0, run, RandomPurpose::kInitialWeights);
     RandomStream order(seed, 0, run, RandomPurpose::kSampleOrder);
     networks[k].randomise(initial);
     summaries[k] = train_network(rows, held_out, of_one, order, networks[k]);
-  };
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t k = next++; k < count; k = next++) {
-      try {
-        train_one(k);
-      } catch (...) {
-        failures[k] = std::current_exception();
-      }
-    }
-  };
-  {
-    std::vector<std::jthread> threads;
-    for (std::size_t n = 1; n < at_once; ++n) threads.emplace_back(work);
-    work();
-  }
-  for (const std::exception_ptr& failure : failures)
-    if (failure) std::rethrow_exception(failure);
+  });
   const std::size_t chosen = best_network(networks, rows, held_out, options);
   return {std::move(summaries), chosen, std::move(networks[chosen])};
 }

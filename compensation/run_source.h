@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -26,6 +27,12 @@ struct SetPart {
   std::string manifest_sha256;  // tells every file of the set
   std::size_t devices = 0;
   std::size_t files = 0;  // shard files
+  // What the devices were drawn by, the runs taken, and which devices; empty
+  // when an older program wrote them.
+  std::string campaign_sha256 = {};
+  std::uint64_t seed = 0;
+  std::vector<std::string> runs = {};
+  std::vector<std::uint32_t> device_numbers = {};  // increasing
 
   bool operator==(const SetPart&) const = default;
 };

@@ -19,6 +19,7 @@ struct SampleRange {
 
 constexpr double kScoreBlock = 60.0;       // [s]
 constexpr double kPlateauTolerance = 0.5;  // [K]
+constexpr double kLongestStep = 1.5;  // [-], usual steps; a longer one is a gap
 
 /// The usual distance of two samples: the median of the steps of `time` [s]; 0
 /// with fewer than two samples.

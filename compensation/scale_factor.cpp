@@ -124,19 +124,21 @@ SlopeSums slope_sums(const Recording& recording,
 }
 
 std::vector<PlateauSlope> plateau_slopes(const Recording& recording,
-                                         double least_departure) {
+                                         double least_departure,
+                                         std::span<const double> compensated) {
   std::vector<PlateauSlope> slopes;
   // A rate that is never held has no settled samples.
   for (const double largest_step : {least_departure, kEveryRate}) {
     for (const Plateau& plateau :
-         plateaus_of(recording, {}, kEveryRate, largest_step)) {
+         plateaus_of(recording, compensated, kEveryRate, largest_step)) {
       const SlopeSums sums = sums_of(plateau);
       if (sums.largest_departure >= least_departure) {
         const Eigen::Map<const Eigen::ArrayXd> T(
             plateau.temperature.data(),
             static_cast<Eigen::Index>(plateau.temperature.size()));
-        slopes.push_back(
-            {T.mean(), sums.raw_without_drift, sums.truth_without_drift});
+        slopes.push_back({T.mean(), sums.raw_without_drift,
+                          sums.truth_without_drift,
+                          sums.compensated_without_drift});
       }
     }
     if (!slopes.empty()) {

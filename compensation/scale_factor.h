@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -14,8 +15,19 @@ namespace beamgyro {
 constexpr double kSmallRate = 2.0;           // [deg/s]
 constexpr double kLeastRateDeparture = 0.1;  // [deg/s]
 constexpr double kTableRate = 5.0;           // [deg/s], of a rate table
+constexpr double kCancelledBelow = 0.5;      // [-], scale factor retained
 constexpr double kSettlingTime = 1.0;        // [s]
 constexpr double kEveryRate = std::numeric_limits<double>::infinity();
+
+/// |scale factor - 1| allowed.
+struct ScaleFactorTolerance {
+  double every_rate = 1e-3;   // [-]
+  double small_rates = 1e-2;  // [-], within kSmallRate
+
+  double at(double rate) const {  // [deg/s]
+    return std::abs(rate) <= kSmallRate ? small_rates : every_rate;
+  }
+};
 
 /// Sums from which slopes over the true rate Omega are made, of one run or, by
 /// addition, of many. Within each temperature plateau, w is what the measured
@@ -45,18 +57,21 @@ SlopeSums slope_sums(const Recording& recording,
                      std::span<const double> compensated,
                      double largest_rate = kEveryRate);
 
-/// What one temperature plateau says of the gyro's own scale factor.
+/// What one temperature plateau says of the scale factor.
 struct PlateauSlope {
   double temperature;  // [degC], mean
   double raw;          // [(deg/s)^2], Σ v rate
   double truth;        // [(deg/s)^2], Σ v Omega
+  double compensated;  // [(deg/s)^2], Σ v compensated_rate
 };
 
 /// Of every plateau whose true rate departs by `least_departure` [deg/s].
 /// Samples within kSettlingTime after a step of the rate by more than that are
 /// left out, unless nothing is left then: the output lags behind the step.
-std::vector<PlateauSlope> plateau_slopes(const Recording& recording,
-                                         double least_departure);
+/// `compensated` may be empty: then it is the rate.
+std::vector<PlateauSlope> plateau_slopes(
+    const Recording& recording, double least_departure,
+    std::span<const double> compensated = {});
 
 struct ScaleFactor {
   double retained;   // [-], Σ v compensated_rate / Σ v rate

@@ -3,11 +3,14 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 
 #include "compensation/allan_deviation.h"
+#include "compensation/fit.h"
 #include "compensation/sample_ranges.h"
 
 namespace beamgyro {
@@ -25,7 +28,7 @@ const std::vector<double>& powered_values(const AnsweredRun& run,
                                           const char* name) {
   const Column* column = find_column(*run.recording, name);
   if (column == nullptr) {
-    fail(run, fmt::format("no column {}, which a score needs", name));
+    fail(run, fmt::format("no column '{}', which a score needs", name));
   }
   for (const SampleRange& stretch : powered_stretches(*run.recording)) {
     for (std::size_t k = stretch.begin; k < stretch.end; ++k) {
@@ -59,9 +62,32 @@ void count_samples(const AnsweredRun& run, Score& score) {
   }
 }
 
+Eigen::Map<const Eigen::ArrayXd> array_of(const std::vector<double>& values) {
+  return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
+
+ResidualScores scores_of(const Eigen::ArrayXd& residuals) {
+  return residual_scores(
+      {residuals.data(), static_cast<std::size_t>(residuals.size())});
+}
+
+/// What the cubic of `temperature` [degC] fitted to `raw` [deg/s] leaves of it.
+Eigen::ArrayXd without_cubic(const Eigen::ArrayXd& raw,
+                             const Eigen::ArrayXd& temperature) {
+  TrainingRows rows;
+  rows.temperature = temperature;
+  rows.bias = raw;
+  return raw - fit_baseline(rows).predict(temperature);
+}
+
 void fill_from_sums(const RunSums& sums, Score& score) {
   score.residual = residual_scores(sums.residual);
   score.raw = residual_scores(sums.raw);
+  const Eigen::ArrayXd raw = array_of(sums.raw);
+  score.constant = scores_of(raw - raw.mean());
+  if (!sums.temperature.empty()) {
+    score.cubic = scores_of(without_cubic(raw, array_of(sums.temperature)));
+  }
   if (!sums.baseline.empty()) {
     score.baseline = residual_scores(sums.baseline);
     if (score.baseline->variance > 0.0) {
@@ -71,6 +97,23 @@ void fill_from_sums(const RunSums& sums, Score& score) {
   }
   score.small_rates = scale_factor(sums.small_rates);
   score.every_rate = scale_factor(sums.every_rate);
+}
+
+/// Mean measured temperature [degC] of each block; empty when it is not
+/// measured, or not finite somewhere.
+std::vector<double> block_temperatures(const Recording& recording,
+                                       const std::vector<SampleRange>& blocks) {
+  const Column* temperature = find_column(recording, "temperature");
+  std::vector<double> means;
+  if (temperature == nullptr) {
+    return means;
+  }
+  const std::vector<double> zero(recording.time.size(), 0.0);
+  means = block_residuals(blocks, temperature->values, zero);
+  if (!std::ranges::all_of(means, [](double T) { return std::isfinite(T); })) {
+    means.clear();
+  }
+  return means;
 }
 
 void append(std::vector<double>& all, const std::vector<double>& more) {
@@ -103,6 +146,7 @@ ScoredRun score_run(const AnsweredRun& run) {
   const auto blocks = score_blocks(recording);
   sums.residual = block_residuals(blocks, run.compensated, truth);
   sums.raw = block_residuals(blocks, rate, truth);
+  sums.temperature = block_temperatures(recording, blocks);
   if (run.baseline) {
     check_size(run, *run.baseline);
     sums.baseline = block_residuals(blocks, *run.baseline, truth);
@@ -110,7 +154,7 @@ ScoredRun score_run(const AnsweredRun& run) {
   sums.small_rates = slope_sums(recording, run.compensated, kSmallRate);
   sums.every_rate = slope_sums(recording, run.compensated);
   fill_from_sums(sums, score);
-  score.injected_scale_factor = run.injected_scale_factor;
+  score.replayed = run.replayed;
   score.linearity = linearity(recording, run.compensated);
   score.raw_linearity = linearity(recording, rate);
   score.white_noise = white_noise_ratio(run);
@@ -120,28 +164,37 @@ ScoredRun score_run(const AnsweredRun& run) {
 Score score_together(const std::vector<ScoredRun>& runs) {
   Score all;
   RunSums sums;
+  bool every_run_has_baseline = true;
   bool every_run_has_cubic = true;
   const auto nonlinearity = [](const Linearity& l) { return l.nonlinearity; };
   for (const ScoredRun& run : runs) {
     append(sums.residual, run.sums.residual);
     append(sums.raw, run.sums.raw);
     append(sums.baseline, run.sums.baseline);
+    append(sums.temperature, run.sums.temperature);
     sums.small_rates += run.sums.small_rates;
     sums.every_rate += run.sums.every_rate;
     const Score& score = run.score;
-    every_run_has_cubic = every_run_has_cubic && score.baseline.has_value();
+    every_run_has_baseline =
+        every_run_has_baseline && score.baseline.has_value();
+    every_run_has_cubic = every_run_has_cubic && score.cubic.has_value();
     all.samples += score.samples;
     all.not_finite += score.not_finite;
     all.saturated += score.saturated;
     keep_worse(all.linearity, score.linearity, nonlinearity);
     keep_worse(all.raw_linearity, score.raw_linearity, nonlinearity);
-    keep_worse(all.injected_scale_factor, score.injected_scale_factor,
-               [](double rho) { return std::abs(rho - 1.0); });
+    if (score.replayed) {
+      all.replayed = all.replayed.value_or(*score.replayed);
+      all.replayed->add(*score.replayed);
+    }
     keep_worse(all.white_noise, score.white_noise,
                [](double ratio) { return std::abs(std::log(ratio)); });
   }
-  if (!every_run_has_cubic) {
+  if (!every_run_has_baseline) {
     sums.baseline.clear();
+  }
+  if (!every_run_has_cubic) {
+    sums.temperature.clear();
   }
   fill_from_sums(sums, all);
   all.run = "overall";

@@ -13,13 +13,15 @@
 namespace beamgyro {
 namespace {
 
-// A candidate with its columns of the rows, and its residuals.
+// A candidate, its weight beside a constant, and the residuals of the two.
 struct Judged {
   Candidate candidate;
+  double weight = 1.0;
   GroupErrors errors;
+
+  double rms() const { return rms_of(errors); }
 };
 
-constexpr int kLeastGroupsOfNetwork = 3;
 constexpr int kLeastPowerOns = 3;
 constexpr double kPowerOnsApart = 10.0;  // [K]
 
@@ -91,52 +93,64 @@ std::size_t richest_curve(const std::vector<Judged>& judged) {
   return best;
 }
 
+std::size_t simplest(const std::vector<Judged>& judged) {
+  std::vector<Scored> scores;
+  for (const Judged& each : judged)
+    scores.push_back({each.candidate.name, each.errors});
+  return choose(scores);
+}
+
+// The curve or network, unless "none" or "constant" is about as good.
+const Judged& useful(const Judged& chosen, const std::vector<Judged>& judged) {
+  const Judged* flat = nullptr;
+  for (const Judged& each : judged)
+    if (is_constant(each.candidate) &&
+        (flat == nullptr || flat->rms() > (1.0 + kAllowedExcess) * each.rms()))
+      flat = &each;
+  const bool gains =
+      flat == nullptr || chosen.rms() <= (1.0 - kUsefulGain) * flat->rms();
+  return gains || is_constant(chosen.candidate) ? chosen : *flat;
+}
+
 class Selector {
  public:
   explicit Selector(const SelectionData& data) : data_(data) {
     if (data.groups)
       groups_ = *data.groups;
     else if (data.held_out.size() > 0)
-      groups_ = coarsest_groups(data.held_out, 3);
+      groups_ = coarsest_groups(data.held_out, kLeastGroups);
   }
 
   Selected only(const Candidate& candidate) const {
     Selected result;
     result.candidate = candidate;
-    if (data_.groups) result.errors = judge(candidate);
+    if (data_.groups) result.errors = errors_of(predictions(candidate));
     result.fit = final_fit(candidate);
     if (!data_.groups && data_.held_out.size() > 0)
-      result.errors = held_out_errors(candidate, result.fit.model);
+      result.errors =
+          errors_of(predict_all(result.fit.model, held_out(candidate)));
     result.constant_errors = constant_errors();
     return result;
   }
 
   Selected best_of(const std::vector<Candidate>& candidates) const {
-    std::vector<Judged> judged;
-    std::vector<Scored> scores;
     std::vector<std::string> told;
-    for (const Candidate& candidate : candidates) {
-      try {
-        judged.push_back({candidate, judge(candidate)});
-        scores.push_back({candidate.name, judged.back().errors});
-        told.push_back(fmt::format("{}: {:.6f} deg/s rms over {} unseen {}s",
-                                   candidate.name, rms_of(scores.back().errors),
-                                   groups_.count, grouping_name(groups_.by)));
-      } catch (const std::invalid_argument& error) {
-        told.push_back(
-            fmt::format("{}: passed over, {}", candidate.name, error.what()));
-      }
-    }
+    const std::vector<Judged> judged = judge_all(candidates, told);
     if (judged.empty())
       throw std::invalid_argument("no candidate can be fitted: " +
                                   told.front());
-    const bool one_leg = data_.groups && groups_.by == Grouping::kSegment;
-    const std::size_t chosen = one_leg ? richest_curve(judged) : choose(scores);
+    const Judged& chosen =
+        judged[one_leg() ? richest_curve(judged) : simplest(judged)];
+    const Judged& kept = one_leg() ? chosen : useful(chosen, judged);
+    told.push_back(reason(judged, chosen, kept));
     Selected result;
-    result.candidate = judged[chosen].candidate;
-    result.errors = scores[chosen].errors;
-    result.fit = final_fit(result.candidate);
-    told.push_back(reason(scores, chosen));
+    result.candidate = kept.candidate;
+    result.weight = kept.weight;
+    result.errors = kept.errors;
+    result.fit = final_fit(kept.candidate);
+    if (kept.weight < 1.0)
+      result.fit.model = averaged_with_constant(
+          std::move(result.fit.model), data_.rows.bias.mean(), kept.weight);
     result.fit.choices.insert(result.fit.choices.begin(), told.begin(),
                               told.end());
     result.constant_errors = constant_errors();
@@ -144,23 +158,37 @@ class Selector {
   }
 
  private:
+  bool one_leg() const {
+    return data_.groups && groups_.by == Grouping::kSegment;
+  }
+  // The rows that judge.
+  const TrainingRows& judging() const {
+    return data_.groups ? data_.rows : data_.held_out;
+  }
   TrainingRows rows(const Candidate& candidate) const {
     return with_columns(data_.rows, data_.inputs, candidate.inputs);
   }
   TrainingRows held_out(const Candidate& candidate) const {
     return with_columns(data_.held_out, data_.inputs, candidate.inputs);
   }
-
-  GroupErrors held_out_errors(const Candidate& candidate,
-                              const BiasModel& model) const {
-    return group_errors(model, held_out(candidate), groups_);
+  Candidate constant() const {
+    return {"constant", data_.inputs, ConstantSpec{}};
   }
 
-  GroupErrors judge(const Candidate& candidate) const {
+  Predictions predictions(const Candidate& candidate) const {
     if (data_.groups)
-      return cross_validate(candidate.kind, candidate.inputs, rows(candidate),
+      return predict_unseen(candidate.kind, candidate.inputs, rows(candidate),
                             groups_, data_.seed);
-    return held_out_errors(candidate, final_fit(candidate).model);
+    return predict_all(final_fit(candidate).model, held_out(candidate));
+  }
+
+  GroupErrors errors_of(const Predictions& found) const {
+    return group_errors(found, judging().bias, groups_);
+  }
+
+  std::optional<GroupErrors> constant_errors() const {
+    if (groups_.count == 0) return std::nullopt;
+    return errors_of(predictions(constant()));
   }
 
   Fit final_fit(const Candidate& candidate) const {
@@ -168,27 +196,56 @@ class Selector {
                      held_out(candidate), data_.seed);
   }
 
-  std::optional<GroupErrors> constant_errors() const {
-    if (groups_.count == 0) return std::nullopt;
-    return judge({"constant", data_.inputs, ConstantSpec{}});
+  Judged judge(const Candidate& candidate, const Predictions& flat) const {
+    const Predictions found = predictions(candidate);
+    Judged alone{candidate, 1.0, errors_of(found)};
+    if (one_leg() || is_constant(candidate)) return alone;
+    const double weight = stacking_weight(flat, found, judging().bias, groups_);
+    Judged average{candidate, weight, errors_of(averaged(flat, found, weight))};
+    return alone.rms() <= (1.0 + kAllowedExcess) * average.rms() ? alone
+                                                                 : average;
   }
 
-  std::string reason(const std::vector<Scored>& scores,
-                     std::size_t chosen) const {
-    const auto best = std::min_element(
-        scores.begin(), scores.end(), [](const Scored& a, const Scored& b) {
-          return a.errors.mean() < b.errors.mean();
-        });
-    if (best->name == scores[chosen].name)
-      return fmt::format("kept {}: the lowest residual", best->name);
-    if (data_.groups && groups_.by == Grouping::kSegment)
+  std::vector<Judged> judge_all(const std::vector<Candidate>& candidates,
+                                std::vector<std::string>& told) const {
+    std::vector<Judged> judged;
+    const Predictions flat = predictions(constant());
+    for (const Candidate& candidate : candidates) {
+      try {
+        const Judged& found = judged.emplace_back(judge(candidate, flat));
+        told.push_back(fmt::format(
+            "{}: {:.6f} deg/s rms over {} unseen {}s{}", candidate.name,
+            found.rms(), groups_.count, grouping_name(groups_.by),
+            found.weight < 1.0
+                ? fmt::format(", averaged with a constant, weight {:.2f}",
+                              found.weight)
+                : ""));
+      } catch (const std::invalid_argument& error) {
+        told.push_back(
+            fmt::format("{}: passed over, {}", candidate.name, error.what()));
+      }
+    }
+    return judged;
+  }
+
+  std::string reason(const std::vector<Judged>& judged, const Judged& chosen,
+                     const Judged& kept) const {
+    const auto& best = *std::ranges::min_element(judged, {}, &Judged::rms);
+    if (&kept != &chosen)
+      return fmt::format(
+          "kept {}: {} takes {:.2g} % of its rms away, less than {:g} %",
+          kept.candidate.name, chosen.candidate.name,
+          100.0 * (1.0 - chosen.rms() / kept.rms()), 100.0 * kUsefulGain);
+    if (&kept == &best)
+      return fmt::format("kept {}: the lowest residual", kept.candidate.name);
+    if (one_leg())
       return fmt::format(
           "kept {}: the richest curve that leaves less than a constant; one "
           "leg tells no more",
-          scores[chosen].name);
-    return fmt::format(
-        "kept {}: the simplest within one standard error and {:g} % of {}",
-        scores[chosen].name, 100.0 * kAllowedExcess, best->name);
+          kept.candidate.name);
+    return fmt::format("kept {}: the simplest within {:g} % of {}",
+                       kept.candidate.name, 100.0 * kAllowedExcess,
+                       best.candidate.name);
   }
 
   const SelectionData& data_;
@@ -211,19 +268,13 @@ std::string objection(const Candidate& candidate, const TrainingRows& rows,
            "little of it, and nothing independent can be held out: curves up "
            "to "
            "the cubic only";
-  if (groups.count < kLeastGroupsOfNetwork &&
+  if (groups.count < kLeastGroups &&
       std::holds_alternative<BpSpec>(candidate.kind))
     return fmt::format("{} {}s or more judge a network; the recordings have {}",
-                       kLeastGroupsOfNetwork, grouping_name(groups.by),
-                       groups.count);
-  const bool few =
-      groups.by == Grouping::kSegment || groups.count < kLeastGroupsOfNetwork;
-  if (few && !temperature_shows(rows))
-    return temperature_comes_back(rows)
-               ? "the bias does not come back with the temperature: a cubic "
-                 "leaves half its variance or more"
-               : "the bias moves no more than slow noise does while the "
-                 "temperature goes one way";
+                       kLeastGroups, grouping_name(groups.by), groups.count);
+  if (groups.by == Grouping::kSegment && !moves_more_than_noise(rows))
+    return "the bias moves no more than slow noise does while the temperature "
+           "goes one way";
   if (const int ambients = power_on_temperatures(rows);
       sees_power_on(candidate) && ambients < kLeastPowerOns)
     return fmt::format(

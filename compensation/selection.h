@@ -24,19 +24,26 @@ struct SelectionData {
 /// A model and how it came to be.
 struct Selected {
   Candidate candidate;
-  Fit fit;  // to all rows; its choices tell of every candidate
+  double weight = 1.0;  // of the candidate; the rest is a constant's
+  Fit fit;              // to all rows; its choices tell of every candidate
   // Residuals on unseen groups, of it and of a constant.
   std::optional<GroupErrors> errors, constant_errors;
 };
 
 /// Fits the candidate that choose() takes, or the only one. Without groups
-/// several candidates are judged by the held-out rows. Passed over, and said
-/// so, is a candidate that the rows do not determine, and of several that are
-/// cross-validated
-/// - by segments (one leg): all but curves up to the cubic. Of those the
-///   richest is kept that leaves less than a constant;
-/// - by fewer than three groups: networks, and all but constants if not
-///   temperature_shows();
+/// several candidates are judged by the held-out rows. Of several,
+/// - each is averaged with a constant by stacking_weight(), where that lowers
+///   its rms on unseen groups by more than kAllowedExcess;
+/// - the one chosen gives way to "none" or "constant", if they are candidates,
+///   unless it takes away kUsefulGain of their rms.
+///
+/// Passed over, and said so, is a candidate that the rows do not determine, and
+/// of several that are cross-validated
+/// - by segments (one leg): all but curves up to the cubic, and all but
+///   constants unless the bias moves_more_than_noise(). Of those the richest is
+///   kept that leaves less than a constant, and not averaged: segments are no
+///   independent groups;
+/// - by fewer than kLeastGroups: networks;
 /// - with since_power_on among the inputs: where power came on at fewer than
 ///   three temperatures 10 K apart, since warm-ups elsewhere would be a guess.
 /// Throws std::invalid_argument when none is left, as fit_model() for the only

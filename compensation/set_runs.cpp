@@ -10,16 +10,16 @@
 #include <utility>
 
 #include "dataset/set/manifest.h"
+#include "dataset/set/set_files.h"
 #include "dataset/set/shard_reader.h"
-#include "dataset/sha256.h"
 
 namespace beamgyro {
 namespace {
 
 // Devices of one file of the set.
 struct FileMembers {
-  std::filesystem::path file;
-  std::string run;
+  std::filesystem::path directory;
+  std::string file, run;
   std::vector<std::uint32_t> positions;
 };
 
@@ -29,7 +29,7 @@ bool holds(const std::vector<T>& all, const T& one) {
 }
 
 Manifest finished_manifest(const std::filesystem::path& directory) {
-  Manifest manifest = read_manifest(directory / kManifestName);
+  Manifest manifest = read_manifest(directory, kManifestName);
   if (!manifest.head || !manifest.is_finished)
     throw std::invalid_argument(fmt::format(
         "{}: the set is not finished; generate goes on where it stopped",
@@ -42,13 +42,13 @@ Manifest finished_manifest(const std::filesystem::path& directory) {
 }
 
 // A file that was changed may still open and show other values.
-void check_bytes(const std::filesystem::path& file,
+void check_bytes(const std::filesystem::path& directory,
                  const ManifestEntry& entry) {
-  if (sha256_of_file(file) != entry.sha256)
+  if (sha256_of_set_file(directory, entry.file) != entry.sha256)
     throw std::invalid_argument(
         fmt::format("{}: holds other bytes than the manifest says; "
                     "verify tells more",
-                    file.string()));
+                    (directory / entry.file).string()));
 }
 
 void check_selection(const ManifestHead& head, const SetSelection& selection,
@@ -74,12 +74,11 @@ bool is_selected(const SetSelection& selection, std::uint32_t device,
 }
 
 void visit_file(const FileMembers& members, const RunSource::Visitor& visit) {
-  const ShardFile shard(members.file);
+  const ShardFile shard(members.directory, members.file);
   for (const std::uint32_t position : members.positions) {
     const auto device = fmt::format("{}", shard.head().first_device + position);
-    visit(
-        {fmt::format("{}, device {}", members.file.filename().string(), device),
-         "", shard.recording(position), device, members.run});
+    visit({fmt::format("{}, device {}", members.file, device), "",
+           shard.recording(position), device, members.run});
   }
 }
 
@@ -96,9 +95,9 @@ RunSource runs_of_set(const std::filesystem::path& directory,
   for (const ManifestEntry& entry : manifest.entries) {
     const std::string& run = runs[entry.index % runs.size()];
     if (!selection.runs.empty() && !holds(selection.runs, run)) continue;
-    FileMembers members{directory / entry.file, run, {}};
-    check_bytes(members.file, entry);
-    const ShardFile shard(members.file);
+    FileMembers members{directory, entry.file, run, {}};
+    check_bytes(directory, entry);
+    const ShardFile shard(directory, entry.file);
     for (std::uint32_t k = 0; k < shard.devices(); ++k) {
       const std::uint32_t device = shard.head().first_device + k;
       if (!is_selected(selection, device, shard.row(k))) continue;
@@ -110,9 +109,15 @@ RunSource runs_of_set(const std::filesystem::path& directory,
   }
   RunSource source;
   source.count = count;
-  source.set = SetPart{
-      std::filesystem::weakly_canonical(directory).filename().string(),
-      sha256_of_file(directory / kManifestName), devices.size(), files.size()};
+  source.set =
+      SetPart{std::filesystem::weakly_canonical(directory).filename().string(),
+              sha256_of_set_file(directory, kManifestName),
+              devices.size(),
+              files.size(),
+              manifest.head->campaign_sha256,
+              manifest.head->seed,
+              selection.runs.empty() ? runs : selection.runs,
+              {devices.begin(), devices.end()}};
   source.each = [files = std::move(files)](const RunSource::Visitor& visit) {
     for (const FileMembers& members : files) visit_file(members, visit);
   };

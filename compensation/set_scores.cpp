@@ -7,6 +7,9 @@
 #include <cmath>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
+
+#include "compensation/training_use.h"
 
 namespace beamgyro {
 namespace {
@@ -49,18 +52,31 @@ std::vector<DeviceScore> of_run(const std::vector<DeviceScore>& scores,
 }  // namespace
 
 std::vector<DeviceScore> score_devices(const Compensator& compensator,
-                                       const RunSource& runs) {
+                                       const RunSource& runs,
+                                       const Specification& specification) {
   if (runs.count == 0)
     throw std::invalid_argument("no run of the set to score");
   std::vector<DeviceScore> scores;
   runs.each([&](const TrainingRun& run) {
     const Validation validation =
-        validate(compensator, run.name, {{run.name, &run.recording}});
+        validate(compensator, run.name,
+                 {{run.name, &run.recording, run.sha256}}, specification);
     const Score& score = validation.overall;
-    scores.push_back({run.device, run.run, score.residual.rms, score.raw.rms,
-                      score.baseline ? score.baseline->rms : HUGE_VAL,
-                      validation.verdict, validation.passed(),
-                      clamped_samples(compensator, run.recording)});
+    DeviceScore device{run.device,
+                       run.run,
+                       score.residual.rms,
+                       score.raw.rms,
+                       score.baseline ? score.baseline->rms : HUGE_VAL,
+                       score.constant.rms};
+    device.verdict = validation.verdict;
+    device.passed = validation.passed();
+    device.clamped = clamped_samples(compensator, run.recording);
+    device.in_sample = validation.runs[0].in_sample ||
+                       (runs.set && was_used_in_training(compensator.provenance,
+                                                         *runs.set, run));
+    device.worse_than = better_fits(score);
+    if (score.replayed) device.not_tested = score.replayed->untested;
+    scores.push_back(std::move(device));
   });
   return scores;
 }
@@ -68,8 +84,8 @@ std::vector<DeviceScore> score_devices(const Compensator& compensator,
 std::string device_table(const std::vector<DeviceScore>& scores) {
   std::string text = fmt::format(
       "{:24}{:>8}{:>18}{:>18}{:>18}{:>8}\n{:32}{:>18}{:>18}{:>18}\n",
-      "rms [deg/s] of devices", "devices", "residual", "raw", "cubic", "passed",
-      "", "median    worst", "median    worst", "median    worst");
+      "rms [deg/s] of devices", "devices", "residual", "raw", "claimed cubic",
+      "passed", "", "median    worst", "median    worst", "median    worst");
   auto out = std::back_inserter(text);
   for (const std::string& run : runs_in_order(scores)) {
     const std::vector<DeviceScore> own = of_run(scores, run);
@@ -83,7 +99,43 @@ std::string device_table(const std::vector<DeviceScore>& scores) {
     }
     fmt::format_to(out, "{:8}\n", passed);
   }
+  const auto worse =
+      std::count_if(scores.begin(), scores.end(), [](const auto& score) {
+        return std::ranges::find(score.worse_than, "constant") !=
+               score.worse_than.end();
+      });
+  if (worse > 0)
+    fmt::format_to(out, "{} of {}: worse than a constant fitted to the run\n",
+                   worse, scores.size());
   return text;
+}
+
+std::vector<std::string> warnings_of(const Compensator& compensator,
+                                     const RunSource& runs,
+                                     const std::vector<DeviceScore>& scores) {
+  std::vector<std::string> warnings;
+  const auto clamped =
+      std::count_if(scores.begin(), scores.end(),
+                    [](const DeviceScore& score) { return score.clamped > 0; });
+  if (clamped > 0)
+    warnings.push_back(fmt::format(
+        "{} of {} runs have samples outside {:g} to {:g} degC, the "
+        "temperatures seen in training; clamped",
+        clamped, scores.size(), compensator.temperature_range.lowest,
+        compensator.temperature_range.highest));
+  const auto seen =
+      std::count_if(scores.begin(), scores.end(),
+                    [](const DeviceScore& score) { return score.in_sample; });
+  if (seen > 0)
+    warnings.push_back(fmt::format(
+        "{} of {} runs are of devices that were used in training: these scores "
+        "are in-sample and flatter the compensator",
+        seen, scores.size()));
+  if (runs.set && may_have_used(compensator.provenance, *runs.set))
+    warnings.push_back(
+        "the compensator was trained on this set and does not tell on which "
+        "devices: these scores may be in-sample");
+  return warnings;
 }
 
 nlohmann::ordered_json to_json(const std::vector<DeviceScore>& scores) {
@@ -95,9 +147,13 @@ nlohmann::ordered_json to_json(const std::vector<DeviceScore>& scores) {
                      {"residual_rms_deg_per_s", score.residual_rms},
                      {"raw_rms_deg_per_s", score.raw_rms},
                      {"cubic_rms_deg_per_s", score.cubic_rms},
+                     {"constant_rms_deg_per_s", score.constant_rms},
                      {"verdict", verdict_text(score.verdict)},
                      {"passed", score.passed},
-                     {"clamped_samples", score.clamped}});
+                     {"clamped_samples", score.clamped},
+                     {"in_sample", score.in_sample},
+                     {"worse_than", score.worse_than},
+                     {"not_tested", score.not_tested}});
   return array;
 }
 

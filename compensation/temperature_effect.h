@@ -5,19 +5,11 @@
 
 namespace beamgyro {
 
-/// Whether half or more of the temperatures are visited on two legs.
-bool temperature_comes_back(const TrainingRows& rows);
-
 /// Whether the bias moves more than slow noise would: its variance is above
 /// n s^2 / 20, n rows, s^2 half the mean square second difference within a
-/// cycle. White noise alone gives s^2 / 3, a random walk alone n s^2 / 6.
+/// cycle. White noise alone gives s^2 / 3, a random walk alone n s^2 / 6. Asked
+/// of one leg of temperature, which is a function of time, as the walk is: no
+/// group can be held out to tell one from the other.
 bool moves_more_than_noise(const TrainingRows& rows);
-
-/// Whether temperature explains the bias, asked where too few groups can be
-/// held out to tell. If the temperature comes back, the cubic leaves less than
-/// half the variance: a walk does not come back with it. If not, temperature is
-/// a function of time, as the walk is, and moves_more_than_noise() is all there
-/// is to ask; it leans to the curve, which costs little where there is none.
-bool temperature_shows(const TrainingRows& rows);
 
 }  // namespace beamgyro

@@ -24,17 +24,17 @@ ArrayXd thermistor(const Eigen::Ref<const ArrayXd>& x, double b_K) {
 }
 
 // b_0 and b_1 of least squares at one bend.
-struct Line {
+struct CurveLine {
   double b0 = 0.0, b1 = 0.0;
   double squares = std::numeric_limits<double>::infinity();
 };
 
-Line line_at(double log_bend, const ArrayXd& n, const ArrayXd& y) {
+CurveLine line_at(double log_bend, const ArrayXd& n, const ArrayXd& y) {
   const ArrayXd share = 1.0 / (1.0 + n / std::exp(log_bend));
   const ArrayXd from_mean = share - share.mean();
   const double spread = from_mean.square().sum();
   if (!(spread > 0.0)) return {};
-  Line line;
+  CurveLine line;
   line.b1 = (from_mean * (y - y.mean())).sum() / spread;
   line.b0 = y.mean() - line.b1 * share.mean();
   line.squares = (line.b0 + line.b1 * share - y).square().sum();
@@ -98,7 +98,7 @@ ThermistorNetwork fit_thermistor_network(const Eigen::Ref<const ArrayXd>& x,
                     x.size(), x.size() ? x.maxCoeff() - x.minCoeff() : 0.0));
   const ArrayXd n = thermistor(x, b_K), target = y;
   const double log_bend = best_log_bend(n, target);
-  const Line line = line_at(log_bend, n, target);
+  const CurveLine line = line_at(log_bend, n, target);
   // With r_s = r_d = n', r_p = 2 n' the divided share runs from 1 / 2 at n = 0
   // to 1 / 4: share = 1 / 4 + 1 / 4 / (1 + n / n').
   const double bend = std::exp(log_bend);

@@ -12,13 +12,12 @@
 #include "compensation/method_name.h"
 #include "compensation/scale_factor_table.h"
 #include "compensation/selection.h"
+#include "compensation/training_use.h"
 
 namespace beamgyro {
 namespace {
 
 using Eigen::ArrayXd;
-
-constexpr int kLeastGroups = 3;
 
 bool has_network(const ModelSpec& spec) {
   return spec.candidates.empty() && std::holds_alternative<BpSpec>(spec.kind);
@@ -46,7 +45,8 @@ RunSource noting(const RunSource& runs, RunFacts& facts) {
   return {runs.count, [&](const RunSource::Visitor& visit) {
             runs.each([&](const TrainingRun& run) {
               if (!run.sha256.empty())
-                facts.files.push_back({run.name, run.sha256});
+                facts.files.push_back(
+                    {run.name, run.sha256, measured_sha256(run.recording)});
               facts.coarsest_resolution =
                   std::max(facts.coarsest_resolution,
                            temperature_resolution(run.recording));
@@ -59,7 +59,8 @@ void check_held_out(const std::vector<SourceFile>& held_out,
                     const std::vector<SourceFile>& training) {
   for (const SourceFile& run : held_out)
     for (const SourceFile& other : training)
-      if (run.sha256 == other.sha256)
+      if (run.sha256 == other.sha256 ||
+          run.measured_sha256 == other.measured_sha256)
         throw std::invalid_argument(
             fmt::format("{} is held out but equals {}, which is trained on; a "
                         "held-out recording must be another run",
@@ -122,9 +123,17 @@ void write_scores(const BiasModel& model, const BiasModel& baseline,
 
 CrossValidated summary_of(const RowGroups& groups, const Selected& selected) {
   const double rms = rms_of(*selected.errors);
-  return {grouping_name(groups.by), static_cast<std::size_t>(groups.count), rms,
+  const auto roots = [](const GroupErrors& errors) {
+    const GroupErrors root = errors.sqrt();
+    return std::vector<double>(root.begin(), root.end());
+  };
+  return {grouping_name(groups.by),
+          static_cast<std::size_t>(groups.count),
+          rms,
           rms > 0.0 ? standard_error(*selected.errors) / (2.0 * rms) : 0.0,
-          rms_of(*selected.constant_errors)};
+          rms_of(*selected.constant_errors),
+          roots(*selected.errors),
+          roots(*selected.constant_errors)};
 }
 
 bool claims_nothing(const FitSpec& kind) {
@@ -190,6 +199,9 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
 
   Provenance& p = c.provenance;
   p.method = method_name(selected.candidate.kind);
+  if (selected.weight < 1.0)
+    p.method +=
+        fmt::format(" of weight {:.2f} beside a constant", selected.weight);
   p.training = std::move(facts.files);
   p.held_out = std::move(unseen_facts.files);
   p.training_set = runs.set;

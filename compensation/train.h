@@ -31,9 +31,9 @@ struct TrainResult {
 /// kept. With `cross_validation` every group of that kind is
 /// predicted by a fit to the others (cross_validate()); a network without
 /// held-out runs takes its weight decay from there and runs all its epochs. Of
-/// several candidates the choice is choose()'s by cross-validation, or without
-/// it by the groups of the held-out runs, or without those by folds_of() the
-/// rows; select_model() says which candidates these can judge.
+/// several candidates select_model() chooses one, or its average with a
+/// constant, by cross-validation, or without it by the groups of the held-out
+/// runs, or without those by folds_of() the rows.
 ///
 /// Throws std::invalid_argument when there is no run, a network has neither
 /// held-out runs nor cross-validation, a run is on both sides, the temperatures

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "compensation/validation.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "compensation/rate_injection.h"
+#include "compensation/temperature_sweep.h"
+#include "compensation/training_use.h"
 
 namespace beamgyro {
 namespace {
+
+constexpr double kSameRms = 1e-6;  // [-], of two rms: rounding
 
 struct MeasuredScaleFactor {
   std::string where;
@@ -20,6 +24,11 @@ struct MeasuredScaleFactor {
 
 bool within(const MeasuredScaleFactor& measured) {
   return std::abs(measured.value - 1.0) <= measured.tolerance;
+}
+
+ScaleFactorTolerance tolerance_of(const Specification& specification) {
+  return {specification.scale_factor_tolerance,
+          specification.small_rate_tolerance};
 }
 
 /// Every scale factor the verdict looks at.
@@ -45,9 +54,27 @@ std::vector<MeasuredScaleFactor> measured_scale_factors(
       add("in run " + run.run, run.every_rate, tolerance);
     }
   }
-  if (overall.injected_scale_factor) {
-    all.push_back(
-        {"replayed at rest", *overall.injected_scale_factor, tolerance});
+  const auto add_replayed = [&](const std::string& where,
+                                const WorstBlocks& worst) {
+    for (const auto& block : {worst.small, worst.large}) {
+      if (block) {
+        all.push_back(
+            {fmt::format("replayed {} ({:.4g} deg/s, {:.1f} degC, {:.6g} s)",
+                         where, block->rate, block->temperature, block->time),
+             block->retained, tolerance_of(specification).at(block->rate)});
+      }
+    }
+  };
+  for (const Score& run : validation.runs) {
+    if (run.replayed) {
+      add_replayed("in run " + run.run, run.replayed->worst);
+      add_replayed("over every temperature", run.replayed->over_temperature);
+    }
+  }
+  if (overall.replayed && overall.replayed->worst_plateau) {
+    all.push_back({"on the worst plateau with recorded rates",
+                   *overall.replayed->worst_plateau,
+                   specification.small_rate_tolerance});
   }
   return all;
 }
@@ -58,11 +85,29 @@ Check finite_check(const Score& overall) {
                       overall.not_finite, overall.samples)};
 }
 
-Check scale_factor_check(const std::vector<MeasuredScaleFactor>& all) {
-  if (all.empty()) {
-    return {"scale factor", false,
-            "not tested: no run varies its true rate by "
-            "0.1 deg/s and none could be replayed"};
+/// Why the verdict is "scale factor not tested", if nothing worse is found;
+/// empty when it is tested.
+std::string why_untested(const Score& overall,
+                         const std::vector<MeasuredScaleFactor>& all) {
+  if (overall.replayed && !overall.replayed->untested.empty()) {
+    const ReplayedScaleFactor& replayed = *overall.replayed;
+    return fmt::format(
+        "not tested: a replay cannot tell what {} does, and within {:g} K of "
+        "{:.1f} degC no recorded rate does ({:g} deg/s or more at a steady "
+        "temperature)",
+        fmt::join(replayed.untested, ", "), kRateReach,
+        replayed.untested_temperature, kLargeShare * replayed.full_scale);
+  }
+  return all.empty() ? "not tested: no run varies its true rate by 0.1 deg/s "
+                       "and none could be replayed"
+                     : "";
+}
+
+Check scale_factor_check(const Score& overall,
+                         const std::vector<MeasuredScaleFactor>& all) {
+  const std::string untested = why_untested(overall, all);
+  if (!untested.empty() && std::ranges::all_of(all, within)) {
+    return {"scale factor", false, untested};
   }
   const auto worst =
       std::ranges::max_element(all, {}, [](const auto& measured) {
@@ -75,10 +120,18 @@ Check scale_factor_check(const std::vector<MeasuredScaleFactor>& all) {
 }
 
 Check residual_check(const Score& overall) {
-  return {"residual", overall.residual.rms < overall.raw.rms,
-          fmt::format("{:.4g} deg/s rms, must be below the {:.4g} deg/s of the "
-                      "raw rate",
-                      overall.residual.rms, overall.raw.rms)};
+  std::string found = fmt::format(
+      "{:.4g} deg/s rms, must be below the {:.4g} deg/s of the raw rate; "
+      "fitted to these runs a constant leaves {:.4g}",
+      overall.residual.rms, overall.raw.rms, overall.constant.rms);
+  if (overall.cubic) {
+    found += fmt::format(", a cubic {:.4g}", overall.cubic->rms);
+  }
+  const std::vector<std::string> better = better_fits(overall);
+  if (!better.empty()) {
+    found += fmt::format(": worse than a {}", fmt::join(better, " and a "));
+  }
+  return {"residual", overall.residual.rms < overall.raw.rms, found};
 }
 
 Verdict judge(const Validation& validation,
@@ -94,7 +147,7 @@ Verdict judge(const Validation& validation,
   if (!std::ranges::all_of(all, within)) {
     return Verdict::kBendsScaleFactor;
   }
-  if (all.empty()) {
+  if (!why_untested(validation.overall, all).empty()) {
     return Verdict::kScaleFactorUntested;
   }
   return residual_check(validation.overall).passed ? Verdict::kKeepsRate
@@ -119,6 +172,20 @@ std::string verdict_text(Verdict verdict) {
       return "removes no drift";
   }
   throw std::logic_error("verdict: not one of the enumerators");
+}
+
+std::vector<std::string> better_fits(const Score& score) {
+  std::vector<std::string> better;
+  const auto is_better = [&score](const ResidualScores& fit) {
+    return score.residual.rms > fit.rms * (1.0 + kSameRms);
+  };
+  if (is_better(score.constant)) {
+    better.emplace_back("constant");
+  }
+  if (score.cubic && is_better(*score.cubic)) {
+    better.emplace_back("cubic");
+  }
+  return better;
 }
 
 bool Validation::passed() const {
@@ -146,7 +213,7 @@ Validation validate(const std::string& method,
   }
   const auto all = measured_scale_factors(validation, specification);
   validation.checks = {finite_check(validation.overall),
-                       scale_factor_check(all),
+                       scale_factor_check(validation.overall, all),
                        residual_check(validation.overall)};
   validation.verdict = judge(validation, all);
   return validation;
@@ -154,29 +221,53 @@ Validation validate(const std::string& method,
 
 namespace {
 
-AnsweredRun answered_run(const Compensator& compensator,
-                         const NamedRecording& named) try {
-  const Recording& recording = *named.recording;
-  const auto estimator = [&compensator](const Recording& any) {
-    return compensated_rate(compensator, any);
-  };
-  AnsweredRun run{.name = named.name,
-                  .recording = &recording,
-                  .compensated = estimator(recording),
-                  .baseline = baseline_rate(compensator, recording)};
-  if (!scale_factor(slope_sums(recording, run.compensated))) {
-    // Replayed rates have the nominal scale factor, so none is to be corrected.
-    Compensator bias_only = compensator;
-    bias_only.scale_factor.reset();
-    run.injected_scale_factor = injected_scale_factor(
-        [&bias_only](const Recording& any) {
-          return compensated_rate(bias_only, any);
-        },
-        recording);
-  }
-  return run;
+/// `work` with the run's name before what it throws.
+template <class Work>
+void for_run(const NamedRecording& named, const Work& work) try {
+  work();
 } catch (const std::invalid_argument& error) {
   throw std::invalid_argument(fmt::format("{}: {}", named.name, error.what()));
+}
+
+double full_scale_of(const Recording& recording,
+                     const Specification& specification) {
+  if (specification.full_scale) return *specification.full_scale;
+  return stated_full_scale(recording).value_or(kFullScale);
+}
+
+/// The compensator's answers and its baseline's, and replays.
+std::vector<AnsweredRun> answered_runs(const Compensator& compensator,
+                                       const std::vector<NamedRecording>& runs,
+                                       const Specification& specification) {
+  std::vector<AnsweredRun> answered;
+  RecordedRates rates;
+  for (const NamedRecording& named : runs)
+    for_run(named, [&] {
+      const Recording& recording = *named.recording;
+      answered.push_back(
+          {.name = named.name,
+           .recording = &recording,
+           .compensated = compensated_rate(compensator, recording),
+           .baseline = baseline_rate(compensator, recording)});
+      if (needs_recorded_rates(compensator))
+        add_recorded_rates(recording, answered.back().compensated,
+                           full_scale_of(recording, specification), rates);
+    });
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    for_run(runs[k], [&] {
+      AnsweredRun& run = answered[k];
+      run.replayed =
+          replayed_scale_factor(compensator, *run.recording, run.compensated,
+                                full_scale_of(*run.recording, specification),
+                                tolerance_of(specification), rates);
+    });
+  const auto any = std::ranges::find_if(answered, [](const AnsweredRun& run) {
+    return run.replayed.has_value();
+  });
+  if (any != answered.end())
+    any->replayed->over_temperature = worst_over_temperature(
+        compensator, *any->recording, any->replayed->full_scale);
+  return answered;
 }
 
 }  // namespace
@@ -184,11 +275,29 @@ AnsweredRun answered_run(const Compensator& compensator,
 Validation validate(const Compensator& compensator, const std::string& method,
                     const std::vector<NamedRecording>& runs,
                     const Specification& specification) {
-  std::vector<AnsweredRun> answered;
-  for (const NamedRecording& run : runs)
-    answered.push_back(answered_run(compensator, run));
-  return validate(method, answered, specification,
-                  compensator.scale_factor.has_value());
+  Validation validation =
+      validate(method, answered_runs(compensator, runs, specification),
+               specification, compensator.scale_factor.has_value());
+  std::size_t seen = 0, clamped = 0;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    Score& score = validation.runs[k];
+    score.in_sample = was_used_in_training(compensator.provenance,
+                                           runs[k].sha256, *runs[k].recording);
+    seen += score.in_sample ? 1 : 0;
+    clamped += clamped_samples(compensator, *runs[k].recording);
+  }
+  if (clamped > 0)
+    validation.warnings.push_back(fmt::format(
+        "{} samples lie outside {:g} to {:g} degC, the temperatures seen in "
+        "training; clamped",
+        clamped, compensator.temperature_range.lowest,
+        compensator.temperature_range.highest));
+  if (seen > 0)
+    validation.warnings.push_back(fmt::format(
+        "{} of {} runs were used in training: these scores are in-sample and "
+        "flatter the compensator",
+        seen, runs.size()));
+  return validation;
 }
 
 }  // namespace beamgyro

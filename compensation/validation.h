@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct Specification {
   double scale_factor_tolerance = 1e-3;  // [-], |scale factor - 1|
   double small_rate_tolerance = 1e-2;    // [-], the same within kSmallRate: the
                                          // drift along a plateau weighs more
+  std::optional<double> full_scale = {};  // [deg/s], largest rate replayed
 };
 
 enum class Verdict {
@@ -41,25 +43,29 @@ struct Validation {
   Score overall;
   std::vector<Check> checks;  // "finite", "scale factor", "residual"
   Verdict verdict = Verdict::kNotFinite;
+  std::vector<std::string> warnings;  // of in-sample runs, of clamping
 
   bool passed() const;  // every check
 };
 
-constexpr double kCancelledBelow = 0.5;  // [-], scale factor
+/// "constant", "cubic": what leaves less than the compensator when fitted to
+/// the scored runs themselves.
+std::vector<std::string> better_fits(const Score& score);
 
-/// Scores the answers and judges them by the first line that applies:
+/// Scores the answers and judges them by the first verdict that applies:
 ///
-///   not finite               a powered sample has no finite answer
-///   cancels the rate         a scale factor below kCancelledBelow: within
-///                            kSmallRate, over every rate, or in a replay at
-///                            rest
-///   bends the scale factor   off by more than its tolerance: within
-///   kSmallRate;
-///                            over every rate, of all runs together and of each
-///                            whose rate departs by kTableRate; in a replay
-///   scale factor not tested  no run varies its rate and none was replayed
-///   removes no drift         rms of the residual not below that of the raw
-///   rate keeps the rate
+/// - not finite: a powered sample has no finite answer.
+/// - cancels the rate: a scale factor is below kCancelledBelow.
+/// - bends the scale factor: one is off by more than its tolerance.
+/// - scale factor not tested: no run varies its rate and none was replayed, or
+///   neither a replay nor a recorded rate tells what the compensator does.
+/// - removes no drift: the rms of the residual is not below that of the raw
+///   rate.
+/// - keeps the rate.
+///
+/// The scale factors looked at are those within kSmallRate and over every rate,
+/// of all runs together; of each run whose rate departs by kTableRate; and of
+/// the worst block of each replay (ReplayedScaleFactor).
 ///
 /// The scale factor is the one retained, or with `corrects_scale_factor` the
 /// absolute slope. A limit is met only by a number: NaN fails it. Throws
@@ -72,11 +78,13 @@ Validation validate(const std::string& method,
 struct NamedRecording {
   std::string name;
   const Recording* recording;  // not owned
+  std::string sha256 = {};     // of its file, if it has one of its own
 };
 
-/// The same of a compensator's own answers, with the cubic it carries, and with
-/// a replay (injected_scale_factor()) of each run whose true rate does not
-/// vary.
+/// The same of a compensator's own answers, with the cubic it carries, with
+/// replayed_scale_factor() of each run up to full scale (of `specification`,
+/// else stated_full_scale(), else kFullScale), and with warnings of runs that
+/// training used and of temperatures it never saw.
 Validation validate(const Compensator& compensator, const std::string& method,
                     const std::vector<NamedRecording>& runs,
                     const Specification& specification = {});

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "compensation/validation_report.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,8 @@ namespace beamgyro {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr const char* kClaimed = "claimed by the file";
 
 /// JSON has no NaN and no infinity: the library writes null for them.
 Json number(const std::optional<double>& value) {
@@ -38,6 +41,35 @@ Json scale_factor_json(const std::optional<ScaleFactor>& found) {
           {"raw_slope", found->raw_slope}};
 }
 
+Json block_json(const std::optional<ReplayedBlock>& block) {
+  if (!block) {
+    return nullptr;
+  }
+  return {{"retained", block->retained},
+          {"rate_deg_per_s", block->rate},
+          {"temperature_degC", block->temperature},
+          {"time_s", block->time}};
+}
+
+Json worst_json(const WorstBlocks& worst) {
+  return {{"within_2_deg_per_s", block_json(worst.small)},
+          {"beyond", block_json(worst.large)}};
+}
+
+/// Whether a replay moves every input that a rate may move.
+bool moves_all(const std::optional<ReplayedScaleFactor>& replayed) {
+  return replayed && replayed->not_moved.empty() && replayed->worst.worse();
+}
+
+Json replayed_json(const ReplayedScaleFactor& replayed) {
+  Json json = worst_json(replayed.worst);
+  json["over_every_temperature"] = worst_json(replayed.over_temperature);
+  json["temperatures_degC"] = {replayed.temperatures.lowest,
+                               replayed.temperatures.highest};
+  json["largest_rate_deg_per_s"] = replayed.full_scale;
+  return json;
+}
+
 Json linearity_json(const std::optional<Linearity>& found) {
   if (!found) {
     return nullptr;
@@ -50,17 +82,32 @@ Json linearity_json(const std::optional<Linearity>& found) {
 Json score_json(const Score& score) {
   Json json;
   json["run"] = score.run;
+  json["in_sample"] = score.in_sample;
   json["samples"] = score.samples;
   json["not_finite"] = score.not_finite;
   json["saturated"] = score.saturated;
   json["residual"] = residual_json(score.residual);
   json["raw"] = residual_json(score.raw);
   json["cubic"] = score.baseline ? residual_json(*score.baseline) : Json();
+  if (score.baseline) {
+    json["cubic"]["source"] = kClaimed;
+  }
+  json["fitted_to_these_runs"] = {
+      {"constant", residual_json(score.constant)},
+      {"cubic", score.cubic ? residual_json(*score.cubic) : Json()}};
+  json["worse_than"] = better_fits(score);
   json["percent_of_cubic"] = number(score.percent_of_cubic);
+  const ReplayedScaleFactor replayed =
+      score.replayed.value_or(ReplayedScaleFactor{});
+  const bool moved = moves_all(score.replayed);
   json["scale_factor"] = {
       {"within_2_deg_per_s", scale_factor_json(score.small_rates)},
       {"every_rate", scale_factor_json(score.every_rate)},
-      {"replayed_at_rest", number(score.injected_scale_factor)}};
+      {"replayed_at_rest",
+       moved ? Json(replayed.worst.worse()->retained) : Json()},
+      {"replayed", moved ? replayed_json(replayed) : Json()},
+      {"not_moved_by_replay", replayed.not_moved},
+      {"not_tested", replayed.untested}};
   json["linearity"] = linearity_json(score.linearity);
   json["raw_linearity"] = linearity_json(score.raw_linearity);
   json["white_noise_ratio"] = number(score.white_noise);
@@ -125,12 +172,31 @@ std::string raw_figures(const Score& score) {
                      cell(raw_slope, "{:.6f}"), cell(nonlinearity, "{:.4g}"));
 }
 
+std::string replay_note(const ReplayedScaleFactor& replayed) {
+  if (!replayed.not_moved.empty()) {
+    return fmt::format(
+        "scale factor replayed: not tested, no replay moves {}\n",
+        fmt::join(replayed.not_moved, ", "));
+  }
+  const std::optional<ReplayedBlock> worse = replayed.worst.worse();
+  if (!worse) {
+    return "scale factor replayed: not tested\n";
+  }
+  return fmt::format(
+      "scale factor replayed up to {:g} deg/s from {:.1f} to {:.1f} degC: "
+      "{:.6f} in the worst block\n",
+      replayed.full_scale, replayed.temperatures.lowest,
+      replayed.temperatures.highest, worse->retained);
+}
+
 std::string notes(const Validation& validation) {
   const Score& overall = validation.overall;
   std::string text;
-  if (overall.injected_scale_factor) {
-    text += fmt::format("scale factor replayed at rest: {:.6f}\n",
-                        *overall.injected_scale_factor);
+  if (overall.replayed) {
+    text += replay_note(*overall.replayed);
+  }
+  if (overall.baseline) {
+    text += fmt::format("% cubic: of the variance of a cubic {}\n", kClaimed);
   }
   if (overall.white_noise) {
     text += fmt::format("white noise at 1 s: {:.3g} of the raw rate's\n",
@@ -167,6 +233,7 @@ nlohmann::ordered_json to_json(const Validation& validation) {
   json["verdict"] = verdict_text(validation.verdict);
   json["passed"] = validation.passed();
   json["corrects_scale_factor"] = validation.corrects_scale_factor;
+  json["warnings"] = validation.warnings;
   json["checks"] = Json::array();
   for (const Check& check : validation.checks) {
     json["checks"].push_back({{"name", check.name},

@@ -1,38 +1,59 @@
 // SPDX-License-Identifier: MIT
 #include "config/document.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
-#include <fstream>
-#include <iterator>
+#include <memory>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
 #include "config/document_state.h"
+#include "config/file_error.h"
+#include "config/toml_extent.h"
 #include "config/toml_parser.h"
 
 namespace beamgyro {
 namespace {
 
+constexpr std::string_view kExpected = "a TOML file";
+
+[[noreturn]] void fail(const std::filesystem::path& file) {
+  throw_file_error(file, "cannot read",
+                   std::error_code(errno, std::generic_category()), kExpected);
+}
+
+std::string read_rest(int descriptor, const std::filesystem::path& file) {
+  std::string text;
+  for (std::array<char, 65536> piece{};;) {
+    const ssize_t size = uninterrupted(
+        [&] { return ::read(descriptor, piece.data(), piece.size()); });
+    if (size < 0) fail(file);
+    if (size == 0 || text.size() > kLargestToml) return text;
+    text.append(piece.data(), static_cast<std::size_t>(size));
+  }
+}
+
 std::string read_file(const std::filesystem::path& file) {
-  const auto reject = [&](const std::string& reason) {
+  const std::filesystem::file_status kind = status_of(file);
+  if (std::filesystem::exists(kind) &&
+      !std::filesystem::is_regular_file(kind)) {
     throw std::invalid_argument(fmt::format(
-        "{}: cannot read: {}; expected a TOML file", file.string(), reason));
-  };
-  std::error_code status_error;
-  const auto kind = std::filesystem::status(file, status_error);
-  if (std::filesystem::is_directory(kind)) reject("it is a directory");
-  if (std::filesystem::exists(kind) && !std::filesystem::is_regular_file(kind))
-    reject("it is a device or pipe");
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) reject(std::generic_category().message(errno));
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) reject(std::generic_category().message(errno));
-  return text;
+        "{}: cannot read: it is a {}; expected {}", file.string(),
+        std::filesystem::is_directory(kind) ? "directory" : "device or pipe",
+        kExpected));
+  }
+  const int descriptor =
+      uninterrupted([&] { return ::open(file.c_str(), O_RDONLY | O_CLOEXEC); });
+  if (descriptor < 0) fail(file);
+  const std::unique_ptr<const int, void (*)(const int*)> owner(
+      &descriptor, [](const int* opened) { ::close(*opened); });
+  return read_rest(descriptor, file);
 }
 
 void insert_all(const OverrideSet& sets, DocumentState& state) {

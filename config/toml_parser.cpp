@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "config/toml_extent.h"
 #include "config/toml_library.h"
 
 namespace beamgyro {
@@ -60,31 +61,10 @@ ConfigNode node_of(const toml::node& parsed) {
   return node;
 }
 
-/// A dotted key nests one table per part, and the parser's tables are destroyed
-/// by recursion: 100,000 parts overflow the stack.
-void reject_endless_keys(std::string_view text) {
-  constexpr std::size_t kMostParts = 256;
-  std::size_t line = 1, line_start = 0, parts = 1;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\n') {
-      ++line;
-      line_start = i + 1;
-    }
-    if (text[i] != '.') {
-      if (std::string_view("\n=,#[]{}").find(text[i]) != text.npos) parts = 1;
-    } else if (i > 0 && text[i - 1] == '.') {
-      parts = 1;  // no key: a row of dots
-    } else if (++parts > kMostParts) {
-      throw TomlError("a key of more than 256 parts",
-                      {line, i - line_start + 1});
-    }
-  }
-}
-
 }  // namespace
 
 ConfigNode parse_toml(std::string_view text) {
-  reject_endless_keys(text);
+  check_toml_extent(text);
   try {
     return node_of(toml::parse(text));
   } catch (const toml::parse_error& error) {

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@
 #include <system_error>
 #include <thread>
 
-#include "dataset/open_file.h"
+#include "config/file_error.h"
 
 namespace beamgyro {
 namespace {
@@ -30,11 +31,12 @@ namespace fs = std::filesystem;
 
 enum SlotState : int { kFree, kFilling, kTaken };
 
-/// Names of the partial files in storage that never moves and is never freed,
-/// so that a signal handler may read it at any moment.
+/// Directories and names of the partial files in storage that never moves and
+/// is never freed, so that a signal handler may read it at any moment.
 struct Slot {
   std::atomic<int> state{kFree};
-  std::array<char, PATH_MAX> path{};
+  int directory = -1;
+  std::array<char, NAME_MAX + 1> name{};
 };
 static_assert(std::atomic<int>::is_always_lock_free);
 std::array<Slot, 64> partial_files;
@@ -50,33 +52,46 @@ std::size_t take_slot() {
   }
 }
 
-std::string reason(int error) { return std::generic_category().message(error); }
+std::error_code last_error() { return {errno, std::generic_category()}; }
 
 [[noreturn]] void reject(const fs::path& path, const std::string& why) {
   throw std::invalid_argument(
       fmt::format("{}: cannot write: {}", path.string(), why));
 }
 
-[[noreturn]] void fail(const fs::path& path, int error) {
-  throw std::runtime_error(
-      fmt::format("{}: cannot write: {}", path.string(), reason(error)));
+[[noreturn]] void fail(const fs::path& path, const std::error_code& error) {
+  throw FileError(
+      fmt::format("{}: cannot write: {}", path.string(), error.message()),
+      error);
 }
 
 constexpr std::string_view kPartial = ".partial-";
 
-bool is_wrong_place(int error) {
-  return error == EACCES || error == EPERM || error == EROFS ||
-         error == ENOENT || error == ENOTDIR || error == EISDIR ||
-         error == ELOOP || error == ENAMETOOLONG;
+/// As the kernel has it (protected_symlinks): in a directory that all may write
+/// to a link of somebody else leads to where they want.
+void require_followable(const fs::path& link) {
+  struct stat of_link {
+  }, of_directory{};
+  const fs::path parent = link.parent_path();
+  if (lstat(link.c_str(), &of_link) != 0 ||
+      stat(parent.empty() ? "." : parent.c_str(), &of_directory) != 0)
+    return;  // what is wrong with it shows when it is written
+  const bool for_all = (of_directory.st_mode & S_ISVTX) != 0 &&
+                       (of_directory.st_mode & S_IWOTH) != 0;
+  if (for_all && of_link.st_uid != geteuid() &&
+      of_link.st_uid != of_directory.st_uid)
+    reject(link,
+           "it is a symbolic link of another user in a directory for all; "
+           "expected another name");
 }
 
 /// The file to replace: `path`, or what it links to.
 fs::path checked_target(const fs::path& path) {
   if (path.empty()) throw std::invalid_argument("an output file has no name");
   std::error_code ignored;
-  const fs::path target = fs::is_symlink(fs::symlink_status(path, ignored))
-                              ? fs::weakly_canonical(path, ignored)
-                              : path;
+  const bool is_link = fs::is_symlink(fs::symlink_status(path, ignored));
+  if (is_link) require_followable(path);
+  const fs::path target = is_link ? fs::weakly_canonical(path, ignored) : path;
   const fs::file_status status = fs::status(path, ignored);
   if (fs::is_directory(status) || !target.has_filename())
     reject(path, "it is a directory; expected a file name");
@@ -86,6 +101,24 @@ fs::path checked_target(const fs::path& path) {
       faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
     reject(path, "the file that is there is write-protected");
   return target;
+}
+
+/// A wrong directory is wrong input, any other failure is failed work.
+[[noreturn]] void fail_in(const fs::path& path, const std::error_code& error) {
+  if (!is_wrong_name(error)) fail(path, error);
+  const fs::path directory = path.parent_path();
+  reject(path, fmt::format("directory {}: {}; expected one that is there and "
+                           "writable",
+                           directory.empty() ? "." : directory.string(),
+                           error.message()));
+}
+
+Directory directory_of(const fs::path& path) {
+  try {
+    return Directory(path.parent_path());
+  } catch (const std::system_error& error) {
+    fail_in(path, error.code());
+  }
 }
 
 struct Writer {
@@ -112,56 +145,133 @@ std::optional<Writer> writer_of(const std::string& name) {
 }
 
 /// Whether an AtomicFile of this process writes it.
-bool is_ours(const fs::path& partial) {
-  return std::any_of(
-      partial_files.begin(), partial_files.end(), [&](const Slot& slot) {
-        return slot.state == kTaken &&
-               fs::path(slot.path.data()).filename() == partial.filename();
-      });
+bool is_ours(const std::string& name) {
+  return std::any_of(partial_files.begin(), partial_files.end(),
+                     [&](const Slot& slot) {
+                       return slot.state == kTaken && slot.name.data() == name;
+                     });
+}
+
+bool is_dead(const Writer& writer) {
+  return writer.host == host_name() &&
+         (writer.process == getpid() ||
+          (kill(writer.process, 0) != 0 && errno == ESRCH));
 }
 
 }  // namespace
 
-AtomicFile::AtomicFile(const fs::path& path) : path_(checked_target(path)) {
+AtomicFile::AtomicFile(const fs::path& path)
+    : path_(checked_target(path)),
+      directory_(directory_of(path_)),
+      name_(path_.filename().string()) {
+  try {
+    remove_dead_partial_files(directory_, false, name_);
+  } catch (const std::system_error&) {
+    // The directory may be one that nobody may list.
+  }
+  create();
+}
+
+AtomicFile::AtomicFile(const Directory& directory, const std::string& name,
+                       const fs::path& path)
+    : path_(path), directory_(directory.below({})), name_(name) {
+  const std::optional<FileFacts> there = directory.find(name);
+  if (there && !there->is_regular && !there->is_link)
+    reject(path, "it is no ordinary file; expected one, or none");
+  create();
+}
+
+void AtomicFile::create() {
   slot_ = take_slot();
   Slot& slot = partial_files[slot_];
+  slot.directory = directory_.descriptor();
   int file = -1;
   for (int attempt = 0; file < 0; ++attempt) {
-    const std::string partial =
-        fmt::format("{}{}{}-{}-{}", path_.string(), kPartial, host_name(),
-                    getpid(), attempt);
-    // Too long for the slot is too long for open() too.
-    if (partial.size() < slot.path.size()) {
-      partial.copy(slot.path.data(), partial.size());
-      slot.path[partial.size()] = '\0';
+    partial_name_ = fmt::format("{}{}{}-{}-{}", name_, kPartial, host_name(),
+                                getpid(), attempt);
+    // Too long for the slot is too long for openat() too.
+    if (partial_name_.size() < slot.name.size()) {
+      partial_name_.copy(slot.name.data(), partial_name_.size());
+      slot.name[partial_name_.size()] = '\0';
     }
     // Exclusive: a partial file that is there belongs to somebody else.
-    file = open(partial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    file = uninterrupted([&] {
+      return openat(slot.directory, partial_name_.c_str(),
+                    O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    });
     if (file < 0 && errno != EEXIST) {
-      const int error = errno;
+      const std::error_code error = last_error();
       slot.state = kFree;
-      if (!is_wrong_place(error)) fail(path, error);
-      const fs::path directory = path_.parent_path();
-      reject(path, fmt::format("directory {}: {}; expected one that is there "
-                               "and writable",
-                               directory.empty() ? "." : directory.string(),
-                               reason(error)));
+      fail_in(path_, error);
     }
-    partial_path_ = partial;
   }
   slot.state = kTaken;
-  close(file);
+  file_.emplace(file);
+  // Nobody reads what the file it replaces does not show.
+  if (const auto mode = replaced_mode())
+    fchmod(file, (*mode & 0666) | S_IRUSR | S_IWUSR);
 }
 
 AtomicFile::~AtomicFile() {
-  if (!published_) unlink(partial_path_.c_str());
+  if (!published_) unlinkat(directory_.descriptor(), partial_name_.c_str(), 0);
   partial_files[slot_].state = kFree;
 }
 
-void AtomicFile::publish() {
-  if (std::rename(partial_path_.c_str(), path_.c_str()) != 0)
-    fail(path_, errno);
+fs::path AtomicFile::partial_path() const {
+  return path_.parent_path() / partial_name_;
+}
+
+fs::path AtomicFile::name_of_open_file() const {
+  const std::string name = fmt::format("/proc/self/fd/{}", file_->descriptor());
+  struct stat ours {
+  }, there{};
+  const bool leads_there = fstat(file_->descriptor(), &ours) == 0 &&
+                           stat(name.c_str(), &there) == 0 &&
+                           ours.st_dev == there.st_dev &&
+                           ours.st_ino == there.st_ino;
+  return leads_there ? fs::path(name) : partial_path();
+}
+
+/// Of the file under the name asked for, if there is one.
+std::optional<mode_t> AtomicFile::replaced_mode() const {
+  struct stat there {};
+  if (fstatat(directory_.descriptor(), name_.c_str(), &there,
+              AT_SYMLINK_NOFOLLOW) != 0 ||
+      !S_ISREG(there.st_mode))
+    return {};
+  return there.st_mode & 0777;
+}
+
+void AtomicFile::require_own_partial_file() const {
+  struct stat ours {
+  }, there{};
+  if (fstat(file_->descriptor(), &ours) != 0 ||
+      fstatat(directory_.descriptor(), partial_name_.c_str(), &there,
+              AT_SYMLINK_NOFOLLOW) != 0)
+    fail(path_, last_error());
+  if (ours.st_dev != there.st_dev || ours.st_ino != there.st_ino)
+    throw std::runtime_error(fmt::format(
+        "{}: cannot write: another process has replaced the unfinished {}",
+        path_.string(), partial_name_));
+}
+
+void AtomicFile::publish() try {
+  file_->sync();
+  if (const auto mode = replaced_mode()) {
+    if (fchmod(file_->descriptor(), *mode) != 0) fail(path_, last_error());
+  }
+  require_own_partial_file();
+  file_->close();
+  const int directory = directory_.descriptor();
+  if (uninterrupted([&] {
+        return renameat(directory, partial_name_.c_str(), directory,
+                        name_.c_str());
+      }) != 0)
+    fail(path_, last_error());
   published_ = true;
+  directory_.sync();
+} catch (const std::system_error& error) {
+  fail(path_, error.code());
 }
 
 void require_writable(const fs::path& path) { const AtomicFile probe(path); }
@@ -169,11 +279,9 @@ void require_writable(const fs::path& path) { const AtomicFile probe(path); }
 void write_text_file(const fs::path& path, std::string_view text) {
   AtomicFile target(path);
   try {
-    OpenFile file(target.partial_path(), O_WRONLY);
-    file.write(std::as_bytes(std::span(text)));
-    file.close();
+    target.file().write(std::as_bytes(std::span(text)));
   } catch (const std::system_error& error) {
-    fail(path, error.code().value());
+    fail(path, error.code());
   }
   target.publish();
 }
@@ -190,23 +298,19 @@ bool is_partial_file(const std::string& name) {
   return writer_of(name).has_value();
 }
 
-void remove_dead_partial_files(const fs::path& directory, bool of_any_host) {
-  std::error_code ignored;
-  for (const fs::directory_entry& entry :
-       fs::directory_iterator(directory, ignored)) {
-    const std::optional<Writer> writer =
-        writer_of(entry.path().filename().string());
-    if (!writer || is_ours(entry.path())) continue;
-    const bool is_dead = writer->host == host_name() &&
-                         (writer->process == getpid() ||
-                          (kill(writer->process, 0) != 0 && errno == ESRCH));
-    if (is_dead || of_any_host) unlink(entry.path().c_str());
+void remove_dead_partial_files(const Directory& directory, bool of_any_host,
+                               std::string_view only) {
+  for (const std::string& name : directory.names()) {
+    const std::optional<Writer> writer = writer_of(name);
+    if (!writer || is_ours(name)) continue;
+    if (!only.empty() && name.substr(0, name.rfind(kPartial)) != only) continue;
+    if (of_any_host || is_dead(*writer)) directory.remove(name);
   }
 }
 
 void remove_partial_files() noexcept {
   for (const Slot& slot : partial_files) {
-    if (slot.state == kTaken) unlink(slot.path.data());
+    if (slot.state == kTaken) unlinkat(slot.directory, slot.name.data(), 0);
   }
 }
 

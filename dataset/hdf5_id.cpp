@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <string_view>
 
 // What HDF5 keeps to the end of the process, see QuietHdf5, is no leak.
@@ -29,14 +30,25 @@ void check_hdf5(herr_t status, const std::string& action) {
     return 0;
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_first, &cause);
-  // Of a failed write the library tells time, names and addresses, too.
+  // Of a failed call of the system it tells time, names and addresses, too.
+  constexpr std::string_view kNumber = "errno = ";
   constexpr std::string_view kSystem = "error message = '";
+  int error = 0;
+  if (const auto at = cause.find(kNumber); at != std::string::npos)
+    std::from_chars(cause.data() + at + kNumber.size(),
+                    cause.data() + cause.size(), error);
   if (const auto at = cause.find(kSystem); at != std::string::npos) {
     cause.erase(0, at + kSystem.size());
     cause.erase(std::min(cause.find('\''), cause.size()));
   }
   throw Hdf5Error(cause.empty() ? "cannot " + action
-                                : fmt::format("cannot {}: {}", action, cause));
+                                : fmt::format("cannot {}: {}", action, cause),
+                  error);
+}
+
+bool is_true(htri_t answer, const std::string& question) {
+  check_hdf5(answer < 0 ? -1 : 0, question);
+  return answer > 0;
 }
 
 std::mutex& QuietHdf5::mutex() {

@@ -14,22 +14,31 @@ inline constexpr const char* kRecordingFiletype = "beamgyro-recording";
 
 /// A call of the HDF5 library that failed, or a file it cannot be right about.
 struct Hdf5Error : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  explicit Hdf5Error(const std::string& message, int error = 0)
+      : std::runtime_error(message), error_number(error) {}
+  int error_number;  // errno of the system call that failed; 0: none did
 };
 
 /// Throws Hdf5Error "cannot <action>: <cause>" with the innermost entry of the
 /// library's error stack when `status` is negative.
 void check_hdf5(herr_t status, const std::string& action);
 
+/// The answer of a question to the library, which is negative when it could not
+/// be told: that is no "no", and throws as check_hdf5().
+bool is_true(htri_t answer, const std::string& question);
+
 /// HDF5 for this thread alone until the end of the scope; its high-level part
-/// has no lock of its own. Keeps it from printing its error stack, and from
-/// tidying up at the end of the process, where 1.10 crashes after a full disk.
-/// Two in one thread wait for ever.
+/// has no lock of its own. Keeps it from printing its error stack, from running
+/// the code of plug-ins that a file names, and from tidying up at the end of
+/// the process, where 1.10 crashes after a full disk. Two in one thread wait
+/// for ever.
 class QuietHdf5 {
  public:
   QuietHdf5() {
     static const herr_t no_exit_handler = H5dont_atexit();
     check_hdf5(no_exit_handler, "start HDF5");
+    static const herr_t no_plugins = H5PLset_loading_state(0);
+    check_hdf5(no_plugins, "start HDF5");
     H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }

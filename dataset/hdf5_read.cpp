@@ -3,35 +3,74 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cerrno>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
 
+#include "config/file_error.h"
+#include "dataset/hdf5_storage.h"
+
 namespace beamgyro {
 namespace {
 
-/// The text that `read` (H5Aread or H5Dread) fills, of one value of `type`.
+/// The text that `read` (H5Aread or H5Dread) fills, of one value of `type`, for
+/// which the file has `room` bytes.
 template <class Read>
-std::string read_text(hid_t type, hid_t space, const std::string& what,
-                      const Read& read) {
+std::string read_text(hid_t type, hid_t space, std::uint64_t room,
+                      const std::string& what, const Read& read) {
   if (H5Tget_class(type) != H5T_STRING ||
       H5Sget_simple_extent_npoints(space) != 1)
     throw Hdf5Error(what + " is no text");
-  if (H5Tis_variable_str(type) > 0) {
-    char* bytes = nullptr;
-    check_hdf5(read(&bytes), "read " + what);
-    std::string text = bytes == nullptr ? "" : bytes;
-    H5free_memory(bytes);
-    return text;
-  }
-  std::string text(H5Tget_size(type), '\0');
+  if (is_true(H5Tis_variable_str(type), "read " + what))
+    throw Hdf5Error(fmt::format(
+        "{} is text of variable length, where damage can crash HDF5; expected "
+        "text of fixed length, which beamgyro writes since format_version 2",
+        what));
+  const std::size_t size = H5Tget_size(type);
+  check_hdf5(size == 0 || size > room ? -1 : 0, "read " + what);
+  std::string text(size, '\0');
   check_hdf5(read(text.data()), "read " + what);
   return text.substr(0, text.find('\0'));
 }
 
+bool has_link(hid_t file, const std::string& name) {
+  return is_true(H5Lexists(file, name.c_str(), H5P_DEFAULT),
+                 "look for /" + name);
+}
+
+/// That `name` is the object itself and leads nowhere else.
+void check_link(hid_t file, const std::string& name, const char* kind) {
+  H5L_info_t link{};
+  check_hdf5(H5Lget_info(file, name.c_str(), &link, H5P_DEFAULT),
+             "open " + name);
+  if (link.type != H5L_TYPE_HARD)
+    throw Hdf5Error(fmt::format(
+        "{} is a link to another place; expected the {} itself", name, kind));
+}
+
+/// Whether `type` is an IEEE number or an integer of `expected` as processors
+/// have them: HDF5 converts any other kind by rules that the file makes.
+bool is_plain(hid_t type, H5T_class_t expected) {
+  const std::array<hid_t, 4> floats = {H5T_IEEE_F64LE, H5T_IEEE_F32LE,
+                                       H5T_IEEE_F64BE, H5T_IEEE_F32BE};
+  const std::array<hid_t, 14> integers = {
+      H5T_STD_U8LE,  H5T_STD_I8LE,  H5T_STD_I16LE, H5T_STD_U16LE, H5T_STD_I32LE,
+      H5T_STD_U32LE, H5T_STD_I64LE, H5T_STD_U64LE, H5T_STD_I16BE, H5T_STD_U16BE,
+      H5T_STD_I32BE, H5T_STD_U32BE, H5T_STD_I64BE, H5T_STD_U64BE};
+  const auto is_one_of = [type](std::span<const hid_t> types) {
+    return std::any_of(types.begin(), types.end(), [type](hid_t one) {
+      return is_true(H5Tequal(type, one), "compare types");
+    });
+  };
+  return expected == H5T_FLOAT ? is_one_of(floats) : is_one_of(integers);
+}
+
 H5Id open_attribute(hid_t object, const std::string& owner, const char* name) {
-  if (H5Aexists(object, name) <= 0)
+  if (!has_attribute(object, owner, name))
     throw Hdf5Error(fmt::format("{} has no attribute {}", owner, name));
   return {H5Aopen(object, name, H5P_DEFAULT), H5Aclose,
           fmt::format("open attribute {} of {}", name, owner)};
@@ -49,7 +88,7 @@ void read_number(hid_t object, const std::string& owner, const char* name,
   const H5Id attribute = open_attribute(object, owner, name);
   const H5Id type(H5Aget_type(attribute), H5Tclose, "read a type");
   const H5Id space(H5Aget_space(attribute), H5Sclose, "read a size");
-  if (H5Tget_class(type) != kind.type_class ||
+  if (!is_plain(type, kind.type_class) ||
       H5Sget_simple_extent_npoints(space) != 1)
     throw Hdf5Error(
         fmt::format("attribute {} of {} is no {}", name, owner, kind.name));
@@ -60,7 +99,11 @@ void read_number(hid_t object, const std::string& owner, const char* name,
 }  // namespace
 
 H5Id open_variable(hid_t file, const std::string& name) {
-  return {H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + name};
+  check_link(file, name, "variable");
+  H5Id variable(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose,
+                "open " + name);
+  check_storage(variable, name);
+  return variable;
 }
 
 std::vector<hsize_t> lengths_of(hid_t variable, const std::string& name,
@@ -74,24 +117,22 @@ std::vector<hsize_t> lengths_of(hid_t variable, const std::string& name,
   std::vector<hsize_t> lengths(static_cast<std::size_t>(rank));
   check_hdf5(H5Sget_simple_extent_dims(space, lengths.data(), nullptr),
              "size " + name);
-  // Deflate packs at most 1032 to 1: more than that was never written.
-  hsize_t room = H5Dget_storage_size(variable) * 2048 + 2047;
-  for (const hsize_t length : lengths) {
-    if (length > room)
-      throw Hdf5Error(fmt::format("the values of {} are missing", name));
-    if (length > 0) room /= length;
-  }
   return lengths;
 }
 
 void check_type(hid_t variable, const std::string& name, H5T_class_t expected,
                 std::size_t size) {
   const H5Id type(H5Dget_type(variable), H5Tclose, "open " + name);
-  if (H5Tget_class(type) == expected && H5Tget_size(type) <= size) return;
+  if (H5Tget_size(type) <= size && is_plain(type, expected)) return;
   throw Hdf5Error(fmt::format("{} has another type; expected {}", name,
                               expected == H5T_FLOAT ? "floating point"
                               : size == 1           ? "unsigned bytes"
                                                     : "integers"));
+}
+
+bool has_attribute(hid_t object, const std::string& owner, const char* name) {
+  return is_true(H5Aexists(object, name),
+                 fmt::format("look for attribute {} of {}", name, owner));
 }
 
 std::string text_attribute(hid_t object, const std::string& owner,
@@ -99,7 +140,8 @@ std::string text_attribute(hid_t object, const std::string& owner,
   const H5Id attribute = open_attribute(object, owner, name);
   const H5Id type(H5Aget_type(attribute), H5Tclose, "read a type");
   const H5Id space(H5Aget_space(attribute), H5Sclose, "read a size");
-  return read_text(type, space, fmt::format("attribute {} of {}", name, owner),
+  return read_text(type, space, H5Aget_storage_size(attribute),
+                   fmt::format("attribute {} of {}", name, owner),
                    [&](void* text) { return H5Aread(attribute, type, text); });
 }
 
@@ -119,13 +161,14 @@ double number_attribute(hid_t object, const std::string& owner,
 }
 
 std::string meta_text(hid_t file, const std::string& name) {
-  if (H5Lexists(file, "meta", H5P_DEFAULT) <= 0 ||
-      H5Lexists(file, ("meta/" + name).c_str(), H5P_DEFAULT) <= 0)
-    return {};
+  if (!has_link(file, "meta")) return {};
+  check_link(file, "meta", "group");
+  if (!has_link(file, "meta/" + name)) return {};
   const H5Id dataset = open_variable(file, "meta/" + name);
   const H5Id type(H5Dget_type(dataset), H5Tclose, "read a type");
   const H5Id space(H5Dget_space(dataset), H5Sclose, "read a size");
-  return read_text(type, space, "/meta/" + name, [&](void* text) {
+  const std::uint64_t room = H5Dget_storage_size(dataset);
+  return read_text(type, space, room, "/meta/" + name, [&](void* text) {
     return H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text);
   });
 }
@@ -161,15 +204,27 @@ std::vector<std::string> variable_names(hid_t file) {
   return names;
 }
 
+H5Id open_hdf5_file(const std::string& path) {
+  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access_properties()), H5Fclose,
+          "open the file"};
+}
+
+bool is_hdf5_file(const std::string& path) {
+  return is_true(H5Fis_hdf5(path.c_str()), "read the file");
+}
+
+bool is_of_filetype(hid_t file, const std::string& filetype) {
+  return has_attribute(file, "the file", "filetype") &&
+         text_attribute(file, "the file", "filetype") == filetype;
+}
+
 H5Id open_hdf5_file(const std::string& path, const std::string& filetype,
                     const std::string& kind, std::uint64_t newest) {
-  if (H5Fis_hdf5(path.c_str()) <= 0)
+  if (!is_hdf5_file(path))
     throw Hdf5Error(
         fmt::format("not an HDF5 file; expected a {} of beamgyro", kind));
-  H5Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access_properties()),
-            H5Fclose, "open the file");
-  if (H5Aexists(file, "filetype") <= 0 ||
-      text_attribute(file, "the file", "filetype") != filetype)
+  H5Id file = open_hdf5_file(path);
+  if (!is_of_filetype(file, filetype))
     throw Hdf5Error(fmt::format(
         "not a {} of beamgyro; expected the attribute filetype = \"{}\"", kind,
         filetype));
@@ -183,12 +238,25 @@ H5Id open_hdf5_file(const std::string& path, const std::string& filetype,
   return file;
 }
 
+Hdf5Error read_failure(const std::system_error& error) {
+  return Hdf5Error("cannot read: " + error.code().message(),
+                   error.code().value());
+}
+
+void reject_hdf5_file(const std::filesystem::path& path,
+                      const Hdf5Error& problem) {
+  const std::string message =
+      fmt::format("{}: {}", path.string(), problem.what());
+  if (problem.error_number == 0 || problem.error_number == EACCES ||
+      problem.error_number == ENOENT)
+    throw std::invalid_argument(message);
+  throw std::runtime_error(message);
+}
+
 void require_file(const std::filesystem::path& path, const std::string& kind) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (error)
-    throw std::invalid_argument(
-        fmt::format("{}: cannot read: {}", path.string(), error.message()));
+  if (error) throw_file_error(path, "cannot read", error);
   if (!std::filesystem::is_regular_file(status))
     throw std::invalid_argument(fmt::format(
         "{}: not a file; expected a {} of beamgyro", path.string(), kind));

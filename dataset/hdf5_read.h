@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "dataset/hdf5_id.h"
@@ -16,10 +17,11 @@ namespace beamgyro {
 // Reading a file that may be damaged or somebody else's: what is not as
 // expected throws Hdf5Error.
 
+/// Of a variable that stands in `file`, as check_storage() asks: nothing leads
+/// out of the file, and it is large enough for the values it announces.
 H5Id open_variable(hid_t file, const std::string& name);
 
-/// Lengths of the dimensions, of which there have to be `rank`. A file too
-/// small for the values it announces is an error, so that memory is safe.
+/// Lengths of the dimensions, of which there have to be `rank`.
 std::vector<hsize_t> lengths_of(hid_t variable, const std::string& name,
                                 int rank);
 
@@ -45,13 +47,15 @@ std::vector<Value> read_values(hid_t file, const std::string& name,
   return values;
 }
 
+bool has_attribute(hid_t object, const std::string& owner, const char* name);
+/// Of fixed length; text of variable length is an error.
 std::string text_attribute(hid_t object, const std::string& owner,
                            const char* name);
 std::uint64_t integer_attribute(hid_t file, const char* name);
 double number_attribute(hid_t object, const std::string& owner,
                         const char* name);
 
-/// /meta/`name`, empty when there is none.
+/// /meta/`name`, of fixed length; empty when there is none.
 std::string meta_text(hid_t file, const std::string& name);
 
 Role role_of(const std::string& text, const std::string& name);
@@ -59,10 +63,23 @@ Role role_of(const std::string& text, const std::string& name);
 /// Names of the variables beside /meta, in file order.
 std::vector<std::string> variable_names(hid_t file);
 
+bool is_hdf5_file(const std::string& path);
+H5Id open_hdf5_file(const std::string& path);
+/// Whether the attribute `filetype` says so.
+bool is_of_filetype(hid_t file, const std::string& filetype);
+
 /// Opens an HDF5 file whose attributes say `filetype` and a format_version from
 /// 1 to `newest`; `kind` names such a file.
 H5Id open_hdf5_file(const std::string& path, const std::string& filetype,
                     const std::string& kind, std::uint64_t newest);
+
+/// What a failed read of the file's bytes is among those of HDF5.
+Hdf5Error read_failure(const std::system_error& error);
+
+/// Throws `problem` with `path` before it: std::invalid_argument for what the
+/// file is, std::runtime_error when the system failed to read it.
+[[noreturn]] void reject_hdf5_file(const std::filesystem::path& path,
+                                   const Hdf5Error& problem);
 
 /// Throws std::invalid_argument naming `path` unless it is a file.
 void require_file(const std::filesystem::path& path, const std::string& kind);

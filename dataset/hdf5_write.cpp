@@ -9,6 +9,17 @@
 #include <cstdint>
 
 namespace beamgyro {
+namespace {
+
+H5Id text_type(std::size_t size, H5T_str_t padding) {
+  H5Id type(H5Tcopy(H5T_C_S1), H5Tclose, "copy a type");
+  check_hdf5(H5Tset_size(type, size), "size text");
+  check_hdf5(H5Tset_strpad(type, padding), "pad text");
+  check_hdf5(H5Tset_cset(type, H5T_CSET_UTF8), "choose UTF-8");
+  return type;
+}
+
+}  // namespace
 
 H5Id scalar_space() {
   return {H5Screate(H5S_SCALAR), H5Sclose, "create a scalar"};
@@ -39,12 +50,9 @@ void write_attribute(hid_t object, const char* name, hid_t type, hid_t space,
 }
 
 void write_text(hid_t object, const char* name, std::string_view text) {
-  const H5Id type(H5Tcopy(H5T_C_S1), H5Tclose, "copy a type");
   // No HDF5 type has size 0: an empty text is one NUL, which padding is too.
-  check_hdf5(H5Tset_size(type, std::max<std::size_t>(text.size(), 1)),
-             "size text");
-  check_hdf5(H5Tset_strpad(type, H5T_STR_NULLPAD), "pad text");
-  check_hdf5(H5Tset_cset(type, H5T_CSET_UTF8), "choose UTF-8");
+  const H5Id type =
+      text_type(std::max<std::size_t>(text.size(), 1), H5T_STR_NULLPAD);
   write_attribute(object, name, type, scalar_space(),
                   text.empty() ? "" : text.data());
 }
@@ -98,19 +106,19 @@ void write_meta(hid_t file, std::span<const NamedText> texts) {
   H5Id group(H5Gcreate2(file, "meta", H5P_DEFAULT,
                         creation_properties(H5P_GROUP_CREATE), H5P_DEFAULT),
              H5Gclose, "create /meta");
-  const H5Id type(H5Tcopy(H5T_C_S1), H5Tclose, "copy a type");
-  check_hdf5(H5Tset_size(type, H5T_VARIABLE), "size text");
-  check_hdf5(H5Tset_cset(type, H5T_CSET_UTF8), "choose UTF-8");
   const H5Id properties = creation_properties(H5P_DATASET_CREATE);
   for (const NamedText& entry : texts) {
     const std::string action = fmt::format("write /meta/{}", entry.name);
+    // netCDF reads up to a NUL, and takes a single byte for no text.
+    std::string text(entry.text);
+    text.resize(std::max<std::size_t>(text.size() + 1, 2));
+    const H5Id type = text_type(text.size(), H5T_STR_NULLTERM);
     H5Id dataset(H5Dcreate2(group, entry.name, type, scalar_space(),
                             H5P_DEFAULT, properties, H5P_DEFAULT),
                  H5Dclose, action);
-    const std::string text(entry.text);
-    const char* bytes = text.c_str();
-    check_hdf5(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &bytes),
-               action);
+    check_hdf5(
+        H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()),
+        action);
     dataset.close(action);
   }
   group.close("close /meta");

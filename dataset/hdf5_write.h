@@ -67,7 +67,8 @@ struct NamedText {
   std::string_view text;  // without NUL
 };
 
-/// The group /meta with one variable-length text for each.
+/// The group /meta with one text of fixed length for each, ended by NUL: HDF5
+/// 1.10 can crash on damage among texts of variable length.
 void write_meta(hid_t file, std::span<const NamedText> texts);
 
 }  // namespace beamgyro

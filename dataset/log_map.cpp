@@ -5,9 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
+
+#include "dataset/units.h"
 
 namespace beamgyro {
 namespace {
@@ -69,9 +72,7 @@ LogTime read_time(const ConfigTable& table) {
     return time;
   }
   static_cast<void>(table.has("rate_Hz"));
-  if (unit == "ms") time.ticks_per_s = 1e3;
-  if (unit == "us") time.ticks_per_s = 1e6;
-  if (unit == "ns") time.ticks_per_s = 1e9;
+  time.ticks_per_s = std::round(1.0 / unit_conversion(unit, "s").scale);
   return time;
 }
 

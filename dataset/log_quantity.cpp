@@ -2,18 +2,14 @@
 #include "dataset/log_quantity.h"
 
 #include <cmath>
-#include <numbers>
 
-#include "config/units.h"
+#include "dataset/units.h"
 
 namespace beamgyro {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kFastestRate = 20000.0;                // [deg/s]
-constexpr double kColdest = -100.0, kWarmest = 200.0;   // [degC]
-constexpr double kFahrenheitZero = 32.0;                // [degF]
-constexpr double kKelvinPerFahrenheitStep = 5.0 / 9.0;  // [K]
+constexpr double kFastestRate = 20000.0;               // [deg/s]
+constexpr double kColdest = -100.0, kWarmest = 200.0;  // [degC]
 constexpr long kMostColumns = 100000;
 
 LogQuantity quantity(const ConfigTable& table, const std::string& variable,
@@ -33,6 +29,14 @@ LogQuantity quantity(const ConfigTable& table, const std::string& variable,
     static_cast<void>(table.has("wrap_bits"));
   }
   return quantity;
+}
+
+/// Of a unit that says by itself how its numbers read.
+void set_conversion(LogQuantity& quantity) {
+  const UnitConversion conversion =
+      unit_conversion(quantity.unit, quantity.units);
+  quantity.offset += conversion.offset;
+  quantity.scale = conversion.scale;
 }
 
 double read_scale(const ConfigTable& table, std::string_view key) {
@@ -80,7 +84,7 @@ LogQuantity read_log_rate(const ConfigTable& table, const std::string& variable,
     rate.scale = read_scale(table, "scale_deg_per_s");
   } else {
     static_cast<void>(table.has("scale_deg_per_s"));
-    if (rate.unit == "rad/s") rate.scale = kDegPerRad;
+    set_conversion(rate);
   }
   return rate;
 }
@@ -97,12 +101,7 @@ LogQuantity read_log_temperature(const ConfigTable& table) {
   }
   static_cast<void>(table.has("scale_K"));
   static_cast<void>(table.has("offset_degC"));
-  if (temperature.unit == "degF") {
-    temperature.offset = kFahrenheitZero;
-    temperature.scale = kKelvinPerFahrenheitStep;
-  } else if (temperature.unit == "K") {
-    temperature.offset = kZeroCelsius;
-  }
+  set_conversion(temperature);
   return temperature;
 }
 
@@ -111,7 +110,7 @@ LogQuantity read_log_frequency(const ConfigTable& table,
                                const std::string& long_name) {
   LogQuantity frequency =
       quantity(table, variable, "Hz", long_name, {"Hz", "kHz"});
-  if (frequency.unit == "kHz") frequency.scale = 1e3;
+  set_conversion(frequency);
   return frequency;
 }
 
@@ -119,7 +118,7 @@ LogQuantity read_log_voltage(const ConfigTable& table,
                              const std::string& variable,
                              const std::string& long_name) {
   LogQuantity voltage = quantity(table, variable, "V", long_name, {"V", "mV"});
-  if (voltage.unit == "mV") voltage.scale = 1e-3;
+  set_conversion(voltage);
   return voltage;
 }
 

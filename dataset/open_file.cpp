@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "config/file_error.h"
+
 namespace beamgyro {
 namespace {
 
@@ -19,7 +21,10 @@ namespace {
 }  // namespace
 
 OpenFile::OpenFile(const std::filesystem::path& path, int flags)
-    : descriptor_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {
+    : OpenFile(uninterrupted(
+          [&] { return ::open(path.c_str(), flags | O_CLOEXEC, 0666); })) {}
+
+OpenFile::OpenFile(int descriptor) : descriptor_(descriptor) {
   if (descriptor_ < 0) fail();
 }
 
@@ -78,12 +83,18 @@ void OpenFile::read_pieces(
   }
 }
 
+void OpenFile::go_to(std::uint64_t place) {
+  if (lseek(descriptor_, static_cast<off_t>(place), SEEK_SET) < 0) fail();
+}
+
 void OpenFile::sync() {
-  if (fsync(descriptor_) != 0) fail();
+  if (uninterrupted([&] { return ::fsync(descriptor_); }) != 0) fail();
 }
 
 void OpenFile::close() {
-  if (::close(std::exchange(descriptor_, -1)) != 0) fail();
+  // Linux has let go of the descriptor before a signal can interrupt it; who
+  // closed it again might close the file of another thread.
+  if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail();
 }
 
 }  // namespace beamgyro

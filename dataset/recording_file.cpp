@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "dataset/recording_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <array>
 #include <bit>
 #include <charconv>
 #include <cstdint>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 
+#include "config/file_error.h"
 #include "dataset/atomic_file.h"
+#include "dataset/file_checksum.h"
 #include "dataset/hdf5_id.h"
 #include "dataset/hdf5_layout.h"
-#include "dataset/open_file.h"
 #include "dataset/recording_defect.h"
 
 namespace beamgyro {
@@ -57,24 +56,27 @@ class RecordingFile::Body {
   virtual void append(const Recording& block, std::size_t first) = 0;
 
   void publish() {
-    reporting([&] {
-      file_->sync();
-      file_->close();
-    });
+    try {
+      complete(target_.file());
+    } catch (const std::system_error& error) {
+      throw_file_error(path_, "cannot write", error.code());
+    }
     target_.publish();
   }
 
  protected:
-  const fs::path& partial_path() const { return target_.partial_path(); }
+  /// What a file has after all values.
+  virtual void complete(OpenFile&) {}
 
-  void open_file() {
-    reporting([&] { file_.emplace(partial_path(), O_WRONLY); });
-  }
+  fs::path name_of_open_file() const { return target_.name_of_open_file(); }
 
   void write_at(std::uint64_t place, const void* bytes, std::size_t size) {
-    reporting([&] {
-      file_->write_at(place, {static_cast<const std::byte*>(bytes), size});
-    });
+    try {
+      target_.file().write_at(place,
+                              {static_cast<const std::byte*>(bytes), size});
+    } catch (const std::system_error& error) {
+      throw_file_error(path_, "cannot write", error.code());
+    }
   }
 
   [[noreturn]] void fail(const std::string& reason) const {
@@ -82,18 +84,8 @@ class RecordingFile::Body {
   }
 
  private:
-  template <class Work>
-  void reporting(const Work& work) const {
-    try {
-      work();
-    } catch (const std::system_error& error) {
-      fail("cannot write: " + error.code().message());
-    }
-  }
-
   fs::path path_;
   AtomicFile target_;
-  std::optional<OpenFile> file_;
 };
 
 class RecordingFile::Hdf5Body : public Body {
@@ -101,11 +93,10 @@ class RecordingFile::Hdf5Body : public Body {
   Hdf5Body(const Recording& head, std::size_t samples, const fs::path& path)
       : Body(path) {
     try {
-      layout_ = make_hdf5_file(head, samples, partial_path());
+      layout_ = make_hdf5_file(head, samples, name_of_open_file());
     } catch (const Hdf5Error& error) {
       fail(error.what());
     }
-    open_file();
   }
 
   void append(const Recording& block, std::size_t first) override {
@@ -121,6 +112,8 @@ class RecordingFile::Hdf5Body : public Body {
   }
 
  private:
+  void complete(OpenFile& file) override { append_checksum(file); }
+
   Hdf5Layout layout_;
 };
 
@@ -128,7 +121,6 @@ class RecordingFile::CsvBody : public Body {
  public:
   CsvBody(const Recording& head, const fs::path& path)
       : Body(path), status_at_(status_position(head)) {
-    open_file();
     std::string text = "time";
     for (std::size_t i = 0; i <= head.columns.size(); ++i) {
       if (i == status_at_) text += ",status";

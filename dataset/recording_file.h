@@ -16,9 +16,10 @@ namespace beamgyro {
 /// HDF5 file, in its order, under a line of names; time in s, numbers in the
 /// shortest form that reads back to the same bits, `nan` where unpowered.
 /// HDF5 is made for netCDF-4 tools, too: /time as the dimension scale of every
-/// variable, /status, one variable per column, the texts below /meta. The bytes
-/// do not depend on how the recording is cut into blocks. The file appears
-/// under its name when it is complete (AtomicFile).
+/// variable, /status, one variable per column, the texts below /meta, and ends
+/// with a checksum (file_checksum.h). The bytes do not depend on how the
+/// recording is cut into blocks. The file appears under its name when it is
+/// complete (AtomicFile).
 class RecordingFile {
  public:
   /// A file of `samples` samples. `head` is a recording with every column and

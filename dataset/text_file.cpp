@@ -8,14 +8,14 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "config/file_error.h"
 #include "dataset/open_file.h"
 
 namespace beamgyro {
 
 void read_in_pieces(const std::filesystem::path& path,
                     const std::function<void(std::string_view)>& take) {
-  std::error_code ignored;
-  const auto kind = std::filesystem::status(path, ignored);
+  const auto kind = status_of(path);
   if (std::filesystem::exists(kind) && !std::filesystem::is_directory(kind) &&
       !std::filesystem::is_regular_file(kind)) {
     throw std::invalid_argument(
@@ -28,8 +28,7 @@ void read_in_pieces(const std::filesystem::path& path,
       take({reinterpret_cast<const char*>(piece.data()), piece.size()});
     });
   } catch (const std::system_error& error) {
-    throw std::invalid_argument(fmt::format(
-        "{}: cannot read: {}", path.string(), error.code().message()));
+    throw_file_error(path, "cannot read", error.code());
   }
 }
 

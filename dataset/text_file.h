@@ -9,7 +9,7 @@
 namespace beamgyro {
 
 /// The bytes of a file. Throws std::invalid_argument naming the file when it is
-/// missing, a directory or not readable.
+/// missing, a directory or not readable, and FileError when reading fails.
 std::string read_text_file(const std::filesystem::path& path);
 
 /// The same piece by piece, for a file that may be larger than memory.

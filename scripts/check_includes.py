@@ -17,6 +17,7 @@ SIM = {"sim/numerics", "sim/device", "sim/thermal", "sim/signal",
 
 # What each room may include besides itself.
 MAY_INCLUDE = {
+    "parallel": set(),
     "config": set(),
     "dataset": {"config"},
     "dataset/set": FILES,
@@ -26,10 +27,11 @@ MAY_INCLUDE = {
     "sim/device": FILES | NUMERICS | {"sim/thermal", "sim/signal"},
     "sim/dynamics": FILES | SIM - {"sim/scenario", "sim/campaign"},
     "sim/scenario": FILES | SIM - {"sim/campaign"},
-    "sim/campaign": FILES | SETS | SIM,
-    "compensation": FILES | SETS,
+    "sim/campaign": FILES | SETS | SIM | {"parallel"},
+    "compensation": FILES | SETS | {"parallel"},
     "cli": FILES | SETS | SIM | {"compensation"},
     "bench": FILES | SETS | SIM | {"compensation"},
+    "fuzz": FILES | SETS | SIM | {"compensation"},  # of tests/ only
     "agreement": FILES | SIM | {"compensation"},  # of tests/ only
 }
 

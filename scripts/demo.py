@@ -15,9 +15,6 @@ import subprocess
 import sys
 import time
 
-import h5py
-import numpy as np
-
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCENARIOS = ROOT / "scenarios"
 
@@ -167,13 +164,9 @@ class Demo:
     def allan(self):
         def deviation(item):
             name, run, column = item
-            with h5py.File(self.recording(run)) as file:
-                hertz = round(1 / (file["time"][1] - file["time"][0]), 9)
-                rate = file[column][file["time"][()] >= ALLAN_START]
-            series = self.out / f"allan/{name}.csv"
-            np.savetxt(series, rate, fmt="%.12g", header="rate", comments="")
-            self.beamgyro("allan", series, "--rate-Hz", hertz, "--json",
-                          series.with_suffix(".json"))
+            self.beamgyro("allan", self.recording(run), "--dataset", column,
+                          "--from", ALLAN_START, "--json",
+                          self.out / f"allan/{name}.json")
         self.all(deviation, [
             ("raw", "rest", "rate"),
             ("recommended", "rest_recommended", "compensated_rate"),

@@ -8,10 +8,11 @@
 # Submits those of N array tasks (16) that the manifest of DIR still lacks, at
 # most --at-once of them running, and a job after them that merges the manifest
 # and verifies the set, or submits what is lacking once more, in all --rounds
-# times (3). Options after -- go to every job of the array: --cpus-per-task=4,
-# --partition=..., --time=... . A task uses as many threads as it has CPUs. On
-# TERM (preemption, end of the time) it ends within seconds; the files that it
-# published stay. The program is $BEAMGYRO, else build/release/beamgyro.
+# times (3). Options after -- go to every job, the one after the array, too:
+# --cpus-per-task=4, --partition=..., --account=..., --time=... . A task uses as
+# many threads as it has CPUs. On TERM (preemption, end of the time) it ends
+# within seconds; the files that it published stay. The program is $BEAMGYRO,
+# else build/release/beamgyro.
 set -euo pipefail
 
 fail() {
@@ -20,6 +21,15 @@ fail() {
 }
 
 program_in() { echo "${BEAMGYRO:-$1/build/release/beamgyro}"; }
+
+# What --output takes for the log of a job: % stands for itself when it is
+# doubled. A \ never does; then the job opens its log itself.
+log_of() {
+  if [[ $1 == *\\* ]]; then echo /dev/null; else echo "${1//%/%%}/log/$2"; fi
+}
+open_log() {
+  if [[ $1 == *\\* ]]; then exec >>"$1/log/$2" 2>&1; fi
+}
 
 # One task of the array; the shell becomes the program, so TERM reaches it.
 task() {
@@ -53,13 +63,13 @@ submit() {
       "the reason is mended"
   mkdir -p "$dir/log"
   array=$(sbatch --parsable --job-name=beamgyro --requeue --open-mode=append \
-    --signal=B:TERM@60 --output="$dir/log/task_%a.log" "$@" \
+    --signal=B:TERM@60 --output="$(log_of "$dir" task_%a.log)" "$@" \
     --array="$lacking%$at_once" "$self" task "$program" "$campaign" "$dir" \
     "$tasks" "$devices")
   end=$(sbatch --parsable --job-name=beamgyro-finish --open-mode=append \
-    --output="$dir/log/finish.log" --dependency="afterany:$array" "$self" \
-    submit "$self" $((rounds - 1)) "$program" "$campaign" "$dir" "$tasks" "$at_once" \
-    "$devices" "$@")
+    --output="$(log_of "$dir" finish.log)" "$@" --dependency="afterany:$array" \
+    "$self" submit "$self" $((rounds - 1)) "$program" "$campaign" "$dir" "$tasks" \
+    "$at_once" "$devices" "$@")
   echo "array $array: tasks $lacking of $tasks"
   echo "then $end: merge and verify, see $dir/log/finish.log"
 }
@@ -68,6 +78,11 @@ case "${1:-}" in
   task | submit)
     step=$1
     shift
+    if [ "$step" = task ]; then
+      open_log "$3" "task_$SLURM_ARRAY_TASK_ID.log"
+    else
+      open_log "$5" finish.log
+    fi
     "$step" "$@"
     exit
     ;;

@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: MIT
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 
+#include "dataset/file_checksum.h"
 #include "dataset/hdf5_id.h"
 #include "dataset/hdf5_read.h"
+#include "dataset/json_node.h"
 #include "dataset/recording_defect.h"
 #include "dataset/set/hdf5_variable.h"
+#include "dataset/set/set_files.h"
 #include "dataset/set/shard_encoding.h"
 #include "dataset/set/shard_reader.h"
+#include "dataset/units.h"
 
 namespace beamgyro {
 namespace {
@@ -26,7 +31,8 @@ Storage storage_of(hid_t variable, const std::string& name) {
   const H5Id type(H5Dget_type(variable), H5Tclose, "open " + name);
   for (const Storage storage : {Storage::kFloat64, Storage::kFloat32,
                                 Storage::kInt16, Storage::kInt32}) {
-    if (H5Tequal(type, file_type(storage)) > 0) return storage;
+    if (is_true(H5Tequal(type, file_type(storage)), "compare types"))
+      return storage;
   }
   throw Hdf5Error(name + " has a type that no variable of a set has");
 }
@@ -51,16 +57,20 @@ void read_failures(const std::string& text, const ShardHead& head,
                    std::vector<DeviceRow>& rows) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    const auto json = nlohmann::json::parse(line, nullptr, false);
-    if (!json.is_object() || !json.contains("device") ||
-        !json["device"].is_number_unsigned() || !json.contains("reason") ||
-        !json["reason"].is_string())
-      throw Hdf5Error("/meta/failures has a line that names no device");
-    const auto device = json["device"].get<std::uint64_t>();
+    std::uint32_t device = 0;
+    std::string reason;
+    try {
+      const auto json = parse_json(line, "/meta/failures");
+      const JsonNode failure(json, "/meta/failures");
+      device = failure.at("device").small_integer();
+      reason = failure.at("reason").text();
+    } catch (const std::invalid_argument& error) {
+      throw Hdf5Error(error.what());
+    }
     if (device < head.first_device || device - head.first_device >= rows.size())
       throw Hdf5Error(fmt::format(
           "/meta/failures names device {}, not in the file", device));
-    rows[device - head.first_device].failure = json["reason"];
+    rows[device - head.first_device].failure = reason;
   }
   for (DeviceRow& row : rows) {
     if (row.device_status != kDeviceOk && row.failure.empty())
@@ -154,7 +164,9 @@ class ShardFile::File {
                                   text_attribute(variable, name, "long_name")});
       return;
     }
-    check_layout(variable, name);
+    const H5Id properties(H5Dget_create_plist(variable), H5Pclose,
+                          "open " + name);
+    head_.compress = H5Pget_layout(properties) == H5D_CHUNKED;
     const std::vector<hsize_t> lengths = lengths_of(variable, name, 2);
     const bool slow = lengths[1] != head_.time.size();
     if (lengths[0] != head_.devices ||
@@ -170,22 +182,15 @@ class ShardFile::File {
                       role_of(text_attribute(variable, name, "role"), name),
                       storage_of(variable, name)};
     about.slow = slow;
-    if (H5Aexists(variable, "scale_factor") > 0) {
+    const std::string_view expected = unit_of_variable(name);
+    if (!expected.empty() && about.units != expected)
+      throw Hdf5Error(fmt::format("{} has the unit '{}'; expected {}", name,
+                                  about.units, expected));
+    if (has_attribute(variable, name, "scale_factor")) {
       about.scale_factor = number_attribute(variable, name, "scale_factor");
       about.add_offset = number_attribute(variable, name, "add_offset");
     }
     head_.variables.push_back(about);
-  }
-
-  void check_layout(hid_t variable, const std::string& name) {
-    const H5Id properties(H5Dget_create_plist(variable), H5Pclose,
-                          "open " + name);
-    const H5D_layout_t layout = H5Pget_layout(properties);
-    if (layout == H5D_VIRTUAL)
-      throw Hdf5Error(
-          "a view, which does not tell missing files from missing "
-          "values; expected a file of the set");
-    head_.compress = layout == H5D_CHUNKED;
   }
 
   void read_rows() {
@@ -211,7 +216,9 @@ class ShardFile::File {
                                    std::size_t width, std::uint32_t position,
                                    std::size_t length) const {
     const std::string action = "read " + name;
-    const H5Id variable = open_variable(file_, name);
+    // read_head() has looked at what it claims.
+    const H5Id variable(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose,
+                        action);
     const H5Id there(H5Dget_space(variable), H5Sclose, action);
     const std::array<hsize_t, 2> start = {position, 0};
     const std::array<hsize_t, 2> count = {1, length};
@@ -240,12 +247,16 @@ namespace {
 }  // namespace
 
 bool is_shard_file(const std::filesystem::path& path) {
-  const QuietHdf5 quiet;
+  require_file(path, "recording or a file of a set");
   try {
-    open_hdf5_file(path.string(), kSetFiletype, "set", kSetFormatVersion);
-    return true;
-  } catch (const Hdf5Error&) {
-    return false;
+    if (has_checksum(path)) return false;  // as recordings alone have
+    const QuietHdf5 quiet;
+    return is_hdf5_file(path.string()) &&
+           is_of_filetype(open_hdf5_file(path.string()), kSetFiletype);
+  } catch (const Hdf5Error& error) {
+    reject_hdf5_file(path, error);
+  } catch (const std::system_error& error) {
+    reject_hdf5_file(path, read_failure(error));
   }
 }
 
@@ -255,9 +266,13 @@ ShardFile::ShardFile(const std::filesystem::path& path) : path_(path) {
   try {
     file_ = std::make_unique<File>(path.string());
   } catch (const Hdf5Error& error) {
-    reject(path, error.what());
+    reject_hdf5_file(path, error);
   }
 }
+
+ShardFile::ShardFile(const std::filesystem::path& directory,
+                     const std::string& name)
+    : ShardFile((open_set_file(directory, name, O_RDONLY), directory / name)) {}
 
 ShardFile::~ShardFile() {
   const QuietHdf5 quiet;
@@ -287,7 +302,7 @@ Recording ShardFile::read(std::uint32_t position, bool slow) const {
   try {
     return file_->read(position, slow);
   } catch (const Hdf5Error& error) {
-    reject(path_, error.what());
+    reject_hdf5_file(path_, error);
   }
 }
 

@@ -122,18 +122,20 @@ class View {
 
 }  // namespace
 
+std::vector<std::byte> view_bytes(const ShardHead& head,
+                                  std::span<const ManifestEntry> entries) {
+  const QuietHdf5 quiet;
+  const View view(head, entries);
+  const std::span<const std::byte> image = view.bytes();
+  return {image.begin(), image.end()};
+}
+
 ManifestView write_view(const std::filesystem::path& directory,
                         const ShardHead& head,
                         std::span<const ManifestEntry> entries) {
-  std::vector<std::byte> bytes;
-  {
-    const QuietHdf5 quiet;
-    const View view(head, entries);
-    const std::span<const std::byte> image = view.bytes();
-    bytes.assign(image.begin(), image.end());
-  }
+  const std::vector<std::byte> bytes = view_bytes(head, entries);
   const std::string name = view_name(head.run);
-  publish_file(directory / name, bytes);
+  publish_file(directory, name, bytes);
   return {name, bytes.size(), sha256(bytes)};
 }
 

@@ -3,20 +3,24 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
+#include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
 #include <system_error>
 
+#include "config/file_error.h"
+#include "dataset/json_node.h"
 #include "dataset/open_file.h"
 #include "dataset/set/publish.h"
+#include "dataset/set/set_files.h"
 #include "dataset/sha256.h"
-#include "dataset/text_file.h"
 
 namespace beamgyro {
 
@@ -24,18 +28,9 @@ namespace beamgyro {
 static void to_json(nlohmann::ordered_json& json, const SourceEntry& source) {
   json = {{"file", source.file}, {"sha256", source.sha256}};
 }
-static void from_json(const nlohmann::ordered_json& json, SourceEntry& source) {
-  json.at("file").get_to(source.file);
-  json.at("sha256").get_to(source.sha256);
-}
 static void to_json(nlohmann::ordered_json& json,
                     const DeviceFailure& failure) {
   json = {{"device", failure.device}, {"reason", failure.reason}};
-}
-static void from_json(const nlohmann::ordered_json& json,
-                      DeviceFailure& failure) {
-  json.at("device").get_to(failure.device);
-  json.at("reason").get_to(failure.reason);
 }
 
 namespace {
@@ -43,7 +38,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFiletype = "beamgyro-manifest";
-constexpr int kFormatVersion = 1;
+constexpr std::uint64_t kFormatVersion = 1;
 constexpr std::string_view kCheck = R"(,"check":")";
 constexpr std::size_t kCheckDigits = 16;
 
@@ -58,16 +53,21 @@ std::string line_of(const Json& json) {
   return line + std::string(kCheck) + check_of(line) + "\"}\n";
 }
 
-/// The object of a line without its end, if it is whole.
-std::optional<Json> object_of(std::string_view line) {
+/// A manifest of a program that is newer than this one.
+struct UnknownFormat : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The object of a line without its end. Throws std::invalid_argument for one
+/// that is not whole.
+Json object_of(std::string_view line, const std::string& place) {
   const std::size_t tail = kCheck.size() + kCheckDigits + 2;
-  if (line.size() <= tail) return {};
-  const std::string_view body = line.substr(0, line.size() - tail);
-  if (line.substr(body.size()) != std::string(kCheck) + check_of(body) + "\"}")
-    return {};
-  Json json = Json::parse(std::string(body) + "}", nullptr, false);
-  if (!json.is_object()) return {};
-  return json;
+  const std::string_view body =
+      line.substr(0, line.size() - std::min(tail, line.size()));
+  if (body.empty() ||
+      line.substr(body.size()) != std::string(kCheck) + check_of(body) + "\"}")
+    throw std::invalid_argument(place + ": the line is damaged");
+  return parse_json(std::string(body) + "}", place);
 }
 
 Json json_of(const ManifestHead& head) {
@@ -84,18 +84,63 @@ Json json_of(const ManifestHead& head) {
           {"sources", head.sources}};
 }
 
-ManifestHead head_of(const Json& json) {
+void require(const JsonNode& line, bool is_right, const std::string& key) {
+  if (!is_right) line.at(key).fail("is a name no set has");
+}
+
+/// Below source/, by a name that leads nowhere else.
+bool is_source_name(const std::string& text) {
+  const std::filesystem::path name = text;
+  return text.starts_with("source/") &&
+         text == name.lexically_normal().string() && name.has_filename() &&
+         text.find('\0') == std::string::npos &&
+         std::ranges::find(name, "..") == name.end();
+}
+
+/// What stands before `ending`, if it is the name of a run.
+bool is_file_of_run(std::string_view name, std::string_view ending) {
+  return name.ends_with(ending) &&
+         is_run_name(name.substr(0, name.size() - ending.size()));
+}
+
+/// As expected_entry() makes them.
+bool is_shard_name(std::string_view name) {
+  const std::size_t mark = std::min(name.rfind('_'), name.size());
+  const std::string_view rest = name.substr(mark);
+  constexpr std::string_view kEnding = ".h5";
+  return rest.size() >= 6 + kEnding.size() && rest.ends_with(kEnding) &&
+         rest.find_first_not_of("0123456789", 1) ==
+             rest.size() - kEnding.size() &&
+         is_run_name(name.substr(0, mark));
+}
+
+/// Ranges of devices, each with a file for every run.
+std::uint64_t ranges_of(const ManifestHead& head) {
+  return head.devices / head.devices_per_file +
+         (head.devices % head.devices_per_file != 0 ? 1 : 0);
+}
+
+ManifestHead head_of(const JsonNode& line) {
   ManifestHead head;
-  json.at("campaign").get_to(head.campaign);
-  json.at("campaign_sha256").get_to(head.campaign_sha256);
-  json.at("beamgyro_version").get_to(head.program_version);
-  json.at("git_revision").get_to(head.git_revision);
-  json.at("seed").get_to(head.seed);
-  json.at("devices").get_to(head.devices);
-  json.at("devices_per_file").get_to(head.devices_per_file);
-  json.at("runs").get_to(head.runs);
-  json.at("sources").get_to(head.sources);
-  if (head.devices_per_file == 0) throw std::out_of_range("devices_per_file");
+  head.campaign = line.at("campaign").text();
+  head.campaign_sha256 = line.at("campaign_sha256").text();
+  head.program_version = line.at("beamgyro_version").text();
+  head.git_revision = line.at("git_revision").text();
+  head.seed = line.at("seed").unsigned_integer();
+  head.devices = line.at("devices").small_integer();
+  head.devices_per_file = line.at("devices_per_file").small_integer();
+  head.runs = line.at("runs").texts();
+  for (const JsonNode& source : line.at("sources").elements())
+    head.sources.push_back(
+        {source.at("file").text(), source.at("sha256").text()});
+  require(line, std::ranges::all_of(head.runs, is_run_name), "runs");
+  for (const SourceEntry& source : head.sources)
+    require(line, is_source_name(source.file), "sources");
+  if (head.devices == 0 || head.devices_per_file == 0 || head.runs.empty() ||
+      head.sources.empty() ||
+      ranges_of(head) * head.runs.size() >
+          std::numeric_limits<std::uint32_t>::max())
+    line.fail("describes no set");
   return head;
 }
 
@@ -109,15 +154,18 @@ Json json_of(const ManifestEntry& entry) {
           {"failures", entry.failures}};
 }
 
-ManifestEntry entry_of(const Json& json) {
+ManifestEntry entry_of(const JsonNode& line) {
   ManifestEntry entry;
-  json.at("index").get_to(entry.index);
-  json.at("file").get_to(entry.file);
-  json.at("bytes").get_to(entry.bytes);
-  json.at("sha256").get_to(entry.sha256);
-  json.at("first_device").get_to(entry.first_device);
-  json.at("devices").get_to(entry.devices);
-  json.at("failures").get_to(entry.failures);
+  entry.index = line.at("index").small_integer();
+  entry.file = line.at("file").text();
+  entry.bytes = line.at("bytes").unsigned_integer();
+  entry.sha256 = line.at("sha256").text();
+  entry.first_device = line.at("first_device").small_integer();
+  entry.devices = line.at("devices").small_integer();
+  for (const JsonNode& failure : line.at("failures").elements())
+    entry.failures.push_back(
+        {failure.at("device").small_integer(), failure.at("reason").text()});
+  require(line, is_shard_name(entry.file), "file");
   return entry;
 }
 
@@ -125,11 +173,10 @@ Json json_of(const ManifestView& view) {
   return {{"view", view.file}, {"bytes", view.bytes}, {"sha256", view.sha256}};
 }
 
-ManifestView view_of(const Json& json) {
-  ManifestView view;
-  json.at("view").get_to(view.file);
-  json.at("bytes").get_to(view.bytes);
-  json.at("sha256").get_to(view.sha256);
+ManifestView view_of(const JsonNode& line) {
+  ManifestView view{line.at("view").text(), line.at("bytes").unsigned_integer(),
+                    line.at("sha256").text()};
+  require(line, is_file_of_run(view.file, ".nc"), "view");
   return view;
 }
 
@@ -139,24 +186,27 @@ struct Reading {
   std::map<std::uint32_t, ManifestEntry> entries;
 
   /// `before`: all bytes before the line.
-  void take(const Json& json, std::string_view before) {
-    if (json.contains("filetype")) {
-      if (json.at("filetype") != kFiletype) throw std::out_of_range("filetype");
-      if (json.at("format_version") != kFormatVersion)
-        throw std::invalid_argument(
+  void take(const JsonNode& line, std::string_view before) {
+    if (line.has("filetype")) {
+      if (line.at("filetype").text() != kFiletype)
+        line.at("filetype").fail("is no manifest's");
+      const std::uint64_t version =
+          line.at("format_version").unsigned_integer();
+      if (version != kFormatVersion)
+        throw UnknownFormat(
             fmt::format("format_version {} is not known; this program reads {}",
-                        json.at("format_version").dump(), kFormatVersion));
-      manifest.head = head_of(json);
-    } else if (json.contains("index")) {
-      ManifestEntry entry = entry_of(json);
+                        version, kFormatVersion));
+      manifest.head = head_of(line);
+    } else if (line.has("index")) {
+      ManifestEntry entry = entry_of(line);
       entries.insert_or_assign(entry.index, entry);
-    } else if (json.contains("view")) {
-      manifest.views.push_back(view_of(json));
+    } else if (line.has("view")) {
+      manifest.views.push_back(view_of(line));
     } else {
       manifest.is_finished = true;
-      const bool is_same = json.at("sha256_before") == sha256(before);
+      const bool is_same = line.at("sha256_before").text() == sha256(before);
       if (!is_same && manifest.damaged_lines.empty())
-        throw std::out_of_range("sha256_before");
+        line.at("sha256_before").fail("is that of other lines");
     }
   }
 };
@@ -167,11 +217,17 @@ std::span<const std::byte> bytes_of(std::string_view text) {
 
 }  // namespace
 
+bool is_run_name(std::string_view text) {
+  constexpr std::size_t kMost = 200;
+  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyz";
+  return !text.empty() && text.size() <= kMost &&
+         kLetters.find(text.front()) != kLetters.npos &&
+         text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") ==
+             text.npos;
+}
+
 std::uint32_t file_count(const ManifestHead& head) {
-  const std::uint32_t ranges =
-      head.devices / head.devices_per_file +
-      (head.devices % head.devices_per_file != 0 ? 1 : 0);
-  return ranges * static_cast<std::uint32_t>(head.runs.size());
+  return static_cast<std::uint32_t>(ranges_of(head) * head.runs.size());
 }
 
 ManifestEntry expected_entry(const ManifestHead& head, std::uint32_t index) {
@@ -186,6 +242,20 @@ ManifestEntry expected_entry(const ManifestHead& head, std::uint32_t index) {
   return entry;
 }
 
+bool is_file_of(const ManifestHead& head, const std::string& name) {
+  const std::uint64_t runs = head.runs.size();
+  const std::size_t mark = name.rfind('_');
+  for (std::uint64_t run = 0; mark != name.npos && run < runs; ++run) {
+    if (name.substr(0, mark) != head.runs[run]) continue;
+    std::uint32_t range = 0;
+    std::from_chars(name.data() + mark + 1, name.data() + name.size(), range);
+    const std::uint64_t index = range * runs + run;
+    return index < file_count(head) &&
+           expected_entry(head, static_cast<std::uint32_t>(index)).file == name;
+  }
+  return false;
+}
+
 std::string view_name(std::string_view run) {
   return fmt::format("{}.nc", run);
 }
@@ -194,8 +264,9 @@ std::string part_name(std::uint32_t task, std::uint32_t tasks) {
   return fmt::format("manifest.{}-of-{}.jsonl", task, tasks);
 }
 
-Manifest read_manifest(const std::filesystem::path& path) {
-  const std::string text = read_text_file(path);
+Manifest read_manifest(const std::filesystem::path& directory,
+                       const std::filesystem::path& name) {
+  const std::string text = read_set_file(directory, name);
   Reading reading;
   std::vector<std::size_t>& damaged = reading.manifest.damaged_lines;
   std::size_t number = 0;
@@ -204,14 +275,14 @@ Manifest read_manifest(const std::filesystem::path& path) {
     const std::string_view all(text);
     reading.manifest.is_finished = false;
     ++number;
-    const std::optional<Json> json = object_of(all.substr(place, end - place));
+    const std::string line =
+        fmt::format("{}:{}", (directory / name).string(), number);
     try {
-      if (!json) throw std::out_of_range("check");
-      reading.take(*json, all.substr(0, place));
-    } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(
-          fmt::format("{}:{}: {}", path.string(), number, error.what()));
-    } catch (const std::exception&) {  // of the JSON library, too
+      const Json json = object_of(all.substr(place, end - place), line);
+      reading.take(JsonNode(json, line), all.substr(0, place));
+    } catch (const UnknownFormat& error) {
+      throw std::invalid_argument(fmt::format("{}: {}", line, error.what()));
+    } catch (const std::invalid_argument&) {
       if (end < text.size()) damaged.push_back(number);
     }
     place = end + 1;
@@ -223,21 +294,32 @@ Manifest read_manifest(const std::filesystem::path& path) {
   return std::move(manifest);
 }
 
-void start_manifest(const std::filesystem::path& path, const ManifestHead& head,
+void start_manifest(const std::filesystem::path& directory,
+                    const std::filesystem::path& name, const ManifestHead& head,
                     const std::vector<ManifestEntry>& entries) {
   std::string text = line_of(json_of(head));
   for (const ManifestEntry& entry : entries) text += line_of(json_of(entry));
-  publish_file(path, bytes_of(text));
+  publish_file(directory, name, bytes_of(text));
 }
 
-void append_entry(const std::filesystem::path& path,
+void append_entry(const std::filesystem::path& directory,
+                  const std::filesystem::path& name,
                   const ManifestEntry& entry) {
+  const std::filesystem::path path = directory / name;
+  OpenFile file = open_set_file(directory, name, O_RDWR | O_APPEND);
   try {
-    OpenFile file(path, O_RDWR | O_APPEND);
+    struct stat facts {};
+    if (fstat(file.descriptor(), &facts) != 0)
+      throw std::system_error(errno, std::generic_category());
+    if (facts.st_nlink > 1)
+      throw std::runtime_error(fmt::format(
+          "{}: has another name, too, and may be somebody else's file; "
+          "expected a manifest of its own, which --resume makes",
+          path.string()));
     std::string line = line_of(json_of(entry));
     // A line that a dead process cut short must not swallow this one.
     char last = '\n';
-    const off_t size = lseek(file.descriptor(), 0, SEEK_END);
+    const off_t size = facts.st_size;
     if (size > 0 && pread(file.descriptor(), &last, 1, size - 1) != 1)
       throw std::system_error(errno, std::generic_category());
     if (last != '\n') line.insert(0, 1, '\n');
@@ -245,12 +327,14 @@ void append_entry(const std::filesystem::path& path,
     file.sync();
     file.close();
   } catch (const std::system_error& error) {
-    throw std::runtime_error(fmt::format("{}: cannot write: {}", path.string(),
-                                         error.code().message()));
+    throw FileError(fmt::format("{}: cannot write: {}", path.string(),
+                                error.code().message()),
+                    error.code());
   }
 }
 
-void write_manifest(const std::filesystem::path& path,
+void write_manifest(const std::filesystem::path& directory,
+                    const std::filesystem::path& name,
                     const Manifest& manifest) {
   const std::string head = line_of(json_of(manifest.head.value()));
   std::string text = head;
@@ -264,7 +348,7 @@ void write_manifest(const std::filesystem::path& path,
   for (const ManifestView& view : views) text += line_of(json_of(view));
   text += head;
   text += line_of({{"sha256_before", sha256(text)}});
-  publish_file(path, bytes_of(text));
+  publish_file(directory, name, bytes_of(text));
 }
 
 }  // namespace beamgyro

@@ -73,28 +73,44 @@ struct Manifest {
 std::uint32_t file_count(const ManifestHead& head);
 /// What the entry of this index has to say: index, file, first_device, devices.
 ManifestEntry expected_entry(const ManifestHead& head, std::uint32_t index);
+/// Whether some entry of the set has a file of this name.
+bool is_file_of(const ManifestHead& head, const std::string& name);
 /// NAME.nc
 std::string view_name(std::string_view run);
 /// manifest.I-of-N.jsonl
 std::string part_name(std::uint32_t task, std::uint32_t tasks);
 
-/// Never fails for what the file says: what is damaged is not in the result.
-/// Of two lines for one index the later one counts. Throws
+/// Whether a run may have this name, of which those of its files are made:
+/// [a-z][a-z0-9_]*, 200 characters at most.
+bool is_run_name(std::string_view text);
+
+// `name` is that of a manifest in the set's directory: kManifestName, a part or
+// kHeadCopyName. Files are opened as by open_set_file() and published as by
+// publish_file().
+
+/// Never fails for what the file says: what is damaged is not in the result,
+/// nor is a line with a name that no set has, such as one that leads out of its
+/// directory. Of two lines for one index the later one counts. Throws
 /// std::invalid_argument when there is no such file or it is of a newer
 /// format_version.
-Manifest read_manifest(const std::filesystem::path& path);
+Manifest read_manifest(const std::filesystem::path& directory,
+                       const std::filesystem::path& name);
 
 /// An unfinished manifest, in place of any other.
-void start_manifest(const std::filesystem::path& path, const ManifestHead& head,
+void start_manifest(const std::filesystem::path& directory,
+                    const std::filesystem::path& name, const ManifestHead& head,
                     const std::vector<ManifestEntry>& entries = {});
 
 /// Adds a line in one write, and waits until it is on the disk. Throws
-/// std::runtime_error when that fails.
-void append_entry(const std::filesystem::path& path,
+/// std::runtime_error when that fails, and for a file that has another name (a
+/// hard link), which may be a file of somebody else.
+void append_entry(const std::filesystem::path& directory,
+                  const std::filesystem::path& name,
                   const ManifestEntry& entry);
 
 /// The finished manifest of `manifest`, which has a head.
-void write_manifest(const std::filesystem::path& path,
+void write_manifest(const std::filesystem::path& directory,
+                    const std::filesystem::path& name,
                     const Manifest& manifest);
 
 }  // namespace beamgyro

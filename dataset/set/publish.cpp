@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "dataset/set/publish.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/statvfs.h>
 
@@ -14,7 +13,9 @@
 #include <system_error>
 #include <vector>
 
+#include "config/file_error.h"
 #include "dataset/atomic_file.h"
+#include "dataset/directory.h"
 #include "dataset/open_file.h"
 
 namespace beamgyro {
@@ -36,9 +37,10 @@ std::string room_in(const fs::path& file) {
   const bool is_full =
       error == std::errc::no_space_on_device ||
       error == std::error_code(EDQUOT, std::generic_category());
-  throw std::runtime_error(
+  throw FileError(
       fmt::format("{}: cannot write: {}; {} bytes are needed{}", path.string(),
-                  error.message(), size, is_full ? room_in(path) : ""));
+                  error.message(), size, is_full ? room_in(path) : ""),
+      error);
 }
 
 void require_same(const fs::path& path, OpenFile& file,
@@ -56,34 +58,33 @@ void require_same(const fs::path& path, OpenFile& file,
   }
 }
 
-}  // namespace
-
-void sync_directory(const fs::path& directory) {
-  const fs::path& name = directory.empty() ? fs::path(".") : directory;
+Directory made_directory(const fs::path& directory, const fs::path& name) {
   try {
-    OpenFile(name, O_RDONLY | O_DIRECTORY).sync();
+    return Directory(directory).make_below(name.parent_path());
   } catch (const std::system_error& error) {
-    // Some network file systems cannot, and need not.
-    if (error.code() == std::errc::invalid_argument) return;
-    throw std::runtime_error(fmt::format("{}: cannot write: {}", name.string(),
-                                         error.code().message()));
+    throw_file_error((directory / name).parent_path(), "cannot write",
+                     error.code(),
+                     "a directory that is there and writable, no link");
   }
 }
 
-void publish_file(const fs::path& path, std::span<const std::byte> bytes) {
-  AtomicFile target(path);
+}  // namespace
+
+void publish_file(const fs::path& directory, const fs::path& name,
+                  std::span<const std::byte> bytes) {
+  const fs::path path = directory / name;
+  const Directory parent = made_directory(directory, name);
   try {
-    OpenFile file(target.partial_path(), O_WRONLY);
-    file.write(bytes);
-    file.sync();
-    file.close();
-    OpenFile written(target.partial_path(), O_RDONLY);
-    require_same(path, written, bytes);
+    AtomicFile target(parent, name.filename().string(), path);
+    target.file().write(bytes);
+    target.file().go_to(0);
+    require_same(path, target.file(), bytes);
+    target.publish();
+  } catch (const FileError& error) {
+    fail(path, bytes.size(), error.code);
   } catch (const std::system_error& error) {
     fail(path, bytes.size(), error.code());
   }
-  target.publish();
-  sync_directory(path.parent_path());
 }
 
 }  // namespace beamgyro

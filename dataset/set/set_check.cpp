@@ -10,7 +10,9 @@
 #include <span>
 #include <system_error>
 
+#include "config/file_error.h"
 #include "dataset/atomic_file.h"
+#include "dataset/directory.h"
 #include "dataset/open_file.h"
 #include "dataset/sha256.h"
 
@@ -44,6 +46,7 @@ class Check {
   Check(const fs::path& directory, const Manifest& manifest,
         const CheckProgress& progress)
       : directory_(directory),
+        set_(directory),
         manifest_(manifest),
         files_(listed_files(manifest)),
         progress_(progress) {
@@ -87,43 +90,70 @@ class Check {
   }
 
   void check_head_copy(const ManifestHead& head) {
-    if (!fs::exists(directory_ / kHeadCopyName))
-      return add(kHeadCopyName, "is missing");
-    const Manifest copy = read_manifest(directory_ / kHeadCopyName);
+    const std::optional<FileFacts> facts = facts_of(kHeadCopyName, {});
+    if (!facts) return;
+    const Manifest copy = read_manifest(directory_, kHeadCopyName);
     if (copy.head != head || !copy.damaged_lines.empty())
       add(kHeadCopyName, "holds other bytes than were written");
   }
 
   void check_entries(const ManifestHead& head) {
-    std::vector<bool> found(file_count(head));
+    // The head may claim any number of files; only what is listed takes memory.
+    constexpr std::size_t kMostListed = 100'000;
+    const std::uint32_t planned = file_count(head);
+    std::set<std::uint32_t> found;
     for (const ManifestEntry& entry : manifest_.entries) {
-      if (entry.index >= found.size()) {
+      if (entry.index >= planned) {
         add(entry.file,
-            fmt::format("is number {} of {} files", entry.index, found.size()));
+            fmt::format("is number {} of {} files", entry.index, planned));
         continue;
       }
-      found[entry.index] = true;
+      found.insert(entry.index);
       const ManifestEntry expected = expected_entry(head, entry.index);
       if (entry.file != expected.file ||
           entry.first_device != expected.first_device ||
           entry.devices != expected.devices)
         add(expected.file, "stands otherwise in the manifest", entry.index);
     }
-    for (std::uint32_t index = 0; index < found.size(); ++index) {
-      if (!found[index])
-        add(expected_entry(head, index).file, "is not in the manifest", index);
+    std::size_t missing = planned - found.size();
+    for (std::uint32_t index = 0, listed = 0;
+         missing > 0 && listed < kMostListed; ++index) {
+      if (found.contains(index)) continue;
+      add(expected_entry(head, index).file, "is not in the manifest", index);
+      --missing;
+      ++listed;
     }
+    if (missing > 0)
+      add(kManifestName,
+          fmt::format("does not have {} more of {} files", missing, planned));
+  }
+
+  /// Nothing when it is no ordinary file, which is a defect.
+  std::optional<FileFacts> facts_of(const std::string& name,
+                                    std::optional<std::uint32_t> index) {
+    try {
+      const std::optional<FileFacts> facts = set_.find(name);
+      if (facts && facts->is_regular) return facts;
+      add(name,
+          !facts           ? "is missing"
+          : facts->is_link ? "is a symbolic link, which is not followed"
+                           : "is no ordinary file",
+          index);
+    } catch (const std::system_error& error) {
+      add(name,
+          error.code() == std::errc::too_many_symbolic_link_levels
+              ? "is behind a symbolic link, which is not followed"
+              : "cannot be read: " + error.code().message(),
+          index);
+    }
+    return {};
   }
 
   void check_file(const Listed& file) {
-    const fs::path path = directory_ / file.file;
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) return add(file.file, "is missing", file.index);
-    if (!fs::is_regular_file(status))
-      return add(file.file, "is no ordinary file", file.index);
-    const std::uintmax_t size = fs::file_size(path, error);
-    const std::string hash = hash_of(path, file);
+    const std::optional<FileFacts> facts = facts_of(file.file, file.index);
+    if (!facts) return;
+    const std::uint64_t size = facts->bytes;
+    const std::string hash = hash_of(file);
     if (hash == file.sha256 || hash.empty()) return;
     const auto owner = names_by_hash_.find(hash);
     if (owner != names_by_hash_.end()) {
@@ -139,9 +169,9 @@ class Check {
   }
 
   /// Empty when the file cannot be read, which is a defect of its own.
-  std::string hash_of(const fs::path& path, const Listed& file) {
+  std::string hash_of(const Listed& file) {
     try {
-      OpenFile opened(path, O_RDONLY);
+      OpenFile opened = set_.open(file.file, O_RDONLY | O_NONBLOCK);
       Sha256 hash;
       opened.read_pieces([&](std::span<const std::byte> piece) {
         hash.add(piece);
@@ -160,8 +190,6 @@ class Check {
     for (const Listed& file : files_) known.insert(file.file);
     known.insert(kHeadCopyName);
     if (manifest_.head) {
-      for (std::uint32_t i = 0; i < file_count(*manifest_.head); ++i)
-        known.insert(expected_entry(*manifest_.head, i).file);
       for (const std::string& run : manifest_.head->runs)
         known.insert(view_name(run));
     }
@@ -175,15 +203,18 @@ class Check {
       const std::string kind = next->path().extension().string();
       const bool is_ours =
           kind == ".h5" || kind == ".nc" || name.starts_with("source/");
-      if (is_ours && !is_partial_file(name) && !known.contains(name))
+      if (is_ours && !is_partial_file(name) && !known.contains(name) &&
+          !(manifest_.head && is_file_of(*manifest_.head, name)))
         extra.push_back(name);
     }
+    if (error) throw_file_error(directory_, "cannot read", error);
     std::sort(extra.begin(), extra.end());
     for (const std::string& name : extra)
       add(name, "does not belong to the set");
   }
 
   const fs::path& directory_;
+  const Directory set_;
   const Manifest& manifest_;
   std::vector<Listed> files_;
   const CheckProgress& progress_;

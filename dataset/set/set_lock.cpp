@@ -9,12 +9,14 @@
 
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
-#include <span>
+#include <csignal>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
 
+#include "config/file_error.h"
 #include "dataset/atomic_file.h"
 
 namespace beamgyro {
@@ -24,83 +26,145 @@ namespace fs = std::filesystem;
 
 constexpr const char* kWhole = "set.lock";
 
-[[noreturn]] void fail(const fs::path& path, int error) {
-  throw std::runtime_error(fmt::format("{}: cannot lock: {}", path.string(),
-                                       std::generic_category().message(error)));
+/// Whether the file system knows no such locks.
+bool is_unknown(int error) {
+  return error == ENOSYS || error == EOPNOTSUPP || error == ENOLCK ||
+         error == EINVAL;
 }
 
-OpenFile open_lock(const fs::path& path) {
-  try {
-    return {path, O_RDWR | O_CREAT};
-  } catch (const std::system_error& error) {
-    fail(path, error.code().value());
-  }
+std::string reason(const std::error_code& error) {
+  return error == std::errc::too_many_symbolic_link_levels
+             ? "it is a symbolic link; expected an ordinary file, or none"
+             : error.message();
 }
 
-/// Whether `path` still names the file: the holder before may have removed it
-/// between opening and locking.
-bool is_current(const fs::path& path, const OpenFile& file) {
-  struct stat there {
-  }, ours{};
-  return stat(path.c_str(), &there) == 0 &&
-         fstat(file.descriptor(), &ours) == 0 && there.st_dev == ours.st_dev &&
-         there.st_ino == ours.st_ino;
-}
+std::error_code last_error() { return {errno, std::generic_category()}; }
 
 /// Who is named in the file, empty if nobody.
-std::string holder(OpenFile& file) {
+std::string holder(const OpenFile& file) {
   std::array<char, 256> text{};
   const ssize_t size = pread(file.descriptor(), text.data(), text.size(), 0);
   return {text.data(), static_cast<std::size_t>(size < 0 ? 0 : size)};
 }
 
+std::string on_this_host() {
+  return fmt::format("host {}, process ", host_name());
+}
+
+/// Number of the process of this host that is named, or 0.
+pid_t process_here(const std::string& who) {
+  const std::string here = on_this_host();
+  pid_t process = 0;
+  if (who.starts_with(here))
+    std::from_chars(who.data() + here.size(), who.data() + who.size(), process);
+  return process;
+}
+
 }  // namespace
 
-SetLock::Held SetLock::acquire(const fs::path& path, int operation) {
+void SetLock::fail(const std::string& name, const std::string& why) const {
+  throw std::runtime_error(
+      fmt::format("{}: cannot lock: {}", (path_ / name).string(), why));
+}
+
+void SetLock::refuse(const std::string& who) const {
+  throw std::runtime_error(fmt::format("{}: in use by {}", path_.string(),
+                                       who.empty() ? "another process" : who));
+}
+
+// Who it is gets written into the file, so it must be nobody else's.
+OpenFile SetLock::open_lock(const std::string& name) const {
+  try {
+    OpenFile file = directory_.open(name, O_RDWR | O_CREAT | O_NONBLOCK);
+    struct stat facts {};
+    if (fstat(file.descriptor(), &facts) != 0) fail(name, reason(last_error()));
+    if (!S_ISREG(facts.st_mode) || facts.st_nlink > 1)
+      fail(name,
+           "it is no ordinary file, or has another name, too; expected an "
+           "ordinary file, or none");
+    return file;
+  } catch (const std::system_error& error) {
+    fail(name, reason(error.code()));
+  }
+}
+
+/// Whether the name still is that of the file: the holder before may have
+/// removed it between opening and locking.
+bool SetLock::is_current(const std::string& name, const OpenFile& file) const {
+  struct stat there {
+  }, ours{};
+  return fstatat(directory_.descriptor(), name.c_str(), &there,
+                 AT_SYMLINK_NOFOLLOW) == 0 &&
+         fstat(file.descriptor(), &ours) == 0 && there.st_dev == ours.st_dev &&
+         there.st_ino == ours.st_ino;
+}
+
+void SetLock::respect_the_living(const OpenFile& file) const {
+  const std::string who = holder(file);
+  const pid_t process = process_here(who);
+  if (process > 0 && process != getpid() &&
+      (kill(process, 0) == 0 || errno != ESRCH))
+    refuse(who);
+}
+
+SetLock::Held SetLock::acquire(const std::string& name, int operation) {
   // The last of those who share a lock has it alone while it removes it.
   constexpr int kMostTries = 50;
   constexpr std::chrono::milliseconds kPause{20};
   for (int tries = 1;;) {
-    OpenFile file = open_lock(path);
-    if (flock(file.descriptor(), operation | LOCK_NB) != 0) {
-      if (errno == EINTR) continue;
-      if (errno != EWOULDBLOCK) fail(path, errno);
-      if (operation == LOCK_SH && tries++ < kMostTries) {
+    OpenFile file = open_lock(name);
+    bool by_kernel = true;
+    if (uninterrupted([&] {
+          return flock(file.descriptor(), operation | LOCK_NB);
+        }) != 0) {
+      by_kernel = !is_unknown(errno);
+      if (by_kernel && errno != EWOULDBLOCK) fail(name, reason(last_error()));
+      if (by_kernel && operation == LOCK_SH && tries++ < kMostTries) {
         std::this_thread::sleep_for(kPause);
         continue;
       }
-      const std::string who = holder(file);
-      throw std::runtime_error(
-          fmt::format("{}: in use by {}", path.parent_path().string(),
-                      who.empty() ? "another process" : who));
+      if (by_kernel) refuse(holder(file));
+      if (operation == LOCK_EX) respect_the_living(file);
     }
-    if (!is_current(path, file)) continue;
+    if (!is_current(name, file)) continue;
     if (operation == LOCK_EX) stale_ = holder(file);
-    const std::string who =
-        fmt::format("host {}, process {}", host_name(), getpid());
+    const std::string who = fmt::format("{}{}", on_this_host(), getpid());
     if (ftruncate(file.descriptor(), 0) != 0 ||
         pwrite(file.descriptor(), who.data(), who.size(), 0) < 0) {
       // Who holds it is for messages only; the disk may be full.
     }
-    return {path, std::move(file)};
+    return {name, std::move(file), by_kernel};
   }
 }
 
-void SetLock::release(Held& held) noexcept {
+void SetLock::release(Held& held) const noexcept {
   // Of several who share it the last one removes the file.
-  if (flock(held.file.descriptor(), LOCK_EX | LOCK_NB) == 0 &&
-      is_current(held.path, held.file))
-    unlink(held.path.c_str());
+  const bool is_last =
+      held.by_kernel ? flock(held.file.descriptor(), LOCK_EX | LOCK_NB) == 0
+                     : process_here(holder(held.file)) == getpid();
+  if (is_last && is_current(held.name, held.file))
+    unlinkat(directory_.descriptor(), held.name.c_str(), 0);
 }
 
-SetLock::SetLock(const fs::path& directory, const std::string& task) {
+Directory SetLock::opened(const fs::path& directory) {
+  try {
+    return Directory(directory);
+  } catch (const std::system_error& error) {
+    throw std::runtime_error(fmt::format("{}: cannot lock: {}",
+                                         (directory / kWhole).string(),
+                                         error.code().message()));
+  }
+}
+
+SetLock::SetLock(const fs::path& directory, const std::string& task)
+    : path_(directory), directory_(opened(directory)) {
   if (task.empty()) {
-    whole_.emplace(acquire(directory / kWhole, LOCK_EX));
+    whole_.emplace(acquire(kWhole, LOCK_EX));
     return;
   }
-  whole_.emplace(acquire(directory / kWhole, LOCK_SH));
+  whole_.emplace(acquire(kWhole, LOCK_SH));
   try {
-    task_.emplace(acquire(directory / (task + ".lock"), LOCK_EX));
+    task_.emplace(acquire(task + ".lock", LOCK_EX));
   } catch (...) {
     release(*whole_);
     throw;

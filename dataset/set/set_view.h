@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "dataset/set/manifest.h"
 #include "dataset/set/shard.h"
 
 namespace beamgyro {
+
+/// What write_view() writes. Throws std::runtime_error when HDF5 fails.
+std::vector<std::byte> view_bytes(const ShardHead& head,
+                                  std::span<const ManifestEntry> entries);
 
 /// Publishes directory/NAME.nc, NAME the run of `head`: all devices of the run
 /// as one dataset of the same variables, which HDF5 reads from the files that

@@ -8,10 +8,12 @@
 #include <system_error>
 #include <utility>
 
-#include "dataset/atomic_file.h"
+#include "config/file_error.h"
 #include "dataset/set/publish.h"
+#include "dataset/set/set_files.h"
 #include "dataset/set/set_view.h"
 #include "dataset/set/shard_reader.h"
+#include "dataset/set/view_check.h"
 #include "dataset/sha256.h"
 
 namespace beamgyro {
@@ -24,26 +26,27 @@ bool is_part(const std::string& name) {
          name != kManifestName;
 }
 
-std::vector<fs::path> files_of(const fs::path& directory) {
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory))
-    files.push_back(entry.path());
-  std::ranges::sort(files);
-  return files;
+// Throws std::invalid_argument for what is no directory.
+std::vector<std::string> names_in(const fs::path& directory) {
+  try {
+    return Directory(directory).names();
+  } catch (const std::system_error& error) {
+    throw_file_error(directory, "cannot read", error.code(),
+                     "the directory of a set");
+  }
 }
 
 bool has_parts(const fs::path& directory) {
-  return std::ranges::any_of(files_of(directory), [](const fs::path& path) {
-    return is_part(path.filename().string());
-  });
+  return std::ranges::any_of(names_in(directory), is_part);
 }
 
 // A part may be merged and removed while it is looked for.
-std::optional<Manifest> manifest_if_there(const fs::path& path) {
+std::optional<Manifest> manifest_if_there(const fs::path& directory,
+                                          const std::string& name) {
   try {
-    return read_manifest(path);
+    return read_manifest(directory, name);
   } catch (const std::invalid_argument&) {
-    if (fs::exists(path)) throw;
+    if (find_in_set(directory, name)) throw;
     return {};
   }
 }
@@ -59,29 +62,6 @@ void take(const fs::path& path, const Manifest& manifest,
   head = manifest.head;
   for (const ManifestEntry& entry : manifest.entries)
     state.entries.emplace(entry.index, entry);
-}
-
-// The parts first: they may be merged while this reads, and what they say is
-// newer.
-std::optional<SetContents> contents_if_set(const fs::path& directory) {
-  std::error_code error;
-  if (!fs::is_directory(directory, error)) return {};
-  std::optional<ManifestHead> head;
-  SetState state;
-  for (const fs::path& path : files_of(directory)) {
-    if (!is_part(path.filename().string())) continue;
-    if (const auto part = manifest_if_there(path))
-      take(path, *part, head, state);
-  }
-  const fs::path whole = directory / kManifestName;
-  if (const auto manifest =
-          fs::exists(whole) ? manifest_if_there(whole) : std::nullopt) {
-    take(whole, *manifest, head, state);
-    state.is_merged = manifest->is_finished;
-  }
-  if (!head) return {};
-  state.planned = file_count(*head);
-  return SetContents{*head, std::move(state)};
 }
 
 void require_same(const fs::path& directory, const ManifestHead& met,
@@ -103,26 +83,34 @@ void require_same(const fs::path& directory, const ManifestHead& met,
 }
 
 bool holds_files_of_a_set(const fs::path& directory) {
-  return std::ranges::any_of(files_of(directory), [](const fs::path& path) {
-    const std::string name = path.filename().string();
-    return name == kManifestName || is_part(name) || path.extension() == ".h5";
+  return std::ranges::any_of(names_in(directory), [](const std::string& name) {
+    return name == kManifestName || is_part(name) || name.ends_with(".h5");
   });
 }
 
-bool is_there(const fs::path& directory, const ManifestEntry& entry) {
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(directory / entry.file, error);
-  return !error && bytes == entry.bytes;
+// A link in the place of a file is none.
+bool is_there(const Directory& directory, const ManifestEntry& entry) {
+  const std::optional<FileFacts> facts = directory.find(entry.file);
+  return facts && facts->is_regular && facts->bytes == entry.bytes;
 }
 
-std::vector<std::uint32_t> lacking_files(const fs::path& directory,
+void drop_missing(const fs::path& path, SetState& state) {
+  const Directory directory(path);
+  std::erase_if(state.entries, [&](const auto& entry) {
+    return !is_there(directory, entry.second);
+  });
+}
+
+std::vector<std::uint32_t> lacking_files(const fs::path& path,
                                          const SetState& state,
                                          const SetTask& task) {
+  std::optional<Directory> directory;
+  if (!state.entries.empty()) directory.emplace(path);
   std::vector<std::uint32_t> files;
   for (std::uint32_t index = 0; index < state.planned; ++index) {
     if (!task.makes(index)) continue;
     const auto entry = state.entries.find(index);
-    if (entry == state.entries.end() || !is_there(directory, entry->second))
+    if (entry == state.entries.end() || !is_there(*directory, entry->second))
       files.push_back(index);
   }
   return files;
@@ -137,10 +125,17 @@ std::vector<ManifestView> views_of(const fs::path& directory,
     std::vector<ManifestEntry> of_run;
     for (std::size_t k = run; k < entries.size(); k += head.runs.size())
       of_run.push_back(entries[k]);
-    const ShardFile first(directory / of_run.front().file);
+    const ShardFile first(directory, of_run.front().file);
     views.push_back(write_view(directory, first.head(), of_run));
   }
   return views;
+}
+
+// Of a set that is whole and merged.
+bool has_right_views(const fs::path& directory) {
+  const Manifest manifest = read_manifest(directory, kManifestName);
+  return manifest.views.size() == manifest.head.value().runs.size() &&
+         check_views(directory, manifest, {}).empty();
 }
 
 // Throws std::invalid_argument when it can be no directory. Whether it is new.
@@ -153,10 +148,8 @@ bool make_directory(const fs::path& directory) {
     throw std::invalid_argument(
         fmt::format("{}: is no directory; expected one, or a new name",
                     directory.string()));
-  throw std::invalid_argument(fmt::format(
-      "{}: cannot make this directory: {}; expected a place in a directory "
-      "that is there and writable",
-      directory.string(), error.message()));
+  throw_file_error(directory, "cannot make this directory", error,
+                   "a place in a directory that is there and writable");
 }
 
 }  // namespace
@@ -173,13 +166,33 @@ std::uint64_t SetState::failures() const {
   return count;
 }
 
+// The parts first: they may be merged while this reads, and what they say is
+// newer.
+std::optional<SetContents> find_set(const fs::path& directory) {
+  if (!fs::is_directory(status_of(directory))) return {};
+  std::optional<ManifestHead> head;
+  SetState state;
+  for (const std::string& name : names_in(directory)) {
+    if (!is_part(name)) continue;
+    if (const auto part = manifest_if_there(directory, name))
+      take(directory / name, *part, head, state);
+  }
+  if (const auto manifest = manifest_if_there(directory, kManifestName)) {
+    take(directory / kManifestName, *manifest, head, state);
+    state.is_merged = manifest->is_finished;
+  }
+  if (!head) return {};
+  state.planned = file_count(*head);
+  return SetContents{*head, std::move(state)};
+}
+
 SetContents set_contents(const fs::path& directory) {
-  std::error_code error;
-  if (!fs::is_directory(directory, error))
+  const fs::file_status status = status_of(directory);
+  if (!fs::is_directory(status))
     throw std::invalid_argument(fmt::format(
         "{}: {}; expected the directory of a set", directory.string(),
-        fs::exists(directory, error) ? "is no directory" : "is not there"));
-  std::optional<SetContents> contents = contents_if_set(directory);
+        fs::exists(status) ? "is no directory" : "is not there"));
+  std::optional<SetContents> contents = find_set(directory);
   if (!contents)
     throw std::invalid_argument(fmt::format(
         "{}: holds no set, or its manifests have lost their first lines; "
@@ -192,9 +205,8 @@ SetWriter::SetWriter(const fs::path& directory, ManifestHead head,
                      std::span<const SourceText> sources, const SetTask& task,
                      bool resume)
     : directory_(directory),
-      manifest_(directory / (task.is_whole()
-                                 ? std::string(kManifestName)
-                                 : part_name(task.number, task.of))),
+      manifest_(task.is_whole() ? std::string(kManifestName)
+                                : part_name(task.number, task.of)),
       head_(std::move(head)),
       task_(task) {
   const bool is_new = make_directory(directory_);
@@ -220,32 +232,32 @@ void SetWriter::enter(std::span<const SourceText> sources, bool resume) {
         fmt::format("{}: holds a set; expected --resume to go on with it, or "
                     "another directory",
                     directory_.string()));
-  const std::optional<SetContents> contents = contents_if_set(directory_);
+  const std::optional<SetContents> contents = find_set(directory_);
   if (contents) {
     require_same(directory_, contents->head, head_);
     before_ = contents->state;
   }
   before_.planned = file_count(head_);
-  remove_dead_partial_files(directory_, task_.is_whole());
+  remove_unfinished_files(directory_,
+                          task_.is_whole() && lock_->is_held_by_kernel());
   copy_sources(directory_, sources);
   const std::optional<Manifest> copy =
-      manifest_if_there(directory_ / kHeadCopyName);
+      manifest_if_there(directory_, kHeadCopyName);
   if (!copy || copy->head != head_ || !copy->damaged_lines.empty())
-    start_manifest(directory_ / kHeadCopyName, head_);
+    start_manifest(directory_, kHeadCopyName, head_);
   if (lacking().empty() && contents) return;
   // A merged manifest says that all is there, which is not so.
   if (task_.is_whole() && before_.is_merged) {
-    std::erase_if(before_.entries, [&](const auto& entry) {
-      return !is_there(directory_, entry.second);
-    });
+    drop_missing(directory_, before_);
     std::vector<ManifestEntry> kept;
     for (const auto& [index, entry] : before_.entries) kept.push_back(entry);
-    start_manifest(manifest_, head_, kept);
+    start_manifest(directory_, manifest_, head_, kept);
   }
-  // Lines after a first one that is lost would not count.
-  const std::optional<Manifest> own = manifest_if_there(manifest_);
-  if (!own || !own->head)
-    start_manifest(manifest_, head_,
+  // Lines after a first one that is lost would not count, and a file that has
+  // two names may not be written to.
+  const std::optional<Manifest> own = manifest_if_there(directory_, manifest_);
+  if (!own || !own->head || find_in_set(directory_, manifest_)->names > 1)
+    start_manifest(directory_, manifest_, head_,
                    own ? own->entries : std::vector<ManifestEntry>());
 }
 
@@ -259,11 +271,12 @@ void SetWriter::add(std::uint32_t index, std::span<const std::byte> bytes,
   entry.bytes = bytes.size();
   entry.sha256 = sha256(bytes);
   entry.failures = failures;
-  publish_file(directory_ / entry.file, bytes);
+  publish_file(directory_, entry.file, bytes);
   const std::lock_guard lock(mutex_);
   // Tasks of another division may have merged and removed it.
-  if (!fs::exists(manifest_)) start_manifest(manifest_, head_);
-  append_entry(manifest_, entry);
+  if (!find_in_set(directory_, manifest_))
+    start_manifest(directory_, manifest_, head_);
+  append_entry(directory_, manifest_, entry);
 }
 
 void SetWriter::merge(const SetState& state) {
@@ -272,19 +285,18 @@ void SetWriter::merge(const SetState& state) {
   for (const auto& [index, entry] : state.entries)
     merged.entries.push_back(entry);
   merged.views = views_of(directory_, head_, merged.entries);
-  write_manifest(directory_ / kManifestName, merged);
-  for (const fs::path& path : files_of(directory_)) {
+  write_manifest(directory_, kManifestName, merged);
+  for (const std::string& name : names_in(directory_)) {
     std::error_code ignored;
-    if (is_part(path.filename().string())) fs::remove(path, ignored);
+    if (is_part(name)) fs::remove(directory_ / name, ignored);
   }
 }
 
 SetState SetWriter::finish(bool anew) {
   SetState state = set_contents(directory_).state;
-  std::erase_if(state.entries, [&](const auto& entry) {
-    return !is_there(directory_, entry.second);
-  });
-  if (state.is_whole() && (anew || !state.is_merged || has_parts(directory_)))
+  drop_missing(directory_, state);
+  if (state.is_whole() && (anew || !state.is_merged || has_parts(directory_) ||
+                           !has_right_views(directory_)))
     merge(state);
   state.is_merged = state.is_whole();
   return state;
@@ -292,7 +304,7 @@ SetState SetWriter::finish(bool anew) {
 
 std::string lacking_tasks(const fs::path& directory, const ManifestHead& head,
                           std::uint32_t of) {
-  const std::optional<SetContents> contents = contents_if_set(directory);
+  const std::optional<SetContents> contents = find_set(directory);
   SetState state;
   if (contents) {
     require_same(directory, contents->head, head);

@@ -48,6 +48,9 @@ struct SetContents {
 };
 SetContents set_contents(const std::filesystem::path& directory);
 
+/// The same, or nothing when no manifest there has a first line.
+std::optional<SetContents> find_set(const std::filesystem::path& directory);
+
 /// A set that this process works at. While it lives no other process works at
 /// the same files. A file is part of the set once a manifest has its line: that
 /// of the set, or with tasks each its own. Who finds every file there merges
@@ -67,6 +70,9 @@ class SetWriter {
   /// Who died while working at this, empty if nobody.
   const std::string& died_before() const { return lock_->stale(); }
 
+  /// Whether other hosts are kept from this set, too (SetLock).
+  bool is_locked() const { return lock_->is_held_by_kernel(); }
+
   /// Files of the task that no manifest or not the directory has.
   std::vector<std::uint32_t> lacking() const;
 
@@ -82,7 +88,8 @@ class SetWriter {
   void enter(std::span<const SourceText> sources, bool resume);
   void merge(const SetState& state);
 
-  std::filesystem::path directory_, manifest_;
+  std::filesystem::path directory_;
+  std::string manifest_;  // its name
   ManifestHead head_;
   SetTask task_;
   std::optional<SetLock> lock_;

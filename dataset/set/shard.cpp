@@ -45,7 +45,7 @@ void check_recording(const ShardHead& head, const Recording* recording) {
   if (recording->time != head.time)
     throw std::runtime_error("the times are not those of the file");
   const std::string defect = samples_defect(*recording, 0);
-  if (!defect.empty()) throw std::runtime_error(defect);
+  if (!defect.empty()) throw UnstorableSamples(defect);
 }
 
 void check_row(const ShardHead& head, const DeviceRow& row) {
@@ -108,15 +108,19 @@ std::size_t chunk_length(std::size_t values) {
 
 EncodedDevice ShardBuilder::encode(std::uint32_t position, const DeviceRow& row,
                                    const Recording* recording) const {
+  const auto placed = [&](const std::exception& error) {
+    return fmt::format("device {}, run {}: {}", head_.first_device + position,
+                       head_.run, error.what());
+  };
   try {
     check_row(head_, row);
     const bool has_failed = !row.failure.empty();
     if (!has_failed) check_recording(head_, recording);
     return encode_device(head_, row, has_failed ? nullptr : recording);
+  } catch (const UnstorableSamples& error) {
+    throw UnstorableSamples(placed(error));
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("device {}, run {}: {}",
-                                         head_.first_device + position,
-                                         head_.run, error.what()));
+    throw std::runtime_error(placed(error));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,7 @@
 namespace beamgyro {
 
 inline constexpr const char* kSetFiletype = "beamgyro-set";
-inline constexpr int kSetFormatVersion = 1;
+inline constexpr int kSetFormatVersion = 2;
 
 /// How values stand in a file.
 enum class Storage { kFloat64, kFloat32, kInt16, kInt32 };
@@ -63,6 +64,13 @@ struct DeviceRow {
   std::uint8_t device_status = 0;  // DeviceStatus
 };
 
+/// Samples of a recording that a set cannot hold: not finite, or beyond their
+/// storage.
+class UnstorableSamples : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// One device as it will stand in the file.
 struct EncodedDevice {
   DeviceRow row;
@@ -87,11 +95,13 @@ class ShardBuilder {
   /// be called from many threads at once and in any order. `recording` holds
   /// every variable (columns by name, one value per time of the head) and is
   /// not used of a failed device: all its values are fill values, its status is
-  /// unpowered. Throws std::runtime_error naming device, variable and sample
-  /// for samples with a defect (samples_defect()), and for values that their
-  /// storage cannot hold: no whole number of counts (to 1e-6), or beyond its
-  /// range. Of 16-bit counts the lowest becomes the one above it, since it
-  /// means NaN.
+  /// unpowered. Of 16-bit counts the lowest becomes the one above it, since it
+  /// means NaN. Throws, naming device, variable and sample:
+  ///  - UnstorableSamples for samples with a defect (samples_defect()), and for
+  ///    values that their storage cannot hold: no whole number of counts (to
+  ///    1e-6), or beyond its range;
+  ///  - std::runtime_error for a recording that is not one of this file: other
+  ///    times, a variable of the head missing.
   EncodedDevice encode(std::uint32_t position, const DeviceRow& row,
                        const Recording* recording) const;
 

@@ -40,8 +40,8 @@ auto with_type(Storage storage, const Work& work) {
 
 [[noreturn]] void refuse(const SetVariable& variable, double value,
                          std::size_t sample, const std::string& expected) {
-  throw std::runtime_error(fmt::format("{}: sample {} is {}; expected {}",
-                                       variable.name, sample, value, expected));
+  throw UnstorableSamples(fmt::format("{}: sample {} is {}; expected {}",
+                                      variable.name, sample, value, expected));
 }
 
 /// The nearest whole number of |x| below 2^51; a call of the library would be

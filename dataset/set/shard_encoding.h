@@ -15,7 +15,7 @@ std::size_t width_of(Storage storage);
 std::string shard_head_defect(const ShardHead& head);
 
 /// Every `step`-th value as `variable` stores it, little-endian. Throws
-/// std::runtime_error "NAME: sample K is ...".
+/// UnstorableSamples "NAME: sample K is ...".
 std::vector<std::byte> encoded_values(const SetVariable& variable,
                                       const std::vector<double>& values,
                                       std::size_t step);

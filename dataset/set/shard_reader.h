@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "dataset/recording.h"
 #include "dataset/set/shard.h"
@@ -20,6 +21,9 @@ bool is_shard_file(const std::filesystem::path& path);
 class ShardFile {
  public:
   explicit ShardFile(const std::filesystem::path& path);
+  /// Of a set, which may come from somebody else: an ordinary file by that name
+  /// in its directory, as for open_set_file().
+  ShardFile(const std::filesystem::path& directory, const std::string& name);
   ~ShardFile();
   ShardFile(const ShardFile&) = delete;
   ShardFile& operator=(const ShardFile&) = delete;

@@ -13,7 +13,7 @@ struct Trims {
 /// Sets the keys of what was not trimmed to what a unit shows that was built
 /// with the settings of the base unit (docs/model.md): its quadrature under the
 /// base unit's k_trim, its scale factor under the base unit's gain, its output
-/// at T_0 and rest under the base unit's offset. Throws std::runtime_error when
+/// at T_0 and rest under the base unit's offset. Throws SimulationFailure when
 /// the drive loop does not lock.
 void set_as_built(const Trims& trims, const Gyro& base, Device& device);
 

@@ -10,6 +10,7 @@
 #include "dataset/random_stream.h"
 #include "sim/campaign/campaign_file.h"
 #include "sim/device/device_file.h"
+#include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/scenario_file.h"
 
 namespace beamgyro {
@@ -20,14 +21,15 @@ std::string one_line(std::string text) {
   return text;
 }
 
-// `work` fills in `result`; what a check rejects becomes its failure.
+// `work` fills in `result`; what a check rejects becomes its failure, and what
+// keeps the device from being simulated.
 template <class Result, class Work>
 void attempt(Result& result, const Work& work) {
   try {
     work();
   } catch (const std::invalid_argument& error) {
     result.failure = one_line(error.what());
-  } catch (const std::runtime_error& error) {
+  } catch (const SimulationFailure& error) {
     result.failure = one_line(error.what());
   }
 }
@@ -65,6 +67,12 @@ Campaign Campaign::read(const std::filesystem::path& file,
       std::make_shared<const CampaignState>(read_campaign(file, devices)));
 }
 
+Campaign Campaign::of_copies(std::span<const SourceText> copies,
+                             std::optional<long> devices) {
+  return Campaign(
+      std::make_shared<const CampaignState>(read_campaign(copies, devices)));
+}
+
 const std::string& Campaign::name() const { return state_->name; }
 const std::string& Campaign::text() const { return state_->text; }
 std::uint32_t Campaign::devices() const { return state_->devices; }
@@ -90,6 +98,14 @@ const std::vector<DrawnParameter>& Campaign::parameters() const {
 const std::vector<DrawnParameter>& Campaign::run_parameters(
     std::size_t run) const {
   return state_->run_plans.at(run).parameters;
+}
+
+bool Campaign::is_drawn(std::string_view device_key) const {
+  return beamgyro::is_drawn(state_->device_plan, *state_->device_document,
+                            device_key);
+}
+const MovedAxes& Campaign::moved_axes(std::size_t run) const {
+  return state_->moved_axes.at(run);
 }
 
 VirtualDevice Campaign::device(std::uint32_t index) const {

@@ -6,11 +6,14 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dataset/set/source_copies.h"
 #include "sim/campaign/draw_plan.h"
+#include "sim/campaign/drawn_keys.h"
 #include "sim/device/device.h"
 #include "sim/scenario/scenario.h"
 
@@ -64,6 +67,12 @@ class Campaign {
   static Campaign read(const std::filesystem::path& file,
                        std::optional<long> devices = {});
 
+  /// The same of the copies that a set keeps, the campaign's first, and of
+  /// nothing else: who made the set may have named any file. Throws
+  /// std::invalid_argument for a file that has no copy, too.
+  static Campaign of_copies(std::span<const SourceText> copies,
+                            std::optional<long> devices = {});
+
   const std::string& name() const;
   const std::string& text() const;  // byte for byte
   std::uint32_t devices() const;
@@ -80,6 +89,11 @@ class Campaign {
 
   const std::vector<DrawnParameter>& parameters() const;
   const std::vector<DrawnParameter>& run_parameters(std::size_t run) const;
+
+  /// Whether devices may differ in this dotted key of the device file.
+  bool is_drawn(std::string_view device_key) const;
+  /// The axes that some device moves in a run.
+  const MovedAxes& moved_axes(std::size_t run) const;
 
   /// Device number `index`, which may lie beyond devices().
   VirtualDevice device(std::uint32_t index) const;

@@ -8,8 +8,11 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <span>
 #include <stdexcept>
 
+#include "config/file_error.h"
+#include "dataset/set/manifest.h"
 #include "dataset/text_file.h"
 #include "sim/campaign/draw_plan_file.h"
 #include "sim/device/device_file.h"
@@ -31,6 +34,15 @@ class CampaignReader {
       : document_(ConfigDocument::read(file)),
         root_(document_.root()),
         folder_(file.parent_path()),
+        devices_(devices) {}
+
+  /// Of copies of every file, and nothing else is read.
+  CampaignReader(std::span<const SourceText> copies,
+                 std::optional<long> devices)
+      : copies_(copies),
+        document_(document_of(copies.front())),
+        root_(document_.root()),
+        folder_(copies.front().path.parent_path()),
         devices_(devices) {}
 
   CampaignState read() {
@@ -94,9 +106,14 @@ class CampaignReader {
                     trims.flag_or("scale_factor", true)};
   }
 
+  static ConfigDocument document_of(const SourceText& copy) {
+    return ConfigDocument::parse(copy.text, copy.path.string());
+  }
+
   ConfigDocument read_named(const ConfigTable& table, const char* key) const {
     const std::filesystem::path path = folder_ / table.text(key);
-    if (!std::filesystem::is_regular_file(path))
+    if (!copies_.empty()) return document_of(copy_of(path, copies_));
+    if (!std::filesystem::is_regular_file(status_of(path)))
       table.fail(key, fmt::format("there is no file {}; expected one, named "
                                   "relative to the campaign",
                                   path.string()));
@@ -171,14 +188,10 @@ class CampaignReader {
 
   std::string read_run_name(const ConfigTable& run) {
     const std::string name = run.text("name");
-    const bool good =
-        !name.empty() && name[0] >= 'a' && name[0] <= 'z' &&
-        std::all_of(name.begin(), name.end(), [](char c) {
-          return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-        });
-    if (!good) {
+    if (!is_run_name(name)) {
       run.fail("name", fmt::format("\"{}\" is no name of files; expected a "
-                                   "letter a-z, then letters, digits and '_'",
+                                   "letter a-z, then letters, digits and '_', "
+                                   "at most 200 in all",
                                    printable(name)));
     }
     for (const CampaignRun& other : state_.runs) {
@@ -193,23 +206,22 @@ class CampaignReader {
   void read_run(const ConfigTable& run) {
     const std::string name = read_run_name(run);
     const ConfigDocument document = read_named(run, "scenario");
-    Scenario scenario = read_scenario(document);
+    add_source(document);
+    Scenario scenario = scenario_of(document);
     document.reject_unknown_keys();
     scenario.seed = state_.source.seed;
-    add_source(document);
-    add_profiles(document);
     state_.runs.push_back({name, document.path(), document.text()});
     state_.scenarios.push_back(scenario);
     state_.run_plans.push_back(read_variations(run, name, document));
+    state_.moved_axes.push_back(moved_axes(
+        scenario, document, state_.run_plans.back(), state_.profiles));
     state_.scenario_documents.push_back(document);
   }
 
   DrawPlan read_variations(const ConfigTable& run, const std::string& name,
                            const ConfigDocument& document) {
-    const DrawnFile file{document, [this](const ConfigDocument& d) {
-                           read_scenario(d);
-                           add_profiles(d);
-                         }};
+    const DrawnFile file{document,
+                         [this](const ConfigDocument& d) { scenario_of(d); }};
     DrawPlan plan;
     const ConfigTable vary = run.table_or_empty("vary");
     for (const std::string& key : vary.keys()) {
@@ -245,6 +257,7 @@ class CampaignReader {
   }
 
   void read_output() {
+    constexpr double kMostSteps = 1e8;  // more than any run has samples
     const ConfigTable output = root_.table_or_empty("output");
     CampaignOutput& result = state_.output;
     if (output.has("variables")) {
@@ -264,12 +277,15 @@ class CampaignReader {
     for (std::size_t i = 0; i < state_.runs.size(); ++i) {
       const double rate = state_.scenarios[i].output_rate;
       const double step = rate / result.truth_rate;
-      if (std::round(step) >= 1 && std::abs(step - std::round(step)) < 1e-9)
+      if (std::round(step) >= 1 && std::abs(step - std::round(step)) < 1e-9 &&
+          step <= kMostSteps)
         continue;
       output.fail("truth_rate_Hz",
                   fmt::format("{} does not divide the output rate {} Hz of the "
-                              "run {}; expected a rate that does",
-                              result.truth_rate, rate, state_.runs[i].name));
+                              "run {}; expected a rate that does, {:g} times "
+                              "slower at most",
+                              result.truth_rate, rate, state_.runs[i].name,
+                              kMostSteps));
     }
   }
 
@@ -295,13 +311,24 @@ class CampaignReader {
       state_.sources.push_back({document.path(), document.text()});
   }
 
+  // What is wrong with a profile is told with its place in the scenario, unless
+  // there are only copies to read.
+  Scenario scenario_of(const ConfigDocument& document) {
+    if (!copies_.empty()) add_profiles(document);
+    Scenario scenario =
+        read_scenario(document, copies_.empty() ? nullptr : &state_.profiles);
+    if (copies_.empty()) add_profiles(document);
+    return scenario;
+  }
+
   void add_profiles(const ConfigDocument& document) {
     for (const std::filesystem::path& file : profile_files(document)) {
-      if (!is_new(file)) continue;
-      state_.sources.push_back({file, read_text_file(file)});
-      state_.profiles.emplace(
-          file.lexically_normal(),
-          parse_csv(state_.sources.back().text, file.filename()));
+      const SourceText source = copies_.empty()
+                                    ? SourceText{file, read_text_file(file)}
+                                    : copy_of(file, copies_);
+      state_.profiles.try_emplace(file.lexically_normal(),
+                                  parse_csv(source.text, file.filename()));
+      if (is_new(source.path)) state_.sources.push_back(source);
     }
   }
 
@@ -313,6 +340,7 @@ class CampaignReader {
                         });
   }
 
+  std::span<const SourceText> copies_;  // none: files are read where they are
   ConfigDocument document_;
   const ConfigTable& root_;
   std::filesystem::path folder_;
@@ -326,6 +354,11 @@ class CampaignReader {
 CampaignState read_campaign(const std::filesystem::path& file,
                             std::optional<long> devices) {
   return CampaignReader(file, devices).read();
+}
+
+CampaignState read_campaign(std::span<const SourceText> copies,
+                            std::optional<long> devices) {
+  return CampaignReader(copies, devices).read();
 }
 
 }  // namespace beamgyro

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,10 +35,13 @@ struct CampaignState {
   std::vector<ConfigDocument> scenario_documents;
   std::vector<Scenario> scenarios;
   std::vector<DrawPlan> run_plans;
+  std::vector<MovedAxes> moved_axes;  // by some device
 };
 
-/// See Campaign::read.
+/// See Campaign::read and Campaign::of_copies.
 CampaignState read_campaign(const std::filesystem::path& file,
+                            std::optional<long> devices);
+CampaignState read_campaign(std::span<const SourceText> copies,
                             std::optional<long> devices);
 
 }  // namespace beamgyro

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "sim/campaign/draw_plan.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 namespace beamgyro {
 namespace {
 
@@ -23,6 +26,10 @@ ConfigNode drawn_element(const Draw& draw, double uniform,
 }
 
 }  // namespace
+
+std::string key_of(const Draw& draw) {
+  return fmt::format("{}", fmt::join(draw.path, "."));
+}
 
 ConfigNode drawn_value(const Draw& draw, const double* uniform,
                        std::vector<double>& parameters) {

@@ -32,6 +32,9 @@ struct Draw {
   std::size_t numbers() const { return elements == 0 ? 1 : elements; }
 };
 
+/// The dotted key.
+std::string key_of(const Draw& draw);
+
 /// All that is drawn for a device, or for one run of it.
 struct DrawPlan {
   std::vector<Draw> draws;

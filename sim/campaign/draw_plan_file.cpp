@@ -30,10 +30,6 @@ std::vector<std::string> split(const std::string& key) {
   return path;
 }
 
-std::string key_of(const Draw& draw) {
-  return fmt::format("{}", fmt::join(draw.path, "."));
-}
-
 bool is_number(const ConfigNode& node) {
   return node.kind == ConfigNode::Kind::kInteger ||
          node.kind == ConfigNode::Kind::kFloat;

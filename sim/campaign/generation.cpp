@@ -2,43 +2,24 @@
 #include "sim/campaign/generation.h"
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
-#include <mutex>
-#include <system_error>
-#include <thread>
+#include <optional>
+
+#include "parallel/work_queue.h"
 
 namespace beamgyro {
 
 void generate_shards(const ShardPlan& plan,
                      const std::vector<std::uint32_t>& files, unsigned jobs,
                      GenerationCounts& counts, const ShardSink& publish) {
-  std::atomic<std::size_t> next = 0;
-  std::mutex mutex;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    try {
-      ShardMaker maker(plan);
-      for (std::size_t k = next++; k < files.size(); k = next++)
-        publish(files[k], maker.make(files[k], counts));
-    } catch (...) {
-      next = files.size();
-      const std::lock_guard lock(mutex);
-      if (!failure) failure = std::current_exception();
-    }
-  };
-  {
-    const std::size_t threads =
-        std::min<std::size_t>(std::max(1U, jobs), files.size());
-    std::vector<std::jthread> others;
-    try {
-      for (std::size_t n = 1; n < threads; ++n) others.emplace_back(work);
-    } catch (const std::system_error&) {
-      // The system grants no more threads; fewer make the same files.
-    }
-    if (threads > 0) work();
-  }
-  if (failure) std::rethrow_exception(failure);
+  const std::size_t threads =
+      std::min<std::size_t>(thread_count(jobs), files.size());
+  std::vector<std::optional<ShardMaker>> makers(threads);  // one per thread
+  for_each_task(files.size(), threads,
+                [&](std::size_t index, std::size_t worker) {
+                  std::optional<ShardMaker>& maker = makers[worker];
+                  if (!maker) maker.emplace(plan);
+                  publish(files[index], maker->make(files[index], counts));
+                });
 }
 
 }  // namespace beamgyro

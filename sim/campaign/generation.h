@@ -13,10 +13,9 @@ namespace beamgyro {
 using ShardSink =
     std::function<void(std::uint32_t file, const MadeShard& shard)>;
 
-/// Makes the shard files `files` of `plan`, on `jobs` threads that each take
-/// the next one; the bytes of a file do not depend on it. The first exception
-/// of a thread or of `publish` is thrown when the others are done with the
-/// files they are at.
+/// Makes the shard files `files` of `plan` on `jobs` threads, or with 0 on as
+/// many as there are cores; the bytes of a file do not depend on it. Rethrows
+/// an exception of the making or of `publish` as for_each_task().
 void generate_shards(const ShardPlan& plan,
                      const std::vector<std::uint32_t>& files, unsigned jobs,
                      GenerationCounts& counts, const ShardSink& publish);

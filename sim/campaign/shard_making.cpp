@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "sim/campaign/shard_making.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <new>
 #include <stdexcept>
 #include <utility>
 
+#include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/simulation.h"
 
 namespace beamgyro {
@@ -40,9 +42,7 @@ void ShardMaker::prepare(std::uint32_t range) {
     } else {
       try {
         device.gyro = make_gyro(*device.drawn.device);
-      } catch (const std::bad_alloc&) {
-        throw;
-      } catch (const std::exception& error) {
+      } catch (const SimulationFailure& error) {
         device.row.failure = first_line(error.what());
         device.row.device_status = kNoConvergence;
       }
@@ -55,7 +55,7 @@ void ShardMaker::prepare(std::uint32_t range) {
 // Simulates one device in one run; `row` says why when that fails.
 Recording ShardMaker::recorded(const PreparedDevice& device,
                                const VirtualRun& run, const RunKey& key,
-                               const ShardHead& head, DeviceRow& row) {
+                               const ShardHead& head, DeviceRow& row) const {
   Recording recording;
   if (!run.scenario) {
     row.failure = run.failure;
@@ -64,16 +64,22 @@ Recording ShardMaker::recorded(const PreparedDevice& device,
   }
   try {
     recording = simulated(*run.scenario, *device.gyro, key);
-  } catch (const std::bad_alloc&) {
-    throw;
   } catch (const std::invalid_argument& error) {
     row.failure = first_line(error.what());
     row.device_status = kInvalidParameters;
     return recording;
-  } catch (const std::exception& error) {
+  } catch (const SimulationFailure& error) {
     row.failure = first_line(error.what());
     row.device_status = kNoConvergence;
     return recording;
+  }
+  for (const Column& column : recording.columns) {
+    if (!plan_.has_column(key.run, column.name)) {
+      throw std::logic_error(fmt::format(
+          "device {}, run {}: {} is not among the variables planned for the "
+          "set",
+          key.device, head.run, column.name));
+    }
   }
   for (const SetVariable& variable : head.variables) {
     if (is_motion(variable.name) && !find_column(recording, variable.name)) {
@@ -91,12 +97,12 @@ EncodedDevice ShardMaker::encoded(const ShardBuilder& file,
                                   std::uint32_t position,
                                   const PreparedDevice& device,
                                   const VirtualRun& run, const RunKey& key,
-                                  DeviceRow& row) {
+                                  DeviceRow& row) const {
   if (row.failure.empty()) {
     const Recording recording = recorded(device, run, key, file.head(), row);
     try {
       if (row.failure.empty()) return file.encode(position, row, &recording);
-    } catch (const std::runtime_error& error) {
+    } catch (const UnstorableSamples& error) {
       row.failure = first_line(error.what());
       row.device_status = kNotFinite;
     }

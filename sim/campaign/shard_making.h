@@ -38,7 +38,9 @@ class ShardMaker {
   explicit ShardMaker(const ShardPlan& plan) : plan_(plan) {}
 
   /// A device that cannot be built or simulated is a row of fill values with
-  /// its reason, and one of the failures. Throws what ShardBuilder throws.
+  /// its reason, and one of the failures: that is std::invalid_argument and
+  /// SimulationFailure of its drawing and simulation, and UnstorableSamples.
+  /// Any other exception is no property of a device and goes to the caller.
   MadeShard make(std::uint32_t file, GenerationCounts& counts);
 
  private:
@@ -48,13 +50,12 @@ class ShardMaker {
     DeviceRow row;  // its failure, if there is no gyro
   };
   void prepare(std::uint32_t range);
-  static EncodedDevice encoded(const ShardBuilder& file, std::uint32_t position,
-                               const PreparedDevice& device,
-                               const VirtualRun& run, const RunKey& key,
-                               DeviceRow& row);
-  static Recording recorded(const PreparedDevice& device, const VirtualRun& run,
-                            const RunKey& key, const ShardHead& head,
-                            DeviceRow& row);
+  EncodedDevice encoded(const ShardBuilder& file, std::uint32_t position,
+                        const PreparedDevice& device, const VirtualRun& run,
+                        const RunKey& key, DeviceRow& row) const;
+  Recording recorded(const PreparedDevice& device, const VirtualRun& run,
+                     const RunKey& key, const ShardHead& head,
+                     DeviceRow& row) const;
 
   const ShardPlan& plan_;
   std::optional<std::uint32_t> range_;

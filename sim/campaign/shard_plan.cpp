@@ -5,11 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <new>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -19,13 +18,6 @@
 
 namespace beamgyro {
 namespace {
-
-bool varies(const Campaign& campaign, const std::vector<std::string>& names) {
-  return std::ranges::any_of(
-      campaign.parameters(), [&](const DrawnParameter& parameter) {
-        return std::ranges::find(names, parameter.name) != names.end();
-      });
-}
 
 // Counts of a converter whose step all devices share; else floating point.
 void store_counts(double step, double offset, Storage counts, bool shared,
@@ -41,9 +33,11 @@ void store_counts(double step, double offset, Storage counts, bool shared,
 
 void store_output(const Campaign& campaign, SetVariable& variable) {
   const ReadoutParameters& readout = campaign.base_device().readout;
-  const bool shared = !varies(
-      campaign, {"readout_adc_bits", "readout_full_scale_deg_per_s",
-                 "readout_scale_factor_V_per_deg_per_s", "readout_offset_V"});
+  const auto is_drawn = [&](const char* key) { return campaign.is_drawn(key); };
+  const bool shared = std::ranges::none_of(
+      std::array{"readout.adc_bits", "readout.full_scale_deg_per_s",
+                 "readout.scale_factor_V_per_deg_per_s", "readout.offset_V"},
+      is_drawn);
   const double lsb =
       readout.full_scale / std::ldexp(1.0, readout.adc_bits - 1);  // [rad/s]
   const Storage counts =
@@ -80,49 +74,45 @@ SetVariable set_variable(const Campaign& campaign, const Column& column) {
         step * std::numeric_limits<std::int16_t>::max() >= most;
     const bool fits = step * std::numeric_limits<std::int32_t>::max() >= most;
     store_counts(step, 0, is_short ? Storage::kInt16 : Storage::kInt32,
-                 fits && !varies(campaign, {key}), variable);
+                 fits && !campaign.is_drawn(key), variable);
   };
   if (column.name == "output" || column.name == "rate") {
     store_output(campaign, variable);
   } else if (column.name == "temperature") {
     store(device.temperature_sensor.resolution, 600,
-          "temperature_sensor_resolution_K");
+          "temperature_sensor.resolution_K");
   } else if (column.name == "drive_frequency") {
     store(readout.drive_frequency_resolution, 1e5,
-          "readout_drive_frequency_resolution_Hz");
+          "readout.drive_frequency_resolution_Hz");
   } else if (column.name == "drive_voltage") {
     store(readout.drive_voltage_resolution, 1e4,
-          "readout_drive_voltage_resolution_V");
+          "readout.drive_voltage_resolution_V");
   } else if (column.name == "quadrature") {
     store(readout.quadrature_resolution / kDegree, 1e6,
-          "readout_quadrature_resolution_deg_per_s");
+          "readout.quadrature_resolution_deg_per_s");
   } else {
     variable.storage = Storage::kFloat64;
   }
   return variable;
 }
 
-// Two samples of a run, for its variables.
-Recording specimen(Scenario scenario, const Device& device) {
-  scenario.duration = 2 / scenario.output_rate;
-  return simulated(scenario, make_gyro(device));
+template <std::size_t kAxes>
+void set_moving(const std::array<bool, kAxes>& axes,
+                std::array<RateProfile, kAxes>& profiles) {
+  for (std::size_t i = 0; i < kAxes; ++i) {
+    if (axes[i]) profiles[i] = PiecewiseLinear::constant(1e-3);
+  }
 }
 
+// Those of two samples of the base device with every axis in motion that some
+// device moves, so that they do not depend on what any device draws.
 std::vector<Column> columns_of(const Campaign& campaign, std::size_t run) {
-  std::vector<Column> columns =
-      specimen(campaign.base_scenario(run), campaign.base_device()).columns;
-  // A variation may move an axis that the scenario itself leaves at rest.
-  const VirtualRun varied = campaign.run(run, 0);
-  if (!varied.scenario) return columns;
-  try {
-    Recording other = specimen(*varied.scenario, campaign.base_device());
-    if (other.columns.size() > columns.size()) return std::move(other.columns);
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception&) {
-    // Then device 0 fails, and its row says why.
-  }
-  return columns;
+  Scenario scenario = campaign.base_scenario(run);
+  scenario.duration = 2 / scenario.output_rate;
+  const MovedAxes& axes = campaign.moved_axes(run);
+  set_moving(axes.cross_rate, scenario.cross_rate);
+  set_moving(axes.acceleration, scenario.acceleration);
+  return simulated(scenario, make_gyro(campaign.base_device())).columns;
 }
 
 std::size_t slow_step(const Campaign& campaign, const Scenario& scenario) {
@@ -155,8 +145,10 @@ ShardPlan::ShardPlan(const Campaign& campaign, const ProgramRevision& program)
     ShardHead head;
     head.time = sample_times(scenario);
     head.slow_step = slow_step(campaign, scenario);
+    columns_.emplace_back();
     for (const Column& column : columns_of(campaign, r)) {
       met.push_back(column.name);
+      columns_.back().push_back(column.name);
       if (wanted.empty() ||
           std::ranges::find(wanted, column.name) != wanted.end())
         head.variables.push_back(set_variable(campaign, column));
@@ -205,6 +197,10 @@ std::uint32_t ShardPlan::run_of(std::uint32_t file) const {
 
 std::uint32_t ShardPlan::range_of(std::uint32_t file) const {
   return file / static_cast<std::uint32_t>(heads_.size());
+}
+
+bool ShardPlan::has_column(std::uint32_t run, const std::string& name) const {
+  return std::ranges::find(columns_[run], name) != columns_[run].end();
 }
 
 ShardHead ShardPlan::head_of(std::uint32_t file) const {

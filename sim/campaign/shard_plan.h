@@ -29,6 +29,8 @@ class ShardPlan {
   std::uint32_t run_of(std::uint32_t file) const;
   std::uint32_t range_of(std::uint32_t file) const;
   ShardHead head_of(std::uint32_t file) const;
+  /// Whether recordings of a run may have this column, kept or not.
+  bool has_column(std::uint32_t run, const std::string& name) const;
 
   /// Devices of `files` together.
   std::uint64_t device_runs(const std::vector<std::uint32_t>& files) const;
@@ -43,7 +45,8 @@ class ShardPlan {
  private:
   const Campaign* campaign_;
   ManifestHead manifest_head_;
-  std::vector<ShardHead> heads_;  // one per run, for range 0
+  std::vector<ShardHead> heads_;                   // one per run, for range 0
+  std::vector<std::vector<std::string>> columns_;  // names, one list per run
 };
 
 }  // namespace beamgyro

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim/numerics/simulation_failure.h"
+
 namespace beamgyro {
 namespace {
 
@@ -140,7 +142,7 @@ BendingMode first_bending_mode(const std::vector<BeamElement>& elements) {
     phi = std::move(*next);
     phi /= phi.cwiseAbs().maxCoeff();
   }
-  throw std::runtime_error(
+  throw SimulationFailure(
       "beam: the first bending mode did not converge; check the beam and "
       "patch dimensions");
 }

@@ -37,7 +37,7 @@ struct BendingMode {
 
 /// Lowest elastic mode of the free-free beam, K phi = w^2 M phi, by inverse
 /// iteration with a Rayleigh-quotient shift, started from the mode of a uniform
-/// beam (1.2). Throws std::runtime_error when it does not converge.
+/// beam (1.2). Throws SimulationFailure when it does not converge.
 BendingMode first_bending_mode(const std::vector<BeamElement>& elements);
 
 /// Integrals of an Euler-Bernoulli mode shape over one element.

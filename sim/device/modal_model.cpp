@@ -5,9 +5,9 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <stdexcept>
 
 #include "config/units.h"
+#include "sim/numerics/simulation_failure.h"
 
 namespace beamgyro {
 namespace {
@@ -80,7 +80,7 @@ Matrix2cd stiffness_of(const Device& device, const ProjectedBeam& beam,
 
   const Matrix2d loss = K.imag();
   if (!(loss(0, 0) > 0 && loss.determinant() > 0)) {
-    throw std::runtime_error(fmt::format(
+    throw SimulationFailure(fmt::format(
         "complex stiffness at {:.2f} degC: its loss part is not positive "
         "definite; a material or mount parameter creates energy",
         T - kZeroCelsius));
@@ -143,6 +143,7 @@ ModalParameters modal_parameters(const Device& device,
       patch_materials(device, T, beam.timoshenko_frequency);
   const Matrix2cd K = stiffness_of(device, beam, materials, T);
   ModalParameters modal;
+  modal.temperature = T;
   modal.mass = beam.mass;
   modal.coriolis_mass = beam.angular_gain * beam.mass;
   modal.stiffness = K.real();

@@ -13,18 +13,19 @@ namespace beamgyro {
 /// The two coupled modes at one temperature:
 ///   m q'' + C q' + K q = sum_p Theta_p V_p + Coriolis...   (2.1)
 struct ModalParameters {
-  double mass;                          // m [kg]
-  double coriolis_mass;                 // m_g = gamma m [kg]
-  Eigen::Matrix2d stiffness;            // K = Re K* [N/m]
-  Eigen::Matrix2d damping;              // C = Im K* / w [N s/m]
-  PerPatch<Eigen::Vector2cd> coupling;  // Theta_p [N/V] = [C/m]
+  double temperature = kCalibrationTemperature;  // of the beam [K]
+  double mass;                                   // m [kg]
+  double coriolis_mass;                          // m_g = gamma m [kg]
+  Eigen::Matrix2d stiffness;                     // K = Re K* [N/m]
+  Eigen::Matrix2d damping;                       // C = Im K* / w [N s/m]
+  PerPatch<Eigen::Vector2cd> coupling;           // Theta_p [N/V] = [C/m]
 };
 
 /// Centre of patch p in the cross section, r_p [m].
 Eigen::Vector2d patch_position(const Device& device, Patch patch);
 
 /// K*(T) [N/m], the complex stiffness matrix of (1.3) without the trim term.
-/// Throws std::runtime_error when its loss part is not positive definite, which
+/// Throws SimulationFailure when its loss part is not positive definite, which
 /// no passive material can do.
 Eigen::Matrix2cd complex_stiffness(const Device& device,
                                    const ProjectedBeam& beam, double T);

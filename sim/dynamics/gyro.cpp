@@ -4,16 +4,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <stdexcept>
+
+#include "sim/numerics/simulation_failure.h"
 
 namespace beamgyro {
 namespace {
 
 Complex signal(const Gyro& gyro, const ModalParameters& modal,
                const CaseMotion& motion) {
-  return static_solution(modal, gyro.loop, gyro.device.readout.feedthrough,
-                         motion)
-      .signal;
+  return static_solution(gyro, modal, motion).signal;
 }
 
 Gyro untrimmed_gyro(const Device& device) {
@@ -46,7 +45,7 @@ double trimmed_stiffness(Gyro gyro) {
     if (std::abs(error) <= kTolerance) return trim;
     trim -= error / slope;
   }
-  throw std::runtime_error(
+  throw SimulationFailure(
       fmt::format("quadrature trim: no stiffness trim brings the quadrature to "
                   "{:.3f} rad/s",
                   target));
@@ -56,27 +55,24 @@ double trimmed_stiffness(Gyro gyro) {
 // 2 i w_d m_g X / Theta_By (2.5). Taken there, and not from dV_B/dOmega, the
 // quadrature does not leak into the bias by the products of two misalignments.
 Complex rebalance_reference(const Gyro& gyro, const ModalParameters& modal) {
-  const StaticSolution s =
-      static_solution(modal, gyro.loop, gyro.device.readout.feedthrough, {});
+  const StaticSolution s = static_solution(gyro, modal, {});
   return Complex(0, 1) * s.amplitude(0) / modal.coupling[kDamping](1);
 }
 
 }  // namespace
 
-Complex rate_response(const ModalParameters& modal, const DriveLoop& loop,
-                      double feedthrough) {
+Complex rate_response(const Gyro& gyro, const ModalParameters& modal) {
   constexpr double kStep = 0.1;  // [rad/s]; cubic term 1e-8 of the slope
   const auto at = [&](double z) {
     CaseMotion motion;
     motion.z = z;
-    return static_solution(modal, loop, feedthrough, motion).signal;
+    return signal(gyro, modal, motion);
   };
   return (at(kStep) - at(-kStep)) / (2 * kStep);
 }
 
 Complex zero_rate_terms(const Gyro& gyro, const ModalParameters& modal) {
-  return signal(gyro, modal, {}) /
-         rate_response(modal, gyro.loop, gyro.device.readout.feedthrough);
+  return signal(gyro, modal, {}) / rate_response(gyro, modal);
 }
 
 Gyro make_gyro(const Device& device) {
@@ -84,7 +80,7 @@ Gyro make_gyro(const Device& device) {
   gyro.stiffness_trim = trimmed_stiffness(gyro);
   const ModalParameters modal = modal_parameters(
       device, gyro.beam, kCalibrationTemperature, gyro.stiffness_trim);
-  gyro.rate_axis = rate_response(modal, gyro.loop, device.readout.feedthrough);
+  gyro.rate_axis = rate_response(gyro, modal);
   if (gyro.loop.mode == ReadoutMode::kForceRebalance) {
     gyro.rate_axis = std::polar(std::abs(gyro.rate_axis),
                                 std::arg(rebalance_reference(gyro, modal)));
@@ -110,9 +106,15 @@ BeamSignal beam_signal(const Gyro& gyro, double T, const CaseMotion& motion) {
 }
 
 BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
-                       const CaseMotion& motion, double guess) {
-  const StaticSolution solution = static_solution(
-      modal, gyro.loop, gyro.device.readout.feedthrough, motion, guess);
+                       const CaseMotion& motion) {
+  LockPath path;
+  return beam_signal(gyro, modal, motion, path);
+}
+
+BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
+                       const CaseMotion& motion, LockPath& path, double guess) {
+  const StaticSolution solution =
+      static_solution(gyro, modal, motion, path, guess);
   return {solution.signal / gyro.rate_axis, solution.drive_frequency,
           solution.drive_voltage, solution.amplitude_locked};
 }
@@ -141,9 +143,7 @@ double in_phase_rate(const MountParameters& mount,
 }
 
 double rate_slope(const Gyro& gyro, const ModalParameters& modal, double T) {
-  const Complex slope =
-      rate_response(modal, gyro.loop, gyro.device.readout.feedthrough) /
-      gyro.rate_axis;
+  const Complex slope = rate_response(gyro, modal) / gyro.rate_axis;
   return (slope * electronics_at(gyro, T).turn).real() /
          (1 + gyro.device.readout.scale_factor_error);
 }

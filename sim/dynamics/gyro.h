@@ -5,6 +5,7 @@
 #include <complex>
 
 #include "sim/device/modal_model.h"
+#include "sim/dynamics/lock_path.h"
 #include "sim/dynamics/static_solution.h"
 
 namespace beamgyro {
@@ -26,12 +27,12 @@ struct Gyro {
 /// Solves the beam and sets the trims: k_trim so that the input-referred
 /// quadrature at T_0 is `quadrature_trim`, the demodulation reference
 /// psi_d = arg dr/dOmega at T_0, and the output offset so that the zero-rate
-/// output at T_0 is `offset_trim`. Throws std::runtime_error when the drive
+/// output at T_0 is `offset_trim`. Throws SimulationFailure when the drive
 /// loop cannot lock at T_0.
 Gyro make_gyro(const Device& device);
 
 /// Input-referred quadrature at T_0 [rad/s] with k_trim = `stiffness_trim`
-/// [N/m] in place of one that was set for this unit. Throws std::runtime_error
+/// [N/m] in place of one that was set for this unit. Throws SimulationFailure
 /// when the drive loop cannot lock at T_0.
 double built_quadrature(const Device& device, double stiffness_trim);
 
@@ -45,11 +46,14 @@ struct BeamSignal {
   bool amplitude_locked;
 };
 
-/// Exact static response at beam temperature T [K] (2.10), uncached; `guess` as
-/// in static_solution().
+/// Exact static response at beam temperature T [K] (2.10), uncached; `path` of
+/// this gyro and `guess` as in static_solution().
 BeamSignal beam_signal(const Gyro& gyro, double T, const CaseMotion& motion);
 BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
-                       const CaseMotion& motion, double guess = 0);
+                       const CaseMotion& motion);
+BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
+                       const CaseMotion& motion, LockPath& path,
+                       double guess = 0);
 
 /// Input-referred output and quadrature channel before filter, saturation and
 /// ADC [rad/s].
@@ -98,7 +102,7 @@ double in_phase_rate(const MountParameters& mount,
 
 /// d signal / dOmega at rate 0, in the unit of rate_axis, by a central
 /// difference of the exact solution that is exact for its quadratic part.
-std::complex<double> rate_response(const ModalParameters& modal,
-                                   const DriveLoop& loop, double feedthrough);
+std::complex<double> rate_response(const Gyro& gyro,
+                                   const ModalParameters& modal);
 
 }  // namespace beamgyro

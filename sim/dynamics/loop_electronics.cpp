@@ -27,8 +27,7 @@ void set_rebalance(const ModalParameters& modal, double omega,
 LoopElectronics loop_electronics(const Gyro& gyro) {
   const ModalParameters modal = modal_parameters(
       gyro.device, gyro.beam, kCalibrationTemperature, gyro.stiffness_trim);
-  const StaticSolution solution =
-      static_solution(modal, gyro.loop, gyro.device.readout.feedthrough, {});
+  const StaticSolution solution = static_solution(gyro, modal, {});
   const DriveParameters& drive = gyro.device.drive;
   const ReadoutParameters& readout = gyro.device.readout;
   const double tau = 2 * modal.mass / modal.damping(0, 0);

@@ -31,8 +31,7 @@ Eigen::VectorXd settled_state(const Gyro& gyro, const EnvelopeOde& ode,
                               const CaseMotion& motion, double T_beam,
                               double T_board) {
   const StaticSolution s =
-      static_solution(modal_at(gyro, T_beam), gyro.loop,
-                      gyro.device.readout.feedthrough, motion);
+      static_solution(gyro, modal_at(gyro, T_beam), motion);
   const LoopElectronics& loops = ode.loops();
   Eigen::VectorXd y = ode.at_rest(T_beam);
   y(kEnvelopeNodes + Index{kBoard}) = T_board;

@@ -179,8 +179,7 @@ RateNoiseDensity low_frequency_noise(const Gyro& gyro, double beam_temperature,
   require_positive(beam_temperature, "noise: beam temperature", "K");
   const ModalParameters modal = modal_parameters(
       gyro.device, gyro.beam, beam_temperature, gyro.stiffness_trim);
-  const StaticSolution solution =
-      static_solution(modal, gyro.loop, gyro.device.readout.feedthrough, {});
+  const StaticSolution solution = static_solution(gyro, modal, {});
   const NoiseDensities density = noise_densities(
       gyro.device, modal, beam_temperature, solution.drive_frequency);
   const LoopedResponse response(gyro, modal, solution);

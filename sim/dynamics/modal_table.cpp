@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "config/units.h"
+#include "sim/numerics/simulation_failure.h"
 
 namespace beamgyro {
 
@@ -112,7 +112,7 @@ const std::vector<ModalTable::Cubic>& ModalTable::cell(std::size_t i) {
 ModalTable::Point ModalTable::at(double T) {
   const double place = (T - kColdestBeam) / kModalGrid;
   if (!(place >= 0) || !(place < static_cast<double>(cells_.size()))) {
-    throw std::runtime_error(
+    throw SimulationFailure(
         fmt::format("beam temperature {:.2f} degC is outside the model's "
                     "{:.0f} to {:.0f} degC",
                     T - kZeroCelsius, kColdestBeam - kZeroCelsius,

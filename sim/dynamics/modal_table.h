@@ -43,7 +43,7 @@ class ModalTable {
   struct Point {
     ModalChannels value, slope;  // slope per K
   };
-  /// At beam temperature T [K]. Throws std::runtime_error outside
+  /// At beam temperature T [K]. Throws SimulationFailure outside
   /// kColdestBeam .. kHottestBeam.
   Point at(double T);
 

@@ -9,9 +9,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
 
 #include "config/units.h"
+#include "sim/numerics/simulation_failure.h"
 
 namespace beamgyro {
 namespace {
@@ -83,15 +83,15 @@ ModalParameters StaticMap::modal(double T) const {
 }
 
 Eigen::Vector4d StaticMap::exact(const ModalParameters& modal, double rate,
-                                 double guess) const {
+                                 double guess) {
   CaseMotion motion;
   motion.z = rate;
-  const BeamSignal signal = beam_signal(gyro_, modal, motion, guess);
+  const BeamSignal signal = beam_signal(gyro_, modal, motion, path_, guess);
   return {signal.demodulated.real(), signal.demodulated.imag(),
           signal.drive_frequency, signal.drive_voltage};
 }
 
-int StaticMap::needed_rate_degree(double low, double high) const {
+int StaticMap::needed_rate_degree(double low, double high) {
   if (rate_limit_ == 0) return 0;
   const Eigen::MatrixXd transform = node_transform(kMaxRates);
   int degree = 0;
@@ -108,7 +108,7 @@ int StaticMap::needed_rate_degree(double low, double high) const {
     }
   }
   if (degree == kMaxRates - 1) {
-    throw std::runtime_error(fmt::format(
+    throw SimulationFailure(fmt::format(
         "static map: rates of {:.0f} deg/s are too large for this device: the "
         "response is no smooth function of rate",
         rate_limit_ / kDegree));
@@ -117,8 +117,7 @@ int StaticMap::needed_rate_degree(double low, double high) const {
 }
 
 // None when the expansion at one of the rates shows that it is too short.
-std::optional<StaticMap::Piece> StaticMap::fitted(double low,
-                                                  double high) const {
+std::optional<StaticMap::Piece> StaticMap::fitted(double low, double high) {
   const int rates = rate_degree_ + 1;
   std::array<ModalParameters, kTemperatureNodes> at_node;
   std::array<Eigen::Matrix<double, kChannels, kTemperatureNodes>, kMaxRates>
@@ -151,7 +150,7 @@ std::optional<StaticMap::Piece> StaticMap::fitted(double low,
   return piece;
 }
 
-double StaticMap::error(const Piece& piece) const {
+double StaticMap::error(const Piece& piece) {
   // Between the outer nodes and the ends and near the middle, where the error
   // of Chebyshev interpolation is largest.
   constexpr std::array<double, 5> kProbes = {-1, -0.93, 0.2, 0.75, 1};

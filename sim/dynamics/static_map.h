@@ -56,17 +56,18 @@ class StaticMap {
 
   ModalParameters modal(double T) const;
   Eigen::Vector4d exact(const ModalParameters& modal, double rate,
-                        double guess = 0) const;
-  std::optional<Piece> fitted(double low, double high) const;
-  double error(const Piece& piece) const;
+                        double guess = 0);
+  std::optional<Piece> fitted(double low, double high);
+  double error(const Piece& piece);
   void refine(double low, double high);
-  int needed_rate_degree(double low, double high) const;
+  int needed_rate_degree(double low, double high);
   Channels channels(const Piece& piece, std::span<const double> T,
                     std::span<const double> rate) const;
   BeamSignal limited(const Eigen::Vector4d& channels) const;
   const Piece& piece_at(double T) const;
 
   Gyro gyro_;
+  LockPath path_;
   double rate_limit_, tolerance_;
   double voltage_limit_;
   int rate_degree_ = 0;

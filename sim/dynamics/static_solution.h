@@ -27,6 +27,7 @@ struct StaticSolution {
   /// voltage V_B on the damping patch that keeps that charge at zero [V].
   std::complex<double> signal;
   bool amplitude_locked;  // false when V_D stands at its limit
+  bool only_lock;         // false when there is another stable lock
 };
 
 /// S(w) of (2.10): K + N - w^2 M + i w (C + G), with the
@@ -34,13 +35,17 @@ struct StaticSolution {
 Eigen::Matrix2cd dynamic_stiffness(const ModalParameters& modal, double omega,
                                    const CaseMotion& motion);
 
-/// Exact steady state with the drive loop closed: the frequency at which
-/// arg(-Theta_F^T u) = phi_pll - 90 deg, u = S^-1 Theta_D V_D, and the voltage
-/// at which |Theta_F^T u| has its set value (2.1, 2.10). With force rebalance
-/// V_B is part of the solution (2.5). Newton on the phase
-/// with its exact derivative, from `guess` [rad/s] or, with 0, the drive mode's
-/// own frequency. Throws std::runtime_error when the loop finds no frequency to
-/// lock to.
+/// Exact steady state with the drive loop closed: a frequency at which
+/// delta = arg(-Theta_F^T u) + 90 deg - phi_pll is zero, u = S^-1 Theta_D V_D,
+/// and the voltage at which |Theta_F^T u| has its set value (2.1, 2.10). With
+/// force rebalance V_B is part of the solution (2.5).
+///
+/// The loop stays only where delta falls with the frequency. Two strongly
+/// coupled modes have two such stable locks with an unstable one between; then
+/// it is the one nearest to `guess` [rad/s] or, with 0, the one of the lowest
+/// voltage. Newton's method on the phase with its exact derivative, from
+/// `guess` or the drive mode's own frequency. Throws SimulationFailure when
+/// there is no stable lock.
 StaticSolution static_solution(const ModalParameters& modal,
                                const DriveLoop& loop, double feedthrough,
                                const CaseMotion& motion, double guess = 0);

@@ -5,11 +5,13 @@
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "sim/numerics/simulation_failure.h"
 #include "sim/numerics/sundials_objects.h"
 
 namespace beamgyro {
@@ -156,8 +158,9 @@ Eigen::VectorXd OdeStep::at(double t) const {
   return y;
 }
 
-void OdeStep::sample(Eigen::Index component, std::span<const double> times,
-                     std::span<double> values) const {
+void sample_polynomial(std::span<const double> coefficients, double centre,
+                       double size, std::span<const double> times,
+                       std::span<double> values) {
   assert(times.size() == values.size());
   // Blocks small enough for the first cache keep every Horner pass in it.
   constexpr Eigen::Index kBlock = 256;
@@ -168,12 +171,20 @@ void OdeStep::sample(Eigen::Index component, std::span<const double> times,
     const Block s =
         (Eigen::Map<const Eigen::ArrayXd>(times.data() + first, n) - centre) *
         (1 / size);
-    Block y = Block::Constant(n, coefficients(component, order));
-    for (Eigen::Index k = order - 1; k >= 0; --k) {
-      y = y * s + coefficients(component, k);
-    }
+    Block y = Block::Constant(n, coefficients.back());
+    for (std::size_t k = coefficients.size() - 1; k-- > 0;)
+      y = y * s + coefficients[k];
     Eigen::Map<Eigen::ArrayXd>(values.data() + first, n) = y;
   }
+}
+
+void OdeStep::sample(Eigen::Index component, std::span<const double> times,
+                     std::span<double> values) const {
+  std::array<double, kHighestOrder + 1> terms{};
+  const auto count = static_cast<std::size_t>(order) + 1;
+  for (std::size_t k = 0; k < count; ++k)
+    terms[k] = coefficients(component, static_cast<Eigen::Index>(k));
+  sample_polynomial(std::span(terms).first(count), centre, size, times, values);
 }
 
 Cvode::Cvode(OdeRhs rhs, double t0, const Eigen::VectorXd& y0,
@@ -191,10 +202,10 @@ const Eigen::VectorXd& Cvode::advance_to(
   const long last = impl_->statistics.steps + impl_->max_steps;
   while (impl_->time != t_end) {
     if (impl_->statistics.steps >= last) {
-      throw std::runtime_error("no arrival at t = " + std::to_string(t_end) +
-                               " s within " + std::to_string(impl_->max_steps) +
-                               " steps; reached " +
-                               std::to_string(impl_->time) + " s");
+      throw SimulationFailure("no arrival at t = " + std::to_string(t_end) +
+                              " s within " + std::to_string(impl_->max_steps) +
+                              " steps; reached " + std::to_string(impl_->time) +
+                              " s");
     }
     impl_->take_step(t_end);
     if (on_step) {

@@ -37,6 +37,12 @@ struct CvodeStatistics {  // since construction, restarts included
   long restarts = 0;
 };
 
+/// values[j] = sum_k c_k s^k, s = (times[j] - centre) / size; both spans are
+/// equally long.
+void sample_polynomial(std::span<const double> coefficients, double centre,
+                       double size, std::span<const double> times,
+                       std::span<double> values);
+
 /// One internal step and its interpolant, which has the order of the step:
 ///   y(t) = sum_k c_k s^k,  s = (t - centre) / size,  begin <= t <= end.
 struct OdeStep {
@@ -68,7 +74,7 @@ class Cvode {
   /// right-hand side nor the Jacobian is evaluated beyond `t_end`, so a
   /// discontinuity may stand there. `on_step` sees every internal step; the
   /// steps join without a gap and the last ends at `t_end`. Rethrows what a
-  /// callback threw; throws std::runtime_error for a right-hand side that is
+  /// callback threw; throws SimulationFailure for a right-hand side that is
   /// not finite and when CVODE gives up.
   const Eigen::VectorXd& advance_to(
       double t_end, const std::function<void(const OdeStep&)>& on_step = {});

@@ -38,7 +38,7 @@ class ExplicitRk {
 
   /// Integrates to exactly `t_end` >= time() and returns y there. The
   /// right-hand side is not evaluated beyond `t_end`. Rethrows what it threw;
-  /// throws std::runtime_error for one that is not finite and when ARKODE gives
+  /// throws SimulationFailure for one that is not finite and when ARKODE gives
   /// up.
   const Eigen::VectorXd& advance_to(double t_end);
 

@@ -43,6 +43,10 @@ void require_points(const std::vector<double>& time,
 
 }  // namespace
 
+double LinearStretch::at(double t) const {
+  return std::lerp(start_value, end_value, (t - start) / (end - start));
+}
+
 PiecewiseLinear::PiecewiseLinear(std::vector<double> time,
                                  std::vector<double> value)
     : time_(std::move(time)), value_(std::move(value)) {
@@ -75,7 +79,10 @@ std::vector<double> PiecewiseLinear::sample(
     std::span<const double> times) const {
   std::vector<double> values;
   values.reserve(times.size());
-  std::size_t next = 0;
+  auto next = static_cast<std::size_t>(
+      times.empty() ? 0
+                    : std::upper_bound(time_.begin(), time_.end(), times[0]) -
+                          time_.begin());
   for (const double t : times) {
     while (next < time_.size() && time_[next] <= t) ++next;
     if (next == time_.size()) break;
@@ -85,10 +92,21 @@ std::vector<double> PiecewiseLinear::sample(
   return values;
 }
 
-std::vector<double> PiecewiseLinear::breakpoints() const {
-  std::vector<double> times = time_;
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-  return times;
+LinearStretch PiecewiseLinear::stretch(double start, double end) const {
+  return {start, end, value(start), value_before(end)};
+}
+
+std::vector<Border> PiecewiseLinear::borders() const {
+  std::vector<Border> borders;
+  borders.reserve(time_.size());
+  for (std::size_t i = 0; i < time_.size(); ++i) {
+    if (i > 0 && time_[i] == time_[i - 1]) {
+      borders.back().jump = value_[i] != value_[i - 1];
+    } else {
+      borders.push_back({time_[i]});
+    }
+  }
+  return borders;
 }
 
 }  // namespace beamgyro

@@ -4,7 +4,17 @@
 #include <span>
 #include <vector>
 
+#include "sim/numerics/timeline.h"
+
 namespace beamgyro {
+
+/// A line from one time to another.
+struct LinearStretch {
+  double start, end;              // [s]
+  double start_value, end_value;  // in the unit of the function
+
+  double at(double t) const;
+};
 
 /// A function of time that is linear between its points and held before the
 /// first and after the last. Two points at the same time are a jump.
@@ -23,8 +33,16 @@ class PiecewiseLinear {
   /// value() at non-decreasing times, in one pass.
   std::vector<double> sample(std::span<const double> times) const;
 
-  /// Where value or slope may jump: the times of the points, each once.
-  std::vector<double> breakpoints() const;
+  /// Between two times without a point between them: from the right-hand limit
+  /// at `start` to the left-hand limit at `end`.
+  LinearStretch stretch(double start, double end) const;
+
+  /// Where the value or the slope may jump: the times of the points, each once.
+  std::vector<Border> borders() const;
+
+  /// The points as given.
+  const std::vector<double>& times() const { return time_; }
+  const std::vector<double>& values() const { return value_; }
 
  private:
   double between(std::size_t next, double t) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sim/numerics/sundials_objects.h"
 
+#include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
@@ -9,6 +10,8 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "sim/numerics/simulation_failure.h"
 
 namespace beamgyro {
 namespace {
@@ -140,17 +143,19 @@ Eigen::VectorXd full_tolerances(double relative,
 
 void require_finite(bool finite, const char* what, double t) {
   if (!finite) {
-    throw std::runtime_error(std::string(what) + " is not finite at t = " +
-                             std::to_string(t) + " s");
+    throw SimulationFailure(std::string(what) + " is not finite at t = " +
+                            std::to_string(t) + " s");
   }
 }
 
 void CallErrors::check(int flag, const char* call) {
   if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
-  if (flag < 0) {
-    throw std::runtime_error(std::string(call) + " failed (flag " +
-                             std::to_string(flag) + "): " + message_);
-  }
+  if (flag >= 0) return;
+  const std::string text = std::string(call) + " failed (flag " +
+                           std::to_string(flag) + "): " + message_;
+  // CVODE and ARKODE number alike: from here on down memory and wrong calls.
+  if (flag <= CV_MEM_FAIL) throw std::runtime_error(text);
+  throw SimulationFailure(text);
 }
 
 void CallErrors::on_error(int, const char*, const char*, char* text,

@@ -42,7 +42,7 @@ Eigen::VectorXd full_tolerances(double relative,
                                 const Eigen::VectorXd& absolute,
                                 Eigen::Index size);
 
-/// Throws std::runtime_error naming `what` and the time unless `finite`.
+/// Throws SimulationFailure naming `what` and the time unless `finite`.
 void require_finite(bool finite, const char* what, double t);
 
 /// Carries exceptions of callbacks across C frames, and SUNDIALS' own messages.
@@ -60,8 +60,9 @@ class CallErrors {
     }
   }
 
-  /// After a call of SUNDIALS: rethrows what a callback threw, else throws
-  /// std::runtime_error for a negative flag.
+  /// After a call of SUNDIALS: rethrows what a callback threw. For a negative
+  /// flag throws SimulationFailure, or std::runtime_error where memory or the
+  /// call itself is at fault.
   void check(int flag, const char* call);
 
   /// SUNErrHandlerFn; `user` is the CallErrors.

@@ -13,6 +13,7 @@
 #include "sim/dynamics/carrier.h"
 #include "sim/dynamics/envelope.h"
 #include "sim/numerics/explicit_rk.h"
+#include "sim/scenario/aligned_borders.h"
 #include "sim/scenario/drive_lock.h"
 #include "sim/scenario/motion.h"
 #include "sim/scenario/run_temperatures.h"
@@ -63,17 +64,10 @@ class CarrierTrajectory {
           ode_.rate(t, moving(t), y, dydt);
         },
         0.0, CarrierOde::at_rest(), options);
-    borders_ = motion.breakpoints();
-    for (const PowerInterval& interval : scenario.powered) {
-      borders_.insert(borders_.end(),
-                      {interval.on, interval.on + kLockTime, interval.off});
-    }
-    borders_.push_back(scenario.duration);
-    std::erase_if(borders_,
-                  [&](double t) { return !(t > 0) || t > scenario.duration; });
-    std::sort(borders_.begin(), borders_.end());
-    borders_.erase(std::unique(borders_.begin(), borders_.end()),
-                   borders_.end());
+    std::vector<Border> borders = motion.borders();
+    const std::vector<Border> power = power_borders(scenario);
+    borders.insert(borders.end(), power.begin(), power.end());
+    pieces_ = pieces_until(scenario.duration, std::move(borders));
     begin(0);
   }
 
@@ -91,12 +85,14 @@ class CarrierTrajectory {
     return at_rest_ ? segment_->at_rest(now) : segment_->at(now);
   }
 
-  // What holds from border `next_border_` - 1 to the next.
-  void begin(double t) {
-    const double before = segment_ ? segment_->at(t).z : 0;
-    segment_ = motion_.segment(t, borders_[next_border_]);
-    if (powered_ && !at_rest_) turn_by(segment_->at(t).z - before);
-    const bool powered = powered_at(scenario_, t);
+  // Goes from the piece at hand to another that starts now.
+  void begin(std::size_t piece) {
+    const double before = segment_ ? segment_->at(pieces_[piece_].end).z : 0;
+    piece_ = piece;
+    const Piece& p = pieces_[piece];
+    segment_ = motion_.segment(p.start, p.end);
+    if (powered_ && !at_rest_) turn_by(segment_->at(p.start).z - before);
+    const bool powered = powered_at(scenario_.powered, p.start);
     if (powered != powered_) {
       powered_ = powered;
       start_window(CarrierOde::at_rest());
@@ -121,7 +117,7 @@ class CarrierTrajectory {
   }
 
   void step(double t) {
-    const double border = borders_[next_border_];
+    const double border = pieces_[piece_].end;
     const double end = std::min({t, border, time_ + kCarrierTick});
     if (powered_) {
       if (time_ - window_ >= kWindow) start_window(rk_->state());
@@ -131,10 +127,9 @@ class CarrierTrajectory {
       rk_->advance_to(end - window_);
     }
     time_ = end;
-    if (end == border && next_border_ + 1 < borders_.size()) {
+    if (end == border && piece_ + 1 < pieces_.size()) {
       require_lock();
-      ++next_border_;
-      begin(end);
+      begin(piece_ + 1);
     }
   }
 
@@ -153,8 +148,8 @@ class CarrierTrajectory {
   double angular_gain_;
   CarrierOde ode_;
   std::unique_ptr<ExplicitRk> rk_;
-  std::vector<double> borders_;
-  std::size_t next_border_ = 0;
+  std::vector<Piece> pieces_;
+  std::size_t piece_ = 0;
   std::optional<MotionSegment> segment_;
   bool powered_ = false;
   double time_ = 0;    // [s]
@@ -219,8 +214,9 @@ void simulate_carrier(const Scenario& scenario, const Device& device,
   simulate_carrier(scenario, make_gyro(device), key, on_block);
 }
 
-void simulate_carrier(const Scenario& scenario, const Gyro& gyro,
+void simulate_carrier(const Scenario& given, const Gyro& gyro,
                       const RunKey& key, const BlockSink& on_block) {
+  const Scenario scenario = with_aligned_borders(given);
   require_rate(scenario, gyro);
   const Motion motion(scenario, gyro, key);
   const RunTemperatures temperatures(scenario, gyro, kThermalStep);
@@ -231,14 +227,14 @@ void simulate_carrier(const Scenario& scenario, const Gyro& gyro,
   RunRecorder recorder(scenario, gyro.device, key);
   std::optional<SensingNoise> noise;
   if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
-  const std::vector<double> times = sample_times(scenario);
+  const SampleGrid grid = sample_grid(scenario);
   // Short blocks: they are what shows that a run goes on.
   const auto block_size =
       std::clamp(static_cast<std::size_t>(kBlockTime * scenario.output_rate),
                  std::size_t{1}, kBlockSamples);
-  for (std::size_t k = 0; k < times.size(); k += block_size) {
-    const auto block =
-        std::span(times).subspan(k, std::min(block_size, times.size() - k));
+  for (std::size_t k = 0; k < grid.count; k += block_size) {
+    const std::vector<double> block =
+        grid.times(k, std::min(block_size, grid.count - k));
     RunSamples samples = samples_at(block, gyro, temperatures, trajectory,
                                     twin ? &*twin : nullptr);
     motion.show(samples);

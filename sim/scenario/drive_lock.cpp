@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "config/units.h"
+#include "sim/numerics/simulation_failure.h"
 
 namespace beamgyro {
 
@@ -20,25 +20,30 @@ bool is_locked(const DriveSignals& drive) {
 bool lock_is_due(const Scenario& scenario, double t) {
   return std::any_of(scenario.powered.begin(), scenario.powered.end(),
                      [&](const PowerInterval& interval) {
-                       return t == interval.on + kLockTime && t < interval.off;
+                       return is_same_time(t, interval.on + kLockTime) &&
+                              t < interval.off &&
+                              !is_same_time(t, interval.off);
                      });
+}
+
+std::vector<Border> power_borders(const Scenario& scenario) {
+  std::vector<Border> borders;
+  for (const PowerInterval& interval : scenario.powered) {
+    borders.insert(
+        borders.end(),
+        {{interval.on, true}, {interval.on + kLockTime}, {interval.off, true}});
+  }
+  return borders;
 }
 
 void require_locked(const DriveSignals& drive, double t, double beam) {
   if (is_locked(drive)) return;
-  throw std::runtime_error(fmt::format(
+  throw SimulationFailure(fmt::format(
       "drive loop: not locked {:g} s after power-on at {:g} s, beam at {:.2f} "
       "degC: amplitude {:.3g} % of its set value, phase off by {:.2g} rad, "
       "drive at {:.3g} V{}; the device does not oscillate as it should",
       kLockTime, t - kLockTime, beam - kZeroCelsius, 100 * drive.amplitude,
       drive.phase, drive.voltage, drive.limited ? ", its limit" : ""));
-}
-
-bool powered_at(const Scenario& scenario, double t) {
-  return std::any_of(scenario.powered.begin(), scenario.powered.end(),
-                     [t](const PowerInterval& interval) {
-                       return interval.on <= t && t < interval.off;
-                     });
 }
 
 }  // namespace beamgyro

@@ -16,11 +16,11 @@ bool is_locked(const DriveSignals& drive);
 /// Whether the loops must have locked by now: kLockTime after a power-on.
 bool lock_is_due(const Scenario& scenario, double t);
 
-/// Throws std::runtime_error that says what the loops do unless they have
+/// Where the power switches and where locking is due.
+std::vector<Border> power_borders(const Scenario& scenario);
+
+/// Throws SimulationFailure that says what the loops do unless they have
 /// locked; `t` [s] now, `beam` its temperature [K].
 void require_locked(const DriveSignals& drive, double t, double beam);
-
-/// Whether a scenario has power at `t` [s].
-bool powered_at(const Scenario& scenario, double t);
 
 }  // namespace beamgyro

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <optional>
-#include <span>
 #include <utility>
+#include <vector>
 
+#include "sim/scenario/aligned_borders.h"
 #include "sim/scenario/envelope_trajectory.h"
 #include "sim/scenario/motion.h"
 #include "sim/scenario/sensing_noise.h"
@@ -17,8 +18,9 @@ void simulate_envelope(const Scenario& scenario, const Device& device,
   simulate_envelope(scenario, make_gyro(device), key, on_block);
 }
 
-void simulate_envelope(const Scenario& scenario, const Gyro& gyro,
+void simulate_envelope(const Scenario& given, const Gyro& gyro,
                        const RunKey& key, const BlockSink& on_block) {
+  const Scenario scenario = with_aligned_borders(given);
   const Motion motion(scenario, gyro, key);
   EnvelopeTrajectory trajectory(scenario, gyro, motion, false);
   std::optional<EnvelopeTrajectory> twin;
@@ -27,10 +29,10 @@ void simulate_envelope(const Scenario& scenario, const Gyro& gyro,
   std::optional<SensingNoise> noise;
   if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
 
-  const std::vector<double> times = sample_times(scenario);
-  for (std::size_t k = 0; k < times.size(); k += kBlockSamples) {
-    const auto block =
-        std::span(times).subspan(k, std::min(kBlockSamples, times.size() - k));
+  const SampleGrid grid = sample_grid(scenario);
+  for (std::size_t k = 0; k < grid.count; k += kBlockSamples) {
+    const std::vector<double> block =
+        grid.times(k, std::min(kBlockSamples, grid.count - k));
     RunSamples samples = trajectory.advance(block);
     samples.bias = twin ? twin->advance(block).output : samples.output;
     motion.show(samples);

@@ -12,7 +12,7 @@ namespace beamgyro {
 /// its rate-0 twin for `true_bias`; then noise, saturation and ADC as in every
 /// run. Starts at rest at each power-on. `on_block` takes the recording block
 /// by block, so that memory does not grow with the run. Throws
-/// std::runtime_error when the drive loop does not lock.
+/// SimulationFailure when the drive loop does not lock.
 void simulate_envelope(const Scenario& scenario, const Gyro& gyro,
                        const RunKey& key, const BlockSink& on_block);
 void simulate_envelope(const Scenario& scenario, const Device& device,

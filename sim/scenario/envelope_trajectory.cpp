@@ -13,9 +13,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// Borders closer than this are one: nothing moves meanwhile.
-constexpr double kShortestPiece = 1e-9;  // [s]
-
 // Local error of each state that matters as much as one of 1 rad/s in the
 // output: 1e-6 of the drive amplitude moves the output of a unit with a
 // quadrature of some 100 deg/s by 2e-6 rad/s, and so on.
@@ -60,6 +57,22 @@ RunSamples shown(const std::array<std::vector<double>, kShown.size()>& c,
     s.locked[k] = is_locked(drive);
   }
   return s;
+}
+
+// Whether the motion bends so often that an explicit method is the faster one.
+bool needs_explicit_method(const Scenario& scenario, const Motion& motion) {
+  constexpr double kBends = 50;  // [1/s]
+  const std::size_t pieces =
+      pieces_until(scenario.duration, motion.borders()).size();
+  return static_cast<double>(pieces - 1) > kBends * scenario.duration;
+}
+
+// Where any input bends or jumps, or locking is due.
+std::vector<Border> borders_of(const Scenario& scenario, const Motion& motion) {
+  std::vector<Border> borders = motion.borders();
+  for (const auto& more : {power_borders(scenario), scenario.ambient.borders()})
+    borders.insert(borders.end(), more.begin(), more.end());
+  return borders;
 }
 
 }  // namespace
@@ -111,17 +124,17 @@ EnvelopeTrajectory::EnvelopeTrajectory(const Scenario& scenario,
       motion_(motion),
       at_rest_(at_rest),
       ode_(gyro, drive_heating(gyro)),
-      pieces_(pieces()) {
+      pieces_(pieces_until(scenario.duration, borders_of(scenario, motion))) {
   const auto rhs = [this](double t, const auto& y, auto dydt) {
     ode_.rate(inputs(t), y, dydt);
   };
   const VectorXd start = ode_.at_rest(scenario.ambient.value(0));
   const VectorXd absolute = tolerance * error_weights(ode_.size());
-  if (is_lively(scenario, motion)) {
+  if (needs_explicit_method(scenario, motion)) {
     ExplicitRkOptions options;
     options.table = RkTable::kDormandPrince;
     options.absolute_tolerance = absolute;
-    lively_ = std::make_unique<ExplicitRk>(rhs, 0.0, start, options);
+    explicit_ = std::make_unique<ExplicitRk>(rhs, 0.0, start, options);
   } else {
     CvodeOptions options;
     options.relative_tolerance = 0;
@@ -131,66 +144,36 @@ EnvelopeTrajectory::EnvelopeTrajectory(const Scenario& scenario,
     options.jacobian = [this](double t, const auto& y, auto slope) {
       ode_.jacobian(inputs(t), y, slope);
     };
-    quiet_ = std::make_unique<Cvode>(rhs, 0.0, start, options);
+    multistep_ = std::make_unique<Cvode>(rhs, 0.0, start, options);
   }
   begin(0);
 }
 
-std::vector<EnvelopeTrajectory::Piece> EnvelopeTrajectory::pieces() const {
-  std::vector<double> borders = scenario_.ambient.breakpoints();
-  borders.insert(borders.end(), motion_.breakpoints().begin(),
-                 motion_.breakpoints().end());
-  for (const PowerInterval& interval : scenario_.powered) {
-    borders.insert(borders.end(),
-                   {interval.on, interval.on + kLockTime, interval.off});
-  }
-  borders.insert(borders.end(), {0, scenario_.duration});
-  std::erase_if(borders,
-                [&](double t) { return t < 0 || t > scenario_.duration; });
-  std::sort(borders.begin(), borders.end());
-
-  std::vector<Piece> pieces;
-  double start = 0;
-  for (const double end : borders) {
-    if (end - start < kShortestPiece) continue;
-    const bool powered = powered_at(scenario_, start);
-    const bool switched = !pieces.empty() && pieces.back().powered != powered;
-    pieces.push_back({start, end, scenario_.ambient.value(start),
-                      scenario_.ambient.value_before(end), powered,
-                      switched || motion_.jumps_at(start) ||
-                          scenario_.ambient.value(start) !=
-                              scenario_.ambient.value_before(start)});
-    start = end;
-  }
-  return pieces;
-}
-
 EnvelopeInputs EnvelopeTrajectory::inputs(double t) const {
-  const Piece& p = pieces_[piece_];
-  const double share = (t - p.start) / (p.end - p.start);
   return {.motion = at_rest_ ? segment_->at_rest(t) : segment_->at(t),
-          .surroundings = {std::lerp(p.ambient_start, p.ambient_end, share),
-                           scenario_.stirred},
-          .powered = p.powered};
+          .surroundings = {ambient_.at(t), scenario_.stirred},
+          .powered = powered_};
 }
 
 void EnvelopeTrajectory::begin(std::size_t piece) {
-  const bool was_powered = piece > 0 && pieces_[piece - 1].powered;
-  piece_ = piece;
+  const bool was_powered = powered_;
   const Piece& p = pieces_[piece];
+  piece_ = piece;
+  powered_ = powered_at(scenario_.powered, p.start);
+  ambient_ = scenario_.ambient.stretch(p.start, p.end);
   segment_ = motion_.segment(p.start, p.end);
   if (!p.jump && piece > 0) return;
   VectorXd y = state();
-  if (p.powered != was_powered) {
+  if (powered_ != was_powered) {
     // What still rings when the power goes is gone within a second; the loops
     // and an oven start from nothing.
     y.head<kEnvelopeNodes>().setZero();
     y.tail(y.size() - kEnvelopeNodes - kThermalNodeCount).setZero();
   }
-  if (lively_) {
-    lively_->restart(p.start, y);
+  if (explicit_) {
+    explicit_->restart(p.start, y);
   } else {
-    quiet_->restart(p.start, y);
+    multistep_->restart(p.start, y);
   }
 }
 
@@ -202,40 +185,34 @@ void EnvelopeTrajectory::require_lock() const {
                  time(), y(kEnvelopeNodes + Index{kBeam}));
 }
 
-bool EnvelopeTrajectory::is_lively(const Scenario& scenario,
-                                   const Motion& motion) {
-  constexpr double kBends = 50;  // [1/s]
-  return static_cast<double>(motion.breakpoints().size()) >
-         kBends * scenario.duration;
-}
-
 double EnvelopeTrajectory::time() const {
-  return lively_ ? lively_->time() : quiet_->time();
+  return explicit_ ? explicit_->time() : multistep_->time();
 }
 
 const VectorXd& EnvelopeTrajectory::state() const {
-  return lively_ ? lively_->state() : quiet_->state();
+  return explicit_ ? explicit_->state() : multistep_->state();
 }
 
 long EnvelopeTrajectory::steps() const {
-  return lively_ ? lively_->steps() : quiet_->statistics().steps;
+  return explicit_ ? explicit_->steps() : multistep_->statistics().steps;
 }
 
 long EnvelopeTrajectory::rhs_evaluations() const {
-  return lively_ ? lively_->rhs_evaluations()
-                 : quiet_->statistics().rhs_evaluations;
+  return explicit_ ? explicit_->rhs_evaluations()
+                   : multistep_->statistics().rhs_evaluations;
 }
 
 void EnvelopeTrajectory::advance_to(double t_end, Sampler& sampler) {
-  if (quiet_) {
-    quiet_->advance_to(t_end, [&](const OdeStep& step) { sampler.take(step); });
+  if (multistep_) {
+    multistep_->advance_to(t_end,
+                           [&](const OdeStep& step) { sampler.take(step); });
     return;
   }
   while (!sampler.complete() && sampler.next_time() < t_end) {
     const double t = sampler.next_time();
-    sampler.take_until(t, lively_->advance_to(t));
+    sampler.take_until(t, explicit_->advance_to(t));
   }
-  lively_->advance_to(t_end);
+  explicit_->advance_to(t_end);
 }
 
 RunSamples EnvelopeTrajectory::advance(std::span<const double> times) {

@@ -18,11 +18,11 @@ namespace beamgyro {
 /// One gyro in one scenario as its envelope, integrated in order of time from
 /// rest at 0, restarted at every jump of an input.
 ///
-/// Quiet runs: CVODE's BDF with stability-limit detection. The split mode's
+/// Most runs: CVODE's BDF with stability-limit detection. The split mode's
 /// beat lies outside the stability region of orders 3 to 5 at small steps, and
 /// at order 2 alone such a run takes five times the steps. Runs whose motion
-/// bends all the time (EnvelopeTrajectory::is_lively()): Dormand-Prince, which
-/// starts again at every bend without losing its order.
+/// bends more than 50 times a second on average: Dormand-Prince, which starts
+/// again at every bend without losing its order.
 class EnvelopeTrajectory {
  public:
   /// `at_rest`: the twin, whose rate about z is zero. The scenario, gyro and
@@ -34,29 +34,16 @@ class EnvelopeTrajectory {
 
   /// What the gyro shows at increasing times [s] that follow those of the call
   /// before; bias and motion are left empty.
-  /// Throws std::runtime_error when the loops have not locked kLockTime after a
+  /// Throws SimulationFailure when the loops have not locked kLockTime after a
   /// power-on, and as Cvode.
   RunSamples advance(std::span<const double> times);
 
   long steps() const;
   long rhs_evaluations() const;
 
-  /// Whether the motion bends more than 50 times a second on average: where
-  /// the explicit method is the faster one.
-  static bool is_lively(const Scenario& scenario, const Motion& motion);
-
  private:
-  // A stretch of time in which every input is smooth.
-  struct Piece {
-    double start, end;                  // [s]
-    double ambient_start, ambient_end;  // [K]
-    bool powered;
-    bool jump;  // an input jumps at its start
-  };
-
   class Sampler;
 
-  std::vector<Piece> pieces() const;
   EnvelopeInputs inputs(double t) const;
   void begin(std::size_t piece);
   void require_lock() const;
@@ -71,9 +58,12 @@ class EnvelopeTrajectory {
   EnvelopeOde ode_;
   std::vector<Piece> pieces_;
   std::size_t piece_ = 0;
+  // What holds over the piece.
+  bool powered_ = false;
+  LinearStretch ambient_{};  // [K]
   std::optional<MotionSegment> segment_;
-  std::unique_ptr<Cvode> quiet_;  // one of the two
-  std::unique_ptr<ExplicitRk> lively_;
+  std::unique_ptr<Cvode> multistep_;  // one of the two
+  std::unique_ptr<ExplicitRk> explicit_;
 };
 
 }  // namespace beamgyro

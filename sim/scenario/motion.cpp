@@ -64,7 +64,7 @@ bool MotionSegment::is_constant() const {
 Motion::Motion(const Scenario& scenario, const Gyro& gyro, const RunKey& key)
     : rate_moves_(moves(scenario.rate)), mount_(gyro.device.mount) {
   const auto realise = [&](const RateProfile& profile,
-                           RandomPurpose purpose) -> Axis {
+                           RandomPurpose purpose) -> Signal {
     if (const auto* sine = std::get_if<SineSignal>(&profile)) return *sine;
     if (const auto* random = std::get_if<RandomRate>(&profile)) {
       return realised(*random, scenario.duration, scenario.seed, key.device,
@@ -82,43 +82,40 @@ Motion::Motion(const Scenario& scenario, const Gyro& gyro, const RunKey& key)
     acceleration_[i] =
         realise(scenario.acceleration[i], kAccelerationPurposes[i]);
   }
+}
+
+bool Motion::has_other_axes() const {
+  const auto is_true = [](bool moved) { return moved; };
+  return std::any_of(cross_moves_.begin(), cross_moves_.end(), is_true) ||
+         std::any_of(acceleration_moves_.begin(), acceleration_moves_.end(),
+                     is_true);
+}
+
+std::vector<Border> Motion::borders() const {
+  std::vector<Border> borders;
   for (const auto* axes : {&rate_, &acceleration_}) {
-    for (const Axis& axis : *axes) {
+    for (const Signal& axis : *axes) {
       if (const auto* points = std::get_if<PiecewiseLinear>(&axis)) {
-        const std::vector<double> times = points->breakpoints();
-        breakpoints_.insert(breakpoints_.end(), times.begin(), times.end());
+        const std::vector<Border> found = points->borders();
+        borders.insert(borders.end(), found.begin(), found.end());
       }
     }
   }
-  std::erase_if(breakpoints_,
-                [&](double t) { return t <= 0 || t >= scenario.duration; });
-  std::sort(breakpoints_.begin(), breakpoints_.end());
-  breakpoints_.erase(std::unique(breakpoints_.begin(), breakpoints_.end()),
-                     breakpoints_.end());
-}
-
-bool Motion::jumps_at(double t) const {
-  for (const auto* axes : {&rate_, &acceleration_}) {
-    for (const Axis& axis : *axes) {
-      const auto* points = std::get_if<PiecewiseLinear>(&axis);
-      if (points && points->value(t) != points->value_before(t)) return true;
-    }
-  }
-  return false;
+  return borders;
 }
 
 MotionSegment Motion::segment(double start, double end) const {
-  const auto of = [&](const Axis& axis) -> AxisSegment {
+  const auto of = [&](const Signal& axis) -> AxisSegment {
     if (const auto* sine = std::get_if<SineSignal>(&axis)) {
       return {.a = sine->offset,
               .amplitude = sine->amplitude,
               .omega = 2 * std::numbers::pi * sine->frequency,
               .phase = sine->phase};
     }
-    const auto& points = std::get<PiecewiseLinear>(axis);
-    const double first = points.value(start);
-    return {.a = first,
-            .b = (points.value_before(end) - first) / (end - start)};
+    const LinearStretch line =
+        std::get<PiecewiseLinear>(axis).stretch(start, end);
+    return {.a = line.start_value,
+            .b = (line.end_value - line.start_value) / (end - start)};
   };
   return {start,
           {of(rate_[0]), of(rate_[1]), of(rate_[2])},
@@ -127,18 +124,14 @@ MotionSegment Motion::segment(double start, double end) const {
 }
 
 void Motion::show(RunSamples& samples) const {
-  const auto values = [&](const Axis& axis) {
-    if (const auto* sine = std::get_if<SineSignal>(&axis))
-      return sine_values(*sine, samples.time);
-    return std::get<PiecewiseLinear>(axis).sample(samples.time);
-  };
-  samples.rate = values(rate_[2]);
+  samples.rate = values_at(rate_[2], samples.time);
   for (std::size_t i = 0; i < cross_moves_.size(); ++i) {
-    if (cross_moves_[i]) samples.cross_rate[i] = values(rate_[i]);
+    if (cross_moves_[i])
+      samples.cross_rate[i] = values_at(rate_[i], samples.time);
   }
   for (std::size_t i = 0; i < acceleration_moves_.size(); ++i) {
     if (acceleration_moves_[i])
-      samples.acceleration[i] = values(acceleration_[i]);
+      samples.acceleration[i] = values_at(acceleration_[i], samples.time);
   }
 }
 

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <variant>
 #include <vector>
 
 #include "sim/dynamics/gyro.h"
@@ -18,7 +17,7 @@ struct AxisSegment {
   double amplitude = 0, omega = 0, phase = 0;
 };
 
-/// The motion of the case between two breakpoints, smooth up to both ends.
+/// The motion of the case between two borders, smooth up to both ends.
 class MotionSegment {
  public:
   /// `rate` about x, y, z [rad/s], `acceleration` along x, y, z [m/s2].
@@ -44,13 +43,18 @@ class Motion {
  public:
   Motion(const Scenario& scenario, const Gyro& gyro, const RunKey& key);
 
-  /// Where a value or a slope jumps, inside (0, duration), increasing.
-  const std::vector<double>& breakpoints() const { return breakpoints_; }
-  bool jumps_at(double t) const;  // a value jumps at this breakpoint
+  /// Where any axis bends or jumps, axis by axis.
+  std::vector<Border> borders() const;
   /// The twin, whose rate about z is zero, is the run itself.
   bool rate_is_zero() const { return !rate_moves_; }
+  /// Something else than the rate about z moves.
+  bool has_other_axes() const;
 
-  /// Between two times with no breakpoint inside: the right-hand limits at
+  /// About x, y, z [rad/s] and along x, y, z [m/s2].
+  const std::array<Signal, 3>& rate() const { return rate_; }
+  const std::array<Signal, 3>& acceleration() const { return acceleration_; }
+
+  /// Between two times with no border between them: the right-hand limits at
   /// `start`, the left-hand limits at `end`.
   MotionSegment segment(double start, double end) const;
 
@@ -58,13 +62,11 @@ class Motion {
   void show(RunSamples& samples) const;
 
  private:
-  using Axis = std::variant<SineSignal, PiecewiseLinear>;
-  std::array<Axis, 3> rate_, acceleration_;
+  std::array<Signal, 3> rate_, acceleration_;
   std::array<bool, 2> cross_moves_{};
   std::array<bool, 3> acceleration_moves_{};
   bool rate_moves_;
   MountParameters mount_;
-  std::vector<double> breakpoints_;
 };
 
 }  // namespace beamgyro

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "config/file_error.h"
+
 namespace beamgyro {
 namespace {
 
@@ -99,7 +101,7 @@ PiecewiseLinear read_profile_file(const ConfigTable& table,
     const auto known = folder.tables->find(path.lexically_normal());
     if (known != folder.tables->end()) return profile_of(known->second, unit);
   }
-  if (!std::filesystem::is_regular_file(path)) {
+  if (!std::filesystem::is_regular_file(status_of(path))) {
     table.fail("file", fmt::format("\"{}\" is no file; expected a CSV file",
                                    path.string()));
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <span>
 #include <stdexcept>
@@ -11,9 +12,12 @@
 
 #include "sim/dynamics/mechanical_noise.h"
 #include "sim/dynamics/static_map.h"
+#include "sim/scenario/aligned_borders.h"
+#include "sim/scenario/motion.h"
 #include "sim/scenario/run_temperatures.h"
 #include "sim/scenario/square_acceleration.h"
 #include "sim/signal/readout.h"
+#include "sim/thermal/thermal_trajectory.h"
 
 namespace beamgyro {
 namespace {
@@ -50,8 +54,8 @@ class Board {
   Complex turn_ = 1;
 };
 
-void show(const Electronics& board, const BeamSignal& at_rate,
-          const Complex& at_rest, std::size_t k, RunSamples& samples) {
+void write_sample(const Electronics& board, const BeamSignal& at_rate,
+                  const Complex& at_rest, std::size_t k, RunSamples& samples) {
   const Output shown = board.output(at_rate.demodulated);
   samples.output[k] = shown.rate;
   samples.quadrature[k] = shown.quadrature;
@@ -62,147 +66,189 @@ void show(const Electronics& board, const BeamSignal& at_rate,
   samples.locked[k] = at_rate.amplitude_locked;
 }
 
-// Rate alone: from a table over temperature and rate.
-void show_rate(const Gyro& gyro, const Samples& rate, RunSamples& samples) {
-  const Samples& beam = samples.temperature[kBeam];
-  const auto [coldest, hottest] = std::minmax_element(beam.begin(), beam.end());
+// The largest rate [rad/s] that the output filter shows of the run.
+double fastest_rate(const Motion& motion, const OutputFilter& filter,
+                    const SampleGrid& grid) {
+  if (motion.rate_is_zero()) return 0;
+  const SampleStream filtered = filter.responses(motion.rate()[2], grid.rate);
+  Samples rate;
   double fastest = 0;
-  for (const double r : rate) fastest = std::max(fastest, std::abs(r));
-  const StaticMap map(gyro, *coldest, *hottest, fastest);
-  Board board(gyro);
-  std::array<StaticMap::Signals, 256> block;
-  for (std::size_t k = 0; k < rate.size(); k += block.size()) {
-    const std::size_t count = std::min(block.size(), rate.size() - k);
-    map.sample(std::span(beam).subspan(k, count),
-               std::span(rate).subspan(k, count),
-               std::span(block).first(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      show(board.at(samples.temperature[kBoard][k + i]), block[i].at_rate,
-           block[i].at_rest, k + i, samples);
+  for (std::size_t k = 0; k < grid.count; k += kBlockSamples) {
+    rate.resize(std::min(kBlockSamples, grid.count - k));
+    filtered(rate);
+    for (const double r : rate) fastest = std::max(fastest, std::abs(r));
+  }
+  return fastest;
+}
+
+// Rate alone: from a table over all temperatures and rates of the run.
+class RateResponse {
+ public:
+  RateResponse(const Gyro& gyro, const Motion& motion,
+               const ThermalTrajectory& temperatures, const SampleGrid& grid)
+      : board_(gyro),
+        filter_(gyro.device.readout.corner_frequency),
+        filtered_(filter_.responses(motion.rate()[2], grid.rate)),
+        map_(map_of(gyro, temperatures.range(kBeam),
+                    fastest_rate(motion, filter_, grid))) {}
+
+  void operator()(RunSamples& samples) {
+    const Samples& beam = samples.temperature[kBeam];
+    rate_.resize(beam.size());
+    filtered_(rate_);
+    std::array<StaticMap::Signals, 256> signals;
+    for (std::size_t k = 0; k < rate_.size(); k += signals.size()) {
+      const std::size_t count = std::min(signals.size(), rate_.size() - k);
+      map_.sample(std::span(beam).subspan(k, count),
+                  std::span(rate_).subspan(k, count),
+                  std::span(signals).first(count));
+      for (std::size_t i = 0; i < count; ++i) {
+        write_sample(board_.at(samples.temperature[kBoard][k + i]),
+                     signals[i].at_rate, signals[i].at_rest, k + i, samples);
+      }
     }
   }
-}
 
-// Everything that moves the case, through the output filter.
-struct FilteredMotion {
-  Samples rate;
-  std::array<Samples, 2> cross_rate;
-  std::array<Samples, 3> acceleration;
-  Samples square;  // of the acceleration, squared before it is filtered
-
-  bool has_other_axes() const {
-    const auto moved = [](const Samples& s) { return !s.empty(); };
-    return std::any_of(cross_rate.begin(), cross_rate.end(), moved) ||
-           std::any_of(acceleration.begin(), acceleration.end(), moved);
+ private:
+  static StaticMap map_of(const Gyro& gyro, const TemperatureRange& range,
+                          double fastest) {
+    return {gyro, range.low, range.high, fastest};
   }
 
-  CaseMotion at(std::size_t k, const MountParameters& mount) const {
-    const auto value = [k](const Samples& s) { return s.empty() ? 0.0 : s[k]; };
-    CaseMotion motion;
-    motion.x = value(cross_rate[0]);
-    motion.y = value(cross_rate[1]);
-    motion.z = rate[k];
-    motion.in_phase =
-        in_phase_rate(mount,
-                      {value(acceleration[0]), value(acceleration[1]),
-                       value(acceleration[2])},
-                      value(square));
-    return motion;
-  }
+  Board board_;
+  OutputFilter filter_;
+  SampleStream filtered_;
+  StaticMap map_;
+  Samples rate_;
 };
 
-// Fills the motion in `samples` and returns what the filter makes of it.
-FilteredMotion filtered_motion(const Scenario& scenario, double corner,
-                               const RunKey& key, RunSamples& samples) {
-  const OutputFilter filter(corner);
-  FilteredMotion filtered;
-  const auto sampled = [&](const RateProfile& profile, RandomPurpose purpose,
-                           Samples& values) {
-    SampledRate s = sampled_rate(profile, filter, samples.time,
-                                 scenario.output_rate, scenario.duration,
-                                 scenario.seed, key.device, key.run, purpose);
-    values = std::move(s.rate);
-    return std::move(s.filtered);
-  };
-  filtered.rate =
-      sampled(scenario.rate, RandomPurpose::kRateProfile, samples.rate);
-  for (std::size_t i = 0; i < scenario.cross_rate.size(); ++i) {
-    if (!moves(scenario.cross_rate[i])) continue;
-    filtered.cross_rate[i] = sampled(scenario.cross_rate[i], kCrossPurposes[i],
-                                     samples.cross_rate[i]);
+// Cross rates and accelerations, too: the exact solution for every sample of
+// what the output filter makes of everything that moves the case.
+class MotionResponse {
+ public:
+  MotionResponse(const Gyro& gyro, const Motion& motion, double output_rate)
+      : gyro_(gyro), board_(gyro) {
+    const double corner = gyro.device.readout.corner_frequency;
+    const OutputFilter filter(corner);
+    for (std::size_t i = 0; i < 3; ++i) {
+      rate_[i].filtered = filter.responses(motion.rate()[i], output_rate);
+      acceleration_[i].filtered =
+          filter.responses(motion.acceleration()[i], output_rate);
+    }
+    square_.filtered = filtered_square_acceleration(motion.acceleration(),
+                                                    corner, output_rate);
   }
-  for (std::size_t i = 0; i < scenario.acceleration.size(); ++i) {
-    const RateProfile& profile = scenario.acceleration[i];
-    if (!moves(profile)) continue;
-    filtered.acceleration[i] =
-        sampled(profile, kAccelerationPurposes[i], samples.acceleration[i]);
-  }
-  if (std::any_of(scenario.acceleration.begin(), scenario.acceleration.end(),
-                  moves))
-    filtered.square = filtered_square_acceleration(scenario, corner, key);
-  return filtered;
-}
 
-// Cross rates and accelerations: the exact solution for every sample.
-void show_motion(const Gyro& gyro, const FilteredMotion& filtered,
-                 RunSamples& samples) {
-  Board board(gyro);
-  for (std::size_t k = 0; k < samples.time.size(); ++k) {
+  void operator()(RunSamples& samples) {
+    const std::size_t count = samples.time.size();
+    for (std::size_t i = 0; i < 3; ++i) {
+      rate_[i].next(count);
+      acceleration_[i].next(count);
+    }
+    square_.next(count);
+    for (std::size_t k = 0; k < count; ++k) write(k, samples);
+  }
+
+ private:
+  struct Filtered {
+    SampleStream filtered;
+    Samples values;
+
+    void next(std::size_t count) {
+      values.resize(count);
+      filtered(values);
+    }
+  };
+
+  void write(std::size_t k, RunSamples& samples) {
     const ModalParameters modal =
-        modal_parameters(gyro.device, gyro.beam, samples.temperature[kBeam][k],
-                         gyro.stiffness_trim);
-    CaseMotion motion = filtered.at(k, gyro.device.mount);
-    const BeamSignal at_rate = beam_signal(gyro, modal, motion);
+        modal_parameters(gyro_.device, gyro_.beam,
+                         samples.temperature[kBeam][k], gyro_.stiffness_trim);
+    CaseMotion motion;
+    motion.x = rate_[0].values[k];
+    motion.y = rate_[1].values[k];
+    motion.z = rate_[2].values[k];
+    motion.in_phase =
+        in_phase_rate(gyro_.device.mount,
+                      {acceleration_[0].values[k], acceleration_[1].values[k],
+                       acceleration_[2].values[k]},
+                      square_.values[k]);
+    const BeamSignal at_rate = beam_signal(gyro_, modal, motion, path_);
     Complex at_rest = at_rate.demodulated;
     if (motion.z != 0) {
       motion.z = 0;
       at_rest =
-          beam_signal(gyro, modal, motion, at_rate.drive_frequency).demodulated;
+          beam_signal(gyro_, modal, motion, path_, at_rate.drive_frequency)
+              .demodulated;
     }
-    show(board.at(samples.temperature[kBoard][k]), at_rate, at_rest, k,
-         samples);
+    write_sample(board_.at(samples.temperature[kBoard][k]), at_rate, at_rest, k,
+                 samples);
   }
+
+  const Gyro& gyro_;
+  Board board_;
+  LockPath path_;
+  std::array<Filtered, 3> rate_, acceleration_;
+  Filtered square_;
+};
+
+using StaticResponse = std::function<void(RunSamples& samples)>;
+
+StaticResponse static_response(const Gyro& gyro, const Motion& motion,
+                               const ThermalTrajectory& temperatures,
+                               const SampleGrid& grid) {
+  if (motion.has_other_axes()) return MotionResponse(gyro, motion, grid.rate);
+  return RateResponse(gyro, motion, temperatures, grid);
+}
+
+// White noise of the sensing in front of the output stage [rad/sqrt(s)].
+double sensing_noise(const Gyro& gyro) {
+  return low_frequency_noise(gyro, kCalibrationTemperature,
+                             kCalibrationTemperature)
+             .total() /
+         std::numbers::sqrt2;
 }
 
 }  // namespace
 
-Recording simulate_quasistatic(const Scenario& scenario, const Device& device,
-                               const RunKey& key) {
-  return simulate_quasistatic(scenario, make_gyro(device), key);
+void simulate_quasistatic(const Scenario& scenario, const Device& device,
+                          const RunKey& key, const BlockSink& on_block) {
+  simulate_quasistatic(scenario, make_gyro(device), key, on_block);
 }
 
-Recording simulate_quasistatic(const Scenario& scenario, const Gyro& gyro,
-                               const RunKey& key) {
-  if (scenario.fidelity != Fidelity::kQuasistatic) {
+void simulate_quasistatic(const Scenario& given, const Gyro& gyro,
+                          const RunKey& key, const BlockSink& on_block,
+                          std::size_t block_samples) {
+  if (given.fidelity != Fidelity::kQuasistatic) {
     throw std::invalid_argument(
         "fidelity: a scenario of another fidelity was given to the "
-        "quasi-static "
-        "run; expected \"quasistatic\"");
+        "quasi-static run; expected \"quasistatic\"");
   }
-  RunSamples samples;
-  samples.time = sample_times(scenario);
-  const std::size_t count = samples.time.size();
-  for (Samples* column : {&samples.output, &samples.quadrature, &samples.bias,
-                          &samples.drive_frequency, &samples.drive_voltage})
-    column->resize(count);
-  samples.locked.resize(count);
-  samples.temperature =
-      run_temperatures(scenario, gyro, samples.time).temperature;
-
-  const FilteredMotion filtered = filtered_motion(
-      scenario, gyro.device.readout.corner_frequency, key, samples);
-  if (filtered.has_other_axes()) {
-    show_motion(gyro, filtered, samples);
-  } else {
-    show_rate(gyro, filtered.rate, samples);
+  const Scenario scenario = with_aligned_borders(given);
+  const SampleGrid grid = sample_grid(scenario);
+  const Motion motion(scenario, gyro, key);
+  const ThermalTrajectory temperatures(ThermalNetwork(gyro.device.thermal),
+                                       thermal_load(scenario, gyro), grid);
+  const StaticResponse respond =
+      static_response(gyro, motion, temperatures, grid);
+  RunRecorder recorder(scenario, gyro.device, key, sensing_noise(gyro));
+  for (std::size_t k = 0; k < grid.count; k += block_samples) {
+    const std::size_t count = std::min(block_samples, grid.count - k);
+    RunSamples samples;
+    samples.time = grid.times(k, count);
+    for (Samples* column : {&samples.output, &samples.quadrature, &samples.bias,
+                            &samples.drive_frequency, &samples.drive_voltage})
+      column->resize(count);
+    samples.locked.resize(count);
+    for (std::size_t node = 0; node < kThermalNodeCount; ++node) {
+      samples.temperature[node].resize(count);
+      temperatures.sample(static_cast<ThermalNode>(node), k, samples.time,
+                          samples.temperature[node]);
+    }
+    motion.show(samples);
+    respond(samples);
+    on_block(recorder.block(std::move(samples)));
   }
-  const double sensing_noise =
-      low_frequency_noise(gyro, kCalibrationTemperature,
-                          kCalibrationTemperature)
-          .total() /
-      std::numbers::sqrt2;
-  return RunRecorder(scenario, gyro.device, key, sensing_noise)
-      .block(std::move(samples));
 }
 
 }  // namespace beamgyro

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "dataset/recording.h"
 #include "sim/dynamics/gyro.h"
 #include "sim/scenario/run_recorder.h"
 #include "sim/scenario/scenario.h"
@@ -13,11 +12,14 @@ namespace beamgyro {
 /// phase and offset (2.23), noise, saturation and ADC. Cross rates and
 /// accelerations act through the exact solution at every sample. Valid while
 /// temperature and rate change slowly against the sense mode (27 ms) and the
-/// loops. Fills every column of a recording (docs/formats.md) and `status`; the
-/// texts and versions are the caller's.
-Recording simulate_quasistatic(const Scenario& scenario, const Gyro& gyro,
-                               const RunKey& key = {});
-Recording simulate_quasistatic(const Scenario& scenario, const Device& device,
-                               const RunKey& key = {});
+/// loops. `on_block` takes the recording block by block, with every column
+/// (docs/formats.md) and `status`, so that memory does not grow with the
+/// samples; the recording is the same for blocks of any size. Throws
+/// std::invalid_argument for a scenario of another fidelity.
+void simulate_quasistatic(const Scenario& scenario, const Gyro& gyro,
+                          const RunKey& key, const BlockSink& on_block,
+                          std::size_t block_samples = kBlockSamples);
+void simulate_quasistatic(const Scenario& scenario, const Device& device,
+                          const RunKey& key, const BlockSink& on_block);
 
 }  // namespace beamgyro

@@ -15,29 +15,40 @@ namespace {
 const double kCornerPerBandwidth =
     2 * std::numbers::pi / std::sqrt(std::sqrt(2.0) - 1);
 
+bool differs_from_zero(const SineSignal& sine) {
+  return sine.amplitude != 0 || sine.offset != 0;
+}
+
+bool differs_from_zero(const RandomRate& random) { return random.rms != 0; }
+
+bool differs_from_zero(const PiecewiseLinear& points) {
+  return std::any_of(points.values().begin(), points.values().end(),
+                     [](double value) { return value != 0; });
+}
+
 }  // namespace
 
 bool moves(const RateProfile& profile) {
-  if (const auto* sine = std::get_if<SineSignal>(&profile))
-    return sine->amplitude != 0 || sine->offset != 0;
-  if (const auto* random = std::get_if<RandomRate>(&profile))
-    return random->rms != 0;
-  const auto& points = std::get<PiecewiseLinear>(profile);
-  const std::vector<double> times = points.breakpoints();
-  return std::any_of(times.begin(), times.end(), [&](double t) {
-    return points.value(t) != 0 || points.value_before(t) != 0;
-  });
+  return std::visit([](const auto& form) { return differs_from_zero(form); },
+                    profile);
 }
 
-std::vector<double> sine_values(const SineSignal& sine,
-                                std::span<const double> times) {
+bool moves(const Signal& signal) {
+  return std::visit([](const auto& form) { return differs_from_zero(form); },
+                    signal);
+}
+
+std::vector<double> values_at(const Signal& signal,
+                              std::span<const double> times) {
+  const auto* sine = std::get_if<SineSignal>(&signal);
+  if (sine == nullptr) return std::get<PiecewiseLinear>(signal).sample(times);
   std::vector<double> values;
   values.reserve(times.size());
   for (const double t : times) {
     values.push_back(
-        sine.offset +
-        sine.amplitude *
-            std::sin(2 * std::numbers::pi * sine.frequency * t + sine.phase));
+        sine->offset +
+        sine->amplitude *
+            std::sin(2 * std::numbers::pi * sine->frequency * t + sine->phase));
   }
   return values;
 }
@@ -75,23 +86,6 @@ PiecewiseLinear realised(const RandomRate& random, double duration,
     x = step * x + root * draw();
   }
   return {std::move(time), std::move(value)};
-}
-
-SampledRate sampled_rate(const RateProfile& profile, const OutputFilter& filter,
-                         std::span<const double> times, double output_rate,
-                         double duration, std::uint64_t seed,
-                         std::uint32_t device, std::uint32_t run,
-                         RandomPurpose purpose) {
-  if (const auto* sine = std::get_if<SineSignal>(&profile)) {
-    return {sine_values(*sine, times),
-            filter.response(*sine, output_rate, times.size())};
-  }
-  const auto* random = std::get_if<RandomRate>(&profile);
-  const PiecewiseLinear points =
-      random ? realised(*random, duration, seed, device, run, purpose)
-             : std::get<PiecewiseLinear>(profile);
-  return {points.sample(times),
-          filter.response(points, output_rate, times.size())};
 }
 
 }  // namespace beamgyro

@@ -24,8 +24,9 @@ struct RandomRate {
 /// sine runs from time 0 on, with phase `phase` there.
 using RateProfile = std::variant<PiecewiseLinear, SineSignal, RandomRate>;
 
-/// Whether a profile ever differs from zero.
+/// Whether a profile or a signal ever differs from zero.
 bool moves(const RateProfile& profile);
+bool moves(const Signal& signal);
 
 /// Streams of the random profiles of the cross axes x, y and of acceleration
 /// along x, y, z.
@@ -35,9 +36,9 @@ inline constexpr std::array<RandomPurpose, 3> kAccelerationPurposes = {
     RandomPurpose::kAccelerationX, RandomPurpose::kAccelerationY,
     RandomPurpose::kAccelerationZ};
 
-/// A sine at the sample times.
-std::vector<double> sine_values(const SineSignal& sine,
-                                std::span<const double> times);
+/// A signal at increasing times.
+std::vector<double> values_at(const Signal& signal,
+                              std::span<const double> times);
 
 /// One realisation of a random rate over [0, duration]: exact samples of the
 /// process on a grid of 1/(16 bandwidth), linear between, scaled so that the
@@ -46,17 +47,6 @@ std::vector<double> sine_values(const SineSignal& sine,
 PiecewiseLinear realised(const RandomRate& random, double duration,
                          std::uint64_t seed, std::uint32_t device,
                          std::uint32_t run,
-                         RandomPurpose purpose = RandomPurpose::kRateProfile);
-
-/// The rate and what the output filter makes of it at the sample times.
-struct SampledRate {
-  std::vector<double> rate;      // [rad/s]
-  std::vector<double> filtered;  // [rad/s]
-};
-SampledRate sampled_rate(const RateProfile& profile, const OutputFilter& filter,
-                         std::span<const double> times, double output_rate,
-                         double duration, std::uint64_t seed,
-                         std::uint32_t device, std::uint32_t run,
                          RandomPurpose purpose = RandomPurpose::kRateProfile);
 
 }  // namespace beamgyro

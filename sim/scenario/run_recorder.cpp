@@ -154,23 +154,4 @@ void RunRecorder::add_truth(Recording& block, RunSamples& samples) const {
       scaled(scenario_.ambient.sample(block.time), 1, -kZeroCelsius));
 }
 
-Recording joined(const std::function<void(const BlockSink&)>& run) {
-  Recording whole;
-  run([&](Recording&& block) {
-    if (whole.columns.empty()) {
-      whole = std::move(block);
-      return;
-    }
-    whole.time.insert(whole.time.end(), block.time.begin(), block.time.end());
-    whole.status.insert(whole.status.end(), block.status.begin(),
-                        block.status.end());
-    for (std::size_t i = 0; i < block.columns.size(); ++i) {
-      const Samples& values = block.columns[i].values;
-      Samples& all = whole.columns[i].values;
-      all.insert(all.end(), values.begin(), values.end());
-    }
-  });
-  return whole;
-}
-
 }  // namespace beamgyro

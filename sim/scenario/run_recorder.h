@@ -78,7 +78,4 @@ class RunRecorder {
   Readout readout_;
 };
 
-/// The whole of a run from its blocks.
-Recording joined(const std::function<void(const BlockSink&)>& run);
-
 }  // namespace beamgyro

@@ -7,16 +7,13 @@
 
 namespace beamgyro {
 
-ThermalHistory run_temperatures(const Scenario& scenario, const Gyro& gyro,
-                                std::span<const double> times) {
+ThermalLoad thermal_load(const Scenario& scenario, const Gyro& gyro) {
   const DriveHeating heating = drive_heating(gyro);
-  return simulate_temperatures(ThermalNetwork(gyro.device.thermal),
-                               {.ambient = scenario.ambient,
-                                .stirred = scenario.stirred,
-                                .powered = scenario.powered,
-                                .mechanical_power = heating.mechanical,
-                                .dielectric_power = heating.dielectric},
-                               times);
+  return {.ambient = scenario.ambient,
+          .stirred = scenario.stirred,
+          .powered = scenario.powered,
+          .mechanical_power = heating.mechanical,
+          .dielectric_power = heating.dielectric};
 }
 
 RunTemperatures::RunTemperatures(const Scenario& scenario, const Gyro& gyro,
@@ -27,7 +24,8 @@ RunTemperatures::RunTemperatures(const Scenario& scenario, const Gyro& gyro,
     times.push_back(static_cast<double>(k) * step);
     if (times.back() >= scenario.duration) break;
   }
-  history_ = run_temperatures(scenario, gyro, times);
+  history_ = simulate_temperatures(ThermalNetwork(gyro.device.thermal),
+                                   thermal_load(scenario, gyro), times);
 }
 
 double RunTemperatures::at(ThermalNode node, double t) const {

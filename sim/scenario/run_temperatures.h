@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <span>
-
 #include "sim/dynamics/gyro.h"
 #include "sim/scenario/scenario.h"
 
 namespace beamgyro {
 
-/// Node temperatures of a scenario at increasing times [s] (4.1), with the heat
-/// of electronics and drive while powered.
-ThermalHistory run_temperatures(const Scenario& scenario, const Gyro& gyro,
-                                std::span<const double> times);
+/// What heats and cools a gyro in a scenario (4.1): the ambient, and
+/// electronics and drive while powered.
+ThermalLoad thermal_load(const Scenario& scenario, const Gyro& gyro);
 
-/// The same over the whole run, linear between points of a grid.
+/// Its node temperatures over the whole run, linear between points of a grid.
 class RunTemperatures {
  public:
   RunTemperatures(const Scenario& scenario, const Gyro& gyro, double step);

@@ -24,11 +24,12 @@ std::size_t sample_count(const Scenario& scenario) {
   return static_cast<std::size_t>(std::floor(count * (1 + kRoundoff)));
 }
 
+SampleGrid sample_grid(const Scenario& scenario) {
+  return {scenario.output_rate, sample_count(scenario)};
+}
+
 std::vector<double> sample_times(const Scenario& scenario) {
-  std::vector<double> times(sample_count(scenario));
-  for (std::size_t k = 0; k < times.size(); ++k)
-    times[k] = static_cast<double>(k) / scenario.output_rate;
-  return times;
+  return sample_grid(scenario).times(0, sample_count(scenario));
 }
 
 double highest_output_rate(Fidelity fidelity) {

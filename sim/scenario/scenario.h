@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/numerics/piecewise_linear.h"
+#include "sim/numerics/sample_grid.h"
 #include "sim/scenario/rate_profile.h"
 #include "sim/thermal/thermal_run.h"
 
@@ -47,7 +48,10 @@ std::string_view fidelity_name(Fidelity fidelity);
 /// Number of samples, floor(duration x output_rate).
 std::size_t sample_count(const Scenario& scenario);
 
-/// time[k] = k / output_rate [s], k = 0 .. sample_count - 1.
+/// time(k) = k / output_rate [s], k = 0 .. sample_count - 1.
+SampleGrid sample_grid(const Scenario& scenario);
+
+/// All of them.
 std::vector<double> sample_times(const Scenario& scenario);
 
 /// Highest output rate a fidelity allows [Hz].

@@ -44,6 +44,10 @@ Fidelity read_fidelity(const ConfigTable& root) {
   return Fidelity::kQuasistatic;
 }
 
+bool is_after(double t, double before) {
+  return t > before && !is_same_time(t, before);
+}
+
 std::vector<PowerInterval> read_power(const ConfigTable& power) {
   if (!power.has("on_s") && !power.has("off_s")) return {{.on = 0}};
   const std::vector<double> on = power.numbers("on_s");
@@ -58,13 +62,13 @@ std::vector<PowerInterval> read_power(const ConfigTable& power) {
   }
   std::vector<PowerInterval> intervals;
   for (std::size_t i = 0; i < on.size(); ++i) {
-    if (i > 0 && on[i] <= off[i - 1]) {
+    if (i > 0 && !is_after(on[i], off[i - 1])) {
       throw std::invalid_argument(fmt::format(
           "{}: {} s does not come after off_s = {} s; expected on and off in "
           "turn",
           power.place("on_s", i), on[i], off[i - 1]));
     }
-    if (i < off.size() && off[i] <= on[i]) {
+    if (i < off.size() && !is_after(off[i], on[i])) {
       throw std::invalid_argument(fmt::format(
           "{}: {} s does not come after on_s = {} s; expected on and off in "
           "turn",
@@ -191,7 +195,7 @@ Scenario read_scenario(const ConfigDocument& document,
       root.number("output_rate_Hz",
                   {0, highest_output_rate(scenario.fidelity), true, false});
   const double samples = scenario.duration * scenario.output_rate;
-  if (sample_count(scenario) == 0 || samples > kLargestRecording) {
+  if (samples > kLargestRecording || sample_count(scenario) == 0) {
     root.fail("duration_s",
               fmt::format("{} s at {} Hz makes {:.6g} samples; expected 1 to "
                           "{:g}",

@@ -17,7 +17,7 @@ SensingNoise::SensingNoise(const Scenario& scenario, const Gyro& gyro,
 
 void SensingNoise::add_next(RunSamples& samples) {
   for (std::size_t k = 0; k < samples.time.size(); ++k) {
-    if (!powered_at(scenario_, samples.time[k])) continue;
+    if (!powered_at(scenario_.powered, samples.time[k])) continue;
     const double beam = samples.temperature[kBeam][k];
     const double board = samples.temperature[kBoard][k];
     if (!noise_) {

@@ -1,17 +1,41 @@
 // SPDX-License-Identifier: MIT
 #include "sim/scenario/simulation.h"
 
+#include <utility>
+#include <vector>
+
 #include "sim/scenario/carrier_run.h"
 #include "sim/scenario/envelope_run.h"
 #include "sim/scenario/quasistatic_run.h"
 
 namespace beamgyro {
+namespace {
+
+void reserve(Recording& recording, std::size_t samples) {
+  recording.time.reserve(samples);
+  recording.status.reserve(samples);
+  for (Column& column : recording.columns) column.values.reserve(samples);
+}
+
+template <class T>
+void append(std::vector<T>& all, const std::vector<T>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+void append(Recording& recording, const Recording& block) {
+  append(recording.time, block.time);
+  append(recording.status, block.status);
+  for (std::size_t i = 0; i < block.columns.size(); ++i)
+    append(recording.columns[i].values, block.columns[i].values);
+}
+
+}  // namespace
 
 void simulate(const Scenario& scenario, const Gyro& gyro, const RunKey& key,
               const BlockSink& on_block) {
   switch (scenario.fidelity) {
     case Fidelity::kQuasistatic:
-      return on_block(simulate_quasistatic(scenario, gyro, key));
+      return simulate_quasistatic(scenario, gyro, key, on_block);
     case Fidelity::kEnvelope:
       return simulate_envelope(scenario, gyro, key, on_block);
     case Fidelity::kCarrier:
@@ -21,9 +45,28 @@ void simulate(const Scenario& scenario, const Gyro& gyro, const RunKey& key,
 
 Recording simulated(const Scenario& scenario, const Gyro& gyro,
                     const RunKey& key) {
-  return joined([&](const BlockSink& on_block) {
-    simulate(scenario, gyro, key, on_block);
+  Recording whole;
+  if (scenario.fidelity == Fidelity::kQuasistatic) {  // in one block
+    simulate_quasistatic(
+        scenario, gyro, key,
+        [&](Recording&& block) { whole = std::move(block); },
+        sample_count(scenario));
+    return whole;
+  }
+  simulate(scenario, gyro, key, [&](Recording&& block) {
+    if (whole.columns.empty()) {
+      whole = std::move(block);
+      reserve(whole, sample_count(scenario));
+    } else {
+      append(whole, block);
+    }
   });
+  return whole;
+}
+
+Recording simulated(const Scenario& scenario, const Device& device,
+                    const RunKey& key) {
+  return simulated(scenario, make_gyro(device), key);
 }
 
 }  // namespace beamgyro

@@ -15,5 +15,7 @@ void simulate(const Scenario& scenario, const Gyro& gyro, const RunKey& key,
 /// The whole of it in memory.
 Recording simulated(const Scenario& scenario, const Gyro& gyro,
                     const RunKey& key = {});
+Recording simulated(const Scenario& scenario, const Device& device,
+                    const RunKey& key = {});
 
 }  // namespace beamgyro

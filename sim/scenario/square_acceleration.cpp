@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <variant>
 
 namespace beamgyro {
@@ -36,72 +37,96 @@ class TwoPoles {
   double y1_, y2_;
 };
 
-void add_square(const PiecewiseLinear& points, double corner,
-                double output_rate, Samples& sum) {
-  const std::vector<double> knots = points.breakpoints();
-  auto next = std::upper_bound(knots.begin(), knots.end(), 0.0);
-  // The piece that starts at t0: a + b (t - t0), until `next`.
-  double t0 = 0, a = points.value(0), b = 0, t = 0;
-  const auto find_slope = [&] {
-    b = next == knots.end() ? 0
-                            : (points.value_before(*next) - a) / (*next - t0);
-  };
-  find_slope();
-  TwoPoles filter(corner, a * a);
-  const auto advance_to = [&](double end) {
-    filter.advance(a + b * (t - t0), b, end - t);
-    t = end;
-  };
-  for (std::size_t k = 0; k < sum.size(); ++k) {
-    const double sample = static_cast<double>(k) / output_rate;
-    for (; next != knots.end() && *next <= sample; find_slope()) {
-      advance_to(*next);
-      t0 = *next++;
-      a = points.value(t0);
-    }
-    advance_to(sample);
-    sum[k] += filter.output();
+// Of a profile, from sample to sample.
+class ProfileSquare {
+ public:
+  ProfileSquare(const PiecewiseLinear& profile, double corner,
+                double output_rate)
+      : profile_(&profile),
+        output_rate_(output_rate),
+        value_(profile.value(0)),
+        filter_(corner, value_ * value_) {
+    const std::vector<double>& times = profile.times();
+    next_ = static_cast<std::size_t>(
+        std::upper_bound(times.begin(), times.end(), 0.0) - times.begin());
+    find_slope();
   }
-}
+
+  void operator()(std::span<double> output) {
+    const std::vector<double>& times = profile_->times();
+    for (double& shown : output) {
+      const double sample = static_cast<double>(sample_++) / output_rate_;
+      for (; next_ < times.size() && times[next_] <= sample; find_slope()) {
+        advance_to(times[next_]);
+        start_ = now_;
+        while (next_ + 1 < times.size() && times[next_ + 1] == now_) ++next_;
+        value_ = profile_->values()[next_++];
+      }
+      advance_to(sample);
+      shown = filter_.output();
+    }
+  }
+
+ private:
+  void find_slope() {
+    slope_ = next_ == profile_->times().size()
+                 ? 0
+                 : (profile_->values()[next_] - value_) /
+                       (profile_->times()[next_] - start_);
+  }
+
+  void advance_to(double end) {
+    filter_.advance(value_ + slope_ * (now_ - start_), slope_, end - now_);
+    now_ = end;
+  }
+
+  const PiecewiseLinear* profile_;
+  double output_rate_;  // [Hz]
+  std::size_t sample_ = 0;
+  std::size_t next_ = 0;  // first point after now
+  double now_ = 0;        // [s]
+  // Of the piece: where it starts [s], its value there and its slope.
+  double start_ = 0, value_, slope_ = 0;
+  TwoPoles filter_;
+};
 
 // (o + A sin p)^2 = o^2 + A^2/2 + 2 o A sin p + A^2/2 sin(2 p - 90 deg)
-void add_square(const SineSignal& sine, double corner, double output_rate,
-                Samples& sum) {
+std::array<Signal, 2> square_of(const SineSignal& sine) {
   const double o = sine.offset, A = sine.amplitude;
-  const SineSignal once{.offset = o * o + A * A / 2,
-                        .amplitude = 2 * o * A,
-                        .frequency = sine.frequency,
-                        .phase = sine.phase};
-  const SineSignal twice{.amplitude = A * A / 2,
-                         .frequency = 2 * sine.frequency,
-                         .phase = 2 * sine.phase - std::numbers::pi / 2};
-  const OutputFilter filter(corner);
-  for (const SineSignal& part : {once, twice}) {
-    const Samples shown = filter.response(part, output_rate, sum.size());
-    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += shown[k];
-  }
+  return {SineSignal{.offset = o * o + A * A / 2,
+                     .amplitude = 2 * o * A,
+                     .frequency = sine.frequency,
+                     .phase = sine.phase},
+          SineSignal{.amplitude = A * A / 2,
+                     .frequency = 2 * sine.frequency,
+                     .phase = 2 * sine.phase - std::numbers::pi / 2}};
 }
 
 }  // namespace
 
-std::vector<double> filtered_square_acceleration(const Scenario& scenario,
-                                                 double corner,
-                                                 const RunKey& key) {
-  Samples sum(sample_count(scenario), 0.0);
-  for (std::size_t i = 0; i < scenario.acceleration.size(); ++i) {
-    const RateProfile& profile = scenario.acceleration[i];
-    if (!moves(profile)) continue;
-    if (const auto* sine = std::get_if<SineSignal>(&profile)) {
-      add_square(*sine, corner, scenario.output_rate, sum);
-      continue;
+SampleStream filtered_square_acceleration(const std::array<Signal, 3>& axes,
+                                          double corner, double output_rate) {
+  std::vector<SampleStream> parts;
+  const OutputFilter filter(corner);
+  for (const Signal& axis : axes) {
+    if (!moves(axis)) continue;
+    if (const auto* sine = std::get_if<SineSignal>(&axis)) {
+      for (const Signal& part : square_of(*sine))
+        parts.push_back(filter.responses(part, output_rate));
+    } else {
+      parts.push_back(
+          ProfileSquare(std::get<PiecewiseLinear>(axis), corner, output_rate));
     }
-    const auto* random = std::get_if<RandomRate>(&profile);
-    add_square(random ? realised(*random, scenario.duration, scenario.seed,
-                                 key.device, key.run, kAccelerationPurposes[i])
-                      : std::get<PiecewiseLinear>(profile),
-               corner, scenario.output_rate, sum);
   }
-  return sum;
+  return [parts = std::move(parts),
+          part = Samples()](std::span<double> sum) mutable {
+    std::fill(sum.begin(), sum.end(), 0.0);
+    part.resize(sum.size());
+    for (SampleStream& stream : parts) {
+      stream(part);
+      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += part[k];
+    }
+  };
 }
 
 }  // namespace beamgyro

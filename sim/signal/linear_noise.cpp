@@ -10,6 +10,8 @@
 #include <span>
 #include <stdexcept>
 
+#include "sim/numerics/simulation_failure.h"
+
 namespace beamgyro {
 namespace {
 
@@ -201,7 +203,7 @@ MatrixXd stationary_root(const NoiseSystem& system) {
     transition.diagonal().array() += 1.0;
     if (norm(transition) < kForgotten) return in_units(step.root, b.unit);
   }
-  throw std::runtime_error(
+  throw SimulationFailure(
       fmt::format("noise system: its slowest decay, {} 1/s, is too slow beside "
                   "its fastest rate, {} 1/s, to find the stationary state",
                   -slowest, norm(b.A)));

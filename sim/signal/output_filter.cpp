@@ -3,12 +3,15 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
 namespace beamgyro {
 namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;  // [rad]
 
 void require_positive(double value, const char* name, const char* unit) {
   if (!(value > 0.0) || !std::isfinite(value))
@@ -51,6 +54,99 @@ struct TwoPoles {
   }
 };
 
+// The filter under a profile, from sample to sample.
+class ProfileResponse {
+ public:
+  ProfileResponse(const PiecewiseLinear& input, double corner,
+                  double output_rate)
+      : input_(&input),
+        corner_(corner),
+        output_rate_(output_rate),
+        interval_(stretch(corner, 1.0 / output_rate)) {
+    const std::vector<double>& times = input.times();
+    next_ = static_cast<std::size_t>(
+        std::upper_bound(times.begin(), times.end(), 0.0) - times.begin());
+    is_constant_ = next_ == times.size();
+    begin_piece(input.value(0.0));
+    filter_ = {start_value_, start_value_};
+  }
+
+  void operator()(std::span<double> output) {
+    if (is_constant_) {
+      std::fill(output.begin(), output.end(), start_value_);
+      return;
+    }
+    const std::vector<double>& times = input_->times();
+    for (double& value : output) {
+      const double sample = static_cast<double>(sample_) / output_rate_;
+      bool whole = sample_++ > 0;
+      for (; next_ < times.size() && times[next_] < sample; whole = false) {
+        advance(stretch(corner_, times[next_] - now_), times[next_]);
+        while (next_ + 1 < times.size() && times[next_ + 1] == now_) ++next_;
+        ++next_;
+        begin_piece(input_->values()[next_ - 1]);
+      }
+      advance(whole ? interval_ : stretch(corner_, sample - now_), sample);
+      value = filter_.second;
+    }
+  }
+
+ private:
+  // The piece from now to the next point.
+  void begin_piece(double value) {
+    start_ = now_;
+    start_value_ = value;
+    slope_ = next_ == input_->times().size()
+                 ? 0.0
+                 : (input_->values()[next_] - value) /
+                       (input_->times()[next_] - now_);
+  }
+
+  void advance(const Stretch& h, double until) {
+    filter_.advance(h, start_value_ + slope_ * (now_ - start_),
+                    slope_ * (until - now_));
+    now_ = until;
+  }
+
+  const PiecewiseLinear* input_;
+  double corner_;       // [rad/s]
+  double output_rate_;  // [Hz]
+  Stretch interval_;    // between two samples
+  std::size_t sample_ = 0;
+  std::size_t next_ = 0;  // first point after now
+  bool is_constant_ = false;
+  double now_ = 0.0;                                      // [s]
+  double start_ = 0.0, start_value_ = 0.0, slope_ = 0.0;  // of the piece
+  TwoPoles filter_{};
+};
+
+// The filter under a sine that never started.
+class SineResponse {
+ public:
+  SineResponse(const SineSignal& input, std::complex<double> gain,
+               double output_rate)
+      : offset_(input.offset),
+        amplitude_(input.amplitude * std::abs(gain)),
+        frequency_(input.frequency),
+        phase_(input.phase + std::arg(gain)),
+        output_rate_(output_rate) {}
+
+  void operator()(std::span<double> output) {
+    for (double& value : output) {
+      const double turns = std::fmod(
+          frequency_ * static_cast<double>(sample_++) / output_rate_, 1.0);
+      value = offset_ + amplitude_ * std::sin(kTurn * turns + phase_);
+    }
+  }
+
+ private:
+  double offset_, amplitude_;
+  double frequency_;    // [Hz]
+  double phase_;        // [rad]
+  double output_rate_;  // [Hz]
+  std::size_t sample_ = 0;
+};
+
 }  // namespace
 
 OutputFilter::OutputFilter(double corner) : corner_(corner) {
@@ -62,64 +158,20 @@ std::complex<double> OutputFilter::gain(double omega) const {
   return 1.0 / (pole * pole);
 }
 
-std::vector<double> OutputFilter::response(const PiecewiseLinear& input,
-                                           double output_rate,
-                                           std::size_t count) const {
+SampleStream OutputFilter::responses(const Signal& input,
+                                     double output_rate) const {
   require_positive(output_rate, "output rate", "Hz");
-  const std::vector<double> breaks = input.breakpoints();
-  const std::vector<double> break_values = input.sample(breaks);
-  std::size_t next = 0;  // first break after `now`
-  while (next < breaks.size() && breaks[next] <= 0.0) ++next;
-
-  if (next == breaks.size()) return std::vector(count, input.value(0.0));
-
-  double now = 0.0;
-  double start = 0.0, start_value = 0.0, slope = 0.0;  // of the linear piece
-  const auto begin_piece = [&](double value) {
-    start = now;
-    start_value = value;
-    slope = next == breaks.size() ? 0.0
-                                  : (input.value_before(breaks[next]) - value) /
-                                        (breaks[next] - now);
-  };
-  begin_piece(input.value(0.0));
-  TwoPoles filter{start_value, start_value};
-  const auto advance = [&](const Stretch& h, double until) {
-    filter.advance(h, start_value + slope * (now - start),
-                   slope * (until - now));
-    now = until;
-  };
-
-  const Stretch interval = stretch(corner_, 1.0 / output_rate);
-  std::vector<double> output(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    const double sample = static_cast<double>(k) / output_rate;
-    bool whole = k > 0;
-    for (; next < breaks.size() && breaks[next] < sample; whole = false) {
-      advance(stretch(corner_, breaks[next] - now), breaks[next]);
-      ++next;
-      begin_piece(break_values[next - 1]);
-    }
-    advance(whole ? interval : stretch(corner_, sample - now), sample);
-    output[k] = filter.second;
-  }
-  return output;
+  if (const auto* sine = std::get_if<SineSignal>(&input))
+    return SineResponse(*sine, gain(kTurn * sine->frequency), output_rate);
+  return ProfileResponse(std::get<PiecewiseLinear>(input), corner_,
+                         output_rate);
 }
 
-std::vector<double> OutputFilter::response(const SineSignal& input,
+std::vector<double> OutputFilter::response(const Signal& input,
                                            double output_rate,
                                            std::size_t count) const {
-  require_positive(output_rate, "output rate", "Hz");
-  constexpr double kTurn = 2.0 * std::numbers::pi;
-  const std::complex<double> H = gain(kTurn * input.frequency);
-  const double amplitude = input.amplitude * std::abs(H);
-  const double phase = input.phase + std::arg(H);
   std::vector<double> output(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    const double turns =
-        std::fmod(input.frequency * static_cast<double>(k) / output_rate, 1.0);
-    output[k] = input.offset + amplitude * std::sin(kTurn * turns + phase);
-  }
+  responses(input, output_rate)(output);
   return output;
 }
 

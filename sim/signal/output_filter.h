@@ -3,6 +3,9 @@
 
 #include <complex>
 #include <cstddef>
+#include <functional>
+#include <span>
+#include <variant>
 #include <vector>
 
 #include "sim/numerics/piecewise_linear.h"
@@ -17,10 +20,15 @@ struct SineSignal {
   double phase = 0.0;      // [rad]
 };
 
+/// A signal over time.
+using Signal = std::variant<SineSignal, PiecewiseLinear>;
+
+/// Writes the next samples of a signal, as many as asked for.
+using SampleStream = std::function<void(std::span<double>)>;
+
 /// The readout's output filter, two equal real poles w_o:
 ///   y_1' = w_o (u - y_1),   y_2' = w_o (y_1 - y_2),
-/// solved exactly. Responses are y_2 at the times k / output_rate, k = 0 ..
-/// count - 1, in the units of u.
+/// solved exactly.
 class OutputFilter {
  public:
   /// `corner` is w_o [rad/s] of each pole: the pair is -3 dB at 0.644 w_o.
@@ -30,15 +38,18 @@ class OutputFilter {
   /// H(i omega) = (1 + i omega / w_o)^-2, omega in [rad/s].
   std::complex<double> gain(double omega) const;
 
-  /// Response to an input whose jumps and bends may lie anywhere between the
-  /// samples; at t = 0 the filter has settled on the input's value there. Costs
-  /// O(count) and a binary search per point of the input. Throws
-  /// std::invalid_argument for an output rate [Hz] that is not finite and > 0.
-  std::vector<double> response(const PiecewiseLinear& input, double output_rate,
-                               std::size_t count) const;
+  /// y_2 at the times k / output_rate, k = 0, 1, ..., in the units of u, which
+  /// must outlive the stream:
+  /// - to a profile, whose jumps and bends may lie anywhere between the
+  /// samples;
+  ///   at t = 0 the filter has settled on its value there;
+  /// - to a sine, the periodic response to one that never started.
+  /// Throws std::invalid_argument for an output rate [Hz] that is not finite
+  /// and > 0.
+  SampleStream responses(const Signal& input, double output_rate) const;
 
-  /// The periodic response to a sine that never started. Throws as above.
-  std::vector<double> response(const SineSignal& input, double output_rate,
+  /// The first `count` of them.
+  std::vector<double> response(const Signal& input, double output_rate,
                                std::size_t count) const;
 
  private:

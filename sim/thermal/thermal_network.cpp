@@ -3,7 +3,8 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <stdexcept>
+
+#include "sim/numerics/simulation_failure.h"
 
 namespace beamgyro {
 namespace {
@@ -107,7 +108,7 @@ NodeVector ThermalNetwork::steady_state(
     temperature -= step;
     if (step.cwiseAbs().maxCoeff() < kSmallestStep) return temperature;
   }
-  throw std::runtime_error("thermal steady state: no convergence");
+  throw SimulationFailure("thermal steady state: no convergence");
 }
 
 }  // namespace beamgyro

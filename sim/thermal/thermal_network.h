@@ -62,7 +62,7 @@ class ThermalNetwork {
 
   /// Temperatures [K] at which heating_rate() vanishes, by Newton's method.
   /// An oven takes no part: its power is an entry of `power`. Throws
-  /// std::runtime_error without convergence.
+  /// SimulationFailure without convergence.
   NodeVector steady_state(const NodeVector& power,
                           const ThermalSurroundings& surroundings) const;
 

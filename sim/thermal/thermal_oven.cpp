@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+
+#include "sim/numerics/simulation_failure.h"
 
 namespace beamgyro {
 
@@ -60,7 +61,7 @@ OvenSteadyState oven_steady_state(const ThermalNetwork& network,
     if (std::abs(error) < kSmallestError) return next;
     (error < 0 ? low : high) = next;
   }
-  throw std::runtime_error("oven steady state: no convergence");
+  throw SimulationFailure("oven steady state: no convergence");
 }
 
 }  // namespace beamgyro

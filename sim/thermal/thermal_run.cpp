@@ -14,25 +14,11 @@
 namespace beamgyro {
 namespace {
 
-// Discontinuities closer than this are one: no node moves meanwhile.
-constexpr double kShortestPiece = 1e-6;  // [s]
-
-// A stretch of time without a discontinuity inside.
-struct Piece {
-  double start, end;                  // [s]
-  double ambient_start, ambient_end;  // [K]
-  bool powered;
-
-  double ambient(double t) const {
-    return std::lerp(ambient_start, ambient_end, (t - start) / (end - start));
-  }
-};
-
 [[noreturn]] void reject(const std::string& message) {
   throw std::invalid_argument("thermal run: " + message);
 }
 
-void require_valid(const ThermalLoad& load, std::span<const double> times) {
+void require_valid(const ThermalLoad& load) {
   double last = -std::numeric_limits<double>::infinity();
   for (const PowerInterval& interval : load.powered) {
     if (!(interval.on >= last && interval.off > interval.on)) {
@@ -47,6 +33,9 @@ void require_valid(const ThermalLoad& load, std::span<const double> times) {
     reject(fmt::format("heating powers {} W and {} W must be >= 0",
                        load.mechanical_power, load.dielectric_power));
   }
+}
+
+void require_increasing(std::span<const double> times) {
   double before = -1;
   for (const double t : times) {
     if (!(std::isfinite(t) && t >= 0)) {
@@ -59,32 +48,11 @@ void require_valid(const ThermalLoad& load, std::span<const double> times) {
   }
 }
 
-bool powered_at(const ThermalLoad& load, double t) {
-  return std::any_of(load.powered.begin(), load.powered.end(),
-                     [t](const PowerInterval& interval) {
-                       return interval.on <= t && t < interval.off;
-                     });
-}
-
-std::vector<Piece> pieces_until(double end, const ThermalLoad& load) {
-  std::vector<double> borders = load.ambient.breakpoints();
-  for (const PowerInterval& interval : load.powered) {
-    borders.push_back(interval.on);
-    borders.push_back(interval.off);
-  }
-  borders.push_back(0);
-  borders.push_back(end);
-  std::erase_if(borders, [&](double t) { return t < 0 || t > end; });
-  std::sort(borders.begin(), borders.end());
-
-  std::vector<Piece> pieces;
-  for (std::size_t i = 1; i < borders.size(); ++i) {
-    const double a = borders[i - 1], b = borders[i];
-    if (b - a < kShortestPiece) continue;
-    pieces.push_back({a, b, load.ambient.value(a), load.ambient.value_before(b),
-                      powered_at(load, a)});
-  }
-  return pieces;
+std::vector<Border> borders_of(const ThermalLoad& load) {
+  std::vector<Border> borders = load.ambient.borders();
+  for (const PowerInterval& interval : load.powered)
+    borders.insert(borders.end(), {{interval.on, true}, {interval.off, true}});
+  return borders;
 }
 
 // Fills the columns of a history in order of time.
@@ -131,7 +99,7 @@ std::vector<double> heater_power(const ThermalOven& oven,
                                  const std::vector<double>& integral) {
   std::vector<double> power(times.size(), 0.0);
   for (std::size_t k = 0; k < times.size(); ++k) {
-    if (powered_at(load, times[k])) {
+    if (powered_at(load.powered, times[k])) {
       power[k] = oven_action(oven, mount[k], integral[k]).power;
     }
   }
@@ -140,19 +108,24 @@ std::vector<double> heater_power(const ThermalOven& oven,
 
 }  // namespace
 
-ThermalHistory simulate_temperatures(const ThermalNetwork& network,
-                                     const ThermalLoad& load,
-                                     std::span<const double> times,
-                                     const ThermalRunOptions& options) {
-  require_valid(load, times);
-  ThermalHistory history;
-  if (times.empty()) return history;
+bool powered_at(std::span<const PowerInterval> powered, double t) {
+  return std::any_of(powered.begin(), powered.end(),
+                     [t](const PowerInterval& interval) {
+                       return interval.on <= t && t < interval.off;
+                     });
+}
 
+CvodeStatistics integrate_temperatures(const ThermalNetwork& network,
+                                       const ThermalLoad& load, double end,
+                                       const ThermalRunOptions& options,
+                                       const ThermalSink& sink) {
+  require_valid(load);
   const ThermalOde ode(network, load.mechanical_power, load.dielectric_power);
   const Eigen::Index size = ode.size();
-  Piece now{};
+  LinearStretch ambient{};
+  bool powered = false;
   const auto surroundings = [&](double t) -> ThermalSurroundings {
-    return {now.ambient(t), load.stirred};
+    return {ambient.at(t), load.stirred};
   };
   Eigen::VectorXd y = Eigen::VectorXd::Constant(size, load.ambient.value(0));
   y.tail(size - kThermalNodeCount).setZero();
@@ -162,34 +135,46 @@ ThermalHistory simulate_temperatures(const ThermalNetwork& network,
   cvode_options.absolute_tolerance =
       Eigen::VectorXd::Constant(1, options.tolerance);
   cvode_options.jacobian = [&](double t, const auto& state, auto slope) {
-    ode.jacobian(surroundings(t), now.powered, state, slope);
+    ode.jacobian(surroundings(t), powered, state, slope);
   };
   Cvode cvode(
       [&](double t, const auto& state, auto rate) {
-        ode.rate(surroundings(t), now.powered, state, rate);
+        ode.rate(surroundings(t), powered, state, rate);
       },
       0.0, y, cvode_options);
-  Recorder recorder(times, size);
-  bool powered = false;
-  for (const Piece& piece : pieces_until(times.back(), load)) {
-    if (piece.powered && !powered) y.tail(size - kThermalNodeCount).setZero();
-    powered = piece.powered;
-    now = piece;
-    recorder.record_until(piece.start, y);
+  for (const Piece& piece : pieces_until(end, borders_of(load))) {
+    const bool was_powered = powered;
+    powered = powered_at(load.powered, piece.start);
+    if (powered && !was_powered) y.tail(size - kThermalNodeCount).setZero();
+    ambient = load.ambient.stretch(piece.start, piece.end);
+    sink.on_state(piece.start, y);
     cvode.restart(piece.start, y);
-    y = cvode.advance_to(piece.end,
-                         [&](const OdeStep& step) { recorder.record(step); });
+    y = cvode.advance_to(piece.end, sink.on_step);
   }
-  recorder.record_until(times.back(), y);
+  sink.on_state(end, y);
+  return cvode.statistics();
+}
+
+ThermalHistory simulate_temperatures(const ThermalNetwork& network,
+                                     const ThermalLoad& load,
+                                     std::span<const double> times,
+                                     const ThermalRunOptions& options) {
+  require_increasing(times);
+  ThermalHistory history;
+  if (times.empty()) return history;
+  Recorder recorder(times, ThermalOde(network, 0, 0).size());
+  history.statistics = integrate_temperatures(
+      network, load, times.back(), options,
+      {.on_state = [&](double t,
+                       const auto& y) { recorder.record_until(t, y); },
+       .on_step = [&](const OdeStep& step) { recorder.record(step); }});
   if (network.parameters().oven) {
     history.heater_power =
         heater_power(*network.parameters().oven, load, times,
                      recorder.columns()[kMount], recorder.columns().back());
   }
-  for (std::size_t i = 0; i < kThermalNodeCount; ++i) {
+  for (std::size_t i = 0; i < kThermalNodeCount; ++i)
     history.temperature[i] = std::move(recorder.columns()[i]);
-  }
-  history.statistics = cvode.statistics();
   return history;
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -17,6 +19,9 @@ struct PowerInterval {
   double on;                                             // [s]
   double off = std::numeric_limits<double>::infinity();  // [s]
 };
+
+/// Whether one of the intervals holds `t` [s].
+bool powered_at(std::span<const PowerInterval> powered, double t);
 
 struct ThermalLoad {
   PiecewiseLinear ambient;                  // [K] over [s]
@@ -38,12 +43,29 @@ struct ThermalHistory {
   CvodeStatistics statistics;
 };
 
-/// Temperatures of `network` at the increasing `times` >= 0 [s], by CVODE BDF
+/// What an integration of temperatures hands over in order of time: the state
+/// of ThermalOde.
+struct ThermalSink {
+  /// The state at `t` [s], and at earlier times not handed over yet.
+  std::function<void(double t, const Eigen::VectorXd& y)> on_state;
+  /// A step; its end comes with the next step or state.
+  std::function<void(const OdeStep& step)> on_step;
+};
+
+/// Integrates the temperatures of `network` over [0, end] [s], by CVODE BDF
 /// with a restart at every discontinuity of the load. At 0 every node is at
-/// ambient with the power off before. An oven works while powered and starts
-/// at every power-on with an empty integral. Throws std::invalid_argument for
-/// times or power intervals out of order or a power below zero,
-/// std::runtime_error as Cvode.
+/// ambient with the power off before. An oven works while powered and starts at
+/// every power-on with an empty integral. Throws std::invalid_argument for
+/// power intervals out of order or a power below zero, SimulationFailure as
+/// Cvode.
+CvodeStatistics integrate_temperatures(const ThermalNetwork& network,
+                                       const ThermalLoad& load, double end,
+                                       const ThermalRunOptions& options,
+                                       const ThermalSink& sink);
+
+/// The temperatures at increasing `times` >= 0 [s]. Throws
+/// std::invalid_argument for times out of order, otherwise as
+/// integrate_temperatures().
 ThermalHistory simulate_temperatures(const ThermalNetwork& network,
                                      const ThermalLoad& load,
                                      std::span<const double> times,

@@ -8,7 +8,7 @@
 #include "compensation/rate_injection.h"
 #include "compensation/train.h"
 #include "sim/dynamics/gyro.h"
-#include "sim/scenario/quasistatic_run.h"
+#include "sim/scenario/simulation.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
@@ -69,7 +69,7 @@ TEST(Verification, V43CubicAgainstNetworkAndSplineOnTheBiasCurve) {
 }
 
 Recording rest_sweep(const std::string& extra = "") {
-  return simulate_quasistatic(
+  return simulated(
       scenario_from(extra,
                     "[ambient.soaks]\ntemperatures_degC = [-40, 50]\n"
                     "hold_s = 1800\nramp_K_per_min = 1\n[chamber]\n"

@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "sim/dynamics/gyro.h"
-#include "sim/scenario/carrier_run.h"
-#include "sim/scenario/envelope_run.h"
-#include "sim/scenario/quasistatic_run.h"
+#include "sim/scenario/simulation.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
@@ -30,15 +28,7 @@ double shown(const Device& device, Fidelity fidelity) {
       "[rate]\nconstant_deg_per_s = 50\n[noise]\nenabled = false\n",
       "[ambient]\nconstant_degC = 25\n", "0.4", "100");
   scenario.fidelity = fidelity;
-  const Recording run = joined([&](const BlockSink& sink) {
-    if (fidelity == Fidelity::kQuasistatic) {
-      sink(simulate_quasistatic(scenario, device, {}));
-    } else if (fidelity == Fidelity::kEnvelope) {
-      simulate_envelope(scenario, device, {}, sink);
-    } else {
-      simulate_carrier(scenario, device, {}, sink);
-    }
-  });
+  const Recording run = simulated(scenario, device);
   return column_values(run, "rate").back() -
          column_values(run, "true_bias").back();
 }

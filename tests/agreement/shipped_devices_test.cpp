@@ -10,8 +10,7 @@
 #include <vector>
 
 #include "sim/dynamics/gyro.h"
-#include "sim/scenario/envelope_run.h"
-#include "sim/scenario/quasistatic_run.h"
+#include "sim/scenario/simulation.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
@@ -65,11 +64,7 @@ TEST_P(ShippedDevice, RunsAtBothFidelitiesAndKeepsItsTrims) {
   for (const Fidelity fidelity :
        {Fidelity::kQuasistatic, Fidelity::kEnvelope}) {
     scenario.fidelity = fidelity;
-    const Recording run = fidelity == Fidelity::kEnvelope
-                              ? joined([&](const BlockSink& sink) {
-                                  simulate_envelope(scenario, device, {}, sink);
-                                })
-                              : simulate_quasistatic(scenario, device, {});
+    const Recording run = simulated(scenario, device);
     const std::vector<double>& rate = column_values(run, "rate");
     EXPECT_NEAR(rate[14], 0.5, 0.15);
     EXPECT_NEAR(rate.back() - rate[14], 20, 0.1);
@@ -114,7 +109,7 @@ TEST(ShippedDevices, TheOvenHoldsTheBeamOverTheAmbientRange) {
   const Device oven = shipped("oven");
   std::vector<double> beam, bias;
   for (const int celsius : {-40, 0, 50}) {
-    const Recording run = simulate_quasistatic(
+    const Recording run = simulated(
         scenario_from(
             "", "[ambient]\nconstant_degC = " + std::to_string(celsius) + "\n",
             "7200", "0.1"),

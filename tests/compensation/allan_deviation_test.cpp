@@ -121,30 +121,46 @@ TEST(AllanDeviation, RefusesWhatIsNoSeries) {
   EXPECT_THROW(adev(std::vector<double>{1.0}, 1.0, one), std::invalid_argument);
 }
 
+// y_k = k^2 of which every third is missing: means of what is there.
+TEST(AllanDeviation, OfGapsIsThatOfTheMeansOfTheOthers) {
+  EvenSeries series;
+  series.interval = 1.0;
+  series.stretches.push_back({0, 1, NAN, 9, 16, NAN, 36, 49});
+  series.samples = 6;
+  series.missing = 2;
+  const std::array two{2.0};
+  const AllanCurve curve = allan_curve(series, two);
+  // Means from k = 0 ... 6: 0.5, 1, 9, 12.5, 16, 36, 42.5. White variance:
+  // half of (1 + 49 + 169) / 3 at lag 1, more at lag 2.
+  const double squares =
+      (8.5 * 8.5 + 11.5 * 11.5 + 7.0 * 7.0 + 23.5 * 23.5 + 26.5 * 26.5) / 5.0;
+  const double shares = (1.5 + 1.5 + 2.0 + 1.5 + 1.5) / 5.0;
+  const double white = 219.0 / 6.0;
+  EXPECT_NEAR(curve.overlapping[0].deviation,
+              std::sqrt(squares / 2.0 - white * (shares - 1.0) / 2.0), 1e-9);
+  EXPECT_EQ(curve.overlapping[0].clusters, 4U);
+  EXPECT_GT(curve.overlapping[0].gap_noise, 1.0);
+  EXPECT_GT(relative_uncertainty(curve.overlapping[0]), 1.0 / std::sqrt(6.0));
+}
+
 TEST(AllanDeviation, TakesTheLongestStretchWithPowerAndWithoutHoles) {
   Recording run = RecordedRun{
       .duration = 100.0, .step = 1.0, .powered = [](double t) {
         return t < 30.0 || t >= 40.0;
       }}.recording();
-  run.columns[1].values[60] = std::nan("");
-  const GaplessSeries series = longest_gapless_series(run, "rate");
-  EXPECT_EQ(series.start, 61.0);
-  EXPECT_EQ(series.rates.size(), 39U);
-  EXPECT_EQ(series.left_out, 61U);
-  EXPECT_DOUBLE_EQ(series.interval, 1.0);
-
+  auto& rate = run.columns[1].values;
+  rate[60] = std::nan("");
+  EXPECT_EQ(longest_gapless_range(run, rate), (SampleRange{61, 100}));
   for (std::size_t k = 80; k < run.time.size(); ++k) {
     run.time[k] += 1.0;
   }
-  const GaplessSeries before_gap = longest_gapless_series(run, "rate");
-  EXPECT_EQ(before_gap.start, 0.0);
-  EXPECT_EQ(before_gap.rates.size(), 30U);
-  EXPECT_THROW(longest_gapless_series(run, "speed"), std::invalid_argument);
+  EXPECT_EQ(longest_gapless_range(run, rate), (SampleRange{0, 30}));
 }
 
 TEST(AllanDeviation, JsonHasTheKeysPromised) {
   const std::array taus{1.0, 2.0};
-  const auto json = to_json(adev(kNbs14, 1.0, taus), oadev(kNbs14, 1.0, taus));
+  const auto json =
+      to_json({adev(kNbs14, 1.0, taus), oadev(kNbs14, 1.0, taus)});
   EXPECT_EQ(json.size(), 2U);
   ASSERT_EQ(json["oadev"].size(), 2U);
   const auto& point = json["adev"][1];

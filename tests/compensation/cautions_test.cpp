@@ -216,8 +216,13 @@ TEST(Cautions, AClaimNeedsAGainAboveItsStandardError) {
   EXPECT_NE(objection_to_claim(errors({9.0, 9.0, 9.0}), constant)
                 .find("no improvement"),
             std::string::npos);
-  // One group has no scatter to judge by.
-  EXPECT_NE(objection_to_claim(errors({1.0}), errors({4.0})).find("no imp"),
+  // Two groups are no evidence, one has no scatter to judge by.
+  for (const GroupErrors& few : {errors({1.0}), errors({1.0, 1.0})})
+    EXPECT_NE(objection_to_claim(few, 4.0 * few).find("fewer than 3 groups"),
+              std::string::npos);
+  // Sure, but of no use: 0.05 % of the rms.
+  EXPECT_NE(objection_to_claim(0.999 * constant, constant)
+                .find("a useful gain is 10 %"),
             std::string::npos);
   EXPECT_NE(objection_to_claim({}, constant).find("in-sample"),
             std::string::npos);

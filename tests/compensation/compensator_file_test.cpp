@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "dataset/atomic_file.h"
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/sample_compensators.h"
@@ -224,6 +225,34 @@ TEST(CompensatorFile, OfAnyKindCutOffIsRejected) {
                 std::string::npos)
           << name << " " << size;
   }
+}
+
+TEST(CompensatorFile, NestingThatOverflowsTheStackIsRejected) {
+  const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+  EXPECT_NE(error_of("{\"filetype\": " + deep + "}")
+                .find("mine.json: arrays and objects nest deeper than 64"),
+            std::string::npos);
+  std::string keys = "{\"filetype\": 1";
+  for (int i = 0; i < 200000; ++i) keys += ",\"" + std::to_string(i) + "\":1";
+  EXPECT_NE(error_of(keys + "}").find("an object of more than 1000 members"),
+            std::string::npos);
+}
+
+TEST(CompensatorFile, FilesLargerThanACompensatorAreNotRead) {
+  const std::filesystem::path file =
+      std::filesystem::path(::testing::TempDir()) / "large.json";
+  write_text_file(file, "{}");
+  std::filesystem::resize_file(file, std::uintmax_t{50} << 30);
+  std::string message;
+  try {
+    read_compensator(file);
+  } catch (const std::invalid_argument& error) {
+    message = error.what();
+  }
+  std::filesystem::remove(file);
+  EXPECT_NE(message.find("53687091200 bytes; expected a compensator"),
+            std::string::npos)
+      << message;
 }
 
 }  // namespace

@@ -93,7 +93,8 @@ TEST(CrossValidate, ScoresWhatIsBetweenTheTemperaturesOfTheOthers) {
   // The row at 10 degC, of 6 from 5 to 10 degC in either run.
   EXPECT_NEAR(errors(0), 49.0 / 6.0, 1e-12);
   EXPECT_NEAR(errors(1), 49.0 / 6.0, 1e-12);
-  EXPECT_NEAR(group_errors(none, rows, groups)(1), 49.0 / 16.0, 1e-12);
+  EXPECT_NEAR(group_errors(predict_all(none, rows), rows.bias, groups)(1),
+              49.0 / 16.0, 1e-12);
 }
 
 TEST(CrossValidate, IsTheSameOnAnyNumberOfThreads) {
@@ -147,8 +148,8 @@ TEST(GroupErrors, AreMeansOverTheRowsOfEach) {
       rows_of({{0, 0, 0.0, 9.0, 2}, {1, 1, 0.0, 9.0, 3}},
               [](double, int k) { return k < 2 ? 3.0 : k - 3.0; });
   const BiasModel one{{Scale{}}, {}, ConstantBias{1.0}};
-  const GroupErrors errors =
-      group_errors(one, rows, group_rows(rows, Grouping::kRun));
+  const GroupErrors errors = group_errors(predict_all(one, rows), rows.bias,
+                                          group_rows(rows, Grouping::kRun));
   EXPECT_NEAR(errors(0), 4.0, 1e-15);
   EXPECT_NEAR(errors(1), (4.0 + 1.0 + 0.0) / 3.0, 1e-15);
 }
@@ -159,31 +160,56 @@ TEST(Choose, TakesTheFirstOfEqualOnes) {
   EXPECT_EQ(choose({{"a", same + 1.0}, {"b", same}, {"c", same}}), 1u);
 }
 
-TEST(Choose, ExcusesWhatIsWithinOneStandardErrorAndTheAllowedExcess) {
+TEST(Choose, ExcusesTheAllowedExcessOfRms) {
   const GroupErrors best = errors_of({1.0, 1.0, 1.0, 1.0});
-  const auto chosen = [&](const std::vector<double>& excess) {
-    return choose({{"simple", best + errors_of(excess)}, {"best", best}});
+  const auto chosen = [&](double excess) {
+    return choose({{"simple", best + excess}, {"best", best}});
   };
-  // Mean 0.02, standard error 0.0212.
-  const double spread = 0.0212 * std::sqrt(3.0);
-  EXPECT_EQ(
-      chosen({0.02 + spread, 0.02 - spread, 0.02 + spread, 0.02 - spread}), 0u);
-  // Standard error 0.0188.
-  const double narrow = 0.0188 * std::sqrt(3.0);
-  EXPECT_EQ(
-      chosen({0.02 + narrow, 0.02 - narrow, 0.02 + narrow, 0.02 - narrow}), 1u);
-  // Rms is allowed 1.02, mean square 1.0404, whatever the standard error.
-  EXPECT_EQ(chosen({1.0, -0.92, 1.0, -0.92}), 0u);
-  EXPECT_EQ(chosen({1.0, -0.915, 1.0, -0.915}), 1u);
+  // Rms is allowed 1.02, mean square 1.0404.
+  EXPECT_EQ(chosen(0.040), 0u);
+  EXPECT_EQ(chosen(0.041), 1u);
 }
 
-TEST(Choose, WithOneGroupAllowsTheExcessOnly) {
-  const auto chosen = [](double simple) {
-    return choose(
-        {{"simple", errors_of({simple})}, {"best", errors_of({1.0})}});
+// One curve for both runs, c = 0: b = T and b = s T, with T of mean square m.
+// The weight is mean(s m, s m) / mean(m, s^2 m) = 2 s / (1 + s^2).
+TEST(StackingWeight, FallsWhereGroupsDisagree) {
+  const auto weight = [](double s) {
+    const TrainingRows rows =
+        rows_of({{0, 0, -9.0, 9.0, 19}, {1, 1, -9.0, 9.0, 19}},
+                [&](double T, int k) { return k < 19 ? T : s * T; });
+    const RowGroups groups = group_rows(rows, Grouping::kRun);
+    const auto unseen = [&](const FitSpec& kind) {
+      return predict_unseen(kind, kTemperature, rows, groups, 1);
+    };
+    return stacking_weight(unseen(ConstantSpec{}), unseen(PolynomialSpec{1}),
+                           rows.bias, groups);
   };
-  EXPECT_EQ(chosen(1.040), 0u);
-  EXPECT_EQ(chosen(1.041), 1u);
+  EXPECT_NEAR(weight(1.0), 1.0, 1e-12);
+  EXPECT_NEAR(weight(0.5), 1.0 / 1.25, 1e-12);
+  EXPECT_NEAR(weight(0.1), 0.2 / 1.01, 1e-12);
+  EXPECT_EQ(weight(0.0), 0.0);
+  EXPECT_EQ(weight(-1.0), 0.0);
+}
+
+TEST(StackingWeight, IsTheBestOfAllAverages) {
+  const std::vector<double> noise = white(160, 4);
+  const TrainingRows rows = rows_of(sweeps(4, 40), [&](double T, int k) {
+    return 0.01 * (k / 40) * T + noise[static_cast<std::size_t>(k)];
+  });
+  const RowGroups groups = group_rows(rows, Grouping::kRun);
+  const Predictions flat =
+      predict_unseen(ConstantSpec{}, kTemperature, rows, groups, 1);
+  const Predictions curve =
+      predict_unseen(PolynomialSpec{1}, kTemperature, rows, groups, 1);
+  const double best = stacking_weight(flat, curve, rows.bias, groups);
+  const auto rms = [&](double weight) {
+    return rms_of(
+        group_errors(averaged(flat, curve, weight), rows.bias, groups));
+  };
+  EXPECT_GT(best, 0.0);
+  EXPECT_LT(best, 1.0);
+  for (const double weight : {0.0, best - 0.01, best + 0.01, 1.0})
+    EXPECT_LT(rms(best), rms(weight)) << weight;
 }
 
 }  // namespace

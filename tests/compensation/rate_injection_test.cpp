@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
+#include <utility>
 
 #include "tests/compensation/recorded_run.h"
 
@@ -68,16 +71,47 @@ TEST(RateInjection, CatchesAFilterThatForgetsAConstantRate) {
   EXPECT_LT(*injected_scale_factor(high_pass, kDrifting.recording()), 0.5);
 }
 
+TEST(RateInjection, CatchesWhatForgetsAConstantAndWhatComesLate) {
+  // Zeroes itself once the rate was still for a minute.
+  const auto zeroes_itself = [](const Recording& run) {
+    auto answer = column_values(run, "rate");
+    double held = std::nan("");
+    double since = 0.0;
+    for (std::size_t k = 0; k < answer.size(); ++k) {
+      const double here = answer[k];
+      if (!(std::abs(here - held) < 0.01)) {
+        held = here;
+        since = run.time[k];
+      }
+      if (run.time[k] - since > 60.0) answer[k] = 0.0;
+    }
+    return answer;
+  };
+  const auto late = [](const Recording& run) {
+    auto answer = column_values(run, "rate");
+    for (std::size_t k = answer.size() - 1; k >= 44; --k)
+      answer[k] = answer[k - 4];  // by 2 s
+    return answer;
+  };
+  RecordedRun still = kDrifting;
+  still.bias = [](double t) { return 1e-3 * std::sin(t); };
+  const Recording run = still.recording();
+  EXPECT_LT(*injected_scale_factor(zeroes_itself, run), 0.5);
+  EXPECT_LT(*injected_scale_factor(late, run), 0.5);
+}
+
 TEST(RateInjection, MovesOutputAndRateByTheSameRate) {
   const Recording run = kDrifting.recording();
-  const auto moved = with_injected_rate(run, 2.0);
+  std::vector<double> injected(run.time.size(), 2.0);
+  injected[3000] = -7.0;
+  const auto moved = with_injected_rate(run, injected);
   ASSERT_TRUE(moved);
   const auto& before = column_values(run, "rate");
   const auto& rate = column_values(*moved, "rate");
   const auto& output = column_values(*moved, "output");
   EXPECT_TRUE(std::isnan(rate[0]));
   EXPECT_NEAR(rate[100] - before[100], 2.0, 1e-14);
-  EXPECT_NEAR(rate[3000] - before[3000], -2.0, 1e-14);
+  EXPECT_NEAR(rate[3000] - before[3000], -7.0, 1e-14);
   for (std::size_t k = 100; k < rate.size(); k += 100) {
     EXPECT_NEAR(output[k], 2.5 + 0.0125 * rate[k], 1e-12);
   }
@@ -85,12 +119,52 @@ TEST(RateInjection, MovesOutputAndRateByTheSameRate) {
             column_values(run, "temperature")[100]);
 }
 
-TEST(RateInjection, PatternStepsSwingsAndRampsWithinItsAmplitude) {
-  EXPECT_EQ(injected_rate(0.0, 0.0, 2.0), 2.0);
-  EXPECT_EQ(injected_rate(0.5, 50.0, 2.0), -2.0);
-  EXPECT_NEAR(injected_rate(0.7, 65.0, 2.0), 2.0, 1e-12);
-  EXPECT_NEAR(injected_rate(0.9, 90.0, 2.0), 0.0, 1e-12);
-  EXPECT_NEAR(injected_rate(1.0, 100.0, 2.0), 2.0, 1e-12);
+TEST(RateInjection, HoldsRatesOfEachSizeAndSignUpToTheLargest) {
+  EXPECT_EQ(held_rate(0, 150.0), 150.0);
+  // Rates by sign and tenth of the four decades: as many of each, within one.
+  std::map<std::pair<bool, int>, int> count;
+  for (std::size_t hold = 0; hold < 800; ++hold) {
+    const double rate = held_rate(hold, 150.0);
+    ASSERT_LE(std::abs(rate), 150.0);
+    ASSERT_GT(std::abs(rate), 0.015);
+    ++count[{
+        rate > 0.0,
+        static_cast<int>(-10.0 * std::log10(std::abs(rate) / 150.0) / 4.0)}];
+  }
+  ASSERT_EQ(count.size(), 20U);
+  for (const auto& [kind, holds] : count) EXPECT_NEAR(holds, 40, 3);
+}
+
+TEST(RateInjection, ReplaysEverySettledSecondWithPowerWithinFullScale) {
+  RecordedRun turning = kDrifting;
+  turning.true_rate = [](double t) { return t < 1800.0 ? 0.0 : 100.0; };
+  const Recording run = turning.recording();
+  const auto blocks = replay(bias_only, run, bias_only(run), 150.0);
+  ASSERT_TRUE(blocks);
+  double largest = 0.0, together = 0.0, last = 0.0;
+  for (const ReplayedBlock& block : *blocks) {
+    EXPECT_GE(block.time, 20.0);
+    largest = std::max(largest, std::abs(block.rate));
+    const double total = block.rate + (block.time < 1800.0 ? 0.0 : 100.0);
+    together = std::max(together, std::abs(total));
+    last = std::max(last, block.time);
+  }
+  EXPECT_EQ(largest, 150.0);
+  EXPECT_LE(together, 1.01 * 150.0);
+  EXPECT_NEAR(last, 3600.0, 1.5);
+  // Three settled seconds of each four and all but one of each long hold.
+  EXPECT_GT(blocks->size(), 1780U + 2680U);
+}
+
+TEST(RateInjection, FullScaleIsTheDevicesWithItsOverrides) {
+  Recording run;
+  EXPECT_FALSE(stated_full_scale(run));
+  run.device_text = "[readout]\nfull_scale_deg_per_s = 300\n";
+  EXPECT_EQ(stated_full_scale(run), 300.0);
+  run.overrides_text = "noise.enabled=false\nreadout.full_scale_deg_per_s=75\n";
+  EXPECT_EQ(stated_full_scale(run), 75.0);
+  run.device_text = "a map of another program {";
+  EXPECT_FALSE(stated_full_scale(run));
 }
 
 TEST(RateInjection, IsMissingWhereTheScaleOfTheOutputCannotBeKnown) {
@@ -104,7 +178,9 @@ TEST(RateInjection, IsMissingWhereTheScaleOfTheOutputCannotBeKnown) {
 TEST(RateInjection, RefusesAnOutputThatIsNoLineOverTheRate) {
   Recording run = kDrifting.recording();
   run.columns[0].values[500] += 0.01;
-  EXPECT_THROW(with_injected_rate(run), std::invalid_argument);
+  EXPECT_THROW(
+      with_injected_rate(run, std::vector<double>(run.time.size(), 1.0)),
+      std::invalid_argument);
 }
 
 }  // namespace

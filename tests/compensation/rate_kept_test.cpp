@@ -15,8 +15,9 @@ namespace {
 
 // A ramp at rest, or under rates that the bias has nothing to do with. What the
 // temperature leaves open of the bias only the output can tell.
-std::vector<TrainingRun> ramp(bool at_rest, const char* sha256) {
-  RecordedRun run{.duration = 3000.0, .step = 1.0};
+std::vector<TrainingRun> ramp(bool at_rest, const char* sha256,
+                              double duration) {
+  RecordedRun run{.duration = duration, .step = 1.0};
   run.temperature = [](double t) { return -40.0 + 0.03 * t; };
   run.bias = [](double t) {
     return bias_curve(-40.0 + 0.03 * t) + 0.2 * std::sin(0.05 * t);
@@ -30,7 +31,8 @@ Compensator trained(const std::vector<const char*>& inputs, const FitSpec& kind,
   ModelSpec spec{.kind = kind};
   for (const char* input : inputs) spec.inputs.push_back(parse_input(input));
   spec.rows.seconds = 10.0;
-  return train(spec, ramp(at_rest, "training"), ramp(at_rest, "held out"), 1)
+  return train(spec, ramp(at_rest, "training", 3000.0),
+               ramp(at_rest, "held out", 2990.0), 1)
       .compensator;
 }
 

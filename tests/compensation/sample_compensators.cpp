@@ -20,7 +20,8 @@ Provenance some_provenance() {
   p.stop_reason = "the gradient vanished";
   p.choices = {"weight decay 1e-06: held-out rms 0.1 deg/s"};
   p.warnings = {"the temperature spans 8.0 K in training"};
-  p.cross_validated = CrossValidated{"leg", 4, 0.125, 1.0 / 9.0, 2.0};
+  p.cross_validated = CrossValidated{
+      "leg", 2, 0.125, 1.0 / 9.0, 2.0, {0.1, 1.0 / 7.0}, {2.0, 1.9}};
   p.in_sample_rms = 1.0 / 7.0;
   p.held_out_rms = 2.0 / 7.0;
   p.baseline_in_sample_rms = 0.4;

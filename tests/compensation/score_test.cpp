@@ -55,6 +55,29 @@ TEST(Score, PercentOfTheCubicIsTheRatioOfTheVariances) {
   EXPECT_NEAR(*score_run(answer).score.percent_of_cubic, 25.0, 1e-10);
 }
 
+TEST(Score, ComparesWithAConstantAndACubicFittedToTheScoredBlocks) {
+  RecordedRun swept{.duration = 3600.0, .step = 1.0};
+  swept.temperature = [](double t) {
+    return std::floor(t / 60.0);  // steady over each block
+  };
+  swept.bias = [T = swept.temperature](double t) {
+    return 2.0 - 1e-2 * T(t) + 1e-5 * std::pow(T(t), 3);
+  };
+  const Recording run = swept.recording();
+  const Score score = score_run(answered(run, 0.5)).score;
+  EXPECT_NEAR(score.constant.rms, score.raw.sigma, 1e-12);
+  EXPECT_GT(score.constant.rms, 0.1);
+  EXPECT_LT(score.cubic->rms, 1e-12);
+
+  const Recording steady = kSteps.recording();
+  const Score flat = score_run(answered(steady, 0.5)).score;
+  EXPECT_NEAR(flat.cubic->rms, flat.constant.rms, 1e-12);
+  const Score both = score_together(
+      {score_run(answered(run, 0.5)), score_run(answered(steady, 0.5))});
+  EXPECT_GT(both.cubic->rms, 0.1);
+  EXPECT_LT(both.cubic->rms, both.constant.rms);
+}
+
 TEST(Score, TogetherPoolsTheBlocksOfAllRuns) {
   const Recording first = kSteps.recording();
   RecordedRun other = kSteps;
@@ -83,19 +106,22 @@ TEST(Score, TogetherComparesWithTheCubicOnlyWhereEveryRunHasOne) {
 
 TEST(Score, TogetherKeepsTheWorstReplay) {
   const Recording run = kSteps.recording();
-  AnsweredRun good = answered(run, 0.5);
-  good.injected_scale_factor = 1.0;
-  AnsweredRun bad = good;
-  bad.injected_scale_factor = 0.1;
-  AnsweredRun missing = good;
-  missing.injected_scale_factor = kNan;
-  EXPECT_EQ(score_together({score_run(good), score_run(bad), score_run(good)})
-                .injected_scale_factor,
-            0.1);
-  for (const auto& runs : {std::vector{score_run(missing), score_run(bad)},
-                           std::vector{score_run(bad), score_run(missing)}}) {
-    EXPECT_TRUE(std::isnan(*score_together(runs).injected_scale_factor));
-  }
+  const auto replayed = [&run](double retained) {
+    AnsweredRun answer = answered(run, 0.5);
+    answer.replayed = ReplayedScaleFactor{
+        .worst = {.large = ReplayedBlock{30.0, 25.0, 10.0, retained}}};
+    return score_run(answer);
+  };
+  const auto worst = [&](const std::vector<double>& retained) {
+    std::vector<ScoredRun> runs;
+    for (const double one : retained) runs.push_back(replayed(one));
+    return score_together(runs).replayed->worst.worse()->retained;
+  };
+  EXPECT_EQ(worst({1.0, 0.1, 1.0}), 0.1);
+  EXPECT_EQ(worst({0.1, 3.0}), 0.1);  // what cancels before what amplifies
+  EXPECT_EQ(worst({0.9, 1.2}), 1.2);
+  EXPECT_TRUE(std::isnan(worst({kNan, 0.1})));
+  EXPECT_TRUE(std::isnan(worst({0.1, kNan})));
 }
 
 TEST(Score, UnpoweredSamplesAreSkippedAndSaturatedOnesScored) {
@@ -150,7 +176,7 @@ TEST(Score, RefusesARunItCannotScoreAndSaysWhich) {
                   .recording = &no_truth,
                   .compensated = short_answer.compensated};
   EXPECT_EQ(message_of(run),
-            "run hot.h5: no column true_rate, which a score needs");
+            "run hot.h5: no column 'true_rate', which a score needs");
 
   Recording holed = whole;
   holed.columns[1].values[10] = kNan;

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "compensation/cautions.h"
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/rows_of.h"
@@ -116,6 +118,80 @@ TEST(Selection, PassesOverWhatTheRowsDoNotDetermine) {
   EXPECT_TRUE(
       says(told(selected, "cubic"), "passed over, without run 1: temperature"))
       << told(selected, "cubic");
+}
+
+// Slopes of three legs, T from -1 to 1: what two of them leave of the third,
+// over the better of a constant and the cubic, which are fitted to both.
+double left_of_the_third(double up, double down, double third,
+                         double& constant) {
+  const auto slope = [&](double T, int k) {
+    return (k < kUp.rows ? up : down) * (T - 5.0) / 45.0;
+  };
+  const TrainingRows rows = rows_of({kUp, kDown}, slope);
+  const Selected selected =
+      select_by_folds({kNone, kConstant, kLinear, kCubic, kSpline}, rows);
+  const TrainingRows unseen =
+      rows_of({kUp}, [&](double T, int) { return third * (T - 5.0) / 45.0; });
+  constant =
+      rms_residual({{Scale{}}, {}, ConstantBias{rows.bias.mean()}}, unseen);
+  return rms_residual(selected.fit.model, unseen);
+}
+
+TEST(Selection, LegsThatDisagreeCostNoMoreThanTheBetterOfConstantAndCubic) {
+  const double slopes[] = {1.0, 0.3, 0.15};
+  for (int third = 0; third < 3; ++third) {
+    const double a = slopes[(third + 1) % 3], b = slopes[(third + 2) % 3];
+    double constant = 0.0;
+    const double left = left_of_the_third(a, b, slopes[third], constant);
+    // The cubic of both is the line of their mean slope.
+    const double cubic =
+        constant * std::abs(0.5 * (a + b) / slopes[third] - 1.0);
+    EXPECT_LT(left, 1.6 * std::min(constant, cubic)) << third;
+  }
+}
+
+TEST(Selection, AveragesWithAConstantByWhatLegsAgreeOn) {
+  const TrainingRows rows = rows_of({kUp, kDown}, [](double T, int k) {
+    return (k < kUp.rows ? 1.0 : 0.3) * (T - 5.0) / 45.0;
+  });
+  const Selected selected = select_by_folds({kConstant, kLinear}, rows);
+  // 2 s / (1 + s^2) of the slopes 1 and s.
+  EXPECT_NEAR(selected.weight, 0.6 / 1.09, 1e-9);
+  const Eigen::ArrayXd ends =
+      selected.fit.model.predict(Eigen::ArrayXd{{-40.0, 50.0}});
+  EXPECT_NEAR(ends(1) - ends(0), 2.0 * 0.65 * selected.weight, 1e-9);
+  EXPECT_NEAR(ends.mean(), 0.0, 1e-9);
+  EXPECT_TRUE(
+      says(told(selected, "linear"), "averaged with a constant, weight 0.55"))
+      << told(selected, "linear");
+  EXPECT_FALSE(
+      objection_to_claim(selected.errors, selected.constant_errors).empty());
+}
+
+TEST(Selection, LegsThatAgreeKeepTheWholeCurve) {
+  const std::vector<double> noise = white(182, 5);
+  const Selected selected = select_by_folds(
+      {kConstant, kCubic}, rows_of({kUp, kDown}, [&](double T, int k) {
+        return bias_curve(T) + 0.05 * noise[static_cast<std::size_t>(k)];
+      }));
+  EXPECT_EQ(selected.weight, 1.0);
+  EXPECT_EQ(selected.candidate.name, "cubic");
+}
+
+// A line under a bias that alternates by +-1 from row to row, which itself has
+// a slope of 0.065 over 46 rows: the rms falls by 8 % and by 15 %.
+TEST(Selection, AGainThatIsOfNoUseKeepsTheConstant) {
+  const auto choice = [](double slope) {
+    return select_by_folds(
+        {kConstant, kLinear}, rows_of(runs_up(3), [&](double T, int k) {
+          return slope * (T - 5.0) / 45.0 + (k % 2 == 0 ? -1.0 : 1.0);
+        }));
+  };
+  const Selected small = choice(0.65);
+  EXPECT_EQ(small.candidate.name, "constant");
+  EXPECT_TRUE(says(told(small, "kept"), "less than 10 %"))
+      << told(small, "kept");
+  EXPECT_EQ(choice(1.0).candidate.name, "linear");
 }
 
 TEST(Selection, TwoLegsAreTooFewForANetwork) {

@@ -49,9 +49,10 @@ class SetRuns : public testing::Test {
     manifest_.head->devices = kDevices;
     manifest_.head->devices_per_file = kPerFile;
     manifest_.head->runs = {"soaks", "ramp"};
+    manifest_.head->sources = {{"source/campaign.toml", "abc"}};
     for (std::uint32_t index = 0; index < file_count(*manifest_.head); ++index)
       manifest_.entries.push_back(write_file(index));
-    write_manifest(folder_ / kManifestName, manifest_);
+    write_manifest(folder_, kManifestName, manifest_);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
@@ -77,7 +78,7 @@ class SetRuns : public testing::Test {
     }
     const auto bytes = builder.finish();
     entry.bytes = bytes.size();
-    publish_file(folder_ / entry.file, bytes);
+    publish_file(folder_, entry.file, bytes);
     entry.sha256 = sha256_of_file(folder_ / entry.file);
     return entry;
   }
@@ -123,9 +124,14 @@ TEST_F(SetRuns, RowsKnowTheirDeviceAndTheProvenanceTheManifest) {
           .compensator.provenance;
   EXPECT_TRUE(p.training.empty());
   ASSERT_TRUE(p.training_set && p.held_out_set);
-  EXPECT_EQ(*p.training_set,
-            (SetPart{folder_.filename().string(),
-                     sha256_of_file(folder_ / kManifestName), 3, 4}));
+  EXPECT_EQ(*p.training_set, (SetPart{folder_.filename().string(),
+                                      sha256_of_file(folder_ / kManifestName),
+                                      3,
+                                      4,
+                                      "",
+                                      0,
+                                      {"soaks", "ramp"},
+                                      {0, 1, 4}}));
   EXPECT_EQ(p.held_out_set->devices, 1u);
   EXPECT_NEAR(*p.held_out_rms, 20.25 - (0.25 + 50.0 / 3.0), 0.1);
 }
@@ -142,7 +148,7 @@ TEST_F(SetRuns, RefuseFilesThatAreNotWhatTheManifestSays) {
             std::string::npos);
   EXPECT_EQ(biases({{}, {"ramp"}, {0}}), std::vector<double>{0.5});
   manifest_.entries.pop_back();
-  write_manifest(folder_ / kManifestName, manifest_);
+  write_manifest(folder_, kManifestName, manifest_);
   EXPECT_NE(message({{}, {"ramp"}}).find("the manifest is damaged"),
             std::string::npos);
 }
@@ -156,7 +162,7 @@ TEST_F(SetRuns, RefuseWhatTheSetDoesNotHave) {
             std::string::npos);
   EXPECT_NE(message({{}, {}, {6}}).find("the set has devices 0 to 5"),
             std::string::npos);
-  start_manifest(folder_ / kManifestName, *manifest_.head);
+  start_manifest(folder_, kManifestName, *manifest_.head);
   EXPECT_NE(message({}).find("the set is not finished"), std::string::npos);
   std::filesystem::remove(folder_ / kManifestName);
   EXPECT_NE(message({}), "no error");

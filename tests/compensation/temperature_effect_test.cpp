@@ -49,37 +49,5 @@ TEST(MovesMoreThanNoise, LooksAtDifferencesWithinACycle) {
   EXPECT_TRUE(moves_more_than_noise(rows_of(cycles, jumps)));
 }
 
-TEST(TemperatureComesBack, WhenHalfOfItIsVisitedTwice) {
-  const auto comes_back = [](const std::vector<Leg>& legs) {
-    return temperature_comes_back(rows_of(legs, no_bias));
-  };
-  const Leg up{0, 0, -40.0, 50.0, 91};
-  EXPECT_FALSE(comes_back({up}));
-  EXPECT_TRUE(comes_back({up, {0, 0, 50.0, -40.0, 91}}));
-  // Tenths of 9 K: 5 and 4 of them.
-  EXPECT_TRUE(comes_back({up, {0, 0, 50.0, 6.0, 45}}));
-  EXPECT_FALSE(comes_back({up, {0, 0, 50.0, 15.0, 45}}));
-}
-
-// A bias that is T + a T on the way up and T - a T on the way down, with T of
-// variance v: a curve explains v and leaves a^2 v.
-TEST(TemperatureShows, WhenTheCubicExplainsHalfTheVariance) {
-  const auto shows = [](double a) {
-    const std::vector<Leg> up_down = {{0, 0, -1.0, 1.0, 101},
-                                      {0, 0, 1.0, -1.0, 101}};
-    return temperature_shows(rows_of(
-        up_down, [&](double T, int k) { return T + a * (k < 101 ? T : -T); }));
-  };
-  EXPECT_TRUE(shows(0.97));
-  EXPECT_FALSE(shows(1.03));
-}
-
-TEST(TemperatureShows, OneWayWhenTheBiasMovesMoreThanNoise) {
-  const Leg up{0, 0, -40.0, 50.0, 91};
-  EXPECT_TRUE(
-      temperature_shows(rows_of({up}, [](double T, int) { return 0.01 * T; })));
-  EXPECT_FALSE(temperature_shows(rows_of({up}, no_bias)));
-}
-
 }  // namespace
 }  // namespace beamgyro

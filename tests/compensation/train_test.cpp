@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "compensation/compensator_file.h"
+#include "compensation/export_c.h"
+#include "compensation/export_parameters.h"
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
@@ -101,7 +103,8 @@ TEST(Train, SummaryAndProvenanceSayWhatHappened) {
   EXPECT_EQ(result.rows, 2 * 19);
   EXPECT_EQ(result.held_out_rows, 2 * 18);
   EXPECT_EQ(p.seed, 42u);
-  EXPECT_EQ(p.training[0], (SourceFile{"soaks0.h5", "sha of soaks0"}));
+  EXPECT_EQ(p.training[0].name, "soaks0.h5");
+  EXPECT_EQ(p.training[0].sha256, "sha of soaks0");
   EXPECT_EQ(p.held_out[0].name, "off_grid0.h5");
   EXPECT_EQ(p.stop_reason, sentence(result.summary().stop_reason));
   // The held-out score is that of the compensator on the held-out run.
@@ -161,6 +164,40 @@ TEST(Train, FilteredTemperatureTakesTheLagOfTheBeamIntoAccount) {
           .compensator;
   EXPECT_LT(rms(compensated_rate(lagged, unseen)),
             0.1 * rms(compensated_rate(plain, unseen)));
+}
+
+// Two legs with slopes of 1 and 0.3: the line is averaged with a constant.
+TEST(Train, AnAverageWithAConstantIsStoredAndExportedAsItsKind) {
+  const auto leg = [](double from, double to, double slope) {
+    RecordedRun run{.duration = 5400.0, .step = 1.0};
+    run.temperature = [=](double t) { return from + (to - from) * t / 5400.0; };
+    run.bias = [=](double t) { return slope * run.temperature(t); };
+    return run.recording();
+  };
+  const std::vector<Input> inputs = {parse_input("temperature")};
+  const ModelSpec spec{.inputs = inputs,
+                       .candidates = {{"constant", inputs, ConstantSpec{}},
+                                      {"linear", inputs, PolynomialSpec{1}}}};
+  const Compensator c =
+      train(spec, runs({leg(-40.0, 40.0, 1.0), leg(40.0, -40.0, 0.3)}, "leg"),
+            {}, 1)
+          .compensator;
+  EXPECT_EQ(c.provenance.method,
+            "straight line of weight 0.55 beside a constant");
+  EXPECT_EQ(c.provenance.cross_validated->group_rms.size(), 2U);
+  const double slope = 0.65 * 0.6 / 1.09;
+  EXPECT_NEAR(coefficients_about(c.bias, 0.0)[1], slope, 1e-3);
+  EXPECT_NEAR(coefficients_about(autopilot_cubic(c, false), 0.0)[1], slope,
+              1e-3);
+  EXPECT_NE(export_c(c, "average").source.find("coefficients"),
+            std::string::npos);
+  const Recording unseen = leg(-40.0, 40.0, 0.5);
+  const Compensator again = parse_compensator(compensator_text(c), "c.json");
+  EXPECT_EQ(again.provenance, c.provenance);
+  EXPECT_EQ(compensated_rate(again, unseen), compensated_rate(c, unseen));
+  ASSERT_FALSE(c.provenance.warnings.empty());
+  EXPECT_NE(c.provenance.warnings.back().find("no improvement to claim"),
+            std::string::npos);
 }
 
 TEST(Train, RefusesWhatCannotBeTrainedOn) {

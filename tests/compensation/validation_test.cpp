@@ -116,12 +116,14 @@ TEST(Validation, AtRestTheScaleFactorIsNotTestedUnlessReplayed) {
   EXPECT_EQ(untested.verdict, Verdict::kScaleFactorUntested);
   EXPECT_FALSE(untested.passed());
 
-  answer.injected_scale_factor = 1.0 + 1e-9;
-  EXPECT_EQ(validate("law", {answer}).verdict, Verdict::kKeepsRate);
-  answer.injected_scale_factor = 0.03;
-  EXPECT_EQ(validate("law", {answer}).verdict, Verdict::kCancelsRate);
-  answer.injected_scale_factor = 0.97;
-  EXPECT_EQ(validate("law", {answer}).verdict, Verdict::kBendsScaleFactor);
+  const auto replayed = [&answer](double retained) {
+    answer.replayed = ReplayedScaleFactor{};
+    answer.replayed->worst.large = ReplayedBlock{30.0, 25.0, 10.0, retained};
+    return validate("law", {answer}).verdict;
+  };
+  EXPECT_EQ(replayed(1.0 + 1e-9), Verdict::kKeepsRate);
+  EXPECT_EQ(replayed(0.03), Verdict::kCancelsRate);
+  EXPECT_EQ(replayed(0.97), Verdict::kBendsScaleFactor);
 }
 
 TEST(Validation, ErrorsOfTwoRatesTablesDoNotCancel) {

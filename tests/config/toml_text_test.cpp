@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "config/document.h"
+#include "config/overrides.h"
 #include "tests/config/rejection.h"
 
 namespace beamgyro {
@@ -44,13 +45,65 @@ TEST(TomlText, TextThatIsNotUtf8IsRejected) {
       rejection_of("name = \"gr\xf6\xdf\x65\"").starts_with("scn.toml:1:"));
 }
 
+std::string repeated(std::size_t count, const std::string& text) {
+  std::string all;
+  for (std::size_t i = 0; i < count; ++i) all += text;
+  return all;
+}
+
 TEST(TomlText, DeepNestingIsRejectedBeforeItOverflowsTheStack) {
-  std::string header = "[a";
-  for (int i = 0; i < 1000000; ++i) header += ".a";
-  EXPECT_EQ(rejection_of("\n" + header + "]\n"),
-            "scn.toml:2:513: not TOML: a key of more than 256 parts");
-  EXPECT_TRUE(rejection_of("x = " + std::string(100000, '['))
-                  .starts_with("scn.toml:1:"));
+  const std::string reason =
+      "not TOML: keys, tables and arrays nest deeper than 256";
+  const std::string dotted = "a" + repeated(200, ".a");
+  for (const std::string& text : {
+           "[a" + repeated(1000000, ".a") + "]\n",
+           "\"a\"" + repeated(100000, ".\"a\"") + " = 1",
+           "\",\"" + repeated(30000, ".\",\"") + " = 1",
+           "'='" + repeated(30000, " . '#'") + " = 1",
+           repeated(250, dotted + " = {") + "a = 1" + repeated(250, "}"),
+           "x = [" + repeated(200, "[") + "{" + dotted + " = 1}",
+           "[" + dotted + "]\n" + dotted + " = 1",
+           "\xEF\xBB\xBF[[" + dotted + "]]\n" + dotted + " = 1",
+           "x = \"\"\"\"\"\"\ny = " + repeated(300, "["),
+           "x = '''a'''''\ny = " + repeated(300, "["),
+           "x = " + repeated(100000, "["),
+       }) {
+    const std::string message = rejection_of(text);
+    EXPECT_NE(message.find(reason), std::string::npos) << message;
+  }
+  EXPECT_TRUE(rejection_of("\n[a" + repeated(300, ".a") + "]\n")
+                  .starts_with("scn.toml:2:513: not TOML: "));
+}
+
+TEST(TomlText, DeepNestingBySetIsRejected) {
+  const std::string value = repeated(250, "{a" + repeated(200, ".a") + " = ") +
+                            "1" + repeated(250, "}");
+  EXPECT_NE(rejection([&] {
+              Overrides({"x=" + value});
+            }).find("nest deeper than 256"),
+            std::string::npos);
+}
+
+TEST(TomlText, NestingUpToTheLimitIsRead) {
+  const std::string dotted = "a" + repeated(120, ".a");
+  const ConfigDocument document = ConfigDocument::parse(
+      "[" + dotted + "]\n" + dotted + " = [{b = 1}] # [[[[\n[b]\nx = \"" +
+          repeated(300, "[") + "\"\n[c]\n" + dotted + " = 1",
+      "scn.toml");
+  EXPECT_EQ(document.root().table("b").text("x"), repeated(300, "["));
+}
+
+TEST(TomlText, MoreValuesThanMemoryShouldHoldAreRejected) {
+  for (const char* value : {"1,", "{},", "[],\n", "{a.b=1},"}) {
+    const std::string message =
+        rejection_of("x = [" + repeated(1000000, value) + "1]");
+    EXPECT_NE(message.find("more than 500000 keys and values"),
+              std::string::npos)
+        << message;
+  }
+  EXPECT_NE(rejection_of("# " + std::string(std::size_t{17} << 20, 'x'))
+                .find("bytes; expected at most 16777216"),
+            std::string::npos);
 }
 
 TEST(TomlText, LongTextsWithDotsAreNoDeepKeys) {

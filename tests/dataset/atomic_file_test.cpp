@@ -9,10 +9,14 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "dataset/text_file.h"
 #include "tests/dataset/rejection.h"
+#include "tests/dataset/system_calls.h"
 
 namespace beamgyro {
 namespace {
@@ -193,6 +197,99 @@ TEST_F(AtomicFileTest, ASignalHandlerCanRemovePartialFiles) {
   EXPECT_EQ(WEXITSTATUS(status), 143);
   EXPECT_EQ(files_there(), 1u);
   EXPECT_TRUE(fs::exists(folder / "b.txt"));
+}
+
+TEST_F(AtomicFileTest, TheFileThatIsReplacedHandsOnItsMode) {
+  const fs::path path = folder / "a.txt";
+  for (const unsigned mode : {0600u, 0664u, 0755u, 0444u}) {
+    write_text_file(path, "old");
+    fs::permissions(path, fs::perms{mode});
+    {
+      const AtomicFile file(path);
+      // Nor is the unfinished one for other eyes.
+      EXPECT_EQ(fs::status(file.partial_path()).permissions() &
+                    ~fs::perms{mode} & ~fs::perms{0600},
+                fs::perms::none);
+    }
+    write_text_file(path, "new");
+    EXPECT_EQ(fs::status(path).permissions(), fs::perms{mode});
+  }
+}
+
+// Else a crash of the machine may leave an empty file under the name.
+TEST_F(AtomicFileTest, BytesAreOnTheDiskBeforeTheName) {
+  SystemCalls calls;
+  write_text_file(folder / "a.txt", "text");
+  std::vector<std::string> made = calls.made();
+  std::erase_if(made, [](const std::string& name) {
+    return name != "fsync" && name != "renameat";
+  });
+  EXPECT_EQ(made, (std::vector<std::string>{"fsync", "renameat", "fsync"}));
+}
+
+TEST_F(AtomicFileTest, AFileInThePlaceOfThePartialOneIsNotTouched) {
+  write_text_file(folder / "victim", "victim");
+  const fs::path path = folder / "a.txt";
+  AtomicFile file(path);
+  fs::remove(file.partial_path());
+  fs::create_symlink("victim", file.partial_path());
+  file.file().write(std::as_bytes(std::span("text", 4)));
+  EXPECT_NE(
+      rejection<std::runtime_error>([&] { file.publish(); }).find("replaced"),
+      std::string::npos);
+  EXPECT_EQ(read_text_file(folder / "victim"), "victim");
+  EXPECT_FALSE(fs::exists(path));
+}
+
+TEST_F(AtomicFileTest, LibrariesReachTheOpenFileByName) {
+  AtomicFile file(folder / "a.txt");
+  const fs::path place = file.partial_path();
+  fs::rename(place, folder / "aside");
+  write_text_file(place, "foreign");
+  std::ofstream(file.name_of_open_file()) << "text";
+  EXPECT_EQ(read_text_file(place), "foreign");
+  EXPECT_EQ(read_text_file(folder / "aside"), "text");
+}
+
+/// Number of a process that is no more.
+pid_t dead_process() {
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  waitpid(child, nullptr, 0);
+  return child;
+}
+
+TEST_F(AtomicFileTest, WhatADeadProcessLeftIsRemovedByTheNext) {
+  const auto partial = [&](const std::string& name, const std::string& host,
+                           pid_t process) {
+    return folder /
+           (name + ".partial-" + host + "-" + std::to_string(process) + "-0");
+  };
+  const fs::path dead = partial("a.txt", host_name(), dead_process());
+  const std::vector<fs::path> others = {
+      partial("a.txt", host_name(), getppid()),
+      partial("a.txt", "elsewhere", dead_process()),
+      partial("b.txt", host_name(), dead_process())};
+  write_text_file(dead, "half");
+  for (const fs::path& other : others) write_text_file(other, "half");
+  write_text_file(folder / "a.txt", "text");
+  EXPECT_FALSE(fs::exists(dead));
+  for (const fs::path& other : others) EXPECT_TRUE(fs::exists(other)) << other;
+}
+
+TEST_F(AtomicFileTest, ALinkOfAnotherUserInADirectoryForAllIsNotFollowed) {
+  if (geteuid() != 0) GTEST_SKIP() << "another user's files need root";
+  write_text_file(folder / "target", "old");
+  fs::create_directory(folder / "all");
+  fs::permissions(folder / "all", fs::perms{01777});
+  fs::create_symlink("../target", folder / "all" / "link");
+  ASSERT_EQ(lchown((folder / "all" / "link").c_str(), 65534, 65534), 0);
+  ASSERT_EQ(chown((folder / "all").c_str(), 65533, 65533), 0);
+  EXPECT_NE(rejection([&] {
+              write_text_file(folder / "all" / "link", "new");
+            }).find("another user"),
+            std::string::npos);
+  EXPECT_EQ(read_text_file(folder / "target"), "old");
 }
 
 TEST_F(AtomicFileTest, ManyFilesAfterEachOtherAreNoProblem) {

@@ -84,6 +84,7 @@ TEST_F(Hdf5File, ReadsBackEmptyTexts) {
   recording.fidelity.clear();
   recording.scenario_text.clear();
   recording.device_text.clear();
+  recording.columns[0].name = "of_no_unit_that_is_known";
   recording.columns[0].units.clear();
   write_recording(recording, file);
   expect_same(read_recording(file), recording);

@@ -40,7 +40,7 @@ FILE_ORDER = (["time"] + list(UNITS)[:6] + ["status"] + list(UNITS)[6:])
 ROOT = {
     "Conventions": "CF-1.10",
     "filetype": "beamgyro-recording",
-    "format_version": 1,
+    "format_version": 2,
     "beamgyro_version": "1.2.3",
     "git_revision": "0123abc",
     "seed": 2**64 - 1,

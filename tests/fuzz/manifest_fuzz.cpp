@@ -34,9 +34,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace beamgyro;
   const std::filesystem::path set = scratch_folder() / "set";
   std::filesystem::create_directory(set);
-  const std::filesystem::path file =
-      scratch_file("set/manifest.jsonl", with_checksums(text_of(data, size)));
-  accept_or_reject(
-      [&] { static_cast<void>(check_set(set, read_manifest(file))); });
+  scratch_file("set/manifest.jsonl", with_checksums(text_of(data, size)));
+  accept_or_reject([&] {
+    static_cast<void>(check_set(set, read_manifest(set, kManifestName)));
+  });
   return 0;
 }

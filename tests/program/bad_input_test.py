@@ -121,6 +121,7 @@ class BadScenario(ProgramTest):
         self.run_rejected(self.changed("= 600", "= -5"), ["duration_s", "-5"])
         self.run_rejected(self.changed("= 600", "= 0.2"), "duration_s")
         self.run_rejected(self.changed("= 600", "= 1e12"), "duration_s")
+        self.run_rejected(self.changed("= 600", "= 1e300"), "duration_s")
         self.run_rejected(self.changed("output_rate_Hz = 2",
                                        "output_rate_Hz = 201"),
                           ["output_rate_Hz", "201", "200"])

@@ -55,6 +55,62 @@ class CommandLine(ProgramTest):
         self.assertEqual((answer.returncode, answer.stdout), (0, ""))
         self.assertNotIn("\x1b", answer.stderr)
 
+    def test_no_control_character_reaches_the_terminal(self):
+        evil = "\x1b]0;x\x07\x1b[2J\r\x08\x9b\u202fé"
+        for command in [["info", evil], ["run", evil, "-o", "a.h5"],
+                        ["verify", evil], [evil]]:
+            with self.subTest(command):
+                said = self.rejected(*command)
+                self.assertIn("\\x1b]0;x\\x07", said)
+                self.assertIn("\u202fé", said)
+                self.assertFalse(set(said) & set("\x1b\x07\r\x08\x9b"))
+        self.write("series.csv", "a,\x1b[31mb\n1,2\n3,4\n")
+        said = self.rejected("allan", "series.csv", "--rate-Hz", "1",
+                             "--dataset", "c", says="\\x1b[31mb")
+        self.assertNotIn("\x1b", said)
+
+    def test_results_hold_no_control_character_of_a_file(self):
+        name = "\x1b[31ms.toml"
+        self.write(name, SCENARIO.replace("600", "60"))
+        self.write("campaign\x1b[2J.toml", f"""\
+name = "x"
+device = "device.toml"
+devices = 1
+seed = 1
+[[run]]
+name = "rest"
+scenario = "\\u001b[31ms.toml"
+""")
+        self.ok("generate", "campaign\x1b[2J.toml", "-o", "set")
+        for command in [["info", "set"], ["info", "set", "--device", 0]]:
+            said = self.ok(*command)
+            self.assertIn("campaign\\x1b[2J.toml", said)
+            self.assertNotIn("\x1b", said)
+
+    def test_a_file_that_is_replaced_hands_on_its_mode(self):
+        self.write("s.toml", SCENARIO)
+        for name in ["a.h5", "a.csv"]:
+            self.write(name, "old")
+            (self.dir / name).chmod(0o640)
+            self.ok("run", "s.toml", "-o", name)
+            self.assertEqual((self.dir / name).stat().st_mode & 0o777, 0o640)
+
+    def test_what_a_killed_run_left_is_removed_by_the_next_of_its_name(self):
+        self.write("s.toml", SCENARIO)
+        self.write("long.toml", SCENARIO.replace("600", "600000"))
+        with subprocess.Popen([str(PROGRAM), "run", "long.toml", "-o", "a.h5"],
+                              cwd=self.dir, stdin=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL) as process:
+            while not list(self.dir.glob("a.h5.partial*")):
+                self.assertIsNone(process.poll())
+                time.sleep(0.01)
+            process.send_signal(signal.SIGKILL)
+        self.assertTrue(list(self.dir.glob("a.h5.partial*")))
+        self.ok("run", "s.toml", "-o", "b.h5")
+        self.assertTrue(list(self.dir.glob("a.h5.partial*")))
+        self.ok("run", "s.toml", "-o", "a.h5")
+        self.assertFalse(list(self.dir.glob("*.partial*")))
+
     def test_quiet_is_silent_but_for_errors(self):
         self.write("s.toml", SCENARIO)
         answer = self.beamgyro("run", "s.toml", "-o", "a.h5", "--quiet")

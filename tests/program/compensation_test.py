@@ -62,6 +62,16 @@ class Compensation(ProgramTest):
         self.assertEqual(first, again)
         self.assertNotEqual(first, other)
 
+    def test_threads_that_the_system_does_not_grant_are_fewer_threads(self):
+        """Of restarts, folds and batches."""
+        self.write("bp.toml", NETWORK.replace("restarts = 1", "restarts = 3"))
+        arguments = ["--model", "bp.toml", "--held-out", "held_out.h5",
+                     "--seed", 1]
+        self.ok("train", "train.h5", *arguments, "-o", "free.json")
+        self.alone("train", "train.h5", *arguments, "-o", "alone.json")
+        self.assertEqual((self.dir / "alone.json").read_bytes(),
+                         (self.dir / "free.json").read_bytes())
+
     def test_compensate_copies_the_recording_and_adds_one_variable(self):
         self.train("cubic", "cubic.toml")
         self.ok("compensate", "cubic.json", "test.h5", "-o", "out.h5")

@@ -16,6 +16,20 @@ import numpy as np
 from program import PROGRAM
 from sets import CAMPAIGN, Set
 
+NO_MEMORY = """\
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <stdlib.h>
+void* CVodeCreate(int method, void* context) {
+  static int calls;
+  if (++calls == atoi(getenv("FAIL_AT"))) return NULL;
+  void* (*next)(int, void*);
+  *(void**)&next = dlsym(RTLD_NEXT, "CVodeCreate");
+  return next(method, context);
+}
+"""
+
+
 class Generate(Set):
     def test_a_set_has_a_file_for_every_range_of_devices_and_run(self):
         said = self.generate("set")
@@ -187,6 +201,91 @@ class Generate(Set):
         self.generate("set")
         with h5py.File(self.dir / "set/ramp.nc") as file:
             self.assertEqual(set(file["ambient_choice"][()]), {0.0, 1.0})
+
+    def vary(self, seed, variation):
+        self.write("campaign.toml", CAMPAIGN.replace("seed = 5", f"seed = {seed}")
+                   + f"[run.vary]\n{variation}\n")
+        return self.generate(f"set{seed}")
+
+    def axis_of(self, seed, name, parameter):
+        """Of every device: what is drawn, and the smallest and largest truth."""
+        with h5py.File(self.dir / f"set{seed}/ramp.nc") as file:
+            rows = file[name][()]
+            return list(zip(file[parameter][()], rows.min(axis=1),
+                            rows.max(axis=1)))
+
+    def test_an_axis_is_kept_whatever_the_first_device_draws(self):
+        firsts = set()
+        for seed in range(6):
+            said = self.vary(seed, '"cross_rate.x.constant_deg_per_s" = '
+                             "{ discrete = { values = [0, 5] } }")
+            self.assertIn("0 failed", said)
+            rows = self.axis_of(seed, "true_cross_rate_x",
+                                "cross_rate_x_constant_deg_per_s")
+            firsts.add(rows[0][0])
+            for drawn, lowest, highest in rows:
+                self.assertEqual((lowest, highest), (drawn, drawn))
+        self.assertEqual(firsts, {0.0, 5.0})
+
+    def test_an_axis_that_only_some_choices_have_is_kept(self):
+        firsts = set()
+        for seed in range(6):
+            said = self.vary(seed, '"acceleration" = { discrete = { values = '
+                             "[{}, { z = { constant_g = 1 } }] } }")
+            self.assertIn("0 failed", said)
+            rows = self.axis_of(seed, "true_acceleration_z",
+                                "acceleration_choice")
+            firsts.add(rows[0][0])
+            for drawn, lowest, highest in rows:
+                self.assertEqual(lowest, highest)
+                self.assertAlmostEqual(highest, 9.80665 * drawn, places=5)
+            with h5py.File(self.dir / f"set{seed}/ramp.nc") as file:
+                self.assertNotIn("true_acceleration_x", file)
+        self.assertEqual(firsts, {0.0, 1.0})
+
+    def test_an_axis_that_no_choice_moves_is_left_out(self):
+        self.vary(0, '"cross_rate.x.constant_deg_per_s" = '
+                  "{ discrete = { values = [0, 5], weights = [1, 0] } }")
+        with h5py.File(self.dir / "set0/ramp.nc") as file:
+            self.assertNotIn("true_cross_rate_x", file)
+
+    def test_a_table_of_the_device_may_be_drawn(self):
+        """The step of a converter is then each device's own."""
+        def sensor(resolution):
+            return ("{ noise_K = 0.01, resolution_K = %s, offset_K = 0 }"
+                    % resolution)
+        for name, steps, kind in [("same", [0.05, 0.05], np.int16),
+                                  ("other", [0.05, 0.017], np.float64),
+                                  ("new", [0.017, 0.017], np.float64)]:
+            with self.subTest(name):
+                tables = ", ".join(map(sensor, steps))
+                self.write("campaign.toml", CAMPAIGN.replace(
+                    "[tolerances]", '[tolerances]\n"temperature_sensor" = '
+                    f"{{ discrete = {{ values = [{tables}] }} }}"))
+                self.assertIn("0 failed", self.generate(name))
+                with h5py.File(self.dir / name / "rest_00000.h5") as file:
+                    self.assertEqual(file["temperature"].dtype, kind)
+
+    def test_only_failures_of_a_device_are_data(self):
+        """An integrator without memory says nothing about the device."""
+        self.write("fault.c", NO_MEMORY)
+        subprocess.run(["cc", "-shared", "-fPIC", "-o", "fault.so", "fault.c"],
+                       cwd=self.dir, check=True)
+        # The plan makes the first one for each run.
+        answer = self.beamgyro(
+            "generate", "campaign.toml", "-o", "set", "--jobs", "1",
+            env={**os.environ, "LD_PRELOAD": str(self.dir / "fault.so"),
+                 "FAIL_AT": "8"})
+        self.assertEqual(answer.returncode, 1, answer.stdout)
+        self.assertIn("CVodeCreate failed", answer.stderr)
+        self.generate("set", "--resume")
+        self.generate("whole")
+        self.assertEqual(self.contents("set"), self.contents("whole"))
+
+    def test_threads_that_the_system_does_not_grant_are_fewer_threads(self):
+        self.generate("free")
+        self.alone("generate", "campaign.toml", "-o", "alone", "--jobs", "4")
+        self.assertEqual(self.contents("alone"), self.contents("free"))
 
     def test_termination_leaves_only_whole_files(self):
         self.write("campaign.toml", CAMPAIGN.replace("devices = 7",

@@ -3,6 +3,7 @@
 
 import os
 import pathlib
+import resource
 import shutil
 import subprocess
 import tempfile
@@ -12,6 +13,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENARIOS = ROOT / "scenarios"
 PROGRAM = pathlib.Path(
     os.environ.get("BEAMGYRO", ROOT / "build/release/beamgyro")).resolve()
+
+LONELY_USER = 54321  # of no one else
 
 SCENARIO = """\
 name = "short"
@@ -69,6 +72,27 @@ class ProgramTest(unittest.TestCase):
     def ok(self, *arguments):
         """Output of a command that must succeed."""
         answer = self.beamgyro(*arguments)
+        self.assertEqual(answer.returncode, 0,
+                         f"{arguments}: {answer.stderr}{answer.stdout}")
+        return answer.stdout
+
+    def alone(self, *arguments):
+        """Output of a command that must succeed as the only process of its
+        user, who may have no other and no second thread."""
+        self.dir.chmod(0o777)
+        program = self.dir / "program"  # where another user may run it
+        shutil.copy(PROGRAM, program)
+
+        def restrict():
+            resource.setrlimit(resource.RLIMIT_NPROC, (1, 1))
+            if os.geteuid() == 0:  # which no limit holds
+                os.setgid(LONELY_USER)
+                os.setuid(LONELY_USER)
+
+        answer = subprocess.run(
+            [str(program), *map(str, arguments)], cwd=self.dir, text=True,
+            stdin=subprocess.DEVNULL, capture_output=True, check=False,
+            timeout=120, preexec_fn=restrict)
         self.assertEqual(answer.returncode, 0,
                          f"{arguments}: {answer.stderr}{answer.stdout}")
         return answer.stdout

@@ -53,6 +53,17 @@ class Recording(ProgramTest):
                 self.assertEqual(
                     len(data["status"].attrs["flag_meanings"].split()), 3)
 
+    def test_memory_does_not_grow_with_the_samples(self):
+        self.write("short.toml", SCENARIO)
+        # The recording of 600,000 samples takes 77 MB, a block of them 2 MB,
+        # the program without any 12 MB of data.
+        answer = subprocess.run(
+            ["bash", "-c", "ulimit -d 32000; exec \"$@\"", "-", str(PROGRAM),
+             "run", "short.toml", "-o", "long.h5", "--set", "output_rate_Hz=10",
+             "--set", "duration_s=60000"], cwd=self.dir, text=True,
+            check=False, capture_output=True)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+
     def test_h5py_reads_the_root_and_the_texts(self):
         path = self.run_scenario("a", "--set", "beam.length_m=0.039",
                                  "--seed", "12")

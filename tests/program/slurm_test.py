@@ -138,6 +138,8 @@ class Slurm(unittest.TestCase):
 
     def reference(self, campaign):
         folder = self.dir / f"reference {campaign.stem}"
+        if folder.exists():
+            return folder
         subprocess.run([str(PROGRAM), "--quiet", "generate", str(campaign),
                         "-o", str(folder)], check=True, capture_output=True)
         return folder
@@ -160,6 +162,26 @@ class Slurm(unittest.TestCase):
         self.require_same(folder, self.reference(SMALL))
         self.assertIn("whole", (folder / "log/finish.log").read_text())
         self.assertIn("whole", self.submit(SMALL, folder, "--tasks", 3))
+
+    def test_a_directory_may_have_what_sbatch_replaces_in_its_name(self):
+        for name in ["100 %a", "b\\%j set"]:
+            with self.subTest(name):
+                folder = self.dir / name
+                self.submit(SMALL, folder, "--tasks", 2)
+                self.until_no_job_is_left()
+                self.require_same(folder, self.reference(SMALL))
+                self.assertIn("whole",
+                              (folder / "log/finish.log").read_text())
+
+    def test_every_job_gets_the_options(self):
+        self.submit(SMALL, self.dir / "held", "--tasks", 2, "--", "--hold",
+                    "--comment=for all")
+        jobs = self.said("squeue", "-h", "-o", "%j|%k").splitlines()
+        self.assertEqual(set(jobs), {"beamgyro|for all",
+                                     "beamgyro-finish|for all"})
+        numbers = self.said("squeue", "-h", "-o", "%A").split()
+        subprocess.run(["scancel", *numbers], env=self.environment, check=True)
+        self.until_no_job_is_left()
 
     def test_a_terminated_task_is_made_up_for(self):
         campaign = self.dir / "long.toml"

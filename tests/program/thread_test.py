@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What several threads make together is what one makes.
 
-scripts/test.sh runs these again with a program that the thread sanitizer
-watches; a race ends that program with status 66.
+With BEAMGYRO=build/tsan/beamgyro the thread sanitizer watches; a race ends that
+program with status 66.
 """
 
 import json

@@ -151,6 +151,58 @@ class Split(TrainSet):
                           f"{max(residuals):.4f}"])
 
 
+class InSample(TrainSet):
+    def in_sample(self, name, *arguments):
+        """Of each score, whether its device was used in training."""
+        answer = self.beamgyro("validate", name, "set", "--json",
+                               "scores.json", *arguments)
+        self.assertIn(answer.returncode, (0, 3), answer.stderr)
+        said = json.loads((self.dir / "scores.json").read_text())
+        found = [score["in_sample"] for score in said["devices"]]
+        warned = [text for text in said["warnings"] if "in-sample" in text]
+        self.assertEqual(len(warned), any(found))
+        self.assertEqual("in-sample" in answer.stderr, any(found))
+        if any(found):
+            self.assertIn(f"{sum(found)} of {len(found)} runs", warned[0])
+        return found
+
+    def test_devices_used_in_training_are_known_by_their_number(self):
+        said = self.train("cubic.toml", "cubic.json", "--run", "sweep")
+        numbers = [k for first, last in said["set"]["device_ranges"]
+                   for k in range(first, last + 1)]
+        self.assertEqual(numbers, self.devices(TRAIN))
+        self.assertEqual(said["set"]["runs"], ["sweep"])
+        tests = self.devices(TEST)
+        self.assertEqual(self.in_sample("cubic.json", "--run", "sweep"),
+                         [False] * len(tests))
+        for part in (TRAIN, VALIDATION):
+            device = self.devices(part)[0]
+            self.assertEqual(self.in_sample("cubic.json", "--run", "sweep",
+                                            "--device", device), [True])
+            # Nor is another run of it a device never seen.
+            self.assertEqual(self.in_sample("cubic.json", "--run", "check",
+                                            "--device", device, tests[0]),
+                             [device < tests[0], device > tests[0]])
+
+    def test_another_run_of_the_one_device_trained_on_is_unseen(self):
+        device = self.devices(TEST)[0]
+        self.train("cubic.toml", "mine.json", "--run", "sweep", "--device",
+                   device)
+        self.assertEqual(self.in_sample("mine.json", "--device", device),
+                         [True, False])
+
+    def test_a_compensator_that_does_not_tell_its_devices(self):
+        self.train("cubic.toml", "cubic.json", "--run", "sweep")
+        stored = json.loads((self.dir / "cubic.json").read_text())
+        for part in ("set", "held_out_set"):
+            for key in ("device_ranges", "runs", "seed", "campaign_sha256"):
+                del stored["training"][part][key]
+        self.write("cubic.json", json.dumps(stored))
+        answer = self.beamgyro("validate", "cubic.json", "set", "--device",
+                               self.devices(TRAIN)[0])
+        self.assertIn("may be in-sample", answer.stderr)
+
+
 class Adapted(TrainSet):
     def test_new_devices_are_closer_to_own_curves_than_to_the_mean(self):
         said = self.train("population.toml", "population.json", "--run",

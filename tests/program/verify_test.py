@@ -5,15 +5,17 @@ import os
 import pathlib
 import re
 import signal
+import socket
 import subprocess
 import tempfile
+import time
 import unittest
 
 import h5py
 import numpy as np
 
 from program import PROGRAM
-from sets import Set, set_faults
+from sets import CAMPAIGN, Set, set_faults
 
 
 class Verify(Set):
@@ -75,13 +77,64 @@ class Verify(Set):
         (self.dir / "set/ramp_00000.h5").write_bytes(b"")
         self.repaired()
 
-    def test_repair_from_a_damaged_source_is_failed_work(self):
+    def test_a_lost_manifest_is_made_again(self):
+        (self.dir / "set/manifest.jsonl").unlink()
+        self.found("manifest.jsonl", "rest_00000.h5")
+        self.repaired()
+
+    def test_a_lost_copy_of_the_first_line_is_made_again(self):
+        (self.dir / "set/source/head.jsonl").unlink()
+        self.found("source/head.jsonl")
+        self.repaired()
+
+    def test_lost_and_damaged_sources_come_from_the_files(self):
+        for name in ["campaign.toml", "rest.toml", "ramp.toml", "device.toml"]:
+            (self.dir / name).unlink()
+        source = self.dir / "set/source"
+        for name, text in [("campaign.toml", "x\n"), ("device.toml", None),
+                           ("rest.toml", ""), ("ramp.toml", None)]:
+            if text is None:
+                (source / name).unlink()
+            else:
+                (source / name).write_text(text)
         (self.dir / "set/rest_00000.h5").unlink()
-        (self.dir / "set/source/campaign.toml").write_text("x\n")
-        answer = self.beamgyro("verify", "set", "--repair")
+        self.found("source/campaign.toml", "source/device.toml",
+                   "source/rest.toml", "source/ramp.toml")
+        self.repaired()
+
+    def test_everything_but_one_file_of_each_run_is_made_again(self):
+        for path in (self.dir / "set").rglob("*"):
+            if path.is_file() and path.name not in {
+                    "rest_00001.h5", "ramp_00003.h5", "head.jsonl"}:
+                path.unlink()
+        self.repaired()
+
+    def test_a_source_that_is_in_no_file_is_named(self):
+        self.write("log.csv", "time_s,temperature_degC\n0,20\n60,30\n")
+        self.write("rest.toml", (self.dir / "rest.toml").read_text().replace(
+            "constant_degC = 25", 'file = "log.csv"'))
+        self.generate("other")
+        (self.dir / "other/source/log.csv").write_text("x\n")
+        answer = self.beamgyro("verify", "other", "--repair")
         self.assertEqual(answer.returncode, 1)
-        self.assertIn("source/campaign.toml", answer.stderr)
+        self.assertIn("source/log.csv", answer.stderr)
         self.assertIn("--resume", answer.stderr)
+        self.generate("other", "--resume")
+        self.assertIn("whole", self.ok("verify", "other"))
+
+    def test_files_named_by_their_full_place_are_made_of_their_copies(self):
+        elsewhere = self.dir / "devices"
+        elsewhere.mkdir()
+        (self.dir / "device.toml").rename(elsewhere / "unit.toml")
+        for name in ["campaign.toml", "rest.toml", "ramp.toml"]:
+            self.write(name, (self.dir / name).read_text().replace(
+                "device.toml", str(elsewhere / "unit.toml")))
+        self.generate("other")
+        before = self.contents("other")
+        (elsewhere / "unit.toml").unlink()
+        (self.dir / "other/rest_00002.h5").unlink()
+        self.ok("verify", "other", "--repair")
+        self.assertEqual(self.contents("other"), before)
 
     def test_a_clock_that_jumps_changes_nothing(self):
         for path in (self.dir / "set").iterdir():
@@ -89,6 +142,42 @@ class Verify(Set):
         self.assertIn("whole", self.ok("verify", "set"))
         self.generate("set", "--resume")
         self.assertEqual(self.contents("set"), self.before)
+
+
+class Lost(Set):
+    def test_a_file_that_vanishes_while_others_are_made_is_told(self):
+        self.write("campaign.toml", CAMPAIGN.replace("devices = 7",
+                                                     "devices = 400"))
+        for arguments in [[], ["--shard", "1/1"]]:
+            with self.subTest(arguments):
+                folder = self.dir / f"set{len(arguments)}"
+                with subprocess.Popen(
+                        [str(PROGRAM), "generate", "campaign.toml", "-o",
+                         folder.name, "--jobs", "1", *arguments],
+                        cwd=self.dir, text=True, stdout=subprocess.PIPE,
+                        stderr=subprocess.PIPE) as process:
+                    while not (folder / "rest_00001.h5").exists():
+                        time.sleep(0.01)
+                    (folder / "rest_00000.h5").unlink()
+                    said = process.communicate()[1]
+                self.assertEqual(process.returncode, 1, said)
+                self.assertIn("rest_00000.h5 has vanished", said)
+                self.generate(folder.name, "--resume")
+                self.assertIn("whole", self.ok("verify", folder.name))
+
+    def test_nothing_that_the_dead_left_stays(self):
+        self.generate("set", "--shard", "1/2")
+        host = socket.gethostname()
+        ended = subprocess.run(["sh", "-c", "echo $$"], capture_output=True,
+                               check=True, text=True).stdout.strip()
+        left = [f"rest_00000.h5.partial-{host}-{ended}-0",
+                f"source/rest.toml.partial-{host}-{ended}-0",
+                f"source/head.jsonl.partial-{host}-{ended}-3"]
+        for name in left:
+            (self.dir / "set" / name).write_bytes(b"half")
+        self.generate("set", "--shard", "2/2")
+        for name in left:
+            self.assertFalse((self.dir / "set" / name).exists(), name)
 
 
 class Info(Set):

@@ -57,7 +57,7 @@ ManifestEntry write_file(const std::filesystem::path& directory,
     builder.add(row, device == 3 ? nullptr : &recording);
   }
   const std::span<const std::byte> bytes = builder.finish();
-  publish_file(directory / entry.file, bytes);
+  publish_file(directory, entry.file, bytes);
   entry.bytes = bytes.size();
   entry.sha256 = sha256(bytes);
   return entry;
@@ -156,8 +156,8 @@ Manifest write_sample_set(const std::filesystem::path& directory) {
       entries.push_back(manifest.entries[i]);
     manifest.views.push_back(write_view(directory, head, entries));
   }
-  start_manifest(directory / kHeadCopyName, *manifest.head);
-  write_manifest(directory / kManifestName, manifest);
+  start_manifest(directory, kHeadCopyName, *manifest.head);
+  write_manifest(directory, kManifestName, manifest);
   return manifest;
 }
 

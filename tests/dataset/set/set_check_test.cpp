@@ -2,6 +2,7 @@
 #include "dataset/set/set_check.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <filesystem>
 
@@ -22,7 +23,7 @@ class CheckSet : public SetDirectory {
     manifest = write_sample_set(directory);
   }
   std::vector<SetDefect> defects() const {
-    return check_set(directory, read_manifest(directory / kManifestName));
+    return check_set(directory, read_manifest(directory, kManifestName));
   }
   /// The only defect there is, as "FILE WHAT INDEX".
   std::string defect() const {
@@ -144,25 +145,36 @@ TEST_F(CheckSet, FindsACopyOfTheHeadThatIsMissingOrOfAnotherSet) {
   EXPECT_EQ(defect(), "source/head.jsonl is missing");
   ManifestHead other = *manifest.head;
   ++other.seed;
-  start_manifest(directory / kHeadCopyName, other);
+  start_manifest(directory, kHeadCopyName, other);
   EXPECT_EQ(defect(), "source/head.jsonl holds other bytes than were written");
 }
 
 TEST_F(CheckSet, AnUnfinishedSetLacksWhatIsNotMadeYet) {
   fs::remove_all(directory);
   fs::create_directory(directory);
-  ManifestHead head = *manifest.head;
-  head.sources.clear();
+  const ManifestHead& head = *manifest.head;
   fs::create_directory(directory / "source");
-  start_manifest(directory / kHeadCopyName, head);
-  start_manifest(directory / kManifestName, head);
+  start_manifest(directory, kHeadCopyName, head);
+  start_manifest(directory, kManifestName, head);
   const std::vector<SetDefect> found = defects();
-  ASSERT_EQ(found.size(), 7u);
+  ASSERT_EQ(found.size(), 8u);
   EXPECT_EQ(found[0].what, "is not finished");
+  EXPECT_EQ(found[7].file, "source/campaign.toml");
   for (std::uint32_t i = 0; i < 6; ++i) {
     EXPECT_EQ(found[i + 1].index, i);
     EXPECT_EQ(found[i + 1].what, "is not in the manifest");
   }
+}
+
+TEST_F(CheckSet, AHeadMayClaimMoreFilesThanMemoryHolds) {
+  manifest.head->devices = 4'000'000'000;
+  write_manifest(directory, kManifestName, manifest);
+  const std::vector<SetDefect> found = defects();
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  EXPECT_LT(used.ru_maxrss, 500'000);  // [KiB]
+  EXPECT_EQ(found.back().what,
+            "does not have 3999899994 more of 4000000000 files");
 }
 
 }  // namespace

@@ -27,8 +27,8 @@ TEST_F(SetView, IsTheSameEveryTimeAndNoFileOfTheSet) {
   EXPECT_EQ(read_text_file(directory / "warm_up.nc"), before);
   EXPECT_EQ(rejection([&] { ShardFile{directory / "warm_up.nc"}; }),
             (directory / "warm_up.nc").string() +
-                ": a view, which does not tell missing files from missing "
-                "values; expected a file of the set");
+                ": beam_length_m is a view of other files, which does not tell "
+                "missing files from missing values; expected the values");
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ class WriteSet : public SetDirectory {
     return files;
   }
   bool is_whole() const {
-    return check_set(copy_, read_manifest(copy_ / kManifestName)).empty();
+    return check_set(copy_, read_manifest(copy_, kManifestName)).empty();
   }
 
   fs::path original_, copy_;

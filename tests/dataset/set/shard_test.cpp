@@ -29,7 +29,7 @@ class Shard : public SetDirectory {
       const Recording recording = sample_recording_of(head, i);
       builder.add(sample_row(head, i), &recording);
     }
-    publish_file(file(), builder.finish());
+    publish_file(directory, file().filename(), builder.finish());
   }
 
   /// Writes one device with `change` made to its recording.
@@ -160,7 +160,7 @@ TEST_F(Shard, AFailedDeviceHasAReasonAndNoValues) {
   row.failure = "no convergence at \"25 degC\"\nin line 2";
   row.device_status = kNoConvergence;
   builder.add(row, nullptr);
-  publish_file(file(), builder.finish());
+  publish_file(directory, file().filename(), builder.finish());
   const ShardFile read(file());
   expect_same(read.recording(0), recording, head);
   EXPECT_EQ(read.row(0).failure, "");
@@ -220,7 +220,7 @@ TEST_F(Shard, TheLowestConverterCodeIsNotTheFillValue) {
   recording.columns[0].values[5] = 2.5 - 2.5;  // count -32768
   ShardBuilder builder(head);
   builder.add(sample_row(head, 0), &recording);
-  publish_file(file(), builder.finish());
+  publish_file(directory, file().filename(), builder.finish());
   EXPECT_EQ(ShardFile(file()).recording(0).columns[0].values[5],
             2.5 - 32767 * (5.0 / 65536));
 }

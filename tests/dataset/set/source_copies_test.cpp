@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "dataset/atomic_file.h"
 #include "dataset/sha256.h"
 #include "dataset/text_file.h"
 #include "tests/dataset/rejection.h"
@@ -41,6 +42,50 @@ TEST_F(Sources, ANameThatIsNoUtf8IsRejected) {
   const SourceText file{"/a/\xff.toml", "x"};
   EXPECT_EQ(rejection([&] { source_entries(std::span(&file, 1)); }),
             "source/\xff.toml: the name is not UTF-8, which the manifest is");
+}
+
+TEST_F(Sources, TheNameOfTheHeadsCopyIsTaken) {
+  const SourceText file{"/a/head.jsonl", "x"};
+  EXPECT_NE(rejection([&] {
+              source_entries(std::span(&file, 1));
+            }).find("head.jsonl"),
+            std::string::npos);
+}
+
+TEST_F(Sources, ACopyStandsForTheFileThatANameMeans) {
+  const std::vector<SourceText> copies = {{"set/source/campaigns/c.toml", "c"},
+                                          {"set/source/devices/d.toml", "d"},
+                                          {"set/source/a/p.csv", "a"},
+                                          {"set/source/b/p.csv", "b"}};
+  const auto text = [&](const char* name) {
+    return copy_of(name, copies).text;
+  };
+  EXPECT_EQ(text("set/source/campaigns/../devices/d.toml"), "d");
+  EXPECT_EQ(text("/elsewhere/devices/d.toml"), "d");
+  EXPECT_EQ(text("/d.toml"), "d");
+  EXPECT_EQ(text("/x/b/p.csv"), "b");
+  for (const char* name : {"/p.csv", "/x/p.csv", "/etc/passwd", "../e.toml"})
+    EXPECT_NE(rejection([&] { text(name); }).find("no copy"), std::string::npos)
+        << name;
+}
+
+TEST_F(Sources, CopiesAreReadWholeOrNotAtAll) {
+  const std::vector<SourceText> files = {{"/a/c.toml", "one"},
+                                         {"/a/b/d.toml", "two"}};
+  copy_sources(directory, files);
+  ManifestHead head;
+  head.sources = source_entries(files);
+  const std::vector<SourceText> copies = read_copies(directory, head);
+  ASSERT_EQ(copies.size(), 2u);
+  EXPECT_EQ(copies[1].path, directory / "source" / "b" / "d.toml");
+  EXPECT_EQ(copies[1].text, "two");
+  write_text_file(directory / "source" / "c.toml", "One");
+  EXPECT_NE(rejection<std::runtime_error>([&] {
+              read_copies(directory, head);
+            }).find("other bytes"),
+            std::string::npos);
+  head.sources.clear();
+  EXPECT_THROW(read_copies(directory, head), std::runtime_error);
 }
 
 }  // namespace

@@ -132,6 +132,9 @@ std::vector<BadCase> bad_heads() {
        "3 does not divide the output rate 10 Hz of the run rest"},
       {"TruthRateTooHigh", campaign_text("[output]\ntruth_rate_Hz = 20\n"),
        "does not divide"},
+      {"TruthRateTooLow", campaign_text("[output]\ntruth_rate_Hz = 1e-300\n"),
+       "1e-300 does not divide the output rate 10 Hz of the run rest; expected "
+       "a rate that does, 1e+08 times slower at most"},
       {"Precision", campaign_text("[output]\nprecision = \"double\"\n"),
        "output.precision"},
       {"CorrelatedUnknown",

@@ -74,9 +74,14 @@ TEST(PiecewiseLinear, SamplesAsItEvaluates) {
   }
 }
 
-TEST(PiecewiseLinear, NamesEachBreakpointOnce) {
-  const PiecewiseLinear profile({0, 1, 1, 2}, {0, 1, 2, 3});
-  EXPECT_EQ(profile.breakpoints(), (std::vector<double>{0, 1, 2}));
+TEST(PiecewiseLinear, NamesEachBorderOnceAndWhetherTheValueJumps) {
+  const PiecewiseLinear profile({0, 1, 1, 2, 2}, {0, 1, 2, 3, 3});
+  const std::vector<Border> borders = profile.borders();
+  ASSERT_EQ(borders.size(), 3);
+  for (std::size_t i = 0; i < borders.size(); ++i) {
+    EXPECT_EQ(borders[i].time, static_cast<double>(i));
+    EXPECT_EQ(borders[i].jump, i == 1) << i;
+  }
   EXPECT_EQ(PiecewiseLinear::constant(7).value(123), 7);
 }
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/scenario/quasistatic_run.h"
+#include "sim/scenario/simulation.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
@@ -27,10 +27,9 @@ std::vector<double> bias_change(const std::string& motion,
   const Device device = nominal_device({"thermal.electronics_power_W=0.0"});
   const auto bias = [&](const std::string& text) {
     return column_values(
-        simulate_quasistatic(
-            scenario_from(text, "[ambient]\nconstant_degC = 25\n", duration,
-                          rate),
-            device),
+        simulated(scenario_from(text, "[ambient]\nconstant_degC = 25\n",
+                                duration, rate),
+                  device),
         "true_bias");
   };
   std::vector<double> change = bias(motion);
@@ -123,11 +122,10 @@ TEST(Acceleration, IsTheSameInTheTwinAndUnderARate) {
 TEST(CrossRate, ShowsInTheQuadratureOfARun) {
   const auto quadrature = [](const std::string& text) {
     return column_values(
-               simulate_quasistatic(
-                   scenario_from("[noise]\nenabled = false\n" + text),
-                   nominal_device(
-                       {"thermal.electronics_power_W=0.0",
-                        "readout.quadrature_resolution_deg_per_s=1e-9"})),
+               simulated(scenario_from("[noise]\nenabled = false\n" + text),
+                         nominal_device(
+                             {"thermal.electronics_power_W=0.0",
+                              "readout.quadrature_resolution_deg_per_s=1e-9"})),
                "quadrature")
         .back();
   };

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sim/scenario/motion.h"
-#include "sim/scenario/quasistatic_run.h"
+#include "sim/scenario/simulation.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
@@ -135,8 +135,8 @@ TEST_P(EveryAxis, RandomHasItsRms) {
 }
 
 TEST_P(EveryAxis, AloneMovesAndIsRecordedAsTruth) {
-  const Recording run = simulate_quasistatic(
-      scenario("steps = [[0, 0], [5, 2]]"), nominal_gyro().device);
+  const Recording run =
+      simulated(scenario("steps = [[0, 0], [5, 2]]"), nominal_gyro().device);
   for (const AxisCase& axis : axes()) {
     const Column* column = find_column(run, axis.truth);
     if (axis.truth != GetParam().truth) {

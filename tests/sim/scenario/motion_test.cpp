@@ -19,12 +19,22 @@ const Gyro& nominal_gyro() {
   return gyro;
 }
 
+std::vector<Piece> pieces(const Scenario& scenario, const Motion& motion) {
+  return pieces_until(scenario.duration, motion.borders());
+}
+
+std::vector<double> ends(const std::vector<Piece>& pieces) {
+  std::vector<double> ends;
+  for (const Piece& piece : pieces) ends.push_back(piece.end);
+  return ends;
+}
+
 TEST(Motion, HasItsLimitsOnBothSidesOfAStep) {
   const Scenario scenario =
       scenario_from("[rate]\nsteps = [[0, 1], [10, 3]]\n");
   const Motion motion(scenario, nominal_gyro(), {});
-  EXPECT_EQ(motion.breakpoints(), std::vector<double>{10});
-  EXPECT_TRUE(motion.jumps_at(10));
+  EXPECT_EQ(ends(pieces(scenario, motion)), (std::vector<double>{10, 100}));
+  EXPECT_TRUE(pieces(scenario, motion)[1].jump);
   EXPECT_FALSE(motion.rate_is_zero());
   EXPECT_DOUBLE_EQ(motion.segment(0, 10).at(10).z, 1 * kDegree);
   EXPECT_DOUBLE_EQ(motion.segment(10, 100).at(10).z, 3 * kDegree);
@@ -36,8 +46,8 @@ TEST(Motion, OfPointsBendsAndHasTheirSlope) {
   const Scenario scenario =
       scenario_from("[rate]\npoints = [[0, 0], [10, 20], [20, 0]]\n");
   const Motion motion(scenario, nominal_gyro(), {});
-  EXPECT_EQ(motion.breakpoints(), (std::vector<double>{10, 20}));
-  EXPECT_FALSE(motion.jumps_at(10));
+  EXPECT_EQ(ends(pieces(scenario, motion)), (std::vector<double>{10, 20, 100}));
+  EXPECT_FALSE(pieces(scenario, motion)[1].jump);
   const CaseMotion up = motion.segment(0, 10).at(5);
   EXPECT_NEAR(up.z, 10 * kDegree, 1e-15);
   EXPECT_NEAR(up.z_acceleration, 2 * kDegree, 1e-15);
@@ -70,11 +80,10 @@ TEST(Motion, BreaksWhereAnyAxisDoes) {
       "[acceleration]\nx = { steps = [[0, 0], [20, 2], [100, 1]] }\n"
       "z = { sine = { amplitude_g = 1, frequency_Hz = 2 } }\n");
   const Motion motion(scenario, nominal_gyro(), {});
-  // Neither 0 nor the end of the run at 100 s is inside.
-  EXPECT_EQ(motion.breakpoints(), (std::vector<double>{20, 30, 40, 60}));
-  EXPECT_TRUE(motion.jumps_at(20));
-  for (const double bend : {30.0, 40.0, 60.0})
-    EXPECT_FALSE(motion.jumps_at(bend)) << bend;
+  const std::vector<Piece> all = pieces(scenario, motion);
+  EXPECT_EQ(ends(all), (std::vector<double>{20, 30, 40, 60, 100}));
+  for (const Piece& piece : all)
+    EXPECT_EQ(piece.jump, piece.start == 20) << piece.start;
 }
 
 TEST(Motion, OfAccelerationJumpsAtAStepOnly) {
@@ -114,21 +123,17 @@ TEST(Motion, OfASegmentMeetsTheSamplesOfTheRun) {
       "[rate.random]\nrms_deg_per_s = 5\nbandwidth_Hz = 0.5\n"
       "[cross_rate]\ny = { points = [[0, 0], [33, 10], [50, -4]] }\n");
   const Motion motion(scenario, nominal_gyro(), {});
-  std::vector<double> borders = motion.breakpoints();
-  borders.push_back(100);
   RunSamples samples;
   samples.time = sample_times(scenario);
   motion.show(samples);
-  double start = 0;
   std::size_t k = 0;
-  for (const double end : borders) {
-    const MotionSegment segment = motion.segment(start, end);
-    for (; k < samples.time.size() && samples.time[k] < end; ++k) {
+  for (const Piece& piece : pieces(scenario, motion)) {
+    const MotionSegment segment = motion.segment(piece.start, piece.end);
+    for (; k < samples.time.size() && samples.time[k] < piece.end; ++k) {
       EXPECT_NEAR(segment.at(samples.time[k]).z, samples.rate[k], 1e-14);
       EXPECT_NEAR(segment.at(samples.time[k]).y, samples.cross_rate[1][k],
                   1e-14);
     }
-    start = end;
   }
   EXPECT_EQ(k, samples.time.size());
 }

@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 
+#include "sim/scenario/simulation.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
@@ -43,22 +44,22 @@ TEST(Verification, V47SameSeedGivesTheSameBitsInAnyThread) {
       "[rate.random]\nrms_deg_per_s = 3\nbandwidth_Hz = 2\n"
       "[power]\non_s = [0, 60]\noff_s = [50]\n");
   const Device device = nominal_device();
-  const Recording alone = simulate_quasistatic(scenario, device);
+  const Recording alone = simulated(scenario, device);
   Recording first, second;
-  std::thread a([&] { first = simulate_quasistatic(scenario, device); });
-  std::thread b([&] { second = simulate_quasistatic(scenario, device); });
+  std::thread a([&] { first = simulated(scenario, device); });
+  std::thread b([&] { second = simulated(scenario, device); });
   a.join();
   b.join();
   EXPECT_TRUE(same_bits(alone, first));
   EXPECT_TRUE(same_bits(alone, second));
-  EXPECT_FALSE(same_bits(
-      alone, simulate_quasistatic(scenario, device, {.device = 1, .run = 0})));
+  EXPECT_FALSE(
+      same_bits(alone, simulated(scenario, device, {.device = 1, .run = 0})));
 }
 
 TEST(QuasistaticRun, AtItsTrimTemperatureTheGyroShowsTrimPlusRate) {
   const Scenario scenario = scenario_from(
       std::string("[rate]\nsteps = [[0, 0], [50, 100]]\n") + kQuiet);
-  const Recording run = simulate_quasistatic(scenario, nominal_device(kCold));
+  const Recording run = simulated(scenario, nominal_device(kCold));
   const double lsb = 300.0 / 65536;  // [deg/s]
   EXPECT_NEAR(values(run, "rate")[100], 0.5, 0.51 * lsb);
   // The drive heats the beam by millikelvin; the scale factor nonlinearity is
@@ -76,10 +77,9 @@ TEST(QuasistaticRun, AtItsTrimTemperatureTheGyroShowsTrimPlusRate) {
 TEST(QuasistaticRun, TrueBiasIsTheTwinAtRest) {
   const std::string ambient = "[ambient]\npoints = [[0, -20], [100, 30]]\n";
   const Device device = nominal_device();
-  const Recording turning = simulate_quasistatic(
+  const Recording turning = simulated(
       scenario_from("[rate]\nconstant_deg_per_s = 80\n", ambient), device);
-  const Recording resting =
-      simulate_quasistatic(scenario_from(kQuiet, ambient), device);
+  const Recording resting = simulated(scenario_from(kQuiet, ambient), device);
   const auto& twin = values(turning, "true_bias");
   const auto& rest = values(resting, "true_bias");
   double largest = 0;
@@ -91,7 +91,7 @@ TEST(QuasistaticRun, TrueBiasIsTheTwinAtRest) {
 TEST(QuasistaticRun, UnpoweredSamplesAreBlankAndFlagged) {
   const Scenario scenario =
       scenario_from("[power]\non_s = [10, 60]\noff_s = [40]\n");
-  const Recording run = simulate_quasistatic(scenario, nominal_device());
+  const Recording run = simulated(scenario, nominal_device());
   for (std::size_t k = 0; k < run.time.size(); ++k) {
     const double t = run.time[k];
     const bool powered = (t >= 10 && t < 40) || t >= 60;
@@ -106,7 +106,7 @@ TEST(QuasistaticRun, UnpoweredSamplesAreBlankAndFlagged) {
 
 TEST(QuasistaticRun, EveryPowerCycleHasItsOwnTurnOnOffset) {
   const Device device = nominal_device({"noise.turn_on_deg_per_s=5.0"});
-  const Recording cycled = simulate_quasistatic(
+  const Recording cycled = simulated(
       scenario_from("[power]\non_s = [0, 50]\noff_s = [40]\n"), device);
   const auto offset = [&](std::size_t k) {
     return values(cycled, "rate")[k] - values(cycled, "true_bias")[k];
@@ -116,9 +116,9 @@ TEST(QuasistaticRun, EveryPowerCycleHasItsOwnTurnOnOffset) {
 }
 
 TEST(QuasistaticRun, ARateBeyondFullScaleSaturatesAndSaysSo) {
-  const Recording run = simulate_quasistatic(
-      scenario_from("[rate]\npoints = [[0, 0], [100, 300]]\n"),
-      nominal_device());
+  const Recording run =
+      simulated(scenario_from("[rate]\npoints = [[0, 0], [100, 300]]\n"),
+                nominal_device());
   const auto& rate = values(run, "rate");
   EXPECT_EQ(run.status[200], 0);
   EXPECT_EQ(run.status[800], kOutputSaturated);
@@ -127,10 +127,41 @@ TEST(QuasistaticRun, ARateBeyondFullScaleSaturatesAndSaysSo) {
 }
 
 TEST(QuasistaticRun, ADriveAtItsVoltageLimitIsFlagged) {
-  const Recording run = simulate_quasistatic(
+  const Recording run = simulated(
       scenario_from(""), nominal_device({"drive.voltage_limit_V=0.5"}));
   EXPECT_TRUE(run.status[10] & kLoopNotLocked);
   EXPECT_NEAR(values(run, "drive_voltage")[10], 0.5, 1e-9);
+}
+
+TEST(QuasistaticRun, DoesNotDependOnHowItIsCutIntoBlocks) {
+  const std::string ambient = "[ambient]\npoints = [[0, -20], [1500, 30]]\n";
+  for (const char* motion :
+       {"[rate]\nsine = { amplitude_deg_per_s = 20, frequency_Hz = 0.1 }\n",
+        "[rate.random]\nrms_deg_per_s = 3\nbandwidth_Hz = 2\n[acceleration]\n"
+        "x = { random = { rms_g = 1, bandwidth_Hz = 2 } }\n"}) {
+    const Scenario scenario = scenario_from(motion, ambient, "2000", "10");
+    const Recording whole = simulated(scenario, nominal_device());
+    std::size_t first = 0, blocks = 0;
+    simulate_quasistatic(
+        scenario, make_gyro(nominal_device()), {},
+        [&](Recording&& block) {
+          ++blocks;
+          ASSERT_EQ(block.columns.size(), whole.columns.size());
+          for (std::size_t i = 0; i < block.columns.size(); ++i) {
+            const auto& values = block.columns[i].values;
+            ASSERT_LE(first + values.size(), whole.time.size());
+            EXPECT_EQ(std::memcmp(values.data(),
+                                  whole.columns[i].values.data() + first,
+                                  values.size() * sizeof(double)),
+                      0)
+                << whole.columns[i].name << " from " << first;
+          }
+          first += block.time.size();
+        },
+        777);
+    EXPECT_EQ(first, whole.time.size());
+    EXPECT_EQ(blocks, 26);
+  }
 }
 
 TEST(QuasistaticRun, RefusesAScenarioOfAnotherFidelity) {
@@ -139,7 +170,7 @@ TEST(QuasistaticRun, RefusesAScenarioOfAnotherFidelity) {
   for (const Fidelity other : {Fidelity::kEnvelope, Fidelity::kCarrier}) {
     scenario.fidelity = other;
     try {
-      simulate_quasistatic(scenario, device);
+      simulate_quasistatic(scenario, device, {}, [](Recording&&) {});
       FAIL() << "accepted";
     } catch (const std::invalid_argument& error) {
       EXPECT_NE(std::string(error.what()).find("fidelity"), std::string::npos);
@@ -156,7 +187,7 @@ TEST(QuasistaticRun, WhiteNoiseHasTheDensityOfTheDeviceAtAnyOutputRate) {
                       "noise.turn_on_deg_per_s=0.0", "readout.adc_bits=30",
                       "thermal.electronics_power_W=0.0"});
   for (const char* rate : {"10", "200"}) {
-    const Recording run = simulate_quasistatic(
+    const Recording run = simulated(
         scenario_from("", "[ambient]\nconstant_degC = 25\n", "1000", rate),
         device);
     double sum = 0;

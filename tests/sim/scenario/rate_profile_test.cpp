@@ -46,16 +46,15 @@ TEST(RandomRate, DependsOnSeedDeviceAndRunOnly) {
   EXPECT_NE(realised(random, 10, 1, 2, 4).value(5), value);
 }
 
-TEST(SampledRate, TruthIsTheUnfilteredRate) {
+TEST(Signal, IsShownUnfilteredAndFiltered) {
   const std::vector<double> times = {0, 0.01, 0.02, 0.03, 0.04};
-  const PiecewiseLinear step({0, 0.02, 0.02}, {0, 0, 1});
-  const OutputFilter filter(2 * std::numbers::pi * 60);
-  const SampledRate sampled =
-      sampled_rate(step, filter, times, 100, 0.05, 0, 0, 0);
-  EXPECT_EQ(sampled.rate, (std::vector<double>{0, 0, 1, 1, 1}));
-  const double wt = 2 * std::numbers::pi * 60 * 0.01;
-  EXPECT_NEAR(sampled.filtered[2], 0, 1e-12);
-  EXPECT_NEAR(sampled.filtered[3], 1 - std::exp(-wt) * (1 + wt), 1e-12);
+  const Signal step = PiecewiseLinear({0, 0.02, 0.02}, {0, 0, 1});
+  EXPECT_EQ(values_at(step, times), (std::vector<double>{0, 0, 1, 1, 1}));
+  const double w = 2 * std::numbers::pi * 60;
+  const std::vector<double> filtered =
+      OutputFilter(w).response(step, 100, times.size());
+  EXPECT_NEAR(filtered[2], 0, 1e-12);
+  EXPECT_NEAR(filtered[3], 1 - std::exp(-w * 0.01) * (1 + w * 0.01), 1e-12);
 }
 
 }  // namespace

@@ -7,9 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "sim/scenario/carrier_run.h"
-#include "sim/scenario/envelope_run.h"
-#include "sim/scenario/quasistatic_run.h"
+#include "sim/scenario/simulation.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
@@ -30,18 +28,7 @@ Device device(std::size_t i) {
 Recording run(const Scenario& scenario, std::size_t i) {
   const Gyro gyro = make_gyro(device(i));
   const RunKey key{.device = static_cast<std::uint32_t>(i), .run = 0};
-  switch (scenario.fidelity) {
-    case Fidelity::kEnvelope:
-      return joined([&](const BlockSink& sink) {
-        simulate_envelope(scenario, gyro, key, sink);
-      });
-    case Fidelity::kCarrier:
-      return joined([&](const BlockSink& sink) {
-        simulate_carrier(scenario, gyro, key, sink);
-      });
-    default:
-      return simulate_quasistatic(scenario, gyro, key);
-  }
+  return simulated(scenario, gyro, key);
 }
 
 std::vector<Recording> runs(const Scenario& scenario, int threads) {
@@ -101,8 +88,8 @@ TEST(PreparedGyro, ServesManyRunsLikeTheDeviceItself) {
     Scenario scenario = scenario_from(
         kRate, std::string("[ambient]\nconstant_degC = ") + ambient + "\n",
         "10");
-    EXPECT_TRUE(same_bits(simulate_quasistatic(scenario, gyro),
-                          simulate_quasistatic(scenario, device(3))));
+    EXPECT_TRUE(
+        same_bits(simulated(scenario, gyro), simulated(scenario, device(3))));
   }
 }
 

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "dataset/random_stream.h"
 
@@ -158,6 +161,22 @@ TEST(OutputFilter, RejectsBadCornersAndOutputRates) {
                std::invalid_argument);
   EXPECT_THROW(filter.response(SineSignal{}, INFINITY, 1),
                std::invalid_argument);
+}
+
+TEST(OutputFilter, AnswersInPiecesAsInOne) {
+  const std::vector<Signal> inputs = {
+      PiecewiseLinear({0.0, 0.5, 0.5, 2.7}, {1.0, 2.0, -1.0, 0.5}),
+      PiecewiseLinear::constant(3.0),
+      SineSignal{.offset = 0.5, .amplitude = 2.0, .frequency = 1.3}};
+  for (const Signal& input : inputs) {
+    const OutputFilter filter(2.0 * kPi * 3.0);
+    const std::vector<double> whole = filter.response(input, 20.0, 100);
+    std::vector<double> pieces(100);
+    const SampleStream stream = filter.responses(input, 20.0);
+    for (std::size_t k = 0, n = 1; k < 100; k += n, n = (n + 6) % 17)
+      stream(std::span(pieces).subspan(k, std::min(n, 100 - k)));
+    EXPECT_EQ(pieces, whole);
+  }
 }
 
 }  // namespace

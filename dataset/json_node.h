@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,6 +28,7 @@ class JsonNode {
   double number() const;                          // finite
   std::optional<double> optional_number() const;  // nothing where it is null
   long integer(long low, long high) const;
+  std::uint32_t small_integer() const;  // not below 0, of 32 bits
   std::uint64_t unsigned_integer() const;
   std::string text() const;
   std::vector<double> numbers() const;
@@ -34,11 +37,20 @@ class JsonNode {
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
+  JsonNode element(std::size_t index) const;
+  void require_array() const;
   [[noreturn]] void expected(const std::string& what) const;
 
   const nlohmann::ordered_json* value_;
   std::string file_;
   std::string path_;  // "key.key[2]", empty for the whole file
 };
+
+/// The one way to read JSON. Throws std::invalid_argument naming `file` for a
+/// text that is not JSON, and before it is parsed for one that nests deeper
+/// than 64 or has an object of more than 1000 members: the library copies and
+/// prints values by recursion, and looks at all members to add one.
+nlohmann::ordered_json parse_json(std::string_view text,
+                                  const std::string& file);
 
 }  // namespace beamgyro

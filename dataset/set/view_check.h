@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "dataset/set/manifest.h"
+#include "dataset/set/set_check.h"
+
+namespace beamgyro {
+
+/// Views that are not what write_view() makes of the files they show, in the
+/// manifest or on the disk. Reads the first file of each run, so a run with one
+/// of the `known` defects among its files is left out. Throws as ShardFile.
+std::vector<SetDefect> check_views(const std::filesystem::path& directory,
+                                   const Manifest& manifest,
+                                   std::span<const SetDefect> known);
+
+}  // namespace beamgyro

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "sim/numerics/timeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace beamgyro {
+
+bool is_same_time(double a, double b) {
+  constexpr double kShortest = 1e-9;  // [s]
+  constexpr double kRelative = 64 * std::numeric_limits<double>::epsilon();
+  return std::abs(a - b) <=
+         std::max(kShortest, kRelative * std::min(std::abs(a), std::abs(b)));
+}
+
+std::vector<Piece> pieces_until(double end, std::vector<Border> borders) {
+  borders.insert(borders.end(), {{0}, {end}});
+  std::erase_if(borders,
+                [&](const Border& b) { return b.time < 0 || b.time > end; });
+  std::sort(borders.begin(), borders.end(),
+            [](const Border& a, const Border& b) { return a.time < b.time; });
+  std::vector<Piece> pieces;
+  Border last = borders.front();
+  for (const Border& border : borders) {
+    if (is_same_time(border.time, last.time)) {
+      last = {border.time, border.jump || last.jump};
+    } else {
+      pieces.push_back({last.time, border.time, last.jump});
+      last = border;
+    }
+  }
+  return pieces;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: MIT
+"""`allan` of the shipped program: coefficients, gaps, units and windows."""
+
+import json
+import unittest
+
+import h5py
+import numpy as np
+
+from program import ProgramTest, SCENARIO
+
+HERTZ = 100.0
+SAMPLES = 1 << 17
+N = 0.02  # [deg/sqrt(s)], 1.2 deg/sqrt(h)
+
+
+def normals(purpose):
+    """From a counter-based stream of its own."""
+    return np.random.Generator(np.random.Philox(key=[40, purpose])).normal(
+        size=SAMPLES)
+
+
+def band_limited(rate, pole=0.02):
+    """Through two equal poles [s], as an output filter."""
+    keep = np.exp(-1 / (HERTZ * pole))
+    for _ in range(2):
+        state, answer = 0.0, np.empty_like(rate)
+        for k, value in enumerate(rate):
+            state = keep * state + (1 - keep) * value
+            answer[k] = state
+        rate = answer
+    return rate
+
+
+def rows(columns, names):
+    lines = [",".join(names)]
+    lines += [",".join(repr(float(value)) for value in row)
+              for row in zip(*columns)]
+    return "\n".join(lines) + "\n"
+
+
+class Allan(ProgramTest):
+    def noise(self, *arguments):
+        """Printed text, warnings, and what the JSON file says."""
+        answer = self.beamgyro("allan", *arguments, "--json", "a.json")
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        return (answer.stdout, answer.stderr,
+                json.loads((self.dir / "a.json").read_text()))
+
+    def random_walk(self, found):
+        return found["noise"]["N"]["per_second"]["value"]
+
+    def test_a_filter_does_not_make_the_white_noise_less(self):
+        rate = band_limited(normals(1) * N * HERTZ**0.5)
+        self.write("s.csv", rows([rate], ["rate"]))
+        text, _, found = self.noise("s.csv", "--rate-Hz", HERTZ, "--unit",
+                                    "deg/s")
+        # 1-sigma of N over the taus that are left is 0.7 %; the fit may be
+        # 2 % low.
+        self.assertAlmostEqual(self.random_walk(found) / N, 1, delta=0.04)
+        fit = found["noise"]["fit"]
+        self.assertIn(0.01, [tau["tau_s"] for tau in fit["left_out"]])
+        self.assertNotIn(0.01, fit["taus_s"])
+        self.assertIn("left out: 0.01 s", text)
+        self.assertRegex(text, r"fitted to \d+ taus")
+        self.assertEqual(found["noise"]["N"]["per_hour"]["unit"],
+                         "deg/sqrt(h)")
+        self.assertAlmostEqual(
+            found["noise"]["N"]["per_hour"]["value"],
+            60 * self.random_walk(found), places=12)
+
+    def test_a_time_column_sets_the_rate_and_shows_the_gaps(self):
+        rate = normals(2) * N * HERTZ**0.5
+        kept = np.arange(SAMPLES) % 7 != 3
+        self.write("s.csv", rows([np.arange(SAMPLES)[kept] / HERTZ,
+                                  rate[kept]], ["time", "rate"]))
+        text, errors, found = self.noise("s.csv", "--unit", "deg/s")
+        missing = np.flatnonzero(kept)[-1] + 1 - kept.sum()
+        self.assertEqual(found["series"]["samples"], kept.sum())
+        self.assertEqual(found["series"]["missing"], missing)
+        self.assertAlmostEqual(found["series"]["rate_Hz"], HERTZ, places=6)
+        # Of white noise 0.1 %, over 16 octaves.
+        self.assertAlmostEqual(self.random_walk(found) / N, 1, delta=0.01)
+        self.assertGreater(found["oadev"][-1]["tau_s"], 300)
+        used = f"{kept.sum()} samples at 100 Hz"
+        self.assertIn(used, text)
+        self.assertIn(f"{kept.sum()} of {kept.sum()} samples used; "
+                      f"{missing} missing", errors)
+        self.rejected("allan", "s.csv", "--rate-Hz", 50,
+                      says="say 100 Hz; expected no --rate-Hz")
+        self.write("back.csv", "time,rate\n0,1\n1,2\n1,3\n")
+        self.rejected("allan", "back.csv", says=["back.csv:4", "increase"])
+
+    def test_a_csv_has_the_unit_that_is_stated(self):
+        self.write("s.csv", rows([normals(3)], ["output"]))
+        text, errors, found = self.noise("s.csv", "--rate-Hz", HERTZ, "--unit",
+                                         "V")
+        self.assertNotIn("deg", text)
+        self.assertIn("oadev V", text)
+        self.assertEqual(errors, "")
+        self.assertEqual(found["noise"]["N"]["per_second"]["unit"],
+                         "V sqrt(s)")
+        text, errors, assumed = self.noise("s.csv", "--rate-Hz", HERTZ)
+        self.assertIn("states no unit; taken as deg/s", errors)
+        self.assertIn("states no unit", assumed["warnings"][0])
+        _, _, radians = self.noise("s.csv", "--rate-Hz", HERTZ, "--unit",
+                                   "rad/s")
+        for one, other in zip(assumed["oadev"], radians["oadev"]):
+            self.assertAlmostEqual(
+                np.degrees(one["deviation"]) / other["deviation"], 1,
+                places=12)
+        self.assertEqual(radians["series"]["unit"], "deg/s")
+
+    def test_a_window_of_time(self):
+        text = SCENARIO.replace("output_rate_Hz = 2", "output_rate_Hz = 10")
+        run = self.run_scenario("run", text=text)
+        _, _, found = self.noise("run.h5", "--from", 100, "--to", 300)
+        with h5py.File(run) as file:
+            time, rate = file["time"][()], file["rate"][()]
+        within = (time >= 100) & (time <= 300)
+        self.write("s.csv", rows([rate[within]], ["rate"]))
+        _, _, same = self.noise("s.csv", "--rate-Hz", 10, "--unit", "deg/s")
+        self.assertEqual(found["series"]["samples"], within.sum())
+        self.assertEqual(found["series"]["from_s"], 100)
+        for one, other in zip(found["adev"], same["adev"]):
+            self.assertAlmostEqual(one["deviation"] / other["deviation"], 1,
+                                   places=9)
+        self.rejected("allan", "run.h5", "--from", 300, "--to", 100,
+                      says="--from 300 --to 100")
+        self.rejected("allan", "run.h5", "--from", 1e6, says="from 1e+06")
+        self.rejected("allan", "run.h5", "--unit", "V",
+                      says="says itself that it is in deg/s")
+
+
+if __name__ == "__main__":
+    unittest.main()

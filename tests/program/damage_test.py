@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""Recordings that are damaged or that somebody else made."""
+
+import random
+import unittest
+
+import h5py
+import numpy as np
+
+from program import CUBIC, ProgramTest, ramp
+
+
+class Damage(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("cubic.toml", CUBIC)
+
+    def readers(self, name):
+        return [["info", name],
+                ["train", name, "--model", "cubic.toml", "-o", "d.json"],
+                ["compensate", "c.json", name, "-o", "out.h5"],
+                ["validate", "c.json", name],
+                ["allan", name]]
+
+    def test_no_flipped_bit_is_accepted_crashes_or_hangs(self):
+        self.run_scenario("run", text=ramp(seconds=400))
+        self.ok("train", "run.h5", "--model", "cubic.toml", "-o", "c.json")
+        whole = (self.dir / "run.h5").read_bytes()
+        readers = self.readers("damaged.h5")
+        draw = random.Random(1)
+        for k in range(320):
+            damaged = bytearray(whole)
+            # Half of them among what is no value, which HDF5 interprets.
+            place = draw.randrange(len(whole) if k % 2 else 12000)
+            damaged[place] ^= 1 << draw.randrange(8)
+            self.write("damaged.h5", bytes(damaged))
+            answer = self.beamgyro(*readers[k % len(readers)])
+            self.assertEqual(answer.returncode, 2, f"byte {place}")
+            self.assertIn("damaged.h5: ", answer.stderr)
+            self.assertIn("is damaged", answer.stderr)
+
+    def test_a_changed_file_is_read_with_a_warning(self):
+        path = self.run_scenario("run", text=ramp(seconds=400))
+        self.ok("train", "run.h5", "--model", "cubic.toml", "-o", "c.json")
+        with h5py.File(path, "r+") as file:
+            file["rate"][...] += 1.0
+        for command in self.readers("run.h5"):
+            answer = self.beamgyro(*command)
+            self.assertIn(answer.returncode, [0, 3], answer.stderr)
+            self.assertEqual(answer.stderr.count("run.h5: has no checksum"), 1)
+        self.assertNotIn("checksum", self.beamgyro("info", "out.h5").stderr)
+
+
+class Units(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("cubic.toml", CUBIC)
+        self.path = self.run_scenario("run", text=ramp(seconds=400))
+
+    def change(self, name, units, scale=1.0, offset=0.0):
+        with h5py.File(self.path, "r+") as file:
+            file[name][...] = file[name][()] * scale + offset
+            file[name].attrs["units"] = np.bytes_(units)
+
+    def trained(self):
+        self.ok("train", "run.h5", "--model", "cubic.toml", "-o", "c.json")
+        self.ok("compensate", "c.json", "run.h5", "-o", "out.h5")
+        with h5py.File(self.dir / "out.h5") as file:
+            return {name: (file[name].attrs["units"], file[name][()])
+                    for name in file if name != "meta"}
+
+    def test_values_in_other_units_give_the_same_result(self):
+        before = self.trained()
+        radian = np.pi / 180
+        self.change("rate", "rad/s", radian)
+        self.change("quadrature", "rad/s", radian)
+        self.change("true_rate", "deg/h", 3600)
+        self.change("temperature", "K", 1, 273.15)
+        self.change("true_board_temperature", "degF", 1.8, 32)
+        self.change("output", "mV", 1e3)
+        self.change("drive_frequency", "kHz", 1e-3)
+        self.change("time", "ms", 1e3)
+        after = self.trained()
+        self.assertEqual(set(after), set(before))
+        for name, (units, values) in before.items():
+            self.assertEqual(after[name][0], units, name)
+            np.testing.assert_allclose(after[name][1], values, rtol=1e-9,
+                                       atol=1e-9, err_msg=name)
+
+    def test_a_unit_that_is_not_known_is_refused(self):
+        with h5py.File(self.path) as file:
+            names = [name for name in file if name != "meta"]
+        for name in names:
+            with self.subTest(name):
+                with h5py.File(self.path, "r+") as file:
+                    right = file[name].attrs["units"]
+                self.change(name, "furlong")
+                self.rejected("info", "run.h5",
+                              says=["run.h5: ", f"{name}: the unit 'furlong'",
+                                    "expected"])
+                self.change(name, right)
+        self.ok("info", "run.h5")
+
+
+if __name__ == "__main__":
+    unittest.main()
