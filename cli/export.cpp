@@ -89,13 +89,12 @@ NamedTexts parameter_texts(const ExportArguments& arguments,
   const std::vector<char> places = axes_of(arguments);
   std::vector<AutopilotAxis> axes;
   for (std::size_t k = 0; k < places.size(); ++k) {
-    const auto& [file, compensator] = compensators[k];
-    axes.push_back(
-        {places[k],
-         of_file(
-             file,
-             [&] { return autopilot_cubic(compensator, arguments.fit_cubic); }),
-         compensator.temperature_range});
+    const Compensator& compensator = compensators[k].compensator;
+    const auto cubic = [&] {
+      return autopilot_cubic(compensator, arguments.fit_cubic);
+    };
+    axes.push_back({places[k], of_file(compensators[k].file, cubic),
+                    compensator.temperature_range});
   }
   const bool px4 = arguments.format == "px4";
   const AutopilotGyro gyro{arguments.instance.value_or(px4 ? 0 : 1),

@@ -109,7 +109,8 @@ void append_blocks(const Recording& recording, const Injection& injection,
                    std::vector<ReplayedBlock>& blocks) {
   const Column* temperature = find_column(recording, "temperature");
   const Column* truth = find_column(recording, "true_rate");
-  const auto& [rate, since] = injection;
+  const std::vector<double>& rate = injection.rate;
+  const std::vector<double>& since = injection.since;
   const auto number = [&since](std::size_t k) {
     return std::floor(since[k] / kReplayBlock);
   };

@@ -2,6 +2,7 @@
 #include "compensation/rate_kept.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "compensation/cautions.h"
@@ -57,9 +58,10 @@ ArrayXXd places(const Compensator& c) {
                 (2.0 * static_cast<double>(k % kPlaces) / (kPlaces - 1) - 1.0);
       else if (input.column == "temperature" &&
                input.kind != InputKind::kTemperatureRate)
-        value = range.lowest + (range.highest - range.lowest) *
-                                   static_cast<double>(k / kPlaces) /
-                                   (kTemperatures - 1);
+        value =
+            range.lowest + (range.highest - range.lowest) *
+                               std::floor(static_cast<double>(k) / kPlaces) /
+                               (kTemperatures - 1);
       else if (input.kind == InputKind::kColumn)
         value = scale.centre;
     }

@@ -41,14 +41,14 @@ char delimiter_of(std::string_view line) {
 }  // namespace
 
 std::string shown_cell(std::string_view cell) {
-  constexpr std::size_t kLongest = 40;
+  constexpr std::size_t kShown = 40;
   std::string text = "'";
-  for (const char c : cell.substr(0, kLongest)) {
+  for (const char c : cell.substr(0, kShown)) {
     const auto byte = static_cast<unsigned char>(c);
     text += byte < 0x20 || byte == 0x7f ? fmt::format("\\x{:02x}", byte)
                                         : std::string(1, c);
   }
-  return text + (cell.size() > kLongest ? "...'" : "'");
+  return text + (cell.size() > kShown ? "...'" : "'");
 }
 
 LogText::LogText(std::string_view text, const std::filesystem::path& path,

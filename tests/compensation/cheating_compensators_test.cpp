@@ -33,9 +33,10 @@ BiasModel model_of(std::size_t inputs, decltype(BiasModel::function) function) {
 
 Compensator compensator_of(const std::vector<std::string>& inputs,
                            decltype(BiasModel::function) function) {
-  Compensator c{.bias = model_of(inputs.size(), std::move(function)),
-                .baseline = model_of(1, Polynomial{{0.0}}),
-                .temperature_range = {-40.0, 60.0}};
+  Compensator c;
+  c.bias = model_of(inputs.size(), std::move(function));
+  c.baseline = model_of(1, Polynomial{{0.0}});
+  c.temperature_range = {-40.0, 60.0};
   for (const std::string& input : inputs)
     c.inputs.push_back(parse_input(input));
   return c;

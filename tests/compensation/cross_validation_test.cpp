@@ -194,7 +194,7 @@ TEST(StackingWeight, FallsWhereGroupsDisagree) {
 TEST(StackingWeight, IsTheBestOfAllAverages) {
   const std::vector<double> noise = white(160, 4);
   const TrainingRows rows = rows_of(sweeps(4, 40), [&](double T, int k) {
-    return 0.01 * (k / 40) * T + noise[static_cast<std::size_t>(k)];
+    return 0.01 * std::floor(k / 40.0) * T + noise[static_cast<std::size_t>(k)];
   });
   const RowGroups groups = group_rows(rows, Grouping::kRun);
   const Predictions flat =

@@ -108,8 +108,8 @@ TEST(Score, TogetherKeepsTheWorstReplay) {
   const Recording run = kSteps.recording();
   const auto replayed = [&run](double retained) {
     AnsweredRun answer = answered(run, 0.5);
-    answer.replayed = ReplayedScaleFactor{
-        .worst = {.large = ReplayedBlock{30.0, 25.0, 10.0, retained}}};
+    answer.replayed = ReplayedScaleFactor{};
+    answer.replayed->worst.large = ReplayedBlock{30.0, 25.0, 10.0, retained};
     return score_run(answer);
   };
   const auto worst = [&](const std::vector<double>& retained) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "config/document.h"
@@ -62,8 +63,8 @@ TEST(TomlText, DeepNestingIsRejectedBeforeItOverflowsTheStack) {
            "'='" + repeated(30000, " . '#'") + " = 1",
            repeated(250, dotted + " = {") + "a = 1" + repeated(250, "}"),
            "x = [" + repeated(200, "[") + "{" + dotted + " = 1}",
-           "[" + dotted + "]\n" + dotted + " = 1",
-           "\xEF\xBB\xBF[[" + dotted + "]]\n" + dotted + " = 1",
+           fmt::format("[{}]\n{} = 1", dotted, dotted),
+           fmt::format("\xEF\xBB\xBF[[{}]]\n{} = 1", dotted, dotted),
            "x = \"\"\"\"\"\"\ny = " + repeated(300, "["),
            "x = '''a'''''\ny = " + repeated(300, "["),
            "x = " + repeated(100000, "["),

@@ -311,7 +311,8 @@ TEST_F(HostileHdf5, ValuesThatInflateToMoreThanAFileMayAskForAreNotRead) {
       rejected().starts_with("268435456 samples of 18 variables take "
                              "more than the "))
       << rejected();
-  EXPECT_LT(peak_memory() - before, 100'000);
+  // Far from 2 GB; the address sanitizer holds on to 256 MB of freed memory.
+  EXPECT_LT(peak_memory() - before, 400'000);
 }
 
 TEST_F(HostileHdf5, ChunksThatAreNotThereAreNoValues) {

@@ -38,5 +38,7 @@ void accept_or_reject(Read&& read) {
 }  // namespace beamgyro
 
 /// One target; libFuzzer and the replay of the corpus call it.
+// NOLINTNEXTLINE(readability-identifier-naming): the name that libFuzzer asks
+// for
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size);
