@@ -22,7 +22,7 @@ nlohmann::ordered_json numbers_json(const Numbers& numbers) {
 }
 
 /// Adds the keys of a model, `input_scales`, `bias_scale` and `parameters`
-/// (docs/formats.md), to `json`. Throws as finite_json().
+/// (docs/reference/compensator_file.md), to `json`. Throws as finite_json().
 void put_bias_model(const BiasModel& model, nlohmann::ordered_json& json);
 
 /// The name of a kind of model. Throws as JsonNode when there is none such.

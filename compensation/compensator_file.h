@@ -9,8 +9,9 @@
 namespace beamgyro {
 
 /// A compensator file: JSON with `filetype` "beamgyro-compensator"
-/// (docs/formats.md). Every number is written so that reading it returns the
-/// same bits. Throws std::runtime_error for a parameter that is not finite.
+/// (docs/reference/compensator_file.md). Every number is written so that
+/// reading it returns the same bits. Throws std::runtime_error for a parameter
+/// that is not finite.
 std::string compensator_text(const Compensator& compensator);
 
 /// Reads what compensator_text() wrote; `name` is the file's in messages.

@@ -96,10 +96,11 @@ struct ModelSpec {
   std::vector<std::filesystem::path> files = {};  // all that was read
 };
 
-/// Reads a model file (docs/formats.md). Throws std::invalid_argument with
-/// file, line and column for a key, type or value that is not allowed, an
-/// unknown key, or inputs the kind of model cannot take; of an adapted model
-/// also for its population's file, whose place is relative to the model file.
+/// Reads a model file (docs/reference/model_file.md). Throws
+/// std::invalid_argument with file, line and column for a key, type or value
+/// that is not allowed, an unknown key, or inputs the kind of model cannot
+/// take; of an adapted model also for its population's file, whose place is
+/// relative to the model file.
 ModelSpec read_model(const std::filesystem::path& file);
 ModelSpec read_model(const ConfigDocument& document);
 

@@ -85,7 +85,8 @@ std::vector<CoefficientReport> reports(const NoiseCoefficients& coefficients,
                                        const std::string& unit);
 
 /// {"N": {"per_second": {"value", "unit"}, "per_hour": {...},
-/// "relative_uncertainty"}, ..., "lowest", "fit"} (docs/formats.md).
+/// "relative_uncertainty"}, ..., "lowest", "fit"}
+/// (docs/reference/allan_deviation.md).
 nlohmann::ordered_json to_json(const NoiseCoefficients& coefficients,
                                const std::string& unit);
 

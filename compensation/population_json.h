@@ -8,8 +8,9 @@
 
 namespace beamgyro {
 
-/// The key `population` of a compensator file (docs/formats.md). Throws
-/// std::runtime_error for a number that is not finite.
+/// The key `population` of a compensator file
+/// (docs/reference/compensator_file.md). Throws std::runtime_error for a number
+/// that is not finite.
 nlohmann::ordered_json population_json(const Population& population);
 
 /// Reads what population_json() wrote. Throws as JsonNode.

@@ -59,7 +59,7 @@ struct LogRules {
   std::optional<OutlierRule> outliers;
 };
 
-/// How a log becomes a recording: the map of docs/formats.md.
+/// How a log becomes a recording: the map of docs/reference/log_map.md.
 struct LogMap {
   LogLayout layout;
   std::vector<std::string> missing_markers;  // beside "", nan and NA

@@ -31,9 +31,9 @@ struct Column {
   std::vector<double> values;  // one per time; NaN = measured while unpowered
 };
 
-/// One run of one gyro in memory, in the units of the file (docs/formats.md):
-/// columns over a common time axis. The contract between simulator and
-/// compensator.
+/// One run of one gyro in memory, in the units of the file
+/// (docs/reference/recording.md): columns over a common time axis. The contract
+/// between simulator and compensator.
 struct Recording {
   std::vector<double> time;          // [s], strictly increasing
   std::vector<std::uint8_t> status;  // StatusBit mask, one per time

@@ -56,9 +56,9 @@ struct VirtualRun {
 struct CampaignState;
 
 /// A population of devices and what each of them goes through, from a campaign
-/// file (docs/formats.md). Immutable; its const members may be called by many
-/// threads at once, and what they return depends on the campaign's files and
-/// their arguments alone.
+/// file (docs/reference/campaign_file.md). Immutable; its const members may be
+/// called by many threads at once, and what they return depends on the
+/// campaign's files and their arguments alone.
 class Campaign {
  public:
   /// `devices` replaces the number of the file. Checks the base device, every

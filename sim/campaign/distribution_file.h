@@ -18,8 +18,8 @@ struct FileDistribution {
 };
 
 /// Reads `key = { normal = { mean, sigma } }` and the other forms
-/// (docs/formats.md). Throws std::invalid_argument naming file, line, key and
-/// value.
+/// (docs/reference/campaign_file.md). Throws std::invalid_argument naming file,
+/// line, key and value.
 FileDistribution read_distribution(const ConfigTable& table,
                                    std::string_view key);
 

@@ -61,7 +61,7 @@ void check_value(const Draw& draw, const ConfigNode& value,
   }
   reject(draw.place,
          fmt::format("{}: {} takes no such key{}", printable(key), name,
-                     near.empty() ? "; expected one of docs/formats.md"
+                     near.empty() ? "; docs/reference/ lists its keys"
                                   : fmt::format("; did you mean '{}'?", near)));
 }
 

@@ -17,7 +17,7 @@ struct ProgramRevision {
 };
 
 /// The files a campaign makes, in the order of the manifest: each holds the
-/// devices of one range in one run (docs/formats.md).
+/// devices of one range in one run (docs/reference/set.md).
 class ShardPlan {
  public:
   /// Simulates two samples of every run with the base device to learn its

@@ -6,9 +6,10 @@
 
 namespace beamgyro {
 
-/// Reads one unit from a device file and checks every key (docs/formats.md).
-/// Throws std::invalid_argument naming file, line, key and value. The caller
-/// rejects unknown keys once every document of the command is read.
+/// Reads one unit from a device file and checks every key
+/// (docs/reference/device_file.md). Throws std::invalid_argument naming file,
+/// line, key and value. The caller rejects unknown keys once every document of
+/// the command is read.
 Device read_device(const ConfigDocument& document);
 
 }  // namespace beamgyro

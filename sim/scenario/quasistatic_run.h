@@ -13,8 +13,8 @@ namespace beamgyro {
 /// accelerations act through the exact solution at every sample. Valid while
 /// temperature and rate change slowly against the sense mode (27 ms) and the
 /// loops. `on_block` takes the recording block by block, with every column
-/// (docs/formats.md) and `status`, so that memory does not grow with the
-/// samples; the recording is the same for blocks of any size. Throws
+/// (docs/reference/recording.md) and `status`, so that memory does not grow
+/// with the samples; the recording is the same for blocks of any size. Throws
 /// std::invalid_argument for a scenario of another fidelity.
 void simulate_quasistatic(const Scenario& scenario, const Gyro& gyro,
                           const RunKey& key, const BlockSink& on_block,

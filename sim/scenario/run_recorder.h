@@ -56,7 +56,7 @@ class RunRecorder {
   RunRecorder(const Scenario& scenario, const Device& device, const RunKey& key,
               double sensing_noise = 0);
 
-  /// The next samples, with every column (docs/formats.md).
+  /// The next samples, with every column (docs/reference/recording.md).
   Recording block(RunSamples&& samples);
 
  private:

@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 
 from exported import EVENTFUL, MODELS, WARNINGS, ExportTest
-from formats_test import rows, section
+from pages import page, rows, section
 from program import ramp
 
 SELF_TEST = ["net.c", "net_selftest.c", "-o", "selftest"]  # no -lm
@@ -451,11 +451,12 @@ class BadExport(ExportTest):
 
 
 class ExportPage(ExportTest):
-    """docs/formats.md against what is written."""
+    """Compares docs/reference/ with what is written."""
 
     def test_names_of_the_exported_code(self):
         header = (self.export("network") / "net.h").read_text()
-        documented = rows(section("Exported code"))
+        documented = rows(section(page("exported_code"),
+                                  "Functions and constants"))
         self.assertEqual(len(documented), 16)
         for name in set(documented) - {"output_V"}:
             self.assertIn(name.replace("NAME", "net"), header)
@@ -464,7 +465,7 @@ class ExportPage(ExportTest):
             self.assertIn(field, documented)
 
     def test_names_of_autopilot_parameters(self):
-        documented = rows(section("Autopilot parameters"))
+        documented = rows(page("autopilot_parameters"))
         for form, n, powers, axes, separator, at in [
                 ("px4", "0", "0123", "012", "\t", 2),
                 ("ardupilot", "2", "123", "XYZ", ",", 0)]:

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Holds docs/formats.md against what the program reads and writes."""
+"""Compares docs/reference/ with what the program reads and writes."""
 
 import json
 import re
@@ -9,20 +9,8 @@ import unittest
 
 import h5py
 
+from pages import page, rows, section
 from program import CUBIC, ROOT, ProgramTest, ramp
-
-PAGE = (ROOT / "docs/formats.md").read_text()
-
-
-def section(title):
-    return PAGE.split(f"\n## {title}\n")[1].split("\n## ")[0]
-
-
-def rows(text):
-    """Name in backticks and further cells of every table row."""
-    return {match[1]: match[2] for match in
-            re.finditer(r"^\| `([^`]+)` \| (.*) \|$", text, re.MULTILINE)}
-
 
 def keys(table, prefix=""):
     """Dotted keys of a TOML table."""
@@ -46,47 +34,93 @@ def campaign_keys(table):
             yield from keys({key: value})
 
 
+SIGNALS = {"rate": "deg_per_s", "cross_rate.x": "deg_per_s",
+           "cross_rate.y": "deg_per_s", "acceleration.x": "g",
+           "acceleration.y": "g", "acceleration.z": "g"}
+
+
+def scenario_keys():
+    """Keys of the page, with those of SIGNAL spelt out for each signal."""
+    for key in rows(page("scenario_file")):
+        if key.startswith("SIGNAL."):
+            yield from (key.replace("SIGNAL", signal).replace("UNIT", unit)
+                        for signal, unit in SIGNALS.items())
+        elif key not in SIGNALS:
+            yield key
+
+
+def map_keys():
+    """Keys of the page, with those of AXIS spelt out for each axis."""
+    for key in rows(page("log_map")):
+        yield from (key.replace("AXIS", axis) for axis in
+                    ("xyz" if "AXIS" in key else "-"))
+
+
+def documented_keys(name):
+    return {"scenario_file": scenario_keys, "log_map": map_keys}.get(
+        name, lambda: rows(page(name)))()
+
+
 def shipped(pattern):
     for path in sorted((ROOT / "scenarios").glob(pattern)):
         yield path, tomllib.loads(path.read_text())
 
 
 class Formats(ProgramTest):
+    def commands(self):
+        return re.findall(r"^  (\w+)  ", self.ok("--help").split(
+            "Subcommands:")[1], re.MULTILINE)
+
+    def test_every_command_has_a_section(self):
+        sections = re.findall(r"^## (\w+)$", page("commands"), re.MULTILINE)
+        self.assertEqual(sorted(sections), sorted(self.commands()))
+
     def test_every_option_of_every_command_is_on_the_page(self):
-        lines = section("Command line").splitlines()
-        for command in re.findall(r"^  (\w+)  ", self.ok("--help").split(
-                "Subcommands:")[1], re.MULTILINE):
-            documented = {
-                option for line in lines if line.startswith(f"| `{command} ")
-                for option in re.findall(r"--[A-Za-z-]+",
-                                         line.split(" | ")[0])}
-            offered = set(re.findall(r"^ +(--[A-Za-z-]+)",
+        for command in self.commands():
+            text = section(page("commands"), command)
+            described = set(re.findall(r"^- `(--[A-Za-z-]+)", text,
+                                       re.MULTILINE))
+            named = set(re.findall(r"(?<![\w-])(--[A-Za-z-]+)", "\n".join(
+                re.findall(r"^    beamgyro .*", text, re.MULTILINE))))
+            offered = set(re.findall(r"^ +(?:-\w,)?(--[A-Za-z-]+)",
                                      self.ok(command, "--help"), re.MULTILINE))
             with self.subTest(command):
-                self.assertEqual(offered - documented, set())
-                self.assertEqual(documented - offered, set())
+                self.assertEqual(described, offered - {"--help", "--output"})
+                self.assertEqual(named - described, set())
+                if "--output" in offered:  # described once for all commands
+                    self.assertIn(" -o ", text)
+
+    def test_columns_of_characterise(self):
+        self.ok("characterise", "device.toml", "-o", "c.csv",
+                "--beam-temperature", 25)
+        header = (self.dir / "c.csv").read_text().splitlines()[0]
+        text = section(page("commands"), "characterise")
+        listed = re.findall(r"^\| (`.*?`) \|", text, re.MULTILINE)
+        self.assertEqual(",".join(re.findall("`(.*?)`", ",".join(listed))),
+                         header)
 
     def test_every_equation_that_the_code_cites_is_in_the_model(self):
-        page = (ROOT / "docs/model.md").read_text()
+        model = (ROOT / "docs/model.md").read_text()
         label = re.compile(r"equations? \(([1-6]\.[0-9]+)\)")
         for path in sorted(ROOT.glob("sim/**/*.h")):
             for cited in label.findall(path.read_text()):
                 with self.subTest(f"{path.name}: {cited}"):
-                    self.assertIn(f"({cited})", page)
+                    self.assertIn(f"({cited})", model)
 
     def test_every_shipped_key_is_documented(self):
-        for pattern, title in [("*.toml", "Scenario file"),
-                               ("devices/*.toml", "Device file"),
-                               ("models/*.toml", "Model file"),
-                               ("maps/*.toml", "Log map")]:
-            documented = rows(section(title))
+        for pattern, name in [("*.toml", "scenario_file"),
+                              ("devices/*.toml", "device_file"),
+                              ("models/*.toml", "model_file"),
+                              ("population/*.toml", "model_file"),
+                              ("maps/*.toml", "log_map")]:
+            documented = set(documented_keys(name))
             for path, table in shipped(pattern):
                 for key in keys(table):
                     with self.subTest(f"{path.name}: {key}"):
                         self.assertIn(key, documented)
 
     def test_every_key_of_the_shipped_campaigns_is_documented(self):
-        documented = rows(section("Campaign file"))
+        documented = rows(page("campaign_file"))
         for path, table in shipped("campaigns/*.toml"):
             for key in campaign_keys(table):
                 with self.subTest(f"{path.name}: {key}"):
@@ -94,7 +128,7 @@ class Formats(ProgramTest):
 
     def test_every_device_key_without_a_default_is_required(self):
         text = (ROOT / "scenarios/devices/nominal.toml").read_text()
-        optional = {name for name, rest in rows(section("Device file")).items()
+        optional = {name for name, rest in rows(page("device_file")).items()
                     if "default" in rest or "optional" in rest}
         table = None
         for line in text.splitlines():
@@ -126,7 +160,7 @@ class Formats(ProgramTest):
 
     def test_scenario_keys_are_known_to_the_program(self):
         scenario = ROOT / "scenarios/warm_up.toml"
-        for key in rows(section("Scenario file")):
+        for key in scenario_keys():
             with self.subTest(key):
                 answer = self.beamgyro("run", scenario, "-o", "r.h5", "--set",
                                        f"{key}=[]")
@@ -138,7 +172,7 @@ class Formats(ProgramTest):
                 "gyro.column": '"w"', "gyro.unit": '"deg/s"',
                 "temperature.column": '"T"', "temperature.unit": '"degC"'}
         self.write("log.csv", "t,w,T\n0,1,25\n1,1,25\n")
-        for key in rows(section("Log map")):
+        for key in map_keys():
             table = key.rpartition(".")[0]
             text = dict(base)
             if table.startswith("gyro."):  # an axis in place of the one gyro
@@ -168,7 +202,7 @@ class Formats(ProgramTest):
     def test_the_example_map_holds_every_table(self):
         example = dict(shipped("maps/example.toml"))
         table, = example.values()
-        documented = {key.split(".")[0] for key in rows(section("Log map"))}
+        documented = {key.split(".")[0] for key in map_keys()}
         self.assertEqual(set(table), documented)
 
     def test_the_recording_holds_what_the_page_lists(self):
@@ -176,11 +210,11 @@ class Formats(ProgramTest):
         self.write("m.toml", CUBIC)
         self.ok("train", "run.h5", "--model", "m.toml", "-o", "c.json")
         self.ok("compensate", "c.json", "run.h5", "-o", "out.h5")
-        documented = rows(section("Recording"))
+        documented = rows(page("recording").split("\n## ")[0])
         with h5py.File(self.dir / "out.h5") as file:
             found = set(file) - {"meta"} | set(file.attrs)
             always = {name for name, rest in documented.items()
-                      if "only when the scenario" not in rest}
+                      if "optional" not in rest}
             self.assertEqual(found, always)
             self.assertEqual(set(file["meta"]),
                              {"scenario", "device", "overrides"})
@@ -194,8 +228,9 @@ class Formats(ProgramTest):
     def test_the_compensator_holds_what_the_page_lists(self):
         steps = ", ".join(f"[{40 * k}, {30 * (k % 5 - 2)}]" for k in range(100))
         self.run_scenario("run", text=f"{ramp()}\n[rate]\nsteps = [{steps}]\n")
-        page, training = section("Compensator file").split("| key of `training`")
-        documented = rows(page)
+        text = page("compensator_file")
+        documented = rows(text.split("\n## ")[0])
+        training = section(text, "Training")
         optional = {name for name, rest in documented.items()
                     if rest.startswith("only with")}
         self.assertEqual(optional, {"scale_factor", "population"})
@@ -210,9 +245,11 @@ class Formats(ProgramTest):
     def test_parameters_of_every_kind_are_listed(self):
         self.run_scenario("run", text=ramp())
         self.run_scenario("held_out", text=ramp(seed=9))
-        page = section("Compensator file")
-        listed = rows(page)["parameters"]
-        for kind in re.findall(r'"(\w+)"', rows(page)["kind"]):
+        text = section(page("compensator_file"), "Parameters")
+        listed = dict(re.findall(r'^- kind "(\w+)": ([^-]*?)\.$', text,
+                                 re.MULTILINE))
+        self.assertIn("bp", listed)
+        for kind, parameters in listed.items():
             self.write("m.toml", f'kind = "{kind}"\ninputs = ["temperature"]\n'
                        + ("[bp]\nhidden = [2]\nrestarts = 1\nmax_epochs = 9\n"
                           if kind == "bp" else ""))
@@ -220,15 +257,13 @@ class Formats(ProgramTest):
                     "held_out.h5", "-o", "c.json")
             answer = json.loads((self.dir / "c.json").read_text())
             self.assertEqual(answer["kind"], kind)
-            part = "" if kind == "none" else \
-                listed.split(f"{kind}:")[1].split(";")[0]
-            names = set(re.findall(r"`(\w+)`", part))
+            names = set(re.findall(r"`(\w+)`", parameters))
             with self.subTest(kind):
                 self.assertEqual(set(answer["parameters"]), names)
 
     def test_model_keys_are_known_to_the_program(self):
         self.run_scenario("run", text=ramp())
-        for key in rows(section("Model file")):
+        for key in rows(page("model_file")):
             table = key.rpartition(".")[0]
             kind = table if table not in ("", "rows", "scale_factor") \
                 else "polynomial"
