@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <map>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "config/document.h"
 #include "config/file_error.h"
 #include "dataset/atomic_file.h"
+#include "dataset/directory.h"
 #include "dataset/hdf5_file.h"
 #include "dataset/sha256.h"
 #include "sim/device/device_file.h"
@@ -39,24 +41,22 @@ std::optional<FileIdentity> identity_of(const fs::path& path) {
   return {};
 }
 
-template <class Visit>
-void for_each_below(const fs::path& directory, const Visit& visit) {
-  std::error_code error;
-  for (fs::recursive_directory_iterator next(directory, error), end;
-       !error && next != end; next.increment(error)) {
-    if (!next->is_directory(error)) visit(next->path());
+/// None when there is no such directory.
+std::vector<std::string> files_below(const fs::path& directory) {
+  try {
+    return Directory(directory).files_below();
+  } catch (const std::system_error& error) {
+    if (!is_wrong_name(error.code()))
+      throw_file_error(directory, "cannot read", error.code());
+    return {};
   }
-  if (error && !is_wrong_name(error))
-    throw_file_error(directory, "cannot read", error);
 }
 
 bool is_below(const fs::path& directory, const FileIdentity& identity) {
-  if (!fs::is_directory(status_of(directory))) return false;
-  bool is_there = false;
-  for_each_below(directory, [&](const fs::path& file) {
-    is_there = is_there || identity_of(file) == identity;
+  const std::vector<std::string> files = files_below(directory);
+  return std::any_of(files.begin(), files.end(), [&](const auto& name) {
+    return identity_of(directory / name) == identity;
   });
-  return is_there;
 }
 
 [[noreturn]] void refuse(const fs::path& output, const char* expected) {
@@ -108,21 +108,20 @@ void require_set_output(const fs::path& directory, const ManifestHead& head,
   std::map<std::string, std::string> copies;
   for (const SourceEntry& source : head.sources)
     copies.emplace(source.file, source.sha256);
-  for_each_below(directory, [&](const fs::path& file) {
-    const std::string name = file.lexically_relative(directory).string();
+  for (const std::string& name : files_below(directory)) {
+    const fs::path file = directory / name;
     const std::string kind = file.extension().string();
     const auto copy = copies.find(name);
     const bool is_written =
         copy != copies.end()
             ? sha256_of_file(file) != copy->second
-            : name == kHeadCopyName ||
-                  (!file.lexically_relative(directory).has_parent_path() &&
-                   (kind == ".h5" || kind == ".nc" || kind == ".jsonl" ||
-                    kind == ".lock"));
-    if (!is_written) return;
+            : name == kHeadCopyName || (!fs::path(name).has_parent_path() &&
+                                        (kind == ".h5" || kind == ".nc" ||
+                                         kind == ".jsonl" || kind == ".lock"));
+    if (!is_written) continue;
     if (const auto there = identity_of(file); there && read.contains(*there))
       refuse(file, "expected another directory for what it writes");
-  });
+  }
 }
 
 LoadedDevice load_device(const std::filesystem::path& path,

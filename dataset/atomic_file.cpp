@@ -97,9 +97,13 @@ fs::path checked_target(const fs::path& path) {
     reject(path, "it is a directory; expected a file name");
   if (fs::exists(status) && !fs::is_regular_file(status))
     reject(path, "it is a device, pipe or socket; expected a file name");
-  if (fs::exists(status) &&
-      faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
+  if (fs::exists(status) && uninterrupted([&] {
+                              return faccessat(AT_FDCWD, target.c_str(), W_OK,
+                                               AT_EACCESS);
+                            }) != 0) {
+    if (!is_wrong_name(last_error())) fail(path, last_error());
     reject(path, "the file that is there is write-protected");
+  }
   return target;
 }
 
@@ -219,17 +223,6 @@ AtomicFile::~AtomicFile() {
 
 fs::path AtomicFile::partial_path() const {
   return path_.parent_path() / partial_name_;
-}
-
-fs::path AtomicFile::name_of_open_file() const {
-  const std::string name = fmt::format("/proc/self/fd/{}", file_->descriptor());
-  struct stat ours {
-  }, there{};
-  const bool leads_there = fstat(file_->descriptor(), &ours) == 0 &&
-                           stat(name.c_str(), &there) == 0 &&
-                           ours.st_dev == there.st_dev &&
-                           ours.st_ino == there.st_ino;
-  return leads_there ? fs::path(name) : partial_path();
 }
 
 /// Of the file under the name asked for, if there is one.

@@ -41,10 +41,6 @@ class AtomicFile {
   /// Where the partial file is.
   std::filesystem::path partial_path() const;
 
-  /// A name for libraries that open files themselves: that of the open file,
-  /// not of its place, where the system has /proc.
-  std::filesystem::path name_of_open_file() const;
-
   /// Puts everything on the disk, gives the file the mode of the one it
   /// replaces, renames it and puts the name on the disk, too. Throws FileError
   /// when that fails, and std::runtime_error when somebody has put another file

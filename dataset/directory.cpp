@@ -146,6 +146,21 @@ std::vector<std::string> Directory::names() const {
   return names;
 }
 
+std::vector<std::string> Directory::files_below() const {
+  std::vector<std::string> files;
+  for (const std::string& name : names()) {
+    const std::optional<FileFacts> facts = find(name);
+    if (!facts) continue;  // somebody has removed it meanwhile
+    if (!facts->is_directory) {
+      files.push_back(name);
+      continue;
+    }
+    for (const std::string& file : below(name).files_below())
+      files.push_back(name + '/' + file);
+  }
+  return files;
+}
+
 void Directory::remove(const std::string& name) const {
   const int answer =
       uninterrupted([&] { return unlinkat(descriptor(), name.c_str(), 0); });

@@ -44,6 +44,10 @@ class Directory {
   /// Of everything in it, sorted.
   std::vector<std::string> names() const;
 
+  /// Names from here of everything below that is no directory; links are not
+  /// followed.
+  std::vector<std::string> files_below() const;
+
   /// Nothing happens when it is not there.
   void remove(const std::string& name) const;
 

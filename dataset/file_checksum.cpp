@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "dataset/file_checksum.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 #include "dataset/sha256.h"
 
@@ -26,20 +21,9 @@ std::string line_of(const std::string& digits) {
   return std::string(kStart) + digits + '\n';
 }
 
-void go_to(const OpenFile& file, std::uint64_t place) {
-  if (lseek(file.descriptor(), static_cast<off_t>(place), SEEK_SET) < 0)
-    throw std::system_error(errno, std::generic_category());
-}
-
-std::uint64_t size_of(const OpenFile& file) {
-  const off_t size = lseek(file.descriptor(), 0, SEEK_END);
-  if (size < 0) throw std::system_error(errno, std::generic_category());
-  return static_cast<std::uint64_t>(size);
-}
-
 /// SHA-256 of the first `size` bytes.
 std::string digits_of(OpenFile& file, std::uint64_t size) {
-  go_to(file, 0);
+  file.go_to(0);
   Sha256 hash;
   file.read_pieces([&](std::span<const std::byte> piece) {
     const auto count =
@@ -53,48 +37,45 @@ std::string digits_of(OpenFile& file, std::uint64_t size) {
 /// The line at the end of `file`, or an empty text.
 std::string last_line(OpenFile& file, std::uint64_t size) {
   if (size < kLine) return {};
-  go_to(file, size - kLine);
   std::string line(kLine, '\0');
-  line.resize(file.read(std::as_writable_bytes(std::span(line))));
+  line.resize(
+      file.read_at(size - kLine, std::as_writable_bytes(std::span(line))));
   return line.starts_with(kStart) ? line : std::string();
 }
 
 }  // namespace
 
 void append_checksum(OpenFile& file) {
-  const std::uint64_t size = size_of(file);
+  const std::uint64_t size = file.size();
   const std::string line = line_of(digits_of(file, size));
   file.write_at(size, std::as_bytes(std::span(line)));
 }
 
-FileChecksum checksum_of(const std::filesystem::path& path) {
-  OpenFile file(path, O_RDONLY);
-  const std::uint64_t size = size_of(file);
+FileChecksum checksum_of(OpenFile& file) {
+  const std::uint64_t size = file.size();
   const std::string line = last_line(file, size);
   if (line.empty()) return FileChecksum::kNone;
   return line == line_of(digits_of(file, size - kLine)) ? FileChecksum::kRight
                                                         : FileChecksum::kWrong;
 }
 
-bool has_bytes_after_hdf5(const std::filesystem::path& path) {
+bool has_bytes_after_hdf5(OpenFile& file) {
   constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
   // Where versions 0 to 3 of the first block have the length of the file.
   constexpr std::array<std::size_t, 4> kEnd = {40, 44, 28, 28};
-  OpenFile file(path, O_RDONLY);
   std::array<std::byte, 52> block{};
-  if (file.read(block) < block.size()) return false;
+  if (file.read_at(0, block) < block.size()) return false;
   if (std::memcmp(block.data(), kSignature.data(), kSignature.size()) != 0)
     return false;
   const auto version = std::to_integer<std::size_t>(block[kSignature.size()]);
   if (version >= kEnd.size()) return false;
   std::uint64_t end = 0;
   std::memcpy(&end, block.data() + kEnd.at(version), sizeof end);
-  return size_of(file) > end && last_line(file, size_of(file)).empty();
+  return file.size() > end && last_line(file, file.size()).empty();
 }
 
-bool has_checksum(const std::filesystem::path& path) {
-  OpenFile file(path, O_RDONLY);
-  return !last_line(file, size_of(file)).empty();
+bool has_checksum(OpenFile& file) {
+  return !last_line(file, file.size()).empty();
 }
 
 }  // namespace beamgyro

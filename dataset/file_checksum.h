@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <filesystem>
-
 #include "dataset/open_file.h"
 
 namespace beamgyro {
@@ -21,13 +19,13 @@ enum class FileChecksum {
   kWrong,  // of others: the file is damaged
 };
 
-FileChecksum checksum_of(const std::filesystem::path& path);
+FileChecksum checksum_of(OpenFile& file);
 
 /// Whether there is a line, right or wrong.
-bool has_checksum(const std::filesystem::path& path);
+bool has_checksum(OpenFile& file);
 
 /// Whether something that is no such line follows the end of an HDF5 file, as
 /// the file itself tells it. HDF5 cuts off what follows when it changes a file.
-bool has_bytes_after_hdf5(const std::filesystem::path& path);
+bool has_bytes_after_hdf5(OpenFile& file);
 
 }  // namespace beamgyro

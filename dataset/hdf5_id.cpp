@@ -3,9 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <string_view>
+#include <system_error>
 
 // What HDF5 keeps to the end of the process, see QuietHdf5, is no leak.
 extern "C" const char* __lsan_default_suppressions();   // NOLINT
@@ -22,6 +20,7 @@ namespace beamgyro {
 
 void check_hdf5(herr_t status, const std::string& action) {
   if (status >= 0) return;
+  const int error = take_failed_system_call();
   std::string cause;
   const auto take_first = [](unsigned n, const H5E_error2_t* entry,
                              void* text) -> herr_t {
@@ -30,17 +29,7 @@ void check_hdf5(herr_t status, const std::string& action) {
     return 0;
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_first, &cause);
-  // Of a failed call of the system it tells time, names and addresses, too.
-  constexpr std::string_view kNumber = "errno = ";
-  constexpr std::string_view kSystem = "error message = '";
-  int error = 0;
-  if (const auto at = cause.find(kNumber); at != std::string::npos)
-    std::from_chars(cause.data() + at + kNumber.size(),
-                    cause.data() + cause.size(), error);
-  if (const auto at = cause.find(kSystem); at != std::string::npos) {
-    cause.erase(0, at + kSystem.size());
-    cause.erase(std::min(cause.find('\''), cause.size()));
-  }
+  if (error != 0) cause = std::generic_category().message(error);
   throw Hdf5Error(cause.empty() ? "cannot " + action
                                 : fmt::format("cannot {}: {}", action, cause),
                   error);
@@ -64,7 +53,6 @@ H5Id access_properties() {
   H5Id access = property_list(H5P_FILE_ACCESS);
   check_hdf5(H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V110),
              "choose the file format");
-  check_hdf5(H5Pset_file_locking(access, true, true), "choose file locking");
   return access;
 }
 

@@ -19,13 +19,18 @@ struct Hdf5Error : std::runtime_error {
   int error_number;  // errno of the system call that failed; 0: none did
 };
 
-/// Throws Hdf5Error "cannot <action>: <cause>" with the innermost entry of the
-/// library's error stack when `status` is negative.
+/// Throws Hdf5Error "cannot <action>: <cause>" when `status` is negative; the
+/// cause is the system call that failed, or else the innermost entry of the
+/// library's error stack.
 void check_hdf5(herr_t status, const std::string& action);
 
 /// The answer of a question to the library, which is negative when it could not
 /// be told: that is no "no", and throws as check_hdf5().
 bool is_true(htri_t answer, const std::string& question);
+
+/// errno of the first call of the system that failed below the library since
+/// this was asked, 0 without one; see hdf5_driver.h.
+int take_failed_system_call();
 
 /// HDF5 for this thread alone until the end of the scope; its high-level part
 /// has no lock of its own. Keeps it from printing its error stack, from running
@@ -39,6 +44,7 @@ class QuietHdf5 {
     check_hdf5(no_exit_handler, "start HDF5");
     static const herr_t no_plugins = H5PLset_loading_state(0);
     check_hdf5(no_plugins, "start HDF5");
+    take_failed_system_call();
     H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }
@@ -80,8 +86,7 @@ class H5Id {
 
 H5Id property_list(hid_t kind);
 
-/// How files are opened: in the format MATLAB releases of 2015 still read, and
-/// also where the file system has no locks.
+/// How files are opened: in the format MATLAB releases of 2015 still read.
 H5Id access_properties();
 
 }  // namespace beamgyro

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <vector>
 
+#include "dataset/open_file.h"
 #include "dataset/recording.h"
 
 namespace beamgyro {
@@ -16,10 +16,10 @@ struct Hdf5Layout {
   std::vector<std::uint64_t> columns;
 };
 
-/// Makes an HDF5 file for `samples` samples, complete but for the values, which
-/// are written around the library: after a write of its own that failed (a full
-/// disk), HDF5 1.10 is not to be relied on. Throws Hdf5Error.
+/// Makes `file` an HDF5 file for `samples` samples, complete but for the
+/// values, which are written around the library: after a write of its own that
+/// failed (a full disk), HDF5 1.10 is not to be relied on. Throws Hdf5Error.
 Hdf5Layout make_hdf5_file(const Recording& head, std::size_t samples,
-                          const std::filesystem::path& path);
+                          OpenFile& file);
 
 }  // namespace beamgyro

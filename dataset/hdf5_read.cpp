@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "dataset/hdf5_read.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +14,7 @@
 #include <system_error>
 
 #include "config/file_error.h"
+#include "dataset/hdf5_driver.h"
 #include "dataset/hdf5_storage.h"
 
 namespace beamgyro {
@@ -204,26 +207,17 @@ std::vector<std::string> variable_names(hid_t file) {
   return names;
 }
 
-H5Id open_hdf5_file(const std::string& path) {
-  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access_properties()), H5Fclose,
-          "open the file"};
-}
-
-bool is_hdf5_file(const std::string& path) {
-  return is_true(H5Fis_hdf5(path.c_str()), "read the file");
-}
-
 bool is_of_filetype(hid_t file, const std::string& filetype) {
   return has_attribute(file, "the file", "filetype") &&
          text_attribute(file, "the file", "filetype") == filetype;
 }
 
-H5Id open_hdf5_file(const std::string& path, const std::string& filetype,
+H5Id open_hdf5_file(OpenFile& bytes, const std::string& filetype,
                     const std::string& kind, std::uint64_t newest) {
-  if (!is_hdf5_file(path))
+  if (!is_hdf5_file(bytes))
     throw Hdf5Error(
         fmt::format("not an HDF5 file; expected a {} of beamgyro", kind));
-  H5Id file = open_hdf5_file(path);
+  H5Id file = open_hdf5_file(bytes);
   if (!is_of_filetype(file, filetype))
     throw Hdf5Error(fmt::format(
         "not a {} of beamgyro; expected the attribute filetype = \"{}\"", kind,
@@ -253,13 +247,19 @@ void reject_hdf5_file(const std::filesystem::path& path,
   throw std::runtime_error(message);
 }
 
-void require_file(const std::filesystem::path& path, const std::string& kind) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (error) throw_file_error(path, "cannot read", error);
-  if (!std::filesystem::is_regular_file(status))
+OpenFile open_to_read(const std::filesystem::path& path,
+                      const std::string& kind) try {
+  // Whoever opens a pipe otherwise waits for its other end.
+  OpenFile file(path, O_RDONLY | O_NONBLOCK);
+  struct stat facts {};
+  if (fstat(file.descriptor(), &facts) != 0)
+    throw std::system_error(errno, std::generic_category());
+  if (!S_ISREG(facts.st_mode))
     throw std::invalid_argument(fmt::format(
         "{}: not a file; expected a {} of beamgyro", path.string(), kind));
+  return file;
+} catch (const std::system_error& error) {
+  throw_file_error(path, "cannot read", error.code());
 }
 
 }  // namespace beamgyro

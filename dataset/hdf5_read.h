@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dataset/hdf5_id.h"
+#include "dataset/open_file.h"
 #include "dataset/recording.h"
 
 namespace beamgyro {
@@ -63,14 +64,12 @@ Role role_of(const std::string& text, const std::string& name);
 /// Names of the variables beside /meta, in file order.
 std::vector<std::string> variable_names(hid_t file);
 
-bool is_hdf5_file(const std::string& path);
-H5Id open_hdf5_file(const std::string& path);
 /// Whether the attribute `filetype` says so.
 bool is_of_filetype(hid_t file, const std::string& filetype);
 
 /// Opens an HDF5 file whose attributes say `filetype` and a format_version from
 /// 1 to `newest`; `kind` names such a file.
-H5Id open_hdf5_file(const std::string& path, const std::string& filetype,
+H5Id open_hdf5_file(OpenFile& file, const std::string& filetype,
                     const std::string& kind, std::uint64_t newest);
 
 /// What a failed read of the file's bytes is among those of HDF5.
@@ -81,7 +80,9 @@ Hdf5Error read_failure(const std::system_error& error);
 [[noreturn]] void reject_hdf5_file(const std::filesystem::path& path,
                                    const Hdf5Error& problem);
 
-/// Throws std::invalid_argument naming `path` unless it is a file.
-void require_file(const std::filesystem::path& path, const std::string& kind);
+/// Opens `path` to be read. Throws std::invalid_argument naming it unless it is
+/// a file, a `kind` for short, and FileError when the system fails.
+OpenFile open_to_read(const std::filesystem::path& path,
+                      const std::string& kind);
 
 }  // namespace beamgyro

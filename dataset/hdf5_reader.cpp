@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "dataset/file_checksum.h"
+#include "dataset/hdf5_driver.h"
 #include "dataset/hdf5_file.h"
 #include "dataset/hdf5_id.h"
 #include "dataset/hdf5_read.h"
@@ -85,8 +86,8 @@ Column read_column(hid_t file, const std::string& name, std::size_t samples) {
   return column;
 }
 
-Recording read_file(const std::string& path) {
-  const H5Id file = open_hdf5_file(path, kRecordingFiletype, "recording",
+Recording read_file(OpenFile& bytes) {
+  const H5Id file = open_hdf5_file(bytes, kRecordingFiletype, "recording",
                                    kRecordingFormatVersion);
   Recording recording;
   recording.program_version =
@@ -105,6 +106,7 @@ Recording read_file(const std::string& path) {
     if (name == "time" || name == "status") continue;
     recording.columns.push_back(read_column(file, name, samples));
   }
+  check_system_calls();
   const std::string defect = recording_defect(recording);
   if (!defect.empty()) throw Hdf5Error(defect);
   return recording;
@@ -112,8 +114,8 @@ Recording read_file(const std::string& path) {
 
 /// Damage is found before HDF5 sees it, and may crash. Whether there is a
 /// checksum.
-bool check_bytes(const std::filesystem::path& path) {
-  switch (checksum_of(path)) {
+bool check_bytes(const std::filesystem::path& path, OpenFile& file) {
+  switch (checksum_of(file)) {
     case FileChecksum::kRight:
       return true;
     case FileChecksum::kWrong:
@@ -124,7 +126,7 @@ bool check_bytes(const std::filesystem::path& path) {
     case FileChecksum::kNone:
       break;
   }
-  if (has_bytes_after_hdf5(path))
+  if (has_bytes_after_hdf5(file))
     throw std::invalid_argument(fmt::format(
         "{}: ends in bytes that are neither values nor a checksum: the file is "
         "damaged; expected it as beamgyro wrote it",
@@ -136,12 +138,12 @@ bool check_bytes(const std::filesystem::path& path) {
 
 Recording read_recording(const std::filesystem::path& path,
                          bool* has_checksum) {
-  require_file(path, "recording");
+  OpenFile file = open_to_read(path, "recording");
   try {
-    const bool is_checked = check_bytes(path);
+    const bool is_checked = check_bytes(path, file);
     if (has_checksum != nullptr) *has_checksum = is_checked;
     const QuietHdf5 quiet;
-    return read_file(path.string());
+    return read_file(file);
   } catch (const Hdf5Error& problem) {
     reject_hdf5_file(path, problem);
   } catch (const std::system_error& error) {

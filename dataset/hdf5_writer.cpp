@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "dataset/hdf5_driver.h"
 #include "dataset/hdf5_file.h"
 #include "dataset/hdf5_id.h"
 #include "dataset/hdf5_layout.h"
@@ -78,11 +79,8 @@ Hdf5Layout make_variables(hid_t file, const Recording& head,
 }
 
 Hdf5Layout make_file(const Recording& head, std::size_t samples,
-                     const std::filesystem::path& path) {
-  H5Id file(
-      H5Fcreate(path.c_str(), H5F_ACC_TRUNC,
-                creation_properties(H5P_FILE_CREATE), access_properties()),
-      H5Fclose, "create the file");
+                     OpenFile& bytes) {
+  H5Id file = create_hdf5_file(bytes);
   write_origin(file, kRecordingFiletype, kRecordingFormatVersion, head);
   Hdf5Layout layout = make_variables(file, head, samples);
   const std::array<NamedText, 3> texts = {{{"scenario", head.scenario_text},
@@ -90,15 +88,16 @@ Hdf5Layout make_file(const Recording& head, std::size_t samples,
                                            {"overrides", head.overrides_text}}};
   write_meta(file, texts);
   file.close("close the file");
+  check_system_calls();
   return layout;
 }
 
 }  // namespace
 
 Hdf5Layout make_hdf5_file(const Recording& head, std::size_t samples,
-                          const std::filesystem::path& path) {
+                          OpenFile& file) {
   const QuietHdf5 quiet;
-  return make_file(head, samples, path);
+  return make_file(head, samples, file);
 }
 
 }  // namespace beamgyro

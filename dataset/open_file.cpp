@@ -2,6 +2,7 @@
 #include "dataset/open_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -74,6 +75,22 @@ std::size_t OpenFile::read(std::span<std::byte> bytes) {
   return done;
 }
 
+std::size_t OpenFile::read_at(std::uint64_t place, std::span<std::byte> bytes) {
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t count =
+        ::pread(descriptor_, bytes.data() + done, bytes.size() - done,
+                static_cast<off_t>(place + done));
+    if (count == 0) break;
+    if (count > 0) {
+      done += static_cast<std::size_t>(count);
+    } else if (errno != EINTR) {
+      fail();
+    }
+  }
+  return done;
+}
+
 void OpenFile::read_pieces(
     const std::function<void(std::span<const std::byte>)>& take) {
   std::vector<std::byte> piece(std::size_t{1} << 20);
@@ -85,6 +102,18 @@ void OpenFile::read_pieces(
 
 void OpenFile::go_to(std::uint64_t place) {
   if (lseek(descriptor_, static_cast<off_t>(place), SEEK_SET) < 0) fail();
+}
+
+std::uint64_t OpenFile::size() {
+  struct stat facts {};
+  if (fstat(descriptor_, &facts) != 0) fail();
+  return static_cast<std::uint64_t>(facts.st_size);
+}
+
+void OpenFile::resize(std::uint64_t size) {
+  const auto length = static_cast<off_t>(size);
+  if (uninterrupted([&] { return ftruncate(descriptor_, length); }) != 0)
+    fail();
 }
 
 void OpenFile::sync() {

@@ -37,11 +37,19 @@ class OpenFile {
   /// fewer than asked for only at the end of the file.
   std::size_t read(std::span<std::byte> bytes);
 
+  /// The same from byte `place` of the file on.
+  std::size_t read_at(std::uint64_t place, std::span<std::byte> bytes);
+
   /// Calls `take` with the rest of the file, piece by piece.
   void read_pieces(const std::function<void(std::span<const std::byte>)>& take);
 
   /// Where the file stands from now on, from its start.
   void go_to(std::uint64_t place);
+
+  std::uint64_t size();
+
+  /// Cuts off what is beyond `size` bytes, or adds zeros up to there.
+  void resize(std::uint64_t size);
 
   /// That what was written is on the disk.
   void sync();

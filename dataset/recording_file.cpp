@@ -68,7 +68,7 @@ class RecordingFile::Body {
   /// What a file has after all values.
   virtual void complete(OpenFile&) {}
 
-  fs::path name_of_open_file() const { return target_.name_of_open_file(); }
+  OpenFile& file() { return target_.file(); }
 
   void write_at(std::uint64_t place, const void* bytes, std::size_t size) {
     try {
@@ -93,7 +93,7 @@ class RecordingFile::Hdf5Body : public Body {
   Hdf5Body(const Recording& head, std::size_t samples, const fs::path& path)
       : Body(path) {
     try {
-      layout_ = make_hdf5_file(head, samples, name_of_open_file());
+      layout_ = make_hdf5_file(head, samples, file());
     } catch (const Hdf5Error& error) {
       fail(error.what());
     }

@@ -7,8 +7,10 @@
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "dataset/file_checksum.h"
+#include "dataset/hdf5_driver.h"
 #include "dataset/hdf5_id.h"
 #include "dataset/hdf5_read.h"
 #include "dataset/json_node.h"
@@ -82,11 +84,13 @@ void read_failures(const std::string& text, const ShardHead& head,
 
 class ShardFile::File {
  public:
-  explicit File(const std::string& path)
-      : file_(open_hdf5_file(path, kSetFiletype, "file of a set",
+  explicit File(OpenFile bytes)
+      : bytes_(std::move(bytes)),
+        file_(open_hdf5_file(bytes_, kSetFiletype, "file of a set",
                              kSetFormatVersion)) {
     read_head();
     read_rows();
+    check_system_calls();
   }
 
   const ShardHead& head() const { return head_; }
@@ -116,6 +120,7 @@ class ShardFile::File {
     recording.scenario_text = head_.scenario_text;
     recording.device_text = head_.device_text;
     recording.overrides_text = head_.overrides_text;
+    check_system_calls();
     const std::string defect = recording_defect(recording);
     if (!defect.empty())
       throw Hdf5Error(
@@ -232,6 +237,7 @@ class ShardFile::File {
     return bytes;
   }
 
+  OpenFile bytes_;
   H5Id file_;
   ShardHead head_;
   std::vector<DeviceRow> rows_;
@@ -247,12 +253,12 @@ namespace {
 }  // namespace
 
 bool is_shard_file(const std::filesystem::path& path) {
-  require_file(path, "recording or a file of a set");
+  OpenFile file = open_to_read(path, "recording or a file of a set");
   try {
-    if (has_checksum(path)) return false;  // as recordings alone have
+    if (has_checksum(file)) return false;  // as recordings alone have
     const QuietHdf5 quiet;
-    return is_hdf5_file(path.string()) &&
-           is_of_filetype(open_hdf5_file(path.string()), kSetFiletype);
+    return is_hdf5_file(file) &&
+           is_of_filetype(open_hdf5_file(file), kSetFiletype);
   } catch (const Hdf5Error& error) {
     reject_hdf5_file(path, error);
   } catch (const std::system_error& error) {
@@ -260,19 +266,24 @@ bool is_shard_file(const std::filesystem::path& path) {
   }
 }
 
-ShardFile::ShardFile(const std::filesystem::path& path) : path_(path) {
-  require_file(path, "file of a set");
-  const QuietHdf5 quiet;
-  try {
-    file_ = std::make_unique<File>(path.string());
-  } catch (const Hdf5Error& error) {
-    reject_hdf5_file(path, error);
-  }
-}
+ShardFile::ShardFile(const std::filesystem::path& path)
+    : ShardFile(path, open_to_read(path, "file of a set")) {}
 
 ShardFile::ShardFile(const std::filesystem::path& directory,
                      const std::string& name)
-    : ShardFile((open_set_file(directory, name, O_RDONLY), directory / name)) {}
+    : ShardFile(directory / name, open_set_file(directory, name, O_RDONLY)) {}
+
+ShardFile::ShardFile(const std::filesystem::path& path, OpenFile file)
+    : path_(path) {
+  const QuietHdf5 quiet;
+  try {
+    file_ = std::make_unique<File>(std::move(file));
+  } catch (const Hdf5Error& error) {
+    reject_hdf5_file(path, error);
+  } catch (const std::system_error& error) {
+    reject_hdf5_file(path, read_failure(error));
+  }
+}
 
 ShardFile::~ShardFile() {
   const QuietHdf5 quiet;

@@ -319,9 +319,9 @@ void append_entry(const std::filesystem::path& directory,
     std::string line = line_of(json_of(entry));
     // A line that a dead process cut short must not swallow this one.
     char last = '\n';
-    const off_t size = facts.st_size;
-    if (size > 0 && pread(file.descriptor(), &last, 1, size - 1) != 1)
-      throw std::system_error(errno, std::generic_category());
+    if (facts.st_size > 0)
+      file.read_at(static_cast<std::uint64_t>(facts.st_size - 1),
+                   std::as_writable_bytes(std::span(&last, 1)));
     if (last != '\n') line.insert(0, 1, '\n');
     file.write(bytes_of(line));
     file.sync();

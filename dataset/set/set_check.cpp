@@ -193,24 +193,22 @@ class Check {
       for (const std::string& run : manifest_.head->runs)
         known.insert(view_name(run));
     }
-    std::vector<std::string> extra;
-    std::error_code error;
-    for (fs::recursive_directory_iterator next(directory_, error), end;
-         !error && next != end; next.increment(error)) {
-      if (next->is_directory(error) && !next->is_symlink(error)) continue;
-      const std::string name =
-          next->path().lexically_relative(directory_).string();
-      const std::string kind = next->path().extension().string();
+    for (const std::string& name : names_below()) {
+      const std::string kind = fs::path(name).extension().string();
       const bool is_ours =
           kind == ".h5" || kind == ".nc" || name.starts_with("source/");
       if (is_ours && !is_partial_file(name) && !known.contains(name) &&
           !(manifest_.head && is_file_of(*manifest_.head, name)))
-        extra.push_back(name);
+        add(name, "does not belong to the set");
     }
-    if (error) throw_file_error(directory_, "cannot read", error);
-    std::sort(extra.begin(), extra.end());
-    for (const std::string& name : extra)
-      add(name, "does not belong to the set");
+  }
+
+  std::vector<std::string> names_below() const {
+    try {
+      return set_.files_below();
+    } catch (const std::system_error& error) {
+      throw_file_error(directory_, "cannot read", error.code());
+    }
   }
 
   const fs::path& directory_;

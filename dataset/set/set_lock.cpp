@@ -43,7 +43,8 @@ std::error_code last_error() { return {errno, std::generic_category()}; }
 /// Who is named in the file, empty if nobody.
 std::string holder(const OpenFile& file) {
   std::array<char, 256> text{};
-  const ssize_t size = pread(file.descriptor(), text.data(), text.size(), 0);
+  const ssize_t size = uninterrupted(
+      [&] { return pread(file.descriptor(), text.data(), text.size(), 0); });
   return {text.data(), static_cast<std::size_t>(size < 0 ? 0 : size)};
 }
 

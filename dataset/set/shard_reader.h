@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "dataset/open_file.h"
 #include "dataset/recording.h"
 #include "dataset/set/shard.h"
 
@@ -44,6 +45,8 @@ class ShardFile {
 
  private:
   class File;
+
+  ShardFile(const std::filesystem::path& path, OpenFile file);
 
   Recording read(std::uint32_t position, bool slow) const;
 

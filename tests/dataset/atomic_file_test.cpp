@@ -241,16 +241,6 @@ TEST_F(AtomicFileTest, AFileInThePlaceOfThePartialOneIsNotTouched) {
   EXPECT_FALSE(fs::exists(path));
 }
 
-TEST_F(AtomicFileTest, LibrariesReachTheOpenFileByName) {
-  AtomicFile file(folder / "a.txt");
-  const fs::path place = file.partial_path();
-  fs::rename(place, folder / "aside");
-  write_text_file(place, "foreign");
-  std::ofstream(file.name_of_open_file()) << "text";
-  EXPECT_EQ(read_text_file(place), "foreign");
-  EXPECT_EQ(read_text_file(folder / "aside"), "text");
-}
-
 /// Number of a process that is no more.
 pid_t dead_process() {
   const pid_t child = fork();

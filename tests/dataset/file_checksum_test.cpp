@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "dataset/file_checksum.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -47,9 +48,10 @@ TEST_F(FileChecksumLine, IsTheSha256OfAllBytesBefore) {
   EXPECT_EQ(bytes.substr(bytes.size() - kLine),
             "\nSHA-256 of all bytes before: " +
                 sha256(bytes.substr(0, bytes.size() - kLine)) + "\n");
-  EXPECT_EQ(checksum_of(file), FileChecksum::kRight);
-  EXPECT_TRUE(has_checksum(file));
-  EXPECT_FALSE(has_bytes_after_hdf5(file));
+  OpenFile open(file, O_RDONLY);
+  EXPECT_EQ(checksum_of(open), FileChecksum::kRight);
+  EXPECT_TRUE(has_checksum(open));
+  EXPECT_FALSE(has_bytes_after_hdf5(open));
 }
 
 TEST_F(FileChecksumLine, NoFlippedBitIsAcceptedWhereverItIs) {
@@ -88,8 +90,9 @@ TEST_F(FileChecksumLine, NoCutAndNoAdditionIsAccepted) {
 
 TEST_F(FileChecksumLine, AFileWithoutTheLineIsReadAndHasNoChecksum) {
   write_text_file(file, bytes.substr(0, bytes.size() - kLine));
-  EXPECT_EQ(checksum_of(file), FileChecksum::kNone);
-  EXPECT_FALSE(has_checksum(file));
+  OpenFile open(file, O_RDONLY);
+  EXPECT_EQ(checksum_of(open), FileChecksum::kNone);
+  EXPECT_FALSE(has_checksum(open));
   EXPECT_EQ(read_recording(file).time.size(), 500u);
 }
 

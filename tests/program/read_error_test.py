@@ -1,39 +1,31 @@
 # SPDX-License-Identifier: MIT
 """A read that fails is an error: nothing counts as absent because of it."""
 
-import os
 import pathlib
-import subprocess
+import shutil
 import tempfile
 import unittest
 
-from program import CUBIC, ProgramTest, ramp
+from faults import FaultTest
+from program import CUBIC, ramp
 from sets import Set
 
-SHIM = pathlib.Path(__file__).with_name("failing_reads.c")
+
+class FailingReads(FaultTest):
+    def reads_of_hdf5(self, place, arguments):
+        return [number for number, name, path in self.calls(place, arguments)
+                if name == "read" and ".h5" in path]
+
+    def failed(self, place, arguments, number):
+        """The message of a command whose call `number` failed."""
+        answer = self.faulty(place, arguments, FAULT_KIND="EIO",
+                             FAULT_CALL=str(number))
+        self.assertEqual(answer.returncode, 1, answer.stderr)
+        self.assertIn("Input/output error", answer.stderr)
+        return answer.stderr
 
 
-class FailingReads:
-    """Runs a command again and again, each time with another failing read."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.holder = tempfile.TemporaryDirectory()
-        cls.shim = pathlib.Path(cls.holder.name) / "failing_reads.so"
-        subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-o", cls.shim, SHIM,
-                        "-ldl"], check=True)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.holder.cleanup()
-
-    def with_failing_read(self, number, *arguments):
-        environment = {**os.environ, "LD_PRELOAD": str(self.shim),
-                       "READ_FAILS": str(number)}
-        return self.beamgyro(*arguments, env=environment)
-
-
-class Recordings(FailingReads, ProgramTest):
+class Recordings(FailingReads):
     def strip(self, name):
         """Takes the checksum: reading it is no longer what fails first."""
         path = self.dir / name
@@ -44,55 +36,41 @@ class Recordings(FailingReads, ProgramTest):
                           text=ramp(seconds=400))
         self.write("cubic.toml", CUBIC)
         self.ok("train", "run.h5", "--model", "cubic.toml", "-o", "c.json")
+        compensate = ["compensate", "c.json", "run.h5", "-o", "out.h5"]
         for stripped in [False, True]:
             if stripped:
                 self.strip("run.h5")
-            compensate = ["compensate", "c.json", "run.h5", "-o", "out.h5"]
-            self.ok(*compensate)
-            whole = (self.dir / "out.h5").read_bytes()
-            failures = 0
-            for number in range(1, 1000):
-                (self.dir / "out.h5").unlink()
-                answer = self.with_failing_read(number, *compensate)
-                if answer.returncode == 0:
-                    self.assertEqual((self.dir / "out.h5").read_bytes(), whole,
-                                     f"read {number}")
-                    break
-                failures += 1
-                self.assertEqual(answer.returncode, 1, answer.stderr)
-                self.assertIn("run.h5: ", answer.stderr)
-                self.assertIn("Input/output error", answer.stderr)
+            reads = self.reads_of_hdf5(self.dir, compensate)
+            self.assertGreater(len(reads), 20)
+            for number in reads:
+                (self.dir / "out.h5").unlink(missing_ok=True)
+                self.failed(self.dir, compensate, number)
                 self.assertFalse((self.dir / "out.h5").exists())
-                (self.dir / "out.h5").touch()
-            self.assertGreater(failures, 20 if stripped else 2)
 
     def test_info_tells_an_error_from_another_kind_of_file(self):
         self.run_scenario("run")
         self.strip("run.h5")
-        for number in range(1, 12):
-            answer = self.with_failing_read(number, "info", "run.h5")
-            self.assertEqual(answer.returncode, 1, answer.stderr)
-            self.assertIn("Input/output error", answer.stderr)
+        for number in self.reads_of_hdf5(self.dir, ["info", "run.h5"]):
+            self.assertIn("run.h5: ",
+                          self.failed(self.dir, ["info", "run.h5"], number))
 
 
 class Sets(FailingReads, Set):
     def test_a_view_is_right_or_not_there(self):
         self.generate("whole")
         whole = self.contents("whole")
-        failures = 0
-        for number in range(1, 400):
-            name = f"set{number}"
-            answer = self.with_failing_read(number, "generate", "campaign.toml",
-                                            "-o", name, "--jobs", "1")
-            if answer.returncode == 0:
-                self.assertEqual(self.contents(name), whole, f"read {number}")
-                break
-            failures += 1
-            self.assertEqual(answer.returncode, 1, answer.stderr)
-            if number % 7 == 0:
-                self.generate(name, "--resume")
-                self.assertEqual(self.contents(name), whole, f"read {number}")
-        self.assertGreater(failures, 20)
+        generate = ["generate", "campaign.toml", "-o", "set", "--jobs", "1"]
+        reads = self.reads_of_hdf5(self.dir, generate)
+        self.assertGreater(len(reads), 20)
+        for number in reads[::12]:
+            with tempfile.TemporaryDirectory() as folder:
+                place = pathlib.Path(folder) / "place"
+                shutil.copytree(self.dir, place,
+                                ignore=shutil.ignore_patterns("set", "whole"))
+                self.failed(place, generate, number)
+                self.ok(*generate[:2], "-o", place / "set", "--resume")
+                self.assertEqual(self.contents(place / "set"), whole,
+                                 f"read {number}")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: MIT
+"""tests/faults/fault_shim.c as tests use it: one file-system call fails."""
+
+import os
+import pathlib
+import subprocess
+import tempfile
+
+from program import PROGRAM, ROOT, ProgramTest
+
+
+class FaultTest(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.shim = pathlib.Path(folder.name) / "fault_shim.so"
+        subprocess.run(["cc", "-std=c11", "-O1", "-shared", "-fPIC",
+                        ROOT / "tests/faults/fault_shim.c", "-o", cls.shim,
+                        "-ldl"], check=True)
+
+    def faulty(self, place, arguments, **plan):
+        """The answer of a command in a folder, all of whose calls on files
+        below that folder are numbered; `plan` is as the shim has it."""
+        return subprocess.run(
+            [str(PROGRAM), *map(str, arguments)], cwd=place, text=True,
+            stdin=subprocess.DEVNULL, capture_output=True, check=False,
+            timeout=60, env=os.environ | {
+                "LD_PRELOAD": str(self.shim), "FAULT_PREFIX": str(place),
+                **plan})
+
+    def calls(self, place, arguments):
+        """Number, name and file of the calls of a command in peace."""
+        with tempfile.TemporaryDirectory() as name:
+            log = pathlib.Path(name) / "calls"
+            answer = self.faulty(place, arguments, FAULT_LOG=str(log))
+            self.assertEqual(answer.returncode, 0, answer.stderr)
+            lines = [line.split(" ", 2) for line in log.read_text().splitlines()]
+        return [(int(number), name, path.removeprefix(f"{place}/"))
+                for number, name, path in lines]
