@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: MIT
+"""The form of the documentation: width of lines, links, diagrams."""
+
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+WIDTH = 100
+
+PAGES = [*ROOT.glob("*.md"), *sorted(ROOT.glob("docs/**/*.md")),
+         ROOT / "bench/experiments.md"]
+
+
+def anchors(text):
+    """Anchors of the headings of a page, as GitHub makes them."""
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+            for heading in re.findall(r"^#+ (.*)$", text, re.MULTILINE)}
+
+
+class Docs(unittest.TestCase):
+    def test_lines_are_no_wider_than_100_columns(self):
+        self.assertGreater(len(PAGES), 20)
+        for page in PAGES:
+            wide = [number for number, line in
+                    enumerate(page.read_text().splitlines(), 1)
+                    if len(line) > WIDTH]
+            with self.subTest(page.relative_to(ROOT)):
+                self.assertEqual(wide, [])
+
+    def test_links_lead_to_files_and_headings(self):
+        for page in PAGES:
+            text = page.read_text()
+            for link in re.findall(r"\]\(([^)\s]+)\)", text):
+                path, _, anchor = link.partition("#")
+                target = page.parent / path if path else page
+                if link.startswith(("http:", "https:")):
+                    continue
+                with self.subTest(f"{page.relative_to(ROOT)}: {link}"):
+                    self.assertTrue(target.exists())
+                    if anchor:
+                        self.assertIn(anchor, anchors(target.read_text()))
+
+    def test_pages_named_in_the_sources_exist(self):
+        files = [path for folder in ("sim", "compensation", "dataset", "config",
+                                     "cli", "parallel", "scenarios", "tests",
+                                     "scripts", "bench")
+                 for path in sorted((ROOT / folder).rglob("*"))
+                 if path.suffix in (".h", ".cpp", ".c", ".py", ".sh", ".toml",
+                                    ".c99", ".txt")]
+        self.assertGreater(len(files), 300)
+        for path in files:
+            for page in re.findall(r"\b(?:docs|bench)/[a-z_/]+\.md\b",
+                                   path.read_text(errors="replace")):
+                with self.subTest(f"{path.relative_to(ROOT)}: {page}"):
+                    self.assertTrue((ROOT / page).exists())
+
+    def test_the_diagrams_are_those_of_the_script(self):
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([sys.executable, ROOT / "scripts/diagrams.py",
+                            folder], check=True)
+            drawn = sorted(pathlib.Path(folder).glob("*.svg"))
+            self.assertEqual(len(drawn), 3)
+            for path in drawn:
+                with self.subTest(path.name):
+                    self.assertEqual(
+                        path.read_text(),
+                        (ROOT / "docs/pictures" / path.name).read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()
