@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -40,6 +41,18 @@ std::vector<std::string> lines_of(const std::string& text) {
 std::vector<double>& values_of(Recording& recording, std::string_view name) {
   const auto found = std::ranges::find(recording.columns, name, &Column::name);
   return found->values;
+}
+
+/// Without what only a simulator knows: an estimator must not look at it, and
+/// of a long run it is the larger part.
+Recording measured_part(const Recording& recording) {
+  Recording part;
+  part.time = recording.time;
+  part.status = recording.status;
+  std::ranges::copy_if(
+      recording.columns, std::back_inserter(part.columns),
+      [](const Column& column) { return column.role == Role::kMeasured; });
+  return part;
 }
 
 /// S [V/(deg/s)] of output = offset + S rate.
@@ -170,15 +183,15 @@ double held_rate(std::size_t hold, double largest) {
 
 std::optional<Recording> with_injected_rate(const Recording& recording,
                                             std::span<const double> injected) {
-  column_values(recording, "rate");
+  Recording moved = measured_part(recording);
+  column_values(moved, "rate");
   std::optional<double> scale;
-  if (find_column(recording, "output") != nullptr) {
-    scale = output_scale(recording);
+  if (find_column(moved, "output") != nullptr) {
+    scale = output_scale(moved);
     if (!scale) {
       return std::nullopt;
     }
   }
-  Recording moved = recording;
   auto& rate = values_of(moved, "rate");
   for (std::size_t k = 0; k < injected.size(); ++k) {
     rate[k] += injected[k];

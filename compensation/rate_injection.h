@@ -28,8 +28,8 @@ std::optional<double> stated_full_scale(const Recording& recording);
 /// over the logarithm.
 double held_rate(std::size_t hold, double largest);
 
-/// The recording as it would have been with the rates `injected` [deg/s], one
-/// per time: `rate` + Omega and `output` + S Omega, with S [V/(deg/s)] and the
+/// What would have been measured with the rates `injected` [deg/s], one per
+/// time: `rate` + Omega and `output` + S Omega, with S [V/(deg/s)] and the
 /// offset recovered from the two columns themselves. Nothing when there is an
 /// `output` whose S cannot be recovered, because the rate never changed. Throws
 /// std::invalid_argument when `rate` is missing or not a straight line in

@@ -117,6 +117,8 @@ TEST(RateInjection, MovesOutputAndRateByTheSameRate) {
   }
   EXPECT_EQ(column_values(*moved, "temperature")[100],
             column_values(run, "temperature")[100]);
+  ASSERT_NE(find_column(run, "true_rate"), nullptr);
+  EXPECT_EQ(find_column(*moved, "true_rate"), nullptr);
 }
 
 TEST(RateInjection, HoldsRatesOfEachSizeAndSignUpToTheLargest) {
