@@ -203,7 +203,8 @@ std::optional<Hysteresis> hysteresis(const TrainingRows& rows,
 }
 
 std::string objection_to_claim(const std::optional<GroupErrors>& model,
-                               const std::optional<GroupErrors>& constant) {
+                               const std::optional<GroupErrors>& constant,
+                               double weight) {
   if (!model || !constant)
     return "no held-out data: every score here is in-sample and claims nothing";
   const GroupErrors gain = *constant - *model;
@@ -219,6 +220,11 @@ std::string objection_to_claim(const std::optional<GroupErrors>& model,
     return fmt::format("{}; a useful gain is {:g} %", figures,
                        100.0 * kUsefulGain);
   const double error = standard_error(gain);
+  if (gain.mean() > error && weight < 1.0)
+    return fmt::format(
+        "{}; the groups disagree, which lowers the weight of the model beside "
+        "a constant to {:.2f}",
+        figures, weight);
   if (gain.mean() > error) return "";
   return fmt::format("{}; the standard error of the difference is {:.2g} deg/s",
                      figures, error / (rms + plain));

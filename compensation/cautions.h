@@ -56,9 +56,11 @@ std::optional<Hysteresis> hysteresis(const TrainingRows& rows,
 
 /// Why the model must not claim to be better than a constant bias: nothing was
 /// unseen; fewer than kLeastGroups were; its rms on unseen groups is not below
-/// the constant's by kUsefulGain; or its mean square is not below by more than
-/// the standard error of the difference. Empty when it may.
+/// the constant's by kUsefulGain; its mean square is not below by more than the
+/// standard error of the difference; or the groups disagree, so that its
+/// `weight` beside a constant is below 1. Empty when it may.
 std::string objection_to_claim(const std::optional<GroupErrors>& model,
-                               const std::optional<GroupErrors>& constant);
+                               const std::optional<GroupErrors>& constant,
+                               double weight = 1.0);
 
 }  // namespace beamgyro

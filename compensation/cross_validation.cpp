@@ -145,14 +145,22 @@ Predictions averaged(const Predictions& constant, const Predictions& model,
   return {(1.0 - weight) * constant.bias + weight * model.bias, model.scored};
 }
 
-// The errors are quadratic in the weight w: e(0) - 2 w a + w^2 q, with q the
-// mean square of model - constant.
-double stacking_weight(const Predictions& constant, const Predictions& model,
-                       const ArrayXd& bias, const RowGroups& groups) {
-  const double q = group_errors(model, constant.bias, groups).mean();
-  const double a = 0.5 * (group_errors(constant, bias, groups).mean() + q -
-                          group_errors(model, bias, groups).mean());
-  return q > 0.0 ? std::clamp(a / q, 0.0, 1.0) : 0.0;
+// With q the mean square of model - constant in a group and a the mean product
+// of that with what the constant leaves, the errors are e(0) - 2 w a + w^2 q.
+// Their mean is least at w = sum a / sum q, a ratio of means over the groups,
+// whose variance is n/(n - 1) sum (a - w q)^2 / (sum q)^2.
+StackingWeight stacking_weight(const Predictions& constant,
+                               const Predictions& model, const ArrayXd& bias,
+                               const RowGroups& groups) {
+  const GroupErrors q = group_errors(model, constant.bias, groups);
+  const GroupErrors a = 0.5 * (group_errors(constant, bias, groups) + q -
+                               group_errors(model, bias, groups));
+  if (!(q.sum() > 0.0)) return {0.0, 0.0};
+  const double weight = std::clamp(a.sum() / q.sum(), 0.0, 1.0);
+  const auto count = static_cast<double>(groups.count);
+  return {weight,
+          std::sqrt(count / (count - 1.0) * (a - weight * q).square().sum()) /
+              q.sum()};
 }
 
 std::size_t choose(const std::vector<Scored>& models) {

@@ -58,13 +58,18 @@ GroupErrors cross_validate(const FitSpec& kind,
 Predictions averaged(const Predictions& constant, const Predictions& model,
                      double weight);
 
+struct StackingWeight {
+  double value;           // [-], 0 to 1
+  double standard_error;  // [-], from the groups' scatter
+};
+
 /// The weight of `model` in averaged(), from 0 to 1, with the least mean of the
 /// groups' mean square residuals: near 1 where every group bears the model out,
-/// less where groups disagree, 0 where they contradict it. Of fewer than
-/// kLeastGroups it is taken one standard error lower, that of the groups'
-/// slopes.
-double stacking_weight(const Predictions& constant, const Predictions& model,
-                       const Eigen::ArrayXd& bias, const RowGroups& groups);
+/// less where groups disagree, 0 where they contradict it.
+StackingWeight stacking_weight(const Predictions& constant,
+                               const Predictions& model,
+                               const Eigen::ArrayXd& bias,
+                               const RowGroups& groups);
 
 /// One model among several and its residuals on unseen groups.
 struct Scored {

@@ -26,6 +26,56 @@ RowGroups segments(Index rows) {
   return groups;
 }
 
+struct LegRows {
+  Index begin, end;
+  int cycle;
+  bool is_short;
+};
+
+std::vector<LegRows> leg_rows(const TrainingRows& rows, const RowGroups& legs) {
+  const auto span = [&](Index begin, Index end) {
+    const auto part = rows.temperature.segment(begin, end - begin);
+    return part.maxCoeff() - part.minCoeff();
+  };
+  const double least = kLeastLeg * span(0, rows.size());
+  std::vector<LegRows> result;
+  for (Index begin = 0, end = 0; begin < rows.size(); begin = end) {
+    while (end < rows.size() && legs.of_row(end) == legs.of_row(begin)) ++end;
+    result.push_back({begin, end, rows.cycle(begin), span(begin, end) < least});
+  }
+  return result;
+}
+
+// Where a leg belongs: to the next long one of its power cycle, else to the
+// last one before it, else to itself.
+std::size_t joined_leg(const std::vector<LegRows>& legs, std::size_t k) {
+  const auto is_target = [&](std::size_t other) {
+    return !legs[other].is_short && legs[other].cycle == legs[k].cycle;
+  };
+  if (!legs[k].is_short) return k;
+  for (std::size_t next = k + 1; next < legs.size(); ++next)
+    if (is_target(next)) return next;
+  for (std::size_t before = k; before-- > 0;)
+    if (is_target(before)) return before;
+  return k;
+}
+
+RowGroups without_short_legs(const TrainingRows& rows,
+                             const RowGroups& groups) {
+  const std::vector<LegRows> legs = leg_rows(rows, groups);
+  const auto is_long = [](const LegRows& leg) { return !leg.is_short; };
+  if (std::ranges::count_if(legs, is_long) < 2) return groups;
+  RowGroups joined{groups.by, ArrayXi(rows.size()), 0};
+  std::vector<int> number(legs.size(), -1);
+  for (std::size_t k = 0; k < legs.size(); ++k) {
+    int& group = number[joined_leg(legs, k)];
+    if (group < 0) group = joined.count++;
+    joined.of_row.segment(legs[k].begin, legs[k].end - legs[k].begin)
+        .setConstant(group);
+  }
+  return joined;
+}
+
 const ArrayXi& labels(const TrainingRows& rows, Grouping by) {
   if (by == Grouping::kRun) return rows.run;
   return by == Grouping::kCycle ? rows.cycle : rows.leg;
@@ -97,6 +147,7 @@ bool others_cover(const TrainingRows& rows, const RowGroups& groups) {
 RowGroups folds_of(const TrainingRows& rows, int least) {
   for (const Grouping by : kIndependent) {
     RowGroups groups = group_rows(rows, by);
+    if (by == Grouping::kLeg) groups = without_short_legs(rows, groups);
     const bool enough =
         groups.count >= least || (by == Grouping::kLeg && groups.count == 2);
     if (enough && others_cover(rows, groups)) return groups;

@@ -48,8 +48,13 @@ constexpr double kLargestAlone = 0.25;  // [-]
 /// to all.
 bool others_cover(const TrainingRows& rows, const RowGroups& groups);
 
+/// Least share of the temperatures that a leg spans to be one of its own.
+constexpr double kLeastLeg = 0.25;  // [-]
+
 /// What to hold out by turns: coarsest_groups() of which others_cover() the
-/// temperatures, or two legs that do, before segments.
+/// temperatures, or two legs that do, before segments. A leg below kLeastLeg,
+/// such as self-heating before the chamber cools, joins its neighbour of the
+/// same power cycle that spans more, if two or more legs do.
 RowGroups folds_of(const TrainingRows& rows, int least);
 
 }  // namespace beamgyro

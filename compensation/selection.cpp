@@ -22,6 +22,9 @@ struct Judged {
   double rms() const { return rms_of(errors); }
 };
 
+// Standard errors that the weight of a curve is lowered by where fewer than
+// kLeastGroups disagree [-].
+constexpr double kCaution = 0.25;
 constexpr int kLeastPowerOns = 3;
 constexpr double kPowerOnsApart = 10.0;  // [K]
 
@@ -200,10 +203,16 @@ class Selector {
     const Predictions found = predictions(candidate);
     Judged alone{candidate, 1.0, errors_of(found)};
     if (one_leg() || is_constant(candidate)) return alone;
-    const double weight = stacking_weight(flat, found, judging().bias, groups_);
-    Judged average{candidate, weight, errors_of(averaged(flat, found, weight))};
-    return alone.rms() <= (1.0 + kAllowedExcess) * average.rms() ? alone
-                                                                 : average;
+    const StackingWeight weight =
+        stacking_weight(flat, found, judging().bias, groups_);
+    const auto average = [&](double share) {
+      return Judged{candidate, share, errors_of(averaged(flat, found, share))};
+    };
+    const Judged best = average(weight.value);
+    if (alone.rms() <= (1.0 + kAllowedExcess) * best.rms()) return alone;
+    if (groups_.count >= kLeastGroups) return best;
+    return average(
+        std::max(weight.value - kCaution * weight.standard_error, 0.0));
   }
 
   std::vector<Judged> judge_all(const std::vector<Candidate>& candidates,

@@ -33,7 +33,8 @@ struct Selected {
 /// Fits the candidate that choose() takes, or the only one. Without groups
 /// several candidates are judged by the held-out rows. Of several,
 /// - each is averaged with a constant by stacking_weight(), where that lowers
-///   its rms on unseen groups by more than kAllowedExcess;
+///   its rms on unseen groups by more than kAllowedExcess; with fewer than
+///   kLeastGroups the weight is a quarter of its standard error lower;
 /// - the one chosen gives way to "none" or "constant", if they are candidates,
 ///   unless it takes away kUsefulGain of their rms.
 ///

@@ -154,7 +154,8 @@ std::string why_no_claim(const ModelSpec& spec,
                      selected.candidate.name);
   if (groups && groups->by == Grouping::kSegment)
     return objection_to_claim({}, {});
-  return objection_to_claim(selected.errors, selected.constant_errors);
+  return objection_to_claim(selected.errors, selected.constant_errors,
+                            selected.weight);
 }
 
 }  // namespace

@@ -184,11 +184,15 @@ TEST(StackingWeight, FallsWhereGroupsDisagree) {
     return stacking_weight(unseen(ConstantSpec{}), unseen(PolynomialSpec{1}),
                            rows.bias, groups);
   };
-  EXPECT_NEAR(weight(1.0), 1.0, 1e-12);
-  EXPECT_NEAR(weight(0.5), 1.0 / 1.25, 1e-12);
-  EXPECT_NEAR(weight(0.1), 0.2 / 1.01, 1e-12);
-  EXPECT_EQ(weight(0.0), 0.0);
-  EXPECT_EQ(weight(-1.0), 0.0);
+  EXPECT_NEAR(weight(1.0).value, 1.0, 1e-12);
+  EXPECT_NEAR(weight(1.0).standard_error, 0.0, 1e-12);
+  EXPECT_NEAR(weight(0.5).value, 1.0 / 1.25, 1e-12);
+  EXPECT_NEAR(weight(0.1).value, 0.2 / 1.01, 1e-12);
+  // The products less w times the squares are +-s (1 - s^2)/(1 + s^2).
+  EXPECT_NEAR(weight(0.5).standard_error, 0.75 / (1.25 * 1.25), 1e-12);
+  EXPECT_NEAR(weight(0.1).standard_error, 0.2 * 0.99 / (1.01 * 1.01), 1e-12);
+  EXPECT_EQ(weight(0.0).value, 0.0);
+  EXPECT_EQ(weight(-1.0).value, 0.0);
 }
 
 TEST(StackingWeight, IsTheBestOfAllAverages) {
@@ -201,7 +205,7 @@ TEST(StackingWeight, IsTheBestOfAllAverages) {
       predict_unseen(ConstantSpec{}, kTemperature, rows, groups, 1);
   const Predictions curve =
       predict_unseen(PolynomialSpec{1}, kTemperature, rows, groups, 1);
-  const double best = stacking_weight(flat, curve, rows.bias, groups);
+  const double best = stacking_weight(flat, curve, rows.bias, groups).value;
   const auto rms = [&](double weight) {
     return rms_of(
         group_errors(averaged(flat, curve, weight), rows.bias, groups));

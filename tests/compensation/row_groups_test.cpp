@@ -97,6 +97,18 @@ TEST(Folds, AreTwoLegsOnlyIfEachCoversTheTemperatures) {
   EXPECT_EQ(warm_up_and_fall.count, 5);
 }
 
+// Self-heating at the chamber's first temperature, before it cools.
+TEST(Folds, CountNoShortLegThatALongOneOfItsPowerCycleFollows) {
+  const Leg up{0, 0, -40.0, 50.0, 91}, heating{1, 1, 50.0, 54.0, 20},
+      down{1, 1, 54.0, -40.0, 91}, rest{1, 1, -40.0, -38.0, 20};
+  const TrainingRows rows = rows_of({up, heating, down, rest}, no_bias);
+  const RowGroups groups = folds_of(rows, 3);
+  EXPECT_EQ(groups.by, Grouping::kLeg);
+  EXPECT_EQ(groups.count, 2);
+  EXPECT_TRUE((groups.of_row.head(91) == 0).all());
+  EXPECT_TRUE((groups.of_row.tail(131) == 1).all());
+}
+
 TEST(CoarsestGroups, MayLeaveAHole) {
   const std::vector<Leg> rests = {
       {0, 0, -40.0, -40.0, 9}, {1, 1, 5.0, 5.0, 9}, {2, 2, 50.0, 50.0, 9}};
