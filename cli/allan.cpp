@@ -260,22 +260,25 @@ int allan(const AllanArguments& arguments) {
 void add_allan(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<AllanArguments>();
   CLI::App* command = program.add_subcommand(
-      "allan", "Allan deviation, plain and overlapping, of a rate series");
+      "allan", "Compute the Allan deviation, plain and overlapping, of a rate");
   command->add_option("file", arguments->file, "RUN.h5 or SERIES.csv")
       ->required();
   command->add_option("--dataset", arguments->dataset,
-                      "NAME of the variable or column; rate by default");
+                      "NAME of the variable or column; the default is rate");
   command->add_option("--rate-Hz", arguments->rate,
-                      "sample rate of a CSV without a column time [s]");
+                      "Sample rate of a CSV that has no column of times");
   command->add_option("--unit", arguments->unit,
-                      "of a CSV; deg/s, deg/h and rad/s are rates, any other "
-                      "text is printed as it is; deg/s without it");
-  command->add_option("--from", arguments->window.from,
-                      "[s], first time to use; the first sample without it");
-  command->add_option("--to", arguments->window.to,
-                      "[s], last time to use; the last sample without it");
-  command->add_option("--json", arguments->json,
-                      "FILE for the curve, the coefficients and what was used");
+                      "Unit of a CSV: deg/s, deg/h, rad/s, or any other text, "
+                      "which is printed as it is; the default is deg/s");
+  command->add_option(
+      "--from", arguments->window.from,
+      "First time to use, in seconds; the default is the first sample");
+  command->add_option(
+      "--to", arguments->window.to,
+      "Last time to use, in seconds; the default is the last sample");
+  command->add_option(
+      "--json", arguments->json,
+      "FILE to write the curve, the coefficients and the samples used to");
   command->callback([arguments, &action] {
     action = [arguments] { return allan(*arguments); };
   });

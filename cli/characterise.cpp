@@ -100,18 +100,19 @@ int characterise(const CharacteriseArguments& arguments) {
 
 void add_characterise(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<CharacteriseArguments>();
-  CLI::App* command = program.add_subcommand(
-      "characterise",
-      "Tabulate a device over beam temperature: the static map, noise-free");
+  CLI::App* command =
+      program.add_subcommand("characterise",
+                             "Tabulate the steady state of a device over the "
+                             "temperature of its beam, without noise");
   command->add_option("device", arguments->device, "DEVICE.toml")->required();
   command->add_option("-o,--output", arguments->output, "OUT.csv")->required();
   command
       ->add_option("--beam-temperature", arguments->temperatures,
-                   "START:STOP:STEP with both ends, or one value, in degC")
+                   "START:STOP:STEP in degC, both ends included, or one value")
       ->capture_default_str();
   command
       ->add_option("--set", arguments->overrides,
-                   "KEY=VALUE, overrides a key of the device; may be repeated")
+                   "KEY=VALUE replaces a key of the device; may be repeated")
       ->allow_extra_args(false);
   command->callback([arguments, &action] {
     action = [arguments] { return characterise(*arguments); };

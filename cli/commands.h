@@ -9,8 +9,8 @@ namespace beamgyro {
 /// Carries out a parsed command and returns the exit status.
 using Action = std::function<int()>;
 
-/// Each adds one subcommand with its options and sets `action` when it is the
-/// one that was called.
+/// Each function adds one subcommand with its options. It sets `action` when
+/// that subcommand is called.
 void add_characterise(CLI::App& program, Action& action);
 void add_run(CLI::App& program, Action& action);
 void add_generate(CLI::App& program, Action& action);

@@ -201,39 +201,44 @@ void add_export(CLI::App& program, Action& action) {
       "export", "Write a compensator as C source or autopilot parameters");
   command
       ->add_option("compensator", arguments->compensators,
-                   "COMPENSATOR.json; for px4 and ardupilot one for each axis")
+                   "COMPENSATOR.json; for px4 and ardupilot up to three, one "
+                   "for each axis")
       ->required()
       ->expected(1, 3);
   command
       ->add_option("--format", arguments->format,
-                   "c: NAME.h, NAME.c and NAME_selftest.c; px4: NAME.params; "
-                   "ardupilot: NAME.parm")
+                   "c writes NAME.h, NAME.c and NAME_selftest.c; px4 writes "
+                   "NAME.params; ardupilot writes NAME.parm")
       ->required()
       ->check(CLI::IsMember({"c", "px4", "ardupilot"}));
   command->add_option("-o,--output", arguments->output, "DIR")->required();
   command->add_option("--name", arguments->name,
-                      "NAME; without it the (first) compensator's file name");
+                      "NAME of the files; the default is the file name of the "
+                      "(first) compensator");
   command
-      ->add_option("--axis", arguments->axes,
-                   "x, y or z: axis of the autopilot's gyro, one for each "
-                   "compensator (x,y); without it z of one, x,y,z of three")
+      ->add_option(
+          "--axis", arguments->axes,
+          "Axis of the autopilot's gyro for each compensator, as in x,y; the "
+          "default is z for one compensator and x,y,z for three")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"x", "y", "z"}));
   command
       ->add_option("--instance", arguments->instance,
-                   "of the autopilot's gyro: px4 0 to 3, ardupilot 1 to 3; the "
-                   "first without it")
+                   "Number of the autopilot's gyro, 0 to 3 for px4 and 1 to 3 "
+                   "for ardupilot; the default is the first")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--device-id", arguments->device_id, "px4: of the sensor")
+  command
+      ->add_option("--device-id", arguments->device_id,
+                   "px4: identifier of the sensor")
       ->check(CLI::Range(0, 2147483647));
   command->add_flag("--fit-cubic", arguments->fit_cubic,
-                    "px4, ardupilot: of a compensator that is no cubic export "
-                    "the cubic fitted to the same rows");
-  command->add_flag("--force", arguments->force,
-                    "c: export a compensator that cancels the rate, or that "
-                    "single precision changes by more than 1e-4 deg/s; the "
-                    "code carries the warning");
+                    "px4, ardupilot: exports the cubic fitted to the same rows "
+                    "if the compensator is no cubic");
+  command->add_flag(
+      "--force", arguments->force,
+      "c: exports a compensator that cancels the rate, or that single "
+      "precision changes by more than 1e-4 deg/s; the code carries a warning");
   command->callback([arguments, &action] {
     action = [arguments] { return run_export(*arguments); };
   });

@@ -108,26 +108,28 @@ int generate(const GenerateArguments& arguments) {
 void add_generate(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<GenerateArguments>();
   CLI::App* command = program.add_subcommand(
-      "generate", "Simulate a population of devices into a directory");
+      "generate",
+      "Simulate every device of a campaign and write the set to a directory");
   command->add_option("campaign", arguments->campaign, "CAMPAIGN.toml")
       ->required();
   command->add_option("-o,--output", arguments->output, "DIR")->required();
   command->add_option("--devices", arguments->devices,
-                      "overrides the number of devices");
+                      "Replaces the number of devices of the campaign");
   command
       ->add_option("--jobs", arguments->jobs,
-                   "threads; as many as there are cores without it")
+                   "Number of threads; the default is one per core")
       ->check(CLI::Range(1, 4096));
-  CLI::Option* shard =
-      command->add_option("--shard", arguments->shard,
-                          "I/N, one of N tasks that share the directory");
-  CLI::Option* resume = command->add_flag("--resume", arguments->resume,
-                                          "go on with the set that is there");
-  CLI::Option* strict = command->add_flag("--strict", arguments->strict,
-                                          "exit with 4 when devices failed");
+  CLI::Option* shard = command->add_option(
+      "--shard", arguments->shard,
+      "I/N makes only the files of task I of N tasks that share the directory");
+  CLI::Option* resume =
+      command->add_flag("--resume", arguments->resume,
+                        "Continues the set that is in the directory");
+  CLI::Option* strict = command->add_flag(
+      "--strict", arguments->strict, "Ends with status 4 when devices failed");
   command
       ->add_option("--lacking", arguments->lacking,
-                   "N, only list which of N tasks have something to do yet")
+                   "Makes nothing; prints which of N tasks have work left")
       ->check(CLI::Range(1, 1000000))
       ->excludes(shard, resume, strict);
   command->callback([arguments, &action] {

@@ -120,19 +120,20 @@ int run_import(const ImportArguments& arguments) {
 void add_import(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ImportArguments>();
   CLI::App* command = program.add_subcommand(
-      "import", "Turn a log of a real gyro into a recording");
+      "import", "Convert a log of a real gyro into a recording");
   command
-      ->add_option("log", arguments->log,
-                   "LOG.csv: delimiter-separated text, one row a sample")
+      ->add_option(
+          "log", arguments->log,
+          "LOG.csv: delimiter-separated text with one sample in each row")
       ->required();
   command
       ->add_option("--map", arguments->map,
-                   "MAP.toml, which says what its columns are")
+                   "MAP.toml, which states what the columns of the log mean")
       ->required();
   command->add_option("-o,--output", arguments->output, "RUN.h5 or RUN.csv")
       ->required();
   command->add_option("--axis", arguments->axis,
-                      "x, y or z: the gyro of a map that has several");
+                      "x, y or z: which gyro to take if the map has several");
   command->callback([arguments, &action] {
     action = [arguments] { return run_import(*arguments); };
   });

@@ -100,10 +100,10 @@ void add_info(CLI::App& program, Action& action) {
   auto path = std::make_shared<std::string>();
   auto device = std::make_shared<std::optional<std::uint32_t>>();
   CLI::App* command =
-      program.add_subcommand("info", "Say what a recording or a set holds");
+      program.add_subcommand("info", "Print what a recording or a set holds");
   command->add_option("file", *path, "FILE.h5 or DIR")->required();
   command->add_option("--device", *device,
-                      "of a set: what --set makes the same device");
+                      "Prints the --set values that make this device of a set");
   command->callback([path, device, &action] {
     action = [path, device] { return info(*path, *device); };
   });

@@ -13,7 +13,7 @@
 
 namespace beamgyro {
 
-/// A device file with the command's overrides in it.
+/// A device, with the overrides of the command applied.
 struct LoadedDevice {
   Device device;
   std::string text;  // byte for byte as read
@@ -21,33 +21,34 @@ struct LoadedDevice {
 LoadedDevice load_device(const std::filesystem::path& path,
                          const std::vector<std::string>& overrides);
 
-/// A scenario, its device, and the texts a recording keeps.
+/// A scenario, its device, and the texts that a recording stores.
 struct LoadedScenario {
   Scenario scenario;
   Device device;
   std::string scenario_text, device_text, overrides_text;
   std::vector<std::filesystem::path> files;  // all that were read
 };
-/// Throws std::invalid_argument for anything wrong in either file or in an
-/// override that neither of them knows.
+/// Reads a scenario and its device. Throws std::invalid_argument for an error
+/// in either file and for an override whose key neither of them has.
 LoadedScenario load_scenario(const std::filesystem::path& path,
                              const std::vector<std::string>& overrides);
 
-/// read_recording(), with a warning for a file without a checksum when the
-/// command has ended well.
+/// Reads a recording. For a file without a checksum it keeps a warning, which
+/// is printed when the command succeeds.
 Recording load_recording(const std::filesystem::path& path);
 
 /// Throws std::invalid_argument unless `path` ends in .h5 or .csv.
 void require_recording_name(const std::filesystem::path& path);
 
-/// Throws what writing to `output` would throw at its start, and
-/// std::invalid_argument when it is one of the files the command reads, under
-/// whatever name: the same file on the same disk. `inputs` are all of them,
-/// those that other inputs name, too; a directory is everything below it.
+/// Throws what writing to `output` would throw at its start. Throws
+/// std::invalid_argument when `output` is one of the files that the command
+/// reads, under whatever name. `inputs` has all files that the command reads,
+/// also those that other inputs name; a directory stands for everything below
+/// it.
 void require_output(const std::filesystem::path& output,
                     const std::vector<std::filesystem::path>& inputs);
 
-/// The same of the files that generate makes in a directory.
+/// The same for the files that `generate` makes in a directory.
 void require_set_output(const std::filesystem::path& directory,
                         const ManifestHead& head,
                         const std::vector<SourceText>& inputs);

@@ -55,7 +55,7 @@ int run_program(int argc, char** argv) {
   bool quiet = false;
   program.set_version_flag("--version", version_text());
   program.add_flag("-q,--quiet", quiet,
-                   "No notes and no progress, only errors");
+                   "Prints errors only, no notes and no progress");
   program.fallthrough();
   program.require_subcommand(1);
   add_characterise(program, action);

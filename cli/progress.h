@@ -11,24 +11,25 @@
 
 namespace beamgyro {
 
-/// While it lives, and once two seconds have passed, a line on standard error
-/// tells what is going on and for how long; gone at the end. Only on a terminal
-/// and not when quiet.
+/// Prints a line of progress on standard error while the object lives,
+/// beginning after two seconds, and removes it at the end. It prints on a
+/// terminal only, and nothing with --quiet.
 class Progress {
  public:
-  /// How much is done, 0 .. 1, and what else there is to tell.
+  /// Share of the work that is done, 0 .. 1, and further text for the line.
   struct Status {
     double share;
     std::string detail;
   };
 
   explicit Progress(std::string activity);
-  /// Long work: `status` is asked from another thread, and where there is no
-  /// terminal a plain line is printed once a minute.
+  /// For long work: another thread calls `status`. Where there is no terminal a
+  /// plain line is printed once a minute.
   Progress(std::string activity, std::function<Status()> status);
   ~Progress();
 
-  /// How much of the work is done, 0 .. 1; shown with what is left.
+  /// Sets the share of the work that is done, 0 .. 1. The line shows it with
+  /// the time left.
   void set_share(double share) { share_ = share; }
 
   Progress(const Progress&) = delete;

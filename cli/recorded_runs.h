@@ -8,12 +8,13 @@
 
 namespace beamgyro {
 
-/// The runs of recordings, each read when its turn comes; `paths` must outlive
-/// the source. A file that cannot be read throws as read_recording().
+/// Returns a source of recordings that reads each file when it is needed.
+/// `paths` must outlive the source. A file that cannot be read throws as
+/// read_recording().
 RunSource runs_of_files(const std::vector<std::string>& paths);
 
-/// Whether the paths are one directory, a set. Throws std::invalid_argument
-/// when there is a directory among several.
+/// Returns whether the paths are a single directory, that of a set. Throws
+/// std::invalid_argument when one of several paths is a directory.
 bool is_set(const std::vector<std::string>& paths);
 
 }  // namespace beamgyro

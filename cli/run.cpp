@@ -84,16 +84,19 @@ void add_run(CLI::App& program, Action& action) {
       ->required();
   command
       ->add_option("--set", arguments->overrides,
-                   "KEY=VALUE, overrides a key of the scenario or its device; "
+                   "KEY=VALUE replaces a key of the scenario or of its device; "
                    "may be repeated")
       ->allow_extra_args(false);
-  command->add_option("--seed", arguments->seed, "overrides the seed")
+  command
+      ->add_option("--seed", arguments->seed,
+                   "Replaces the seed of the scenario")
       ->check(CLI::NonNegativeNumber);
   command->add_option(
       "--fidelity", arguments->fidelity,
-      "overrides the fidelity: quasistatic, envelope or carrier");
-  command->add_flag("--yes", arguments->yes,
-                    "start a run that takes more than an hour");
+      "Replaces the fidelity: quasistatic, envelope or carrier");
+  command->add_flag(
+      "--yes", arguments->yes,
+      "Starts a carrier run even if it will take more than an hour");
   command->callback([arguments, &action] {
     action = [arguments] { return run(*arguments); };
   });

@@ -7,13 +7,14 @@
 
 namespace beamgyro {
 
-/// What a file of a set, or the directory of one, holds, as text. Throws
-/// std::invalid_argument for anything else.
+/// Describes the contents of a file of a set, or of the directory of a set.
+/// Throws std::invalid_argument for anything else.
 std::string info_on_shard(const std::filesystem::path& path);
 std::string info_on_set(const std::filesystem::path& path);
 
-/// KEY=VALUE lines that make device number `device` of the base device, and
-/// its runs of their scenarios, from the set's copy of the campaign.
+/// Returns the KEY=VALUE lines that turn the base device into device number
+/// `device`, and the scenarios into its runs. They are computed from the copy
+/// of the campaign in the set.
 std::string info_on_device(const std::filesystem::path& path,
                            std::uint32_t device);
 

@@ -3,8 +3,8 @@
 
 namespace beamgyro {
 
-/// SIGINT and SIGTERM remove the unfinished files of this process and end it
-/// with status 130 or 143.
+/// Makes SIGINT and SIGTERM remove the unfinished files of this process and end
+/// it with status 130 or 143.
 void handle_interrupts();
 
 }  // namespace beamgyro

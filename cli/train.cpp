@@ -160,29 +160,29 @@ void add_train(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<TrainArguments>();
   CLI::App* command = program.add_subcommand(
       "train",
-      "Fit a compensator to recordings of a gyro or to a set of gyros");
+      "Fit a compensator to recordings of one gyro, or to a set of gyros");
   command
       ->add_option("runs", arguments->runs,
                    "RUN.h5..., or the directory of a set")
       ->required();
   command->add_option("--model", arguments->model, "MODEL.toml")->required();
-  command->add_option("--held-out", arguments->held_out,
-                      "RUN.h5..., scored but not fitted; a network stops early "
-                      "on them");
+  command->add_option(
+      "--held-out", arguments->held_out,
+      "RUN.h5... are scored but not fitted; a network stops early on them");
   command
       ->add_option("--cv", arguments->cross_validation,
-                   "run, cycle or leg: cross-validate, holding out whole "
-                   "recordings, power cycles or legs between reversals of the "
-                   "temperature")
+                   "Cross-validates: holds out each recording (run), each "
+                   "power cycle (cycle) or each leg between reversals of the "
+                   "temperature (leg) in turn")
       ->check(CLI::IsMember({"run", "cycle", "leg"}));
   command->add_option("--run", arguments->set_runs,
-                      "NAME of a run of the set, all without");
+                      "NAME of a run of the set; the default is all of them");
   command->add_option("--device", arguments->set_devices,
-                      "NUMBER of a device of the set: this one alone, in place "
-                      "of those for training");
+                      "NUMBER of the device of a set to fit, in place of the "
+                      "training devices; may be repeated");
   command->add_option("-o,--output", arguments->output, "COMPENSATOR.json")
       ->required();
-  command->add_option("--seed", arguments->seed, "of the initial weights")
+  command->add_option("--seed", arguments->seed, "Seed of the initial weights")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->callback([arguments, &action] {

@@ -110,28 +110,29 @@ int run_validation(const ValidateArguments& arguments) {
 
 void add_validate(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ValidateArguments>();
-  CLI::App* command = program.add_subcommand(
-      "validate",
-      "Score a compensator against the true rate; status 3 when it fails");
+  CLI::App* command =
+      program.add_subcommand("validate",
+                             "Score a compensator against the true rate; the "
+                             "status is 3 when a check fails");
   command->add_option("compensator", arguments->compensator, "COMPENSATOR.json")
       ->required();
   command
       ->add_option("runs", arguments->runs,
-                   "RUN.h5..., which training must not have seen, or the "
-                   "directory of a set: its test devices")
+                   "RUN.h5... that training has not seen, or the directory of "
+                   "a set, whose test devices are scored")
       ->required();
   command->add_option("--run", arguments->set_runs,
-                      "NAME of a run of the set, all without");
+                      "NAME of a run of the set; the default is all of them");
   command->add_option("--device", arguments->set_devices,
-                      "NUMBER of a device of the set, in place of those for "
-                      "testing");
+                      "NUMBER of the device of a set to score, in place of the "
+                      "test devices; may be repeated");
   command
       ->add_option("--full-scale", arguments->full_scale,
-                   "DEG_PER_S, the largest rate replayed; without, what the "
-                   "recording's device file says, else 150")
+                   "Largest rate that is replayed, in deg/s; the default is "
+                   "that of the recording's device file, or 150 for a log")
       ->check(CLI::PositiveNumber);
   command->add_option("--json", arguments->json,
-                      "FILE, every score in machine-readable form");
+                      "FILE to write every score to");
   command->callback([arguments, &action] {
     action = [arguments] { return run_validation(*arguments); };
   });

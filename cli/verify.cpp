@@ -183,13 +183,15 @@ int verify(const VerifyArguments& arguments) {
 void add_verify(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* command = program.add_subcommand(
-      "verify", "Check every byte of a set against its manifest");
+      "verify", "Compare every byte of a set with its manifest");
   command->add_option("directory", arguments->directory, "DIR")->required();
-  command->add_flag("--repair", arguments->repair,
-                    "make damaged and missing files again");
+  command->add_flag(
+      "--repair", arguments->repair,
+      "Makes damaged and missing files again, with the same bytes");
   command
-      ->add_option("--jobs", arguments->jobs,
-                   "threads of the repair; as many as there are cores without")
+      ->add_option(
+          "--jobs", arguments->jobs,
+          "Number of threads of the repair; the default is one per core")
       ->check(CLI::Range(1, 4096));
   command->callback([arguments, &action] {
     action = [arguments] { return verify(*arguments); };

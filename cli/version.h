@@ -8,7 +8,7 @@ namespace beamgyro {
 extern const char* const kGitRevision;  // "unknown" outside a git checkout
 extern const char* const kProgramVersion;
 
-/// Program, revision and libraries, for --version.
+/// Returns program, revision and libraries for --version.
 std::string version_text();
 
 }  // namespace beamgyro
