@@ -19,10 +19,10 @@
 
 namespace beamgyro {
 
-/// What a device's data are for.
+/// What the data of a device are used for.
 enum class Part : std::uint8_t { kTrain, kValidation, kTest };
 
-/// What files of the set hold.
+/// Variables, precision and sample rate of the files of the set.
 struct CampaignOutput {
   std::vector<std::string> variables;  // names to keep; empty: all
   std::string variables_place;         // file:line:column: key
@@ -55,21 +55,22 @@ struct VirtualRun {
 
 struct CampaignState;
 
-/// A population of devices and what each of them goes through, from a campaign
+/// A population of devices and the runs of each of them, read from a campaign
 /// file (docs/reference/campaign_file.md). Immutable; its const members may be
 /// called by many threads at once, and what they return depends on the
 /// campaign's files and their arguments alone.
 class Campaign {
  public:
-  /// `devices` replaces the number of the file. Checks the base device, every
-  /// scenario, every choice and the median of every distribution. Throws
-  /// std::invalid_argument "file:line:column: key: ...".
+  /// Reads a campaign. `devices` replaces the number of devices in the file.
+  /// Checks the base device, every scenario, every choice and the median of
+  /// every distribution. Throws std::invalid_argument "file:line:column: key:
+  /// ...".
   static Campaign read(const std::filesystem::path& file,
                        std::optional<long> devices = {});
 
-  /// The same of the copies that a set keeps, the campaign's first, and of
-  /// nothing else: who made the set may have named any file. Throws
-  /// std::invalid_argument for a file that has no copy, too.
+  /// The same from the copies that a set keeps, the campaign first. It reads no
+  /// other file, because the maker of the set may have named any file. Also
+  /// throws std::invalid_argument for a file that has no copy.
   static Campaign of_copies(std::span<const SourceText> copies,
                             std::optional<long> devices = {});
 
@@ -82,24 +83,27 @@ class Campaign {
   const std::vector<CampaignRun>& runs() const;
   const Device& base_device() const;
   const std::string& device_text() const;
-  /// As the file says, with the campaign's seed.
+  /// Returns the scenario of a run as its file says, with the seed of the
+  /// campaign.
   const Scenario& base_scenario(std::size_t run) const;
-  /// Campaign, device, scenarios and their profiles in the order of reading.
+  /// Returns campaign, device, scenarios and their profiles in the order of
+  /// reading.
   const std::vector<SourceText>& sources() const;
 
   const std::vector<DrawnParameter>& parameters() const;
   const std::vector<DrawnParameter>& run_parameters(std::size_t run) const;
 
-  /// Whether devices may differ in this dotted key of the device file.
+  /// Returns whether devices may differ in this dotted key of the device file.
   bool is_drawn(std::string_view device_key) const;
-  /// The axes that some device moves in a run.
+  /// Returns the axes that some device moves in a run.
   const MovedAxes& moved_axes(std::size_t run) const;
 
-  /// Device number `index`, which may lie beyond devices().
+  /// Draws device number `index`, which may be larger than devices().
   VirtualDevice device(std::uint32_t index) const;
-  /// Its scenario in a run, with the campaign's seed.
+  /// Draws the scenario of a device in a run, with the seed of the campaign.
   VirtualRun run(std::size_t run, std::uint32_t device) const;
-  /// By the device's own random number, whatever the number of devices.
+  /// Returns the part of a device. It depends on a random number of the device
+  /// and not on the number of devices.
   Part part(std::uint32_t device) const;
 
  private:

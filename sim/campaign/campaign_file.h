@@ -14,7 +14,7 @@
 
 namespace beamgyro {
 
-/// Everything a campaign file says, read and checked.
+/// The contents of a campaign file, read and checked.
 struct CampaignState {
   std::string name, text;
   std::uint32_t devices = 0, devices_per_file = 0;
@@ -30,7 +30,7 @@ struct CampaignState {
   std::optional<Gyro> base_gyro;  // where a trim is left out
   DrawPlan device_plan;
 
-  // One of each per run.
+  // One entry of each for each run.
   std::vector<CampaignRun> runs;
   std::vector<ConfigDocument> scenario_documents;
   std::vector<Scenario> scenarios;

@@ -10,7 +10,7 @@
 
 namespace beamgyro {
 
-/// A distribution and, of a discrete one, its choices as they stand in the
+/// A distribution. A discrete one also has its choices as they stand in the
 /// file.
 struct FileDistribution {
   Distribution distribution;

@@ -14,8 +14,8 @@
 
 namespace beamgyro {
 
-/// A number drawn for each device: a variable over device in data sets. The
-/// name is an identifier: "patches_offset_m_0".
+/// A number that is drawn for each device. Sets store it as a variable over
+/// device. The name is an identifier such as "patches_offset_m_0".
 struct DrawnParameter {
   std::string name, units, long_name;
 };
@@ -35,31 +35,31 @@ struct Draw {
 /// The dotted key.
 std::string key_of(const Draw& draw);
 
-/// All that is drawn for a device, or for one run of it.
+/// Everything that is drawn for a device, or for one run of it.
 struct DrawPlan {
   std::vector<Draw> draws;
-  // One of each per number, in the order of the draws.
+  // One entry of each for each number, in the order of the draws.
   std::vector<DrawnParameter> parameters;
   std::vector<std::uint32_t> streams;
   std::size_t first_dimension = 0;  // of the Sobol' points
   std::vector<CorrelatedGroup> groups;
 };
 
-/// Values of one device in the order of the draws.
+/// The drawn values of one device, in the order of the draws.
 struct DrawnValues {
   std::vector<double> parameters;  // one per DrawPlan::parameters
   std::vector<ConfigNode> values;  // one per DrawPlan::draws
 };
 
-/// The value of one key for independent uniform numbers, one per element;
-/// appends its parameters.
+/// Returns the value of one key for independent uniform numbers, one for each
+/// element, and appends its parameters.
 ConfigNode drawn_value(const Draw& draw, const double* uniform,
                        std::vector<double>& parameters);
 
 DrawnValues drawn_values(const DrawPlan& plan, const UniformSource& source,
                          std::uint32_t device);
 
-/// The values as overrides of the file they belong to.
+/// Returns the values as overrides of the file that they belong to.
 Overrides overrides_of(const DrawPlan& plan,
                        const std::vector<ConfigNode>& values);
 

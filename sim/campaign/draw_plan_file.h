@@ -25,17 +25,17 @@ Draw read_draw(const ConfigTable& table, const std::string& key,
                const std::string& target, const DrawnFile& file);
 
 /// Adds a draw and its parameters. `run` is the name of the run, empty for the
-/// device. `taken` are the streams of the campaign so far; throws
-/// std::invalid_argument when a name or a stream is there already, or when one
-/// key holds another.
+/// device. `taken` has the streams of the campaign so far. Throws
+/// std::invalid_argument when a name or a stream is used already, or when one
+/// key contains another.
 void add_draw(const Draw& draw, const std::string& run, DrawPlan& plan,
               std::set<std::uint32_t>& taken);
 
-/// The median of every number at once. Throws std::invalid_argument for what
-/// the file rejects then.
+/// Checks the file with the median of every number. Throws
+/// std::invalid_argument for what the file rejects.
 void check_medians(const DrawPlan& plan, const DrawnFile& file);
 
-/// [[correlated]] groups among the scalar keys of the plan.
+/// Reads the [[correlated]] groups, whose keys are scalar keys of the plan.
 std::vector<CorrelatedGroup> read_correlated(
     const std::vector<ConfigTable>& tables, const DrawPlan& plan);
 

@@ -6,8 +6,8 @@
 
 namespace beamgyro {
 
-/// Unit that the end of a key names, as recordings write it: degree/s of
-/// "offset_trim_deg_per_s"; "1" when it names none.
+/// Returns the unit that the end of a key names, spelled as in recordings:
+/// "degree/s" for "offset_trim_deg_per_s", "1" when it names none.
 std::string units_of(std::string_view key);
 
 }  // namespace beamgyro

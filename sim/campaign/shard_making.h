@@ -19,7 +19,7 @@
 
 namespace beamgyro {
 
-/// What is done so far, for whoever watches.
+/// Counts of the work that is done so far. Other threads may read them.
 struct GenerationCounts {
   std::atomic<std::uint64_t> device_runs{0}, failures{0};
 };
@@ -31,16 +31,19 @@ struct MadeShard {
 };
 
 /// Makes shard files one after the other. The bytes of a file depend on the
-/// campaign alone, not on what the maker made before. One per thread: each
-/// integrator in it has a SUNDIALS context of its own.
+/// campaign alone, not on what the maker made before. Use one object per
+/// thread: each integrator in it has its own SUNDIALS context.
 class ShardMaker {
  public:
   explicit ShardMaker(const ShardPlan& plan) : plan_(plan) {}
 
-  /// A device that cannot be built or simulated is a row of fill values with
-  /// its reason, and one of the failures: that is std::invalid_argument and
-  /// SimulationFailure of its drawing and simulation, and UnstorableSamples.
-  /// Any other exception is no property of a device and goes to the caller.
+  /// Makes one file. A device that cannot be built or simulated becomes a row
+  /// of fill values and is listed as a failure with its reason. Only these
+  /// exceptions count as that:
+  /// - std::invalid_argument and SimulationFailure from drawing and simulating
+  ///   it;
+  /// - UnstorableSamples.
+  /// Any other exception goes to the caller.
   MadeShard make(std::uint32_t file, GenerationCounts& counts);
 
  private:

@@ -11,13 +11,13 @@
 
 namespace beamgyro {
 
-/// Which program makes a set; part of its files.
+/// Version and revision of the program that makes a set. Files contain them.
 struct ProgramRevision {
   std::string version, git_revision;
 };
 
-/// The files a campaign makes, in the order of the manifest: each holds the
-/// devices of one range in one run (docs/reference/set.md).
+/// The files of a campaign in the order of the manifest. Each holds the devices
+/// of one range in one run (docs/reference/set.md).
 class ShardPlan {
  public:
   /// Simulates two samples of every run with the base device to learn its
@@ -29,15 +29,17 @@ class ShardPlan {
   std::uint32_t run_of(std::uint32_t file) const;
   std::uint32_t range_of(std::uint32_t file) const;
   ShardHead head_of(std::uint32_t file) const;
-  /// Whether recordings of a run may have this column, kept or not.
+  /// Returns whether recordings of a run may have this column, whether or not
+  /// it is stored.
   bool has_column(std::uint32_t run, const std::string& name) const;
 
-  /// Devices of `files` together.
+  /// Returns the number of device runs in `files`.
   std::uint64_t device_runs(const std::vector<std::uint32_t>& files) const;
-  /// Mean length of a run [s].
+  /// Returns the mean length of a run [s].
   double run_duration() const;
 
-  /// Values of the largest file, before deflation [bytes].
+  /// Returns the size of the values of the largest file before compression
+  /// [bytes].
   double largest_file() const;
 
   const Campaign& campaign() const { return *campaign_; }

@@ -10,17 +10,17 @@
 
 namespace beamgyro {
 
-/// The number of the stream called `name` (CRC-32 of ISO 3309).
+/// Returns the number of the stream called `name` (CRC-32 of ISO 3309).
 std::uint32_t stream_number(std::string_view name);
 
-/// Where the uniform numbers of a campaign come from: a random stream of its
-/// own for each name, or the coordinates of Sobol' points.
+/// The source of the uniform numbers of a campaign: a random stream for each
+/// name, or the coordinates of Sobol' points.
 struct UniformSource {
   std::uint64_t seed = 0;
   std::optional<ScrambledSobol> sobol;
 
-  /// In (0, 1); depends on seed, device and stream alone, or on seed, device
-  /// and dimension.
+  /// Returns a number in (0, 1). It depends on seed, device and stream alone,
+  /// or on seed, device and dimension.
   double number(std::uint32_t device, std::uint32_t stream,
                 std::size_t dimension) const;
 };

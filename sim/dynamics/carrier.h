@@ -10,8 +10,8 @@
 
 namespace beamgyro {
 
-/// Places of the carrier's state, those of the electronics as in
-/// EnvelopeState. Positions are relative to A_ref, velocities to w_nom A_ref.
+/// Indices of the state vector of CarrierOde. Those of the electronics are as
+/// in EnvelopeState. Positions are divided by A_ref, velocities by w_nom A_ref.
 enum CarrierState {
   kPosition = 0,       // x, y
   kVelocity = 2,       // x', y'
@@ -19,27 +19,28 @@ enum CarrierState {
   kCarrierStates = 21
 };
 
-/// The two modes as they vibrate (2.1), with every term, and the loops of
-/// loop_electronics.h working on the vibration itself: forces
-/// Re[Theta_p V_p e^{i theta}], demodulation by 2 e^{-i theta}, ripple at twice
-/// the carrier included. Beam and board temperature stay as set_temperatures()
-/// left them. Time counts from begin_window(), which keeps the phase exact over
-/// hours.
+/// The differential equation of the carrier run: the two modes as they vibrate
+/// (2.1), with every term, and the loops of loop_electronics.h, which act on
+/// the vibration itself. Forces are Re[Theta_p V_p e^{i theta}]. Demodulation
+/// multiplies by 2 e^{-i theta}, so its ripple at twice the carrier is
+/// included. Temperatures are those of the last set_temperatures(). Time counts
+/// from the last begin_window(), which keeps the phase exact over hours. Not
+/// safe for use by two threads at once.
 class CarrierOde {
  public:
   explicit CarrierOde(const Gyro& gyro);
 
   void set_temperatures(double beam, double board);  // [K]
 
-  /// Time 0 is now: `y`, at time `elapsed` of the window before, keeps its
-  /// meaning.
+  /// Starts a new window of time at `elapsed` [s] of the present one. A state
+  /// vector at that time stays valid as the state at time 0 of the new window.
   void begin_window(double elapsed);
 
   static Eigen::VectorXd at_rest() {
     return Eigen::VectorXd::Zero(kCarrierStates);
   }
 
-  /// dy/dt at `t` [s] of the window.
+  /// Writes dy/dt at time `t` [s] of the window to `dydt`.
   void rate(double t, const CaseMotion& motion,
             const Eigen::Ref<const Eigen::VectorXd>& y,
             Eigen::Ref<Eigen::VectorXd> dydt) const;
@@ -55,7 +56,7 @@ class CarrierOde {
   double phase_tc_, phase_tc2_;
   double window_phase_ = 0;  // theta - residual at time 0 of the window [rad]
 
-  // Of the temperatures set last.
+  // At the temperatures set last.
   Eigen::Matrix2d stiffness_, damping_;     // per mass
   Eigen::Vector2cd drive_, damping_patch_;  // per mass and A_ref [1/(s2 V)]
   Eigen::RowVector2cd feedback_, readout_;  // per A_ref

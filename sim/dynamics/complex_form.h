@@ -8,26 +8,28 @@ namespace beamgyro {
 
 inline constexpr std::complex<double> kI(0, 1);
 
-/// The complex number whose parts are the elements i and i + 1 of `y`.
+/// Returns y_i + i y_{i+1} as a complex number.
 inline std::complex<double> complex_at(
     const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::Index i) {
   return {y(i), y(i + 1)};
 }
 
-/// Writes the parts of `value` to the elements i and i + 1 of `y`.
+/// Writes real and imaginary part of `value` to the elements i and i + 1 of
+/// `y`.
 template <class Vector>
 void put(Vector& y, Eigen::Index i, std::complex<double> value) {
   y(i) = value.real();
   y(i + 1) = value.imag();
 }
 
-/// The unconjugated product Theta^T u: the charge of an electrode pair.
+/// Returns the charge of an electrode pair, the unconjugated product Theta^T u.
 inline std::complex<double> charge_of(const Eigen::Vector2cd& coupling,
                                       const Eigen::Vector2cd& u) {
   return coupling.transpose() * u;
 }
 
-/// A complex 2 x 2 matrix as a real one: [[a, -b], [b, a]] for each element.
+/// Returns a complex 2 x 2 matrix as a real 4 x 4 one, with the block [[a, -b],
+/// [b, a]] for each element a + i b.
 inline Eigen::Matrix4d real_form(const Eigen::Matrix2cd& matrix) {
   Eigen::Matrix4d real;
   for (Eigen::Index i = 0; i < 2; ++i) {

@@ -10,8 +10,9 @@
 
 namespace beamgyro {
 
-/// Places of the envelope's state. Complex numbers take two places, real part
-/// first. Amplitudes are relative to A_ref, signals are rates [rad/s].
+/// Indices of the state vector of EnvelopeOde. A complex number takes two
+/// entries, real part first. Amplitudes are divided by A_ref; signals are rates
+/// [rad/s].
 enum EnvelopeState {
   kAmplitude = 0,      // U = u/A_ref, complex X then Y
   kFeedback1 = 4,      // i_1, q_1
@@ -26,31 +27,34 @@ enum EnvelopeState {
   kEnvelopeNodes = 20  // the state of ThermalOde
 };
 
-/// What acts on the gyro at one moment.
+/// Inputs of the gyro at one moment.
 struct EnvelopeInputs {
   CaseMotion motion;
   ThermalSurroundings surroundings;
   bool powered = false;
 };
 
-/// Amplitudes of both modes on their slow manifold (2.13, see EnvelopePlant),
-/// the loops of loop_electronics.h and the thermal network (4.1) as one system;
+/// The differential equation of the envelope run: the amplitudes of both modes
+/// on their slow manifold (2.13, see EnvelopePlant), the loops of
+/// loop_electronics.h and the thermal network (4.1) as one system. The force is
 /// f = (Theta_D V_D + Theta_B V_B)/(m A_ref). Without power the amplitudes and
-/// the electronics rest. Not safe for use by two threads at once.
+/// the states of the electronics stay as they are. Not safe for use by two
+/// threads at once.
 class EnvelopeOde {
  public:
   EnvelopeOde(const Gyro& gyro, const DriveHeating& heating);
 
   Eigen::Index size() const { return kEnvelopeNodes + thermal_.size(); }
 
-  /// Every node at `temperature` [K], everything else at rest.
+  /// Returns the state with every node at `temperature` [K] and everything else
+  /// at rest.
   Eigen::VectorXd at_rest(double temperature) const;
 
   void rate(const EnvelopeInputs& inputs,
             const Eigen::Ref<const Eigen::VectorXd>& y,
             Eigen::Ref<Eigen::VectorXd> dydt);
 
-  /// d(dy/dt)_i / dy_j.
+  /// Writes the Jacobian d(dy/dt)_i / dy_j.
   void jacobian(const EnvelopeInputs& inputs,
                 const Eigen::Ref<const Eigen::VectorXd>& y,
                 Eigen::Ref<Eigen::MatrixXd> slope);

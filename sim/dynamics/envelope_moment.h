@@ -8,13 +8,15 @@
 
 namespace beamgyro {
 
-/// Couplings of a point of the modal table, or of its slope.
+/// The couplings at a point of the modal table, or their slopes over
+/// temperature.
 struct EnvelopeCouplings {
   Eigen::Vector2cd drive, damping;        // Theta/(m A_ref) [1/(s2 V)]
   Eigen::RowVector2cd feedback, readout;  // U to U_F, and to charge [C]
 };
 
-/// What the equations need of modal parameters, motion and board.
+/// The coefficients of the envelope's equations at one beam temperature, motion
+/// of the case and board temperature.
 struct EnvelopeCoefficients {
   EnvelopeCouplings couplings;
   Eigen::Matrix2d stiffness, velocity;  // of EnvelopePlant
@@ -22,7 +24,7 @@ struct EnvelopeCoefficients {
   double turn_slope;                    // d phi_el / dT_board [rad/K]
 };
 
-/// What a state says.
+/// The physical quantities that a state of EnvelopeOde stands for.
 struct EnvelopeMoment {
   Eigen::Vector2cd U;
   double i1, q1, i2, q2;
@@ -34,7 +36,7 @@ struct EnvelopeMoment {
   Eigen::Vector2cd force, force_rate;
 };
 
-/// Below, |i + jq| has no slope.
+/// Below this amplitude the slope of |i + jq| is taken as 0.
 inline constexpr double kNoAmplitude = 1e-12;
 
 }  // namespace beamgyro

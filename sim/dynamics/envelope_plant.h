@@ -11,8 +11,8 @@ namespace beamgyro {
 ///   P = 2 i w + V,  S_0 = K - w^2 + i w V,  R = P^-1,
 ///   B = (1 + R R S_0) R,  A = -B S_0,  D = R R.
 ///
-/// K [1/s2] is the stiffness with the centrifugal terms, without the Euler
-/// force; V [1/s] the force per velocity, damping and Coriolis; w = theta'.
+/// K [1/s2] is the stiffness with the centrifugal terms and without the Euler
+/// force. V [1/s] is the force per velocity, damping and Coriolis. w = theta'.
 class EnvelopePlant {
  public:
   EnvelopePlant(const Eigen::Matrix2d& stiffness,
@@ -22,12 +22,13 @@ class EnvelopePlant {
   const Eigen::Matrix2cd& from_force() const { return b_; }
   const Eigen::Matrix2cd& from_force_rate() const { return d_; }
 
-  /// Derivatives of A, B, D.
+  /// Derivatives of A, B and D by one parameter.
   struct Slope {
     Eigen::Matrix2cd A, B, D;
   };
   Slope by_frequency() const;
-  /// By any parameter that moves stiffness and velocity at these rates.
+  /// Returns the derivatives by a parameter, given the derivatives of K and V
+  /// by it.
   Slope by(const Eigen::Matrix2d& stiffness,
            const Eigen::Matrix2d& velocity) const;
 

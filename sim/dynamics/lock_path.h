@@ -9,23 +9,24 @@ namespace beamgyro {
 
 struct Gyro;
 
-/// The frequency at which one gyro's drive loop locks at rest, followed from
-/// T_0 to other beam temperatures: of several stable locks it tells which one
-/// continues that of T_0. Filled on demand, for one gyro; not safe for use by
-/// two threads at once.
+/// The frequency at which the drive loop of one gyro locks at rest, followed
+/// from T_0 to other beam temperatures. Where there are several stable locks it
+/// says which of them continues the lock at T_0. The path is computed on
+/// demand. Use one object for one gyro only, and in one thread at a time.
 class LockPath {
  public:
-  /// w_d at beam temperature `T` [K] in rad/s; 0 where the lock of T_0 ends
-  /// before.
+  /// Returns w_d [rad/s] at beam temperature `T` [K], or 0 when the lock of T_0
+  /// ends before T.
   double at(const Gyro& gyro, double T);
 
  private:
   std::vector<double> colder_, warmer_;  // at T_0 -+ k steps; 0: ended
 };
 
-/// static_solution() at `modal`; of several stable locks the one nearest to
-/// `guess` [rad/s] or, with 0, the one that continues that of T_0 as `path` of
-/// this gyro knows it. Where none does, the one of the lowest voltage.
+/// Returns static_solution() at `modal`. Of several stable locks it takes the
+/// one nearest to `guess` [rad/s]. If `guess` is 0 it takes the one that
+/// continues the lock at T_0 according to `path`, or where none does, the one
+/// with the lowest voltage.
 StaticSolution static_solution(const Gyro& gyro, const ModalParameters& modal,
                                const CaseMotion& motion, LockPath& path,
                                double guess = 0);

@@ -7,19 +7,19 @@
 
 namespace beamgyro {
 
-/// The loops around the beam (2.1, 2.5): what the envelope and the carrier
-/// share. With the demodulated feedback (i, q) = (cos, sin) parts of
-/// s_F = -Theta_F^T q / (|Theta_Fx(T_0)| A_ref) behind two poles w_f:
+/// The loops around the beam (2.1, 2.5), shared by envelope and carrier. (i, q)
+/// are the (cos, sin) parts of the demodulated feedback s_F = -Theta_F^T q /
+/// (|Theta_Fx(T_0)| A_ref) behind two poles w_f:
 ///
 ///   a = sqrt(i^2 + q^2),  delta = g(a) (atan2(i, q) - phi_pll)
 ///   theta' = w_nom + K_p delta + xi,         xi' = K_i delta
 ///   V_D = V_0 (K_pA e_A + eta), |V_D| <= V_max,  eta' = K_iA e_A,  e_A = 1 - a
 ///
-/// g rises smoothly from 0 to 1 between kDetectionStart and kDetectionEnd: a
-/// phase detector needs a signal, and a beam at rest has no phase.
+/// g rises smoothly from 0 at kDetectionStart to 1 at kDetectionEnd, because a
+/// phase detector needs a signal and a beam at rest has no phase.
 ///
-/// Readout, with phi_el of the board in the reference of every demodulator and
-/// modulator but the drive's:
+/// The readout. phi_el of the board turns the reference of every demodulator
+/// and modulator except that of the drive:
 ///
 ///   r = (Theta_R^T u + C_ft V_D) e^{i phi_el} / charge_axis -> two poles w_f
 ///   open loop:        z = r filtered
@@ -27,8 +27,8 @@ namespace beamgyro {
 ///                     e^{-i phi_el}, k_P = k_I / (1/tau_y - i Delta')
 ///   output = Re z -> two poles w_o, quadrature = -Im z -> two poles w_o
 ///
-/// charge_axis is d(charge)/dOmega in open loop; with force rebalance it is
-/// H_0 voltage_axis, H_0 the response of the charge to V_B.
+/// charge_axis is d(charge)/dOmega in open loop. With force rebalance it is H_0
+/// voltage_axis, where H_0 is the response of the charge to V_B.
 struct LoopElectronics {
   double nominal_frequency;   // w_nom, w_d at T_0 [rad/s]
   double nominal_voltage;     // V_0, V_D at T_0 [V]
@@ -56,13 +56,13 @@ inline constexpr double kDetectionEnd = 0.02;
 
 LoopElectronics loop_electronics(const Gyro& gyro);
 
-/// g(a) and its slope.
+/// g(a) and dg/da.
 struct Detection {
   double gain, slope;
 };
 Detection phase_detection(double amplitude);
 
-/// What the loops make of their states at one moment.
+/// Quantities that the loops compute from their states at one moment.
 struct DriveSignals {
   double amplitude;  // a
   double phase;      // atan2(i_2, q_2) - phi_pll [rad]

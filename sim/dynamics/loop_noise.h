@@ -6,16 +6,17 @@
 
 namespace beamgyro {
 
-/// The state in which amplitudes, loops and filters stand still with the beam
-/// at `T_beam` and the board at `T_board` [K]. Throws as static_solution().
+/// Returns the steady state of amplitudes, loops and filters with the beam at
+/// `T_beam` and the board at `T_board` [K]. Throws as static_solution().
 Eigen::VectorXd settled_state(const Gyro& gyro, const EnvelopeOde& ode,
                               const CaseMotion& motion, double T_beam,
                               double T_board);
 
-/// Brownian, dielectric and amplifier noise through amplitudes, loops and
-/// filters: the envelope linear about its settled state at rest, in the places
-/// of EnvelopeState, without kRebalance in open loop. State kOutput2 is the
-/// noise of the output [rad/s], kOutput2 + 1 minus that of the quadrature.
+/// Returns the linear system that carries Brownian, dielectric and amplifier
+/// noise through amplitudes, loops and filters: the envelope linearised about
+/// its steady state at rest. States have the indices of EnvelopeState, without
+/// kRebalance in open loop. State kOutput2 is the noise of the output [rad/s],
+/// kOutput2 + 1 is minus that of the quadrature.
 NoiseSystem loop_noise(const Gyro& gyro, EnvelopeOde& ode, double T_beam,
                        double T_board);
 

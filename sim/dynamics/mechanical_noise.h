@@ -9,19 +9,19 @@ namespace beamgyro {
 
 inline constexpr double kBoltzmann = 1.380649e-23;  // k_B, exact [J/K]
 
-/// Noise of the mechanics and in front of the demodulators at one temperature,
-/// as one-sided densities around the drive frequency. Charges are those of one
-/// patch with its charge amplifier; the readout and the feedback patch each
-/// have their own.
+/// One-sided noise densities around the drive frequency at one temperature: of
+/// the force on the modes, and of the charges in front of the demodulators.
+/// Charges are those of one patch with its charge amplifier; the readout patch
+/// and the feedback patch each have their own.
 struct NoiseDensities {
   Eigen::Matrix2d force;  // 4 k_B T C on both modes [N2/Hz]
   double dielectric;      // 4 k_B T tan(delta) C_p / w_d [C2/Hz]
   double amplifier;       // (e_n (C_p + C_f + C_in))^2 [C2/Hz]
 };
 
-/// All of them at beam temperature T [K], with the modal parameters of that
-/// temperature and drive frequency w_d [rad/s]. Throws std::invalid_argument
-/// for a temperature or a frequency not above 0.
+/// Returns all densities at beam temperature T [K]. `modal` belongs to that
+/// temperature, w_d [rad/s] is the drive frequency. Throws
+/// std::invalid_argument for a temperature or a frequency not above 0.
 NoiseDensities noise_densities(const Device& device,
                                const ModalParameters& modal, double T,
                                double drive_frequency);
@@ -32,14 +32,14 @@ NoiseDensities noise_densities(const Device& device,
 /// which is one-sided density 2 S_1. So a demodulator with pole w_f behind
 /// charge noise has the input w_f sqrt(S_1) dW in each of its two channels.
 ///
-/// What the force noise does to the amplitudes, q = Re[u e^{i theta}]:
+/// The force noise drives the amplitudes, q = Re[u e^{i theta}]:
 ///   dz = A z dt + input dW,   u dt = z dt + direct dW,
-/// with a complex dW for each mode, in the places Re X, Im X, Re Y, Im Y. With
-/// P per mass, `input` is the residue of (2.10) at its slow root,
+/// with a complex dW for each mode, ordered Re X, Im X, Re Y, Im Y. With P per
+/// mass, `input` is the residue of (2.10) at its slow root,
 ///   R = (P + 2 A)^-1 / m,    input = R sqrt(4 k_B T C),
-/// which gives every mode <|Y|^2> = 2 k_B T / k; one mode alone has
-/// s^2 = 2 k_B T / (k tau) in each channel. `direct` is what the fast root
-/// leaves at low frequencies,
+/// which gives every mode <|Y|^2> = 2 k_B T / k; one mode alone has s^2 = 2 k_B
+/// T / (k tau) in each channel. `direct` is what the fast root leaves at low
+/// frequencies,
 ///   direct = -(P + A)^-1 input,
 /// and makes u the static S^-1 f there; without it that limit is off by
 /// Delta/w, 0.8 %. It belongs to the input of whatever filters u.
@@ -58,9 +58,9 @@ BrownianInput brownian_input(const Eigen::Matrix2d& force_density, double mass,
                              const Eigen::Matrix2d& velocity,
                              const Eigen::Matrix4d& A, double drive_frequency);
 
-/// Rate-equivalent white noise at frequencies well below every loop's and
-/// filter's bandwidth, by source; one-sided, at the output, so that it adds in
-/// quadrature to the white noise of the output stage:
+/// Rate-equivalent white noise by source, at frequencies well below the
+/// bandwidth of every loop and filter. Densities are one-sided at the output,
+/// so their squares add to that of the white noise of the output stage:
 ///   N = total() / sqrt(2)  [rad/sqrt(s)].
 struct RateNoiseDensity {
   double brownian, dielectric, amplifier;  // [rad/s/sqrt(Hz)]

@@ -10,9 +10,10 @@
 
 namespace beamgyro {
 
-/// What of (2.1) moves with the beam temperature, per mass: K/m [1/s2] and C/m
-/// [1/s] as xx, xy, yy, then Theta_p/m [N/(V kg)] of each patch as the real and
-/// imaginary part of its component along the patch's own direction r_p/|r_p|.
+/// The coefficients of (2.1) that depend on the beam's temperature, divided by
+/// the modal mass: K/m [1/s2] and C/m [1/s] as xx, xy, yy; then Theta_p/m [N/(V
+/// kg)] of each patch, as real and imaginary part of its component along the
+/// patch's direction r_p/|r_p|.
 enum ModalChannel {
   kStiffnessXx,
   kStiffnessXy,
@@ -28,14 +29,14 @@ using ModalChannels = Eigen::Array<double, kModalChannelCount, 1>;
 Eigen::Matrix2d stiffness_of(const ModalChannels& channels);  // K/m [1/s2]
 Eigen::Matrix2d damping_of(const ModalChannels& channels);    // C/m [1/s]
 
-/// Theta_p/m along the patch's direction [N/(V kg)].
+/// Returns Theta_p/m [N/(V kg)] along the direction of the patch.
 std::complex<double> coupling_of(const ModalChannels& channels, Patch patch);
 
-/// The modal parameters of one gyro over beam temperature, tabulated on demand:
-/// continuous cubics on cells of kModalGrid, which are cut where the glass
-/// transition of bond or mount puts a kink inside. The error in the zero-rate
-/// output of the nominal unit is below 1e-6 deg/s (a test holds it against the
-/// exact solution).
+/// The modal parameters of one gyro over beam temperature, tabulated on demand
+/// by continuous cubics on cells of kModalGrid. A cell is cut where the glass
+/// transition of bond or mount causes a kink. The error in the zero-rate output
+/// of the nominal unit is below 1e-6 deg/s (a test compares with the exact
+/// solution). Not safe for use by two threads at once.
 class ModalTable {
  public:
   explicit ModalTable(const Gyro& gyro);
@@ -43,17 +44,18 @@ class ModalTable {
   struct Point {
     ModalChannels value, slope;  // slope per K
   };
-  /// At beam temperature T [K]. Throws SimulationFailure outside
-  /// kColdestBeam .. kHottestBeam.
+  /// Returns the coefficients at beam temperature T [K] and their slopes.
+  /// Throws SimulationFailure outside kColdestBeam .. kHottestBeam.
   Point at(double T);
 
-  /// `channels` as matrices again.
+  /// Returns `channels` in the form of matrices and vectors.
   ModalParameters parameters(const ModalChannels& channels) const;
 
   const PerPatch<Eigen::Vector2d>& direction() const { return direction_; }
 
  private:
-  // Powers 0 .. 3 of the place within one of equal parts of a cell.
+  // Coefficients of the powers 0 .. 3 of the position within one of equal parts
+  // of a cell.
   using Cubic = std::array<ModalChannels, 4>;
   ModalChannels exact(double T) const;
   Cubic cubic(double left, double right) const;

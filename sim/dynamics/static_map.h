@@ -10,16 +10,16 @@
 
 namespace beamgyro {
 
-/// Static response of one gyro over a range of beam temperatures and rates,
-/// tabulated so that a sample costs some ten nanoseconds: Chebyshev polynomials
-/// in temperature on pieces that end at the kinks of the materials and are
-/// halved until the table agrees with the exact solution (2.10), times one
-/// Chebyshev polynomial in rate.
+/// Static response of one gyro, tabulated over a range of beam temperatures and
+/// rates, so that a sample costs some ten nanoseconds. The table holds
+/// Chebyshev polynomials in temperature, times one Chebyshev polynomial in
+/// rate. Pieces end at the kinks of the materials and are halved until the
+/// table agrees with the exact solution (2.10).
 class StaticMap {
  public:
-  /// Covers [low, high] [K] and rates up to +-`rate_limit` [rad/s]. The error
-  /// of the demodulated signal is below `tolerance` [rad/s], 1e-6 deg/s by
-  /// default.
+  /// Tabulates temperatures in [low, high] [K] and rates up to +-`rate_limit`
+  /// [rad/s]. The error of the demodulated signal stays below `tolerance`
+  /// [rad/s]; the default is 1e-6 deg/s.
   StaticMap(const Gyro& gyro, double low, double high, double rate_limit,
             double tolerance = 1.7e-8);
 
@@ -27,10 +27,12 @@ class StaticMap {
     BeamSignal at_rate;
     std::complex<double> at_rest;  // demodulated, twin at rate 0 [rad/s]
   };
-  /// T must lie in the tabulated range (to 1e-6 K), |rate| below its limit.
+  /// Returns the response at T [K], which must lie in the tabulated range (to
+  /// 1e-6 K), and at a rate [rad/s] below the limit.
   Signals at(double T, double rate) const;
 
-  /// at() of every pair; the three spans are equally long.
+  /// Writes at() of every pair of T and rate. The three spans have the same
+  /// length.
   void sample(std::span<const double> T, std::span<const double> rate,
               std::span<Signals> signals) const;
 

@@ -9,7 +9,7 @@
 
 namespace beamgyro {
 
-/// What the loops hold constant (2.1, 2.5).
+/// The quantities that the loops hold constant (2.1, 2.5).
 struct DriveLoop {
   double feedback_amplitude;  // |Theta_Fx(T_0)| A_ref [C]
   double pll_phase;           // phi_pll [rad]
@@ -35,17 +35,17 @@ struct StaticSolution {
 Eigen::Matrix2cd dynamic_stiffness(const ModalParameters& modal, double omega,
                                    const CaseMotion& motion);
 
-/// Exact steady state with the drive loop closed: a frequency at which
-/// delta = arg(-Theta_F^T u) + 90 deg - phi_pll is zero, u = S^-1 Theta_D V_D,
-/// and the voltage at which |Theta_F^T u| has its set value (2.1, 2.10). With
-/// force rebalance V_B is part of the solution (2.5).
+/// Returns the exact steady state with the drive loop closed: the frequency at
+/// which delta = arg(-Theta_F^T u) + 90 deg - phi_pll is zero, u = S^-1 Theta_D
+/// V_D, and the voltage at which |Theta_F^T u| has its set value (2.1, 2.10).
+/// With force rebalance V_B is part of the solution (2.5).
 ///
-/// The loop stays only where delta falls with the frequency. Two strongly
-/// coupled modes have two such stable locks with an unstable one between; then
-/// it is the one nearest to `guess` [rad/s] or, with 0, the one of the lowest
-/// voltage. Newton's method on the phase with its exact derivative, from
-/// `guess` or the drive mode's own frequency. Throws SimulationFailure when
-/// there is no stable lock.
+/// A lock is stable only where delta falls with the frequency. Two strongly
+/// coupled modes have two stable locks with an unstable one between them. Then
+/// the result is the lock nearest to `guess` [rad/s] or, if that is 0, the one
+/// with the lowest voltage. The method is Newton's on the phase, with its exact
+/// derivative, starting from `guess` or from the frequency of the drive mode.
+/// Throws SimulationFailure when there is no stable lock.
 StaticSolution static_solution(const ModalParameters& modal,
                                const DriveLoop& loop, double feedthrough,
                                const CaseMotion& motion, double guess = 0);

@@ -59,8 +59,8 @@ struct OdeStep {
 };
 
 /// Adaptive multistep integrator (SUNDIALS CVODE, modified Newton on a dense
-/// Jacobian). Each object owns its SUNDIALS context: objects in different
-/// threads do not touch each other. No SUNDIALS type leaves cvode.cpp.
+/// Jacobian). Each object owns its SUNDIALS context, so different objects may
+/// be used in different threads. No SUNDIALS type leaves cvode.cpp.
 class Cvode {
  public:
   /// Throws std::invalid_argument for tolerances that do not fit `y0`.
@@ -71,11 +71,12 @@ class Cvode {
   Cvode& operator=(Cvode&&) noexcept;
 
   /// Integrates to exactly `t_end` >= time() and returns y there. Neither the
-  /// right-hand side nor the Jacobian is evaluated beyond `t_end`, so a
-  /// discontinuity may stand there. `on_step` sees every internal step; the
-  /// steps join without a gap and the last ends at `t_end`. Rethrows what a
-  /// callback threw; throws SimulationFailure for a right-hand side that is
-  /// not finite and when CVODE gives up.
+  /// right-hand side nor the Jacobian is evaluated beyond `t_end`, so there may
+  /// be a discontinuity. `on_step` is called for every internal step; the steps
+  /// join without a gap and the last ends at `t_end`.
+  /// - Rethrows what a callback threw.
+  /// - Throws SimulationFailure for a right-hand side that is not finite and
+  ///   when CVODE gives up.
   const Eigen::VectorXd& advance_to(
       double t_end, const std::function<void(const OdeStep&)>& on_step = {});
 

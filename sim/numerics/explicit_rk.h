@@ -37,12 +37,12 @@ class ExplicitRk {
   ExplicitRk& operator=(ExplicitRk&&) noexcept;
 
   /// Integrates to exactly `t_end` >= time() and returns y there. The
-  /// right-hand side is not evaluated beyond `t_end`. Rethrows what it threw;
-  /// throws SimulationFailure for one that is not finite and when ARKODE gives
-  /// up.
+  /// right-hand side is not evaluated beyond `t_end`. Rethrows what the
+  /// right-hand side threw. Throws SimulationFailure when it is not finite and
+  /// when ARKODE gives up.
   const Eigen::VectorXd& advance_to(double t_end);
 
-  /// Goes on from another time or state, with the step size it had.
+  /// Continues from another time or state, with the same step size.
   void restart(double t, const Eigen::VectorXd& y);
 
   double time() const;

@@ -8,7 +8,7 @@
 
 namespace beamgyro {
 
-/// A line from one time to another.
+/// A straight line between two times.
 struct LinearStretch {
   double start, end;              // [s]
   double start_value, end_value;  // in the unit of the function
@@ -20,9 +20,10 @@ struct LinearStretch {
 /// first and after the last. Two points at the same time are a jump.
 class PiecewiseLinear {
  public:
-  /// Throws std::invalid_argument that names the first bad point: none at all,
-  /// unequal numbers of times and values, a number that is not finite, a time
-  /// that decreases, a third point at one time.
+  /// Throws std::invalid_argument that names the first bad point:
+  /// - there is no point, or the numbers of times and values differ;
+  /// - a number is not finite;
+  /// - a time decreases, or three points have the same time.
   PiecewiseLinear(std::vector<double> time, std::vector<double> value);
 
   static PiecewiseLinear constant(double value);
@@ -30,14 +31,15 @@ class PiecewiseLinear {
   double value(double t) const;         // the right-hand limit at a jump
   double value_before(double t) const;  // the left-hand limit at a jump
 
-  /// value() at non-decreasing times, in one pass.
+  /// Returns value() at non-decreasing times, in one pass.
   std::vector<double> sample(std::span<const double> times) const;
 
-  /// Between two times without a point between them: from the right-hand limit
-  /// at `start` to the left-hand limit at `end`.
+  /// Returns the line between two times that have no point between them: from
+  /// the right-hand limit at `start` to the left-hand limit at `end`.
   LinearStretch stretch(double start, double end) const;
 
-  /// Where the value or the slope may jump: the times of the points, each once.
+  /// Returns the times at which the value or the slope may jump: those of the
+  /// points, each once.
   std::vector<Border> borders() const;
 
   /// The points as given.

@@ -13,10 +13,11 @@ struct SampleGrid {
 
   double time(std::size_t k) const { return static_cast<double>(k) / rate; }
 
-  /// time() of `n` samples from `first` on.
+  /// Returns the times of `n` samples, beginning with sample `first`.
   std::vector<double> times(std::size_t first, std::size_t n) const;
 
-  /// The first sample at or after `t` [s], `count` when there is none.
+  /// Returns the index of the first sample at or after `t` [s], or `count` when
+  /// there is none.
   std::size_t first_from(double t) const;
 };
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <type_traits>
 
-// For the files of this folder that call SUNDIALS, and for no other.
+// Only the files of this folder that call SUNDIALS include this header.
 namespace beamgyro {
 
 static_assert(std::is_same_v<sunrealtype, double>);
@@ -36,8 +36,9 @@ using OwnedVector = Owned<N_Vector, FreeVector>;
 using OwnedMatrix = Owned<SUNMatrix, FreeMatrix>;
 using OwnedSolver = Owned<SUNLinearSolver, FreeSolver>;
 
-/// `absolute` with one entry per component. Throws std::invalid_argument when a
-/// tolerance is negative or their number does not fit.
+/// Returns `absolute` expanded to one entry for each component. Throws
+/// std::invalid_argument when a tolerance is negative or their number does not
+/// fit.
 Eigen::VectorXd full_tolerances(double relative,
                                 const Eigen::VectorXd& absolute,
                                 Eigen::Index size);
@@ -48,7 +49,8 @@ void require_finite(bool finite, const char* what, double t);
 /// Carries exceptions of callbacks across C frames, and SUNDIALS' own messages.
 class CallErrors {
  public:
-  /// Runs a callback; 0, or -1 (unrecoverable) when it threw.
+  /// Runs a callback and keeps its exception. Returns 0, or -1 (unrecoverable)
+  /// when it threw.
   template <class Work>
   int guarded(const Work& work) {
     try {
@@ -60,9 +62,9 @@ class CallErrors {
     }
   }
 
-  /// After a call of SUNDIALS: rethrows what a callback threw. For a negative
-  /// flag throws SimulationFailure, or std::runtime_error where memory or the
-  /// call itself is at fault.
+  /// Checks the flag that a call of SUNDIALS returned. Rethrows what a callback
+  /// threw. For a negative flag throws SimulationFailure, or std::runtime_error
+  /// where memory or the call itself is at fault.
   void check(int flag, const char* call);
 
   /// SUNErrHandlerFn; `user` is the CallErrors.

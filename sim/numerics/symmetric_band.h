@@ -22,8 +22,8 @@ struct SymmetricBand {
   Eigen::Matrix<double, Eigen::Dynamic, kHalf + 1> diagonals;
 };
 
-/// x of A x = b by Gaussian elimination with partial pivoting; A need not be
-/// definite. None when a pivot is 0.
+/// Solves A x = b by Gaussian elimination with partial pivoting. A need not be
+/// definite. Returns nothing when a pivot is 0.
 std::optional<Eigen::VectorXd> solved(const SymmetricBand& A,
                                       Eigen::VectorXd b);
 

@@ -5,14 +5,15 @@
 
 namespace beamgyro {
 
-/// A time at which an input bends or jumps.
+/// A time at which an input or its slope jumps.
 struct Border {
   double time;        // [s]
   bool jump = false;  // not only its slope changes there
 };
 
-/// Whether two times [s] differ by no more than the rounding of sums and
-/// quotients that mean the same time: 1e-9 s, beyond 70,000 s in proportion.
+/// Returns whether two times [s] differ by no more than the rounding of sums
+/// and quotients that stand for the same time: 1e-9 s, and in proportion beyond
+/// 70,000 s.
 bool is_same_time(double a, double b);
 
 /// A stretch of time in which every input is smooth: an input is its right-hand
@@ -22,11 +23,11 @@ struct Piece {
   bool jump;          // an input jumps at its start
 };
 
-/// The pieces of [0, end] between the `borders` inside, which come in any
-/// order. Borders at the same time (is_same_time()) are one: the piece before
-/// them ends at the first, the piece after them starts at the last, so that an
-/// input taken at `start` has made every jump and one taken just before `end`
-/// has made none.
+/// Divides [0, end] into pieces at the `borders` inside, which may come in any
+/// order. Borders at the same time (is_same_time()) count as one: the piece
+/// before them ends at the first, the piece after them starts at the last. So
+/// an input evaluated at `start` has made every jump, and one evaluated just
+/// before `end` has made none.
 std::vector<Piece> pieces_until(double end, std::vector<Border> borders);
 
 }  // namespace beamgyro

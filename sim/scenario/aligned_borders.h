@@ -5,12 +5,15 @@
 
 namespace beamgyro {
 
-/// The scenario with one time for what happens at one time (is_same_time()).
-/// Switches of the power, jumps and bends of profiles that rounding keeps from
-/// coinciding move to the sample that is there, else to the number of nine
-/// decimals that is there, else to the last of them. So do switches and jumps
-/// that are alone; bends that are alone stay. Two points of one profile at one
-/// time make a jump. Random motions are not drawn yet: their points stay.
+/// Returns the scenario with times that only rounding keeps apart
+/// (is_same_time()) made equal. Power switches, jumps and bends of profiles at
+/// the same time move together:
+/// - to the sample at that time, if there is one;
+/// - else to the number of nine decimals at that time;
+/// - else to the last of them.
+/// A single switch or jump moves likewise; a single bend stays. Two points of
+/// one profile at the same time make a jump. Random motions have no points yet
+/// and are not changed.
 Scenario with_aligned_borders(const Scenario& scenario);
 
 }  // namespace beamgyro

@@ -7,11 +7,12 @@
 
 namespace beamgyro {
 
-/// Carrier run (L3): every vibration (CarrierOde), Fehlberg's method of order 8
-/// at an error below 1e-4 deg/s. The temperatures come from the thermal network
-/// as in a quasi-static run and are held over kCarrierTick. Otherwise as
-/// simulate_envelope(). Throws std::invalid_argument for an output rate above a
-/// quarter of the drive frequency.
+/// Carrier run (L3): integrates every vibration (CarrierOde) by Fehlberg's
+/// method of order 8, with an error below 1e-4 deg/s. The temperatures come
+/// from the thermal network as in a quasi-static run and are held over
+/// kCarrierTick. Everything else is as in simulate_envelope(). Throws
+/// std::invalid_argument for an output rate above a quarter of the drive
+/// frequency.
 void simulate_carrier(const Scenario& scenario, const Gyro& gyro,
                       const RunKey& key, const BlockSink& on_block);
 void simulate_carrier(const Scenario& scenario, const Device& device,
@@ -19,8 +20,8 @@ void simulate_carrier(const Scenario& scenario, const Device& device,
 
 inline constexpr double kCarrierTick = 1e-3;  // [s]
 
-/// What simulate_carrier() costs [s of processor time], by the measured cost of
-/// a second with power (bench/README.md).
+/// Estimates the processor time [s] of simulate_carrier(), from the measured
+/// cost of a powered second (bench/README.md).
 double carrier_cost(const Scenario& scenario);
 
 }  // namespace beamgyro

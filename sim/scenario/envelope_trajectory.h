@@ -15,26 +15,26 @@
 
 namespace beamgyro {
 
-/// One gyro in one scenario as its envelope, integrated in order of time from
-/// rest at 0, restarted at every jump of an input.
+/// The envelope of one gyro in one scenario, integrated in order of time. It
+/// starts at rest at time 0; the integrator restarts at every jump of an input.
 ///
-/// Most runs: CVODE's BDF with stability-limit detection. The split mode's
-/// beat lies outside the stability region of orders 3 to 5 at small steps, and
-/// at order 2 alone such a run takes five times the steps. Runs whose motion
-/// bends more than 50 times a second on average: Dormand-Prince, which starts
-/// again at every bend without losing its order.
+/// Most runs use CVODE's BDF with stability-limit detection: the beat of the
+/// two modes lies outside the stability region of orders 3 to 5 at small steps,
+/// and order 2 alone takes five times the steps. Runs whose motion bends more
+/// than 50 times a second on average use Dormand-Prince, which restarts at
+/// every bend without losing its order.
 class EnvelopeTrajectory {
  public:
-  /// `at_rest`: the twin, whose rate about z is zero. The scenario, gyro and
-  /// motion must outlive the trajectory. `tolerance` is the local error of a
-  /// step in the output [rad/s], other states in proportion.
+  /// `at_rest` selects the twin, whose rate about z is zero. The scenario, gyro
+  /// and motion must outlive the trajectory. `tolerance` is the local error of
+  /// a step in the output [rad/s], other states in proportion.
   EnvelopeTrajectory(const Scenario& scenario, const Gyro& gyro,
                      const Motion& motion, bool at_rest,
                      double tolerance = 1e-8);
 
-  /// What the gyro shows at increasing times [s] that follow those of the call
-  /// before; bias and motion are left empty.
-  /// Throws SimulationFailure when the loops have not locked kLockTime after a
+  /// Returns the signals of the gyro at increasing `times` [s], which must
+  /// follow those of the call before. Bias and motion are left empty. Throws
+  /// SimulationFailure when the loops have not locked kLockTime after a
   /// power-on, and as Cvode.
   RunSamples advance(std::span<const double> times);
 
@@ -58,7 +58,7 @@ class EnvelopeTrajectory {
   EnvelopeOde ode_;
   std::vector<Piece> pieces_;
   std::size_t piece_ = 0;
-  // What holds over the piece.
+  // Inputs that are constant over the present piece.
   bool powered_ = false;
   LinearStretch ambient_{};  // [K]
   std::optional<MotionSegment> segment_;

@@ -26,7 +26,8 @@ class MotionSegment {
                 const MountParameters& mount);
 
   CaseMotion at(double t) const;
-  /// The rate-0 twin: the same but for the rate about z and its derivative.
+  /// Returns the motion of the twin: the same, with the rate about z and its
+  /// derivative set to 0.
   CaseMotion at_rest(double t) const;
 
   bool is_constant() const;  // at() does not depend on t
@@ -38,27 +39,28 @@ class MotionSegment {
   MountParameters mount_;
 };
 
-/// The motion of the case over a whole run, random rates realised.
+/// The motion of the case over a whole run. Random rates have been drawn.
 class Motion {
  public:
   Motion(const Scenario& scenario, const Gyro& gyro, const RunKey& key);
 
-  /// Where any axis bends or jumps, axis by axis.
+  /// Returns the times at which an axis bends or jumps, axis by axis.
   std::vector<Border> borders() const;
-  /// The twin, whose rate about z is zero, is the run itself.
+  /// Returns whether the rate about z is zero all the time, so that the twin is
+  /// the run itself.
   bool rate_is_zero() const { return !rate_moves_; }
-  /// Something else than the rate about z moves.
+  /// Returns whether anything but the rate about z moves.
   bool has_other_axes() const;
 
   /// About x, y, z [rad/s] and along x, y, z [m/s2].
   const std::array<Signal, 3>& rate() const { return rate_; }
   const std::array<Signal, 3>& acceleration() const { return acceleration_; }
 
-  /// Between two times with no border between them: the right-hand limits at
-  /// `start`, the left-hand limits at `end`.
+  /// Returns the motion between two times that have no border between them,
+  /// from the right-hand limits at `start` to the left-hand limits at `end`.
   MotionSegment segment(double start, double end) const;
 
-  /// Fills the motion of the case in `samples` at its times.
+  /// Writes the motion at the times of `samples` to `samples`.
   void show(RunSamples& samples) const;
 
  private:

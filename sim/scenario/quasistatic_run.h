@@ -7,15 +7,15 @@
 
 namespace beamgyro {
 
-/// Quasi-static run (L1): the thermal network over time, the exact static
-/// response (2.10) at the beam's temperature and the filtered rate, the board's
-/// phase and offset (2.23), noise, saturation and ADC. Cross rates and
-/// accelerations act through the exact solution at every sample. Valid while
-/// temperature and rate change slowly against the sense mode (27 ms) and the
-/// loops. `on_block` takes the recording block by block, with every column
-/// (docs/reference/recording.md) and `status`, so that memory does not grow
-/// with the samples; the recording is the same for blocks of any size. Throws
-/// std::invalid_argument for a scenario of another fidelity.
+/// Quasi-static run (L1). It integrates the thermal network and takes the exact
+/// static response (2.10) at the beam's temperature and the filtered rate, then
+/// phase and offset of the board (2.23), noise, saturation and ADC. Cross rates
+/// and accelerations act through the exact solution at every sample. It is
+/// valid while temperature and rate change slowly compared with the sense mode
+/// (27 ms) and the loops. `on_block` receives the recording block by block,
+/// with every column (docs/reference/recording.md) and `status`, so memory does
+/// not grow with the samples. The recording does not depend on the size of the
+/// blocks. Throws std::invalid_argument for a scenario of another fidelity.
 void simulate_quasistatic(const Scenario& scenario, const Gyro& gyro,
                           const RunKey& key, const BlockSink& on_block,
                           std::size_t block_samples = kBlockSamples);

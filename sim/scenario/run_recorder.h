@@ -15,19 +15,20 @@
 
 namespace beamgyro {
 
-/// Which random streams a run draws from, beside the seed of its scenario.
+/// Device and run number, which select the random streams of a run together
+/// with the seed of its scenario.
 struct RunKey {
   std::uint32_t device = 0;
   std::uint32_t run = 0;
 };
 
-/// Takes a run block by block: recordings with the same columns whose samples
-/// follow each other. Texts and versions are the receiver's.
+/// Receives a run block by block: recordings with the same columns whose
+/// samples follow each other. The receiver adds texts and versions.
 using BlockSink = std::function<void(Recording&& block)>;
 
 inline constexpr std::size_t kBlockSamples = 16384;
 
-/// Consecutive samples of a run, SI, before noise and readout.
+/// Consecutive samples of a run in SI units, before noise and readout.
 struct RunSamples {
   std::vector<double> time;                // [s]
   std::vector<double> output, quadrature;  // rate-equivalent [rad/s]
@@ -37,30 +38,32 @@ struct RunSamples {
   std::vector<std::uint8_t> locked;
   std::array<std::vector<double>, kThermalNodeCount> temperature;  // [K]
 
-  // The motion of the case: rate about the input axis, and the axes that the
-  // scenario moves besides, else empty.
+  // The motion of the case: the rate about the input axis, and the other axes
+  // that the scenario moves. Axes that do not move are empty.
   std::vector<double> rate;                         // [rad/s]
   std::array<std::vector<double>, 2> cross_rate;    // [rad/s]
   std::array<std::vector<double>, 3> acceleration;  // [m/s2]
 };
 
-/// Makes recordings of the samples of one run: adds noise and turn-on offset to
-/// the output, then saturation, ADC, resolutions and the temperature sensor,
-/// blanks what is measured without power, sets `status`. The recording does not
-/// depend on how the run is cut into blocks.
+/// Makes recordings from the samples of one run:
+/// - adds noise and turn-on offset to the output;
+/// - applies saturation, ADC, resolutions and the temperature sensor;
+/// - sets measured values without power to NaN, and sets `status`.
+/// The recording does not depend on how the run is cut into blocks.
 class RunRecorder {
  public:
-  /// `device` and `scenario` must outlive the recorder. `sensing_noise` is
-  /// white noise in front of the output stage [rad/sqrt(s)], where a run does
-  /// not simulate it.
+  /// `device` and `scenario` must outlive the recorder. `sensing_noise`
+  /// [rad/sqrt(s)] is white noise in front of the output stage, for runs that
+  /// do not simulate it.
   RunRecorder(const Scenario& scenario, const Device& device, const RunKey& key,
               double sensing_noise = 0);
 
-  /// The next samples, with every column (docs/reference/recording.md).
+  /// Returns the recording of the next samples, with every column
+  /// (docs/reference/recording.md).
   Recording block(RunSamples&& samples);
 
  private:
-  // Samples of a block with power, first to before last.
+  // Range of the powered samples of a block: from `first` to before `last`.
   struct PoweredSamples {
     std::size_t first, last;
     double turn_on;  // [rad/s]

@@ -6,11 +6,12 @@
 
 namespace beamgyro {
 
-/// What heats and cools a gyro in a scenario (4.1): the ambient, and
+/// Returns what heats and cools a gyro in a scenario (4.1): the ambient, and
 /// electronics and drive while powered.
 ThermalLoad thermal_load(const Scenario& scenario, const Gyro& gyro);
 
-/// Its node temperatures over the whole run, linear between points of a grid.
+/// The node temperatures over the whole run, with straight lines between the
+/// points of a grid.
 class RunTemperatures {
  public:
   RunTemperatures(const Scenario& scenario, const Gyro& gyro, double step);

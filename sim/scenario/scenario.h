@@ -42,19 +42,19 @@ struct Scenario {
   bool noise_enabled = true;
 };
 
-/// As files spell it: "quasistatic", "envelope", "carrier".
+/// Returns the name used in files: "quasistatic", "envelope", "carrier".
 std::string_view fidelity_name(Fidelity fidelity);
 
-/// Number of samples, floor(duration x output_rate).
+/// Returns the number of samples, floor(duration x output_rate).
 std::size_t sample_count(const Scenario& scenario);
 
 /// time(k) = k / output_rate [s], k = 0 .. sample_count - 1.
 SampleGrid sample_grid(const Scenario& scenario);
 
-/// All of them.
+/// Returns the times of all samples.
 std::vector<double> sample_times(const Scenario& scenario);
 
-/// Highest output rate a fidelity allows [Hz].
+/// Returns the highest output rate [Hz] that a fidelity allows.
 double highest_output_rate(Fidelity fidelity);
 
 }  // namespace beamgyro

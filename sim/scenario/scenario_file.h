@@ -11,14 +11,14 @@
 namespace beamgyro {
 
 /// Reads a scenario and checks every key (docs/reference/scenario_file.md).
-/// Files it names are found relative to its own folder; `device_file` is made
-/// so, too. Throws std::invalid_argument naming file, line, key and value. The
-/// caller rejects unknown keys once the device is read as well. Files among
-/// `profiles` are not read again.
+/// Files that it names are relative to its own folder; `device_file` is
+/// resolved likewise. Files that are in `profiles` are not read again. Throws
+/// std::invalid_argument naming file, line, key and value. The caller rejects
+/// unknown keys after the device has been read, too.
 Scenario read_scenario(const ConfigDocument& document,
                        const ProfileTables* profiles = nullptr);
 
-/// The CSV files that a scenario which can be read names.
+/// Returns the CSV files that a valid scenario names.
 std::vector<std::filesystem::path> profile_files(
     const ConfigDocument& document);
 

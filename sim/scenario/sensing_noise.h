@@ -9,15 +9,16 @@
 
 namespace beamgyro {
 
-/// Noise of mechanics and charge amplifiers through loops and filters
+/// Noise of mechanics and charge amplifiers behind loops and filters
 /// (loop_noise()), exact at the sample times. The coefficients follow the
-/// temperatures in steps of kNoiseRefresh. Without power it stands still.
+/// temperatures in steps of kNoiseRefresh. Without power the state does not
+/// advance.
 class SensingNoise {
  public:
   /// `scenario` and `gyro` must outlive it.
   SensingNoise(const Scenario& scenario, const Gyro& gyro, const RunKey& key);
 
-  /// Adds to output and quadrature of the next samples.
+  /// Adds the noise to output and quadrature of the next samples.
   void add_next(RunSamples& samples);
 
  private:

@@ -7,12 +7,12 @@
 
 namespace beamgyro {
 
-/// A run at the fidelity of its scenario, block by block. Throws as
+/// Simulates a run at the fidelity of its scenario, block by block. Throws as
 /// simulate_quasistatic(), simulate_envelope() and simulate_carrier().
 void simulate(const Scenario& scenario, const Gyro& gyro, const RunKey& key,
               const BlockSink& on_block);
 
-/// The whole of it in memory.
+/// Returns the whole recording in memory.
 Recording simulated(const Scenario& scenario, const Gyro& gyro,
                     const RunKey& key = {});
 Recording simulated(const Scenario& scenario, const Device& device,

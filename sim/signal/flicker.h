@@ -20,13 +20,13 @@ inline constexpr std::size_t kFlickerSlots = 24;  // filled up for the processor
 double flicker_decay_rate(std::size_t k);         // lam_k [rad/s]
 double flicker_pole_variance(double bias_instability);  // [(rad/s)^2]
 
-/// The bank seen at the sample times m / output_rate, driven by one normal
-/// number e_m a sample (innovations form):
+/// The bank at the sample times m / output_rate, driven by one normal number
+/// e_m for each sample (innovations form):
 ///   x_k,m = pole_k x_k,m-1 + gain_k e_m,   y_m = direct e_m + sum_k x_k,m.
-/// Not an approximation: its autocovariance is that of the bank,
-/// sum_k variance e^(-lam_k |m| / output_rate), at every lag, so both have the
-/// same law. It is the causal factor of the bank's sampled spectrum, whose
-/// zeros are real and lie one between each two poles.
+/// This is exact: its autocovariance is that of the bank, sum_k variance
+/// e^(-lam_k |m| / output_rate), at every lag, so both have the same law. It is
+/// the causal factor of the sampled spectrum of the bank. The zeros of that
+/// factor are real, and there is one between each two poles.
 struct FlickerFilter {
   double direct = 0.0;       // [rad/s]
   std::vector<double> pole;  // e^(-lam_k / output_rate), falling
@@ -37,15 +37,17 @@ struct FlickerFilter {
   std::vector<std::vector<double>> stationary_root;  // [rad/s]
 };
 
-/// Poles that forget everything within one sample, e^(-lam_k / output_rate) <
-/// 2^-53, are pooled in `direct`. Throws std::invalid_argument for an
-/// instability below 0, an output rate [Hz] not above 0, or one not finite.
+/// Computes the filter. Poles that decay within one sample, e^(-lam_k /
+/// output_rate) < 2^-53, are combined in `direct`. Throws std::invalid_argument
+/// for an instability below 0, an output rate [Hz] not above 0, or one not
+/// finite.
 FlickerFilter flicker_filter(double bias_instability, double output_rate);
 
-/// Flicker noise of one run [rad/s], stationary from its first sample on.
+/// Flicker noise [rad/s] of one run, stationary from the first sample.
 class FlickerNoise {
  public:
-  /// Arguments as flicker_filter(); numbers from the stream kFlicker.
+  /// Arguments are as in flicker_filter(). The numbers come from the stream
+  /// kFlicker.
   FlickerNoise(double bias_instability, double output_rate, std::uint64_t seed,
                std::uint32_t device, std::uint32_t run);
 

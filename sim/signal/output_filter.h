@@ -23,7 +23,7 @@ struct SineSignal {
 /// A signal over time.
 using Signal = std::variant<SineSignal, PiecewiseLinear>;
 
-/// Writes the next samples of a signal, as many as asked for.
+/// Writes the next samples of a signal to the span, as many as it holds.
 using SampleStream = std::function<void(std::span<double>)>;
 
 /// The readout's output filter, two equal real poles w_o:
@@ -38,17 +38,17 @@ class OutputFilter {
   /// H(i omega) = (1 + i omega / w_o)^-2, omega in [rad/s].
   std::complex<double> gain(double omega) const;
 
-  /// y_2 at the times k / output_rate, k = 0, 1, ..., in the units of u, which
-  /// must outlive the stream:
+  /// Returns y_2 at the times k / output_rate, k = 0, 1, ..., in the units of
+  /// u. The input must outlive the stream. The response is:
   /// - to a profile, whose jumps and bends may lie anywhere between the
   /// samples;
   ///   at t = 0 the filter has settled on its value there;
-  /// - to a sine, the periodic response to one that never started.
+  /// - to a sine, the periodic response.
   /// Throws std::invalid_argument for an output rate [Hz] that is not finite
   /// and > 0.
   SampleStream responses(const Signal& input, double output_rate) const;
 
-  /// The first `count` of them.
+  /// Returns the first `count` values of responses().
   std::vector<double> response(const Signal& input, double output_rate,
                                std::size_t count) const;
 

@@ -6,7 +6,8 @@
 
 namespace beamgyro {
 
-/// std::round(), bit by bit, without a call, so that loops vectorise.
+/// Returns std::round(value) to the last bit, without a call, so that loops
+/// vectorise.
 inline double rounded(double value) {
   const double size = std::abs(value);
   double whole = (size + 0x1p52) - 0x1p52;  // nearest, halves to even
@@ -14,9 +15,9 @@ inline double rounded(double value) {
   return size < 0x1p52 ? std::copysign(whole, value) : value;
 }
 
-/// The multiple of `resolution` nearest to `value`, halves away from zero; a
-/// resolution of 0 leaves the value as it is. Both in the same unit. Throws
-/// std::invalid_argument for a resolution below 0 or not finite.
+/// Returns the multiple of `resolution` nearest to `value`, halves away from
+/// zero. A resolution of 0 leaves the value as it is. Both have the same unit.
+/// Throws std::invalid_argument for a resolution below 0 or not finite.
 double quantise(double value, double resolution);
 void quantise(std::span<double> values, double resolution);
 
@@ -25,8 +26,8 @@ struct ReadoutSample {
   bool saturated;
 };
 
-/// The end of the readout: amplifier that clips at +-full scale, ADC over
-/// +-full scale, scaling to the pin's voltage
+/// The end of the readout: an amplifier that clips at +-full scale, an ADC over
+/// +-full scale, and the scaling to the voltage of the pin
 ///   code = round(clip(rate) / LSB), LSB = 2 full_scale / 2^bits, mid-tread,
 ///   -2^(bits-1) <= code <= 2^(bits-1) - 1,
 ///   V = offset + scale_factor LSB code.
@@ -36,8 +37,9 @@ class Readout {
   /// offset [V]. Throws std::invalid_argument otherwise.
   Readout(double full_scale, int adc_bits, double scale_factor, double offset);
 
-  /// What the pin shows at a rate-equivalent signal [rad/s]. Saturated: beyond
-  /// full scale, or the code was held at its limit. Not a number stays so.
+  /// Returns the voltage of the pin at a rate-equivalent signal [rad/s].
+  /// `saturated` is set when the signal is beyond full scale or the code was
+  /// held at its limit. NaN stays NaN.
   ReadoutSample sample(double rate) const;
 
   double lsb() const { return lsb_; }  // [rad/s]

@@ -15,11 +15,11 @@ struct TemperatureSensorParameters {
   double offset = 0.0;      // [K]
 };
 
-/// What the temperature sensor shows [degC], one reading per temperature [K] of
-/// its node: the multiple of `resolution` on the Celsius scale nearest to
+/// The temperature sensor. A reading [degC] is the multiple of `resolution` on
+/// the Celsius scale that is nearest to
 ///   temperature + offset + noise n,  n from the stream kTemperatureSensor.
-/// Without noise, offset and resolution stay. The readings do not depend on how
-/// a run is cut into calls.
+/// When noise is disabled, offset and resolution stay. The readings do not
+/// depend on how a run is cut into calls.
 class TemperatureSensor {
  public:
   /// Throws std::invalid_argument for noise or resolution below 0, or a
@@ -28,7 +28,8 @@ class TemperatureSensor {
                     bool noise_enabled, std::uint64_t seed,
                     std::uint32_t device, std::uint32_t run);
 
-  /// Readings of the next temperature.size() samples.
+  /// Returns the readings of the next samples, whose node has these
+  /// temperatures [K].
   std::vector<double> readings(std::span<const double> temperature);
 
  private:
