@@ -15,8 +15,8 @@ struct FilePosition {
   auto operator<=>(const FilePosition&) const = default;
 };
 
-/// One value of a TOML document with what it needs to be blamed for: its key,
-/// its place, and the override it came from.
+/// One value of a TOML document, with what messages need: its key, its place,
+/// and the override that it came from.
 struct ConfigNode {
   enum class Kind { kTable, kArray, kText, kInteger, kFloat, kFlag, kDate };
 
@@ -40,17 +40,19 @@ struct ConfigNode {
 ConfigNode* find_child(ConfigNode& table, std::string_view key);
 const ConfigNode* find_child(const ConfigNode& table, std::string_view key);
 
-/// The value as one line for a message: `-0.04`, `"abc"`, `an array of 3`.
+/// Returns the value as one line for a message: `-0.04`, `"abc"`, `an array of
+/// 3`.
 std::string text_of(const ConfigNode& node);
 
-/// The value in TOML syntax on one line; numbers in the fewest digits that read
-/// back as the same number. kDate has none: an empty text.
+/// Returns the value in TOML syntax on one line. Numbers have the fewest digits
+/// that read back as the same number. Returns an empty text for kDate.
 std::string toml_text(const ConfigNode& node);
 
-/// A number as a value of a document.
+/// Returns a number as a value of a document.
 ConfigNode number_node(double number);
 
-/// Text without control characters and of bounded length, for a message.
+/// Returns a text for a message: control characters are replaced, and the
+/// length is bounded.
 std::string printable(std::string_view text);
 
 }  // namespace beamgyro

@@ -12,34 +12,36 @@
 
 namespace beamgyro {
 
-/// A TOML file with the overrides of its command taken in. It is read through
-/// root(); when everything is read, reject_unknown_keys() finds what is left.
+/// A TOML file with the overrides of its command applied. It is read through
+/// root(). When everything has been read, reject_unknown_keys() finds keys that
+/// nobody asked for.
 class ConfigDocument {
  public:
-  /// Throws std::invalid_argument for a missing file and for text that is not
-  /// TOML or not UTF-8, with line and column.
+  /// Reads a file. Throws std::invalid_argument for a missing file, and with
+  /// line and column for text that is not TOML or not UTF-8.
   static ConfigDocument read(const std::filesystem::path& file,
                              Overrides& overrides);
   static ConfigDocument read(const std::filesystem::path& file);
-  /// The same for a text already in memory, called `name` in messages.
+  /// The same for a text in memory, called `name` in messages.
   static ConfigDocument parse(std::string_view text, const std::string& name,
                               Overrides& overrides);
   static ConfigDocument parse(std::string_view text, const std::string& name);
 
-  /// The same text with other overrides, as if nobody had read it yet; called
-  /// `name` in messages unless that is empty.
+  /// Returns the same text with other overrides, with no key read yet. It is
+  /// called `name` in messages unless `name` is empty.
   ConfigDocument with(Overrides& overrides, const std::string& name = "") const;
 
-  /// The value of a dotted key, or null; does not count as reading it.
+  /// Returns the value of a dotted key, or null. This does not count as reading
+  /// the key.
   const ConfigNode* value(std::string_view dotted_key) const;
 
   const ConfigTable& root() const { return root_; }
   const std::string& text() const;  // byte for byte as read
   const std::filesystem::path& path() const;
 
-  /// Throws std::invalid_argument for the first key (in file order) that nobody
-  /// read, with a suggestion among those that were asked for. Keys that an
-  /// override added for another document do not count.
+  /// Throws std::invalid_argument for the first key (in file order) that was
+  /// not read, with a suggestion among the keys that were asked for. Keys that
+  /// an override added for another document do not count.
   void reject_unknown_keys() const;
 
  private:

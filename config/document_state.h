@@ -13,7 +13,7 @@
 
 namespace beamgyro {
 
-/// What a document and its tables share.
+/// State that a document shares with its tables.
 struct DocumentState {
   std::filesystem::path path;
   std::string name;  // in messages
@@ -23,15 +23,17 @@ struct DocumentState {
   std::set<std::string> asked;  // dotted keys somebody asked for
   std::shared_ptr<OverrideSet> overrides;
 
-  /// Notes that somebody asked for the key `path`.
+  /// Records that the key `path` was asked for.
   void ask(const std::string& path);
-  /// Notes that somebody read `node`.
+  /// Records that `node` was read.
   void mark_read(const ConfigNode& node) const;
-  /// "file:line:column", or "--set KEY=VALUE" for what came from an override.
+  /// Returns "file:line:column", or "--set KEY=VALUE" for a value that came
+  /// from an override.
   std::string place(const ConfigNode& node, FilePosition position) const;
-  /// Keys asked for in the table `path`, without the path.
+  /// Returns the keys asked for in the table `path`, without the path.
   std::vector<std::string> keys_asked_in(const std::string& path) const;
-  /// Throws for the first key in file order nobody read.
+  /// Throws std::invalid_argument for the first key in file order that was not
+  /// read.
   void reject_unknown_keys() const;
 };
 

@@ -23,8 +23,8 @@ struct OverrideSet {
   std::set<std::string> asked;  // dotted keys some document asked for
 };
 
-/// Puts the value of `set` into the tree below `root`, replacing or creating
-/// the key and its parent tables. `origin` is its index among the overrides,
+/// Puts the value of `set` into the tree below `root`. It replaces or creates
+/// the key and its parent tables. `origin` is its index among the overrides;
 /// `document` names the tree in errors. Throws std::invalid_argument when the
 /// path runs through a value that is not a table.
 void insert_override(const Override& set, std::size_t origin,

@@ -10,31 +10,33 @@ namespace beamgyro {
 struct ConfigNode;
 struct OverrideSet;
 
-/// The `--set KEY=VALUE` arguments of one command, shared by its documents:
-/// KEY is a dotted path of bare keys, VALUE any TOML value on one line. Every
-/// document takes all of them into its own tree; the document that reads a
-/// value marks its override as used.
+/// The `--set KEY=VALUE` arguments of one command, shared by its documents. KEY
+/// is a dotted path of bare keys, VALUE any TOML value on one line. Every
+/// document puts all of them into its own tree. The document that reads a value
+/// marks the override as used.
 class Overrides {
  public:
   Overrides();
-  /// Throws std::invalid_argument for an argument without '=' or key, a value
-  /// that is not TOML, a key given twice, and one that a later argument would
-  /// replace or that runs through an earlier value which is no table.
+  /// Throws std::invalid_argument for
+  /// - an argument without '=' or without a key;
+  /// - a value that is not TOML;
+  /// - a key that is given twice, or that a later argument would replace;
+  /// - a key that lies below an earlier value which is not a table.
   explicit Overrides(const std::vector<std::string>& arguments);
 
-  /// Adds `value` for the key `path` without a look at what is there already.
-  /// `place` is what messages blame, `--set KEY=VALUE` when empty.
+  /// Adds `value` for the key `path` without checking it against the others.
+  /// Messages name `place`, or `--set KEY=VALUE` if it is empty.
   void add(const std::vector<std::string>& path, const ConfigNode& value,
            const std::string& place = "");
 
-  /// Throws std::invalid_argument for the first override no document asked
+  /// Throws std::invalid_argument for the first override that no document asked
   /// for, with a suggestion among the keys that were asked for.
   void check_all_used() const;
 
-  /// Whether every override was read by some document.
+  /// Returns whether every override was read by some document.
   bool all_used() const;
 
-  /// The dotted keys that documents asked for, sorted.
+  /// Returns the dotted keys that documents asked for, sorted.
   std::vector<std::string> keys_asked() const;
 
   std::string text() const;  // one KEY=VALUE per line, in the order given

@@ -18,7 +18,7 @@ Range positive();                        // (0, inf)
 Range non_negative();                    // [0, inf)
 Range between(double low, double high);  // [low, high]
 
-/// What would be right, for messages: "a number > 0", "a number in [0, 1)".
+/// Describes the range for messages: "a number > 0", "a number in [0, 1)".
 std::string text_of(const Range& range);
 
 }  // namespace beamgyro

@@ -17,26 +17,27 @@ struct ConfigValue;
 struct DocumentState;
 
 /// One table of a checked TOML document. Reading a key marks it as known;
-/// ConfigDocument::reject_unknown_keys() rejects what nobody read. Every error
-/// is one std::invalid_argument "file:line:column: table.key: value met, what
-/// is wrong; what would be right", with "--set KEY=VALUE" as the place of a
-/// value that came from an override. A table keeps its document alive.
+/// ConfigDocument::reject_unknown_keys() rejects the others. A table keeps its
+/// document alive. Every error is a std::invalid_argument "file:line:column:
+/// table.key: value met, what is wrong; what would be right". For a value that
+/// came from an override the place is "--set KEY=VALUE".
 class ConfigTable {
  public:
-  /// Whether the key is there. Does not count as reading it, so a key that is
-  /// only looked for and never read is rejected in the end.
+  /// Returns whether the key is there. This does not count as reading it, so a
+  /// key that is never read is rejected in the end.
   bool has(std::string_view key) const;
-  /// Whether the key is there and holds a text, or a number; likewise.
+  /// Returns whether the key is there and holds a text, or a number. This does
+  /// not count as reading it either.
   bool holds_text(std::string_view key) const;
   bool holds_number(std::string_view key) const;
 
-  /// An integer or a float; nan and infinities are rejected.
+  /// Reads an integer or a float. NaN and infinities are rejected.
   double number(std::string_view key, const Range& range = any()) const;
   double number_or(std::string_view key, double otherwise,
                    const Range& range = any()) const;
   std::optional<double> optional_number(std::string_view key,
                                         const Range& range = any()) const;
-  /// An integer in [low, high].
+  /// Reads an integer in [low, high].
   long integer(std::string_view key, long low, long high) const;
   long integer_or(std::string_view key, long otherwise, long low,
                   long high) const;
@@ -45,42 +46,42 @@ class ConfigTable {
   std::string text(std::string_view key) const;
   std::string text_or(std::string_view key, std::string_view otherwise) const;
   std::optional<std::string> optional_text(std::string_view key) const;
-  /// One of the texts `allowed`.
+  /// Reads one of the texts `allowed`.
   std::string choice(std::string_view key,
                      const std::vector<std::string>& allowed) const;
   std::string choice_or(std::string_view key, std::string_view otherwise,
                         const std::vector<std::string>& allowed) const;
 
-  /// An array of any length, every number in `range`.
+  /// Reads an array of any length, with every number in `range`.
   std::vector<double> numbers(std::string_view key,
                               const Range& range = any()) const;
   std::vector<double> numbers(std::string_view key, std::size_t count,
                               const Range& range = any()) const;
   std::vector<long> integers(std::string_view key, long low, long high) const;
   std::vector<std::string> texts(std::string_view key) const;
-  /// An array of arrays of `width` numbers: [[a, b], ...].
+  /// Reads an array of arrays of `width` numbers: [[a, b], ...].
   std::vector<std::vector<double>> rows(std::string_view key,
                                         std::size_t width) const;
 
-  /// Its keys in file order; does not count as reading them.
+  /// Returns the keys in file order. This does not count as reading them.
   std::vector<std::string> keys() const;
-  /// The value whatever it is, with all it holds.
+  /// Reads a value of any type, with everything in it.
   const ConfigNode& value(std::string_view key) const;
-  /// An array of tables: [[key]], or none when the key is absent.
+  /// Reads an array of tables, [[key]]; returns none when the key is absent.
   std::vector<ConfigTable> tables(std::string_view key) const;
 
   ConfigTable table(std::string_view key) const;
   std::optional<ConfigTable> optional_table(std::string_view key) const;
-  /// A table without keys when the key is absent.
+  /// Returns a table without keys when the key is absent.
   ConfigTable table_or_empty(std::string_view key) const;
 
-  /// "file:line:column" of the value, or of the nearest table above it when the
-  /// key is absent.
+  /// Returns "file:line:column" of the value, or of the nearest table above it
+  /// when the key is absent.
   std::string position(std::string_view key) const;
-  /// "file:line:column: table.key" of the value, or of the nearest table above
-  /// it when the key is absent.
+  /// Returns "file:line:column: table.key" of the value, or of the nearest
+  /// table above it when the key is absent.
   std::string place(std::string_view key) const;
-  /// The same of one element of an array: "file:line:column: table.key[3]".
+  /// The same for one element of an array: "file:line:column: table.key[3]".
   std::string place(std::string_view key, std::size_t index) const;
   /// Throws std::invalid_argument "place(key): message".
   [[noreturn]] void fail(std::string_view key,

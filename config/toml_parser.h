@@ -9,15 +9,15 @@
 
 namespace beamgyro {
 
-/// Text that is not TOML: what is wrong, and where.
+/// Thrown for text that is not TOML: what is wrong, and where.
 struct TomlError : std::runtime_error {
   TomlError(const std::string& message, FilePosition where)
       : std::runtime_error(message), position(where) {}
   FilePosition position;
 };
 
-/// The root table of a TOML document. Throws TomlError for text that is not
-/// TOML or not UTF-8.
+/// Parses a TOML document and returns its root table. Throws TomlError for text
+/// that is not TOML or not UTF-8.
 ConfigNode parse_toml(std::string_view text);
 
 }  // namespace beamgyro

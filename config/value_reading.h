@@ -10,8 +10,8 @@
 
 namespace beamgyro {
 
-/// A value of a document and the dotted key (with [index] inside an array) it
-/// is known by in messages.
+/// A value of a document, and its dotted key for messages (with [index] inside
+/// an array).
 struct ConfigValue {
   const DocumentState& document;
   const ConfigNode& node;
@@ -22,8 +22,8 @@ struct ConfigValue {
   [[noreturn]] void fail(const std::string& message) const;
 };
 
-/// Each throws std::invalid_argument for another type, a value out of range, or
-/// a number that is not finite.
+/// Each function throws std::invalid_argument for a value of another type or
+/// out of range, and for a number that is not finite.
 double read_number(const ConfigValue& value, const Range& range);
 long read_integer(const ConfigValue& value, long low, long high);
 bool read_flag(const ConfigValue& value);

@@ -6,20 +6,20 @@
 
 namespace beamgyro {
 
-/// The threads that work may use: `wanted`, or with 0 as many as there are
-/// cores.
+/// Returns the number of threads to use: `wanted`, or one per core if that is
+/// 0.
 unsigned thread_count(unsigned wanted);
 
-/// Work on task number `index`, by thread number `worker` of those at work.
+/// Carries out task number `index` on thread number `worker`.
 using Task = std::function<void(std::size_t index, std::size_t worker)>;
 
-/// Calls `task` once for every index below `count`, in order, on `threads`
-/// threads that each take the next one; the caller is one of them, worker 0.
-/// Threads that the system does not grant are fewer threads.
+/// Calls `task` once for every index below `count`. Each of `threads` threads
+/// takes the next index when it is free; the caller is worker 0. If the system
+/// refuses threads, the work is done with fewer.
 ///
-/// After an exception no other task begins, and when those at work are done it
-/// is rethrown: of several the one of the lowest index, which does not depend
-/// on the number of threads.
+/// After an exception no further task begins. When the running tasks are done
+/// the exception is rethrown; of several, that of the lowest index, so that it
+/// does not depend on the number of threads.
 void for_each_task(std::size_t count, std::size_t threads, const Task& task);
 
 }  // namespace beamgyro
