@@ -12,39 +12,43 @@
 
 namespace beamgyro {
 
-/// A file that appears under its name only when it is complete. What is written
-/// goes to a partial file in the same directory, whose name tells host and
-/// process; publish() renames it. Until then the name asked for holds what it
-/// held before. The partial file stays open all the time, so that nobody who
-/// may write to the directory can put another one in its place.
+/// A file that appears under its name only when it is complete. It is written
+/// to a partial file in the same directory, whose name contains host and
+/// process; publish() renames it. Until then the file of that name, if there is
+/// one, is unchanged. The partial file stays open all the time, so that another
+/// user of the directory cannot replace it unnoticed.
 class AtomicFile {
  public:
-  /// Creates the empty partial file. A symbolic link is followed, and what it
-  /// names is replaced, unless it is another user's in a directory for all.
-  /// Removes partial files for `path` of processes that died on this host.
-  /// Throws std::invalid_argument for a name that is empty, a directory, a
-  /// device or write-protected, and for a directory that is missing or not
-  /// writable; FileError when creating fails otherwise.
+  /// Creates the empty partial file, and removes partial files for `path` of
+  /// processes that died on this host. A symbolic link is followed and its
+  /// target replaced, unless it is another user's link in a directory that all
+  /// may write to.
+  /// - Throws std::invalid_argument for a name that is empty, a directory, a
+  ///   device or write-protected, and for a directory that is missing or not
+  ///   writable.
+  /// - Throws FileError when creating fails for another reason.
   explicit AtomicFile(const std::filesystem::path& path);
 
-  /// Of `name` in `directory`, called `path` in messages. A symbolic link under
-  /// that name is replaced, not followed, and partial files stay.
+  /// The same for `name` in `directory`, called `path` in messages. A symbolic
+  /// link of that name is replaced and not followed, and partial files of dead
+  /// processes stay.
   AtomicFile(const Directory& directory, const std::string& name,
              const std::filesystem::path& path);
   ~AtomicFile();  // removes the partial file unless published
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// The partial file, open for reading and writing; closed by publish().
+  /// Returns the partial file, open for reading and writing. publish() closes
+  /// it.
   OpenFile& file() { return *file_; }
 
-  /// Where the partial file is.
+  /// Returns the path of the partial file.
   std::filesystem::path partial_path() const;
 
-  /// Puts everything on the disk, gives the file the mode of the one it
-  /// replaces, renames it and puts the name on the disk, too. Throws FileError
-  /// when that fails, and std::runtime_error when somebody has put another file
-  /// in the place of the partial one.
+  /// Synchronises the file with the disk, gives it the mode of the file that it
+  /// replaces, renames it, and synchronises the directory. Throws FileError
+  /// when that fails, and std::runtime_error when another file has taken the
+  /// place of the partial one.
   void publish();
 
  private:
@@ -60,28 +64,28 @@ class AtomicFile {
   bool published_ = false;
 };
 
-/// Throws what writing to `path` would throw at its start; leaves nothing.
+/// Throws what writing to `path` would throw at its start. Leaves no file.
 void require_writable(const std::filesystem::path& path);
 
-/// Writes `text` under `path`, complete or not at all. Throws as AtomicFile,
-/// and FileError when writing fails.
+/// Writes `text` to `path`, completely or not at all. Throws as AtomicFile, and
+/// FileError when writing fails.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 /// Removes the partial files of all AtomicFiles that live in this process. May
 /// be called from a signal handler that ends the process.
 void remove_partial_files() noexcept;
 
-/// Whether a file of this name is one that some AtomicFile has not published.
+/// Returns whether this is the name of a partial file.
 bool is_partial_file(const std::string& name);
 
-/// Removes the partial files that writers left in `directory` when they died:
-/// those of this host whose process is gone, and of any writer but this process
-/// if nobody else can be writing there. Of files called `only`, unless that is
-/// empty.
+/// Removes partial files that dead writers left in `directory`: those of this
+/// host whose process is gone and, with `of_any_host`, those of any writer but
+/// this process (for a directory that nobody else can be writing to). If `only`
+/// is not empty, it removes partial files for that name only.
 void remove_dead_partial_files(const Directory& directory, bool of_any_host,
                                std::string_view only = {});
 
-/// Of this machine, as partial files are named after it.
+/// Returns the name of this machine as used in the names of partial files.
 std::string host_name();
 
 }  // namespace beamgyro

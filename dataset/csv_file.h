@@ -17,10 +17,10 @@ struct CsvTable {
   std::vector<std::string> names;            // none when there is no header
   std::vector<std::vector<double>> columns;  // all of the same length, >= 1
 
-  /// The column called `name`. Throws std::invalid_argument that names the file
-  /// and lists the columns there are.
+  /// Returns the column called `name`. Throws std::invalid_argument that names
+  /// the file and lists its columns.
   const std::vector<double>& column(std::string_view name) const;
-  /// "file:line" of a row counted from 0, for errors of the caller.
+  /// Returns "file:line" of a row, counted from 0, for messages of the caller.
   std::string place(std::size_t row) const;
 };
 
@@ -30,7 +30,7 @@ struct CsvTable {
 /// std::invalid_argument "file:line:column: ..." for anything else.
 CsvTable read_csv(const std::filesystem::path& path);
 
-/// The same for a text already in memory, called `path` in messages.
+/// The same for a text in memory, called `path` in messages.
 CsvTable parse_csv(std::string_view text, const std::filesystem::path& path);
 
 }  // namespace beamgyro

@@ -5,12 +5,12 @@
 
 namespace beamgyro {
 
-// A recording ends with a line that HDF5 does not look at: the SHA-256 of all
-// bytes before it. It tells damage before HDF5, which can crash on damage, gets
-// to see the file. Failures to read are std::system_error without the name of
-// the file.
+// A recording ends with a line that HDF5 ignores: the SHA-256 of all bytes
+// before it. It is verified before HDF5 opens the file, because HDF5 can crash
+// on damage. Failures to read are std::system_error without the name of the
+// file.
 
-/// Ends `file`, which is open for reading and writing, with the line.
+/// Appends the line to `file`, which is open for reading and writing.
 void append_checksum(OpenFile& file);
 
 enum class FileChecksum {
@@ -21,11 +21,12 @@ enum class FileChecksum {
 
 FileChecksum checksum_of(OpenFile& file);
 
-/// Whether there is a line, right or wrong.
+/// Returns whether there is such a line, whether its checksum is right or not.
 bool has_checksum(OpenFile& file);
 
-/// Whether something that is no such line follows the end of an HDF5 file, as
-/// the file itself tells it. HDF5 cuts off what follows when it changes a file.
+/// Returns whether other bytes than such a line follow the end of the HDF5
+/// file, which the file itself states. HDF5 cuts off what follows when it
+/// changes a file.
 bool has_bytes_after_hdf5(OpenFile& file);
 
 }  // namespace beamgyro

@@ -6,21 +6,22 @@
 
 namespace beamgyro {
 
-// HDF5 reads and writes through a descriptor of ours in place of a name: what a
-// signal interrupts is done again, and the reason of a failed system call is
-// known whatever the library makes of it. `file` outlives the id.
+// Lets HDF5 read and write through our own file descriptor. Calls that a signal
+// interrupts are repeated, and the reason of a failed system call is kept,
+// whatever the library makes of it. `file` must outlive the id.
 
 H5Id open_hdf5_file(OpenFile& file);
 
-/// Of a file that is open for reading and writing, in place of what it held.
+/// Makes a new HDF5 file in a file that is open for reading and writing, and
+/// discards its content.
 H5Id create_hdf5_file(OpenFile& file);
 
-/// Whether the bytes begin as HDF5 files do, with or without a block of the
-/// user before them. Throws std::system_error.
+/// Returns whether the bytes begin like an HDF5 file, with or without a user
+/// block. Throws std::system_error.
 bool is_hdf5_file(OpenFile& file);
 
-/// Throws Hdf5Error when a system call has failed since QuietHdf5 began, also
-/// one that the library took for an answer.
+/// Throws Hdf5Error when a system call has failed since QuietHdf5 began, even
+/// if the library ignored the failure.
 void check_system_calls();
 
 }  // namespace beamgyro

@@ -12,31 +12,33 @@ namespace beamgyro {
 
 inline constexpr const char* kRecordingFiletype = "beamgyro-recording";
 
-/// A call of the HDF5 library that failed, or a file it cannot be right about.
+/// Thrown when a call of the HDF5 library fails, or when a file cannot be what
+/// it claims to be.
 struct Hdf5Error : std::runtime_error {
   explicit Hdf5Error(const std::string& message, int error = 0)
       : std::runtime_error(message), error_number(error) {}
   int error_number;  // errno of the system call that failed; 0: none did
 };
 
-/// Throws Hdf5Error "cannot <action>: <cause>" when `status` is negative; the
+/// Throws Hdf5Error "cannot <action>: <cause>" when `status` is negative. The
 /// cause is the system call that failed, or else the innermost entry of the
 /// library's error stack.
 void check_hdf5(herr_t status, const std::string& action);
 
-/// The answer of a question to the library, which is negative when it could not
-/// be told: that is no "no", and throws as check_hdf5().
+/// Returns a yes or no that the library answered. A negative value means that
+/// it could not answer, and throws as check_hdf5().
 bool is_true(htri_t answer, const std::string& question);
 
-/// errno of the first call of the system that failed below the library since
-/// this was asked, 0 without one; see hdf5_driver.h.
+/// Returns errno of the first system call that failed below the library since
+/// the last call of this function, or 0; see hdf5_driver.h.
 int take_failed_system_call();
 
-/// HDF5 for this thread alone until the end of the scope; its high-level part
-/// has no lock of its own. Keeps it from printing its error stack, from running
-/// the code of plug-ins that a file names, and from tidying up at the end of
-/// the process, where 1.10 crashes after a full disk. Two in one thread wait
-/// for ever.
+/// Gives this thread sole use of HDF5 until the end of the scope, because the
+/// high-level part of the library has no lock of its own. HDF5 then does not
+/// - print its error stack;
+/// - run the code of plug-ins that a file names;
+/// - tidy up at the end of the process, where 1.10 crashes after a full disk.
+/// Not re-entrant: a second object in the same thread deadlocks.
 class QuietHdf5 {
  public:
   QuietHdf5() {
@@ -60,7 +62,7 @@ class QuietHdf5 {
   void* data_ = nullptr;
 };
 
-/// One owner for every HDF5 id; `release` is H5Fclose, H5Dclose, ...
+/// Owner of an HDF5 id. `release` is H5Fclose, H5Dclose, ...
 class H5Id {
  public:
   H5Id(hid_t id, herr_t (*release)(hid_t), const std::string& action)
@@ -74,7 +76,7 @@ class H5Id {
       : id_(std::exchange(other.id_, -1)), release_(other.release_) {}
   H5Id& operator=(H5Id&&) = delete;
   operator hid_t() const { return id_; }
-  /// The checked end of an id that was written to.
+  /// Closes an id that was written to, and checks the result.
   void close(const std::string& action) {
     check_hdf5(release_(std::exchange(id_, -1)), action);
   }
@@ -86,7 +88,8 @@ class H5Id {
 
 H5Id property_list(hid_t kind);
 
-/// How files are opened: in the format MATLAB releases of 2015 still read.
+/// Returns the properties with which files are opened: the format that MATLAB
+/// releases of 2015 still read.
 H5Id access_properties();
 
 }  // namespace beamgyro

@@ -15,22 +15,24 @@
 
 namespace beamgyro {
 
-// Reading a file that may be damaged or somebody else's: what is not as
-// expected throws Hdf5Error.
+// Functions that read a file which may be damaged or made by somebody else.
+// Everything that is not as expected throws Hdf5Error.
 
-/// Of a variable that stands in `file`, as check_storage() asks: nothing leads
-/// out of the file, and it is large enough for the values it announces.
+/// Opens a variable. Throws unless check_storage() accepts it: its values stand
+/// in `file`, which is large enough for them.
 H5Id open_variable(hid_t file, const std::string& name);
 
-/// Lengths of the dimensions, of which there have to be `rank`.
+/// Returns the lengths of the dimensions. Throws unless there are `rank` of
+/// them.
 std::vector<hsize_t> lengths_of(hid_t variable, const std::string& name,
                                 int rank);
 
-/// That values of class `expected` fit into `size` bytes each.
+/// Throws unless the values have the class `expected` and at most `size` bytes
+/// each.
 void check_type(hid_t variable, const std::string& name, H5T_class_t expected,
                 std::size_t size);
 
-/// A variable over one dimension of `length`, or of any if that is 0.
+/// Reads a variable over one dimension of `length` values; 0 means any length.
 template <class Value>
 std::vector<Value> read_values(hid_t file, const std::string& name,
                                H5T_class_t expected, hid_t memory_type,
@@ -49,22 +51,23 @@ std::vector<Value> read_values(hid_t file, const std::string& name,
 }
 
 bool has_attribute(hid_t object, const std::string& owner, const char* name);
-/// Of fixed length; text of variable length is an error.
+/// Reads a text attribute of fixed length. Variable length is an error.
 std::string text_attribute(hid_t object, const std::string& owner,
                            const char* name);
 std::uint64_t integer_attribute(hid_t file, const char* name);
 double number_attribute(hid_t object, const std::string& owner,
                         const char* name);
 
-/// /meta/`name`, of fixed length; empty when there is none.
+/// Reads the text /meta/`name` of fixed length. Returns an empty text when
+/// there is none.
 std::string meta_text(hid_t file, const std::string& name);
 
 Role role_of(const std::string& text, const std::string& name);
 
-/// Names of the variables beside /meta, in file order.
+/// Returns the names of the variables except /meta, in file order.
 std::vector<std::string> variable_names(hid_t file);
 
-/// Whether the attribute `filetype` says so.
+/// Returns whether the attribute `filetype` has this value.
 bool is_of_filetype(hid_t file, const std::string& filetype);
 
 /// Opens an HDF5 file whose attributes say `filetype` and a format_version from
@@ -72,16 +75,17 @@ bool is_of_filetype(hid_t file, const std::string& filetype);
 H5Id open_hdf5_file(OpenFile& file, const std::string& filetype,
                     const std::string& kind, std::uint64_t newest);
 
-/// What a failed read of the file's bytes is among those of HDF5.
+/// Converts a failed read of the bytes of a file to an Hdf5Error.
 Hdf5Error read_failure(const std::system_error& error);
 
-/// Throws `problem` with `path` before it: std::invalid_argument for what the
-/// file is, std::runtime_error when the system failed to read it.
+/// Throws `problem` with `path` before it: std::invalid_argument for a defect
+/// of the file, std::runtime_error when the system failed to read it.
 [[noreturn]] void reject_hdf5_file(const std::filesystem::path& path,
                                    const Hdf5Error& problem);
 
-/// Opens `path` to be read. Throws std::invalid_argument naming it unless it is
-/// a file, a `kind` for short, and FileError when the system fails.
+/// Opens `path` for reading. Throws std::invalid_argument naming it unless it
+/// is a file, and FileError when the system fails. `kind` says in messages what
+/// file is expected.
 OpenFile open_to_read(const std::filesystem::path& path,
                       const std::string& kind);
 

@@ -11,21 +11,21 @@
 
 namespace beamgyro {
 
-// What every file of ours is made of: no time stamps, everything in the order
-// of creation, texts as fixed-length UTF-8. Each throws Hdf5Error.
+// Functions that write the parts of our files: without time stamps, in the
+// order of creation, with texts as fixed-length UTF-8. Each throws Hdf5Error.
 
 H5Id scalar_space();
 
-/// The properties of an object (H5P_FILE_CREATE, H5P_GROUP_CREATE or
+/// Returns the properties of a new object (H5P_FILE_CREATE, H5P_GROUP_CREATE or
 /// H5P_DATASET_CREATE).
 H5Id creation_properties(hid_t kind);
 
-/// `value` in memory is of `type`, too.
+/// Writes an attribute. `value` in memory has the same `type`.
 void write_attribute(hid_t object, const char* name, hid_t type, hid_t space,
                      const void* value);
 void write_text(hid_t object, const char* name, std::string_view text);
 
-/// The root attributes that a Recording and a ShardHead share.
+/// Writes the root attributes that a Recording and a ShardHead share.
 template <class Head>
 void write_origin(hid_t file, const char* filetype, std::int32_t version,
                   const Head& head) {
@@ -39,7 +39,8 @@ void write_origin(hid_t file, const char* filetype, std::int32_t version,
   write_text(file, "fidelity", head.fidelity);
 }
 
-/// `attribute` (flag_values or flag_masks) and flag_meanings of a variable.
+/// Writes `attribute` (flag_values or flag_masks) and flag_meanings of a
+/// variable.
 void write_flags(hid_t variable, const char* attribute,
                  std::span<const std::uint8_t> flags,
                  std::string_view meanings);
@@ -52,13 +53,14 @@ struct VariableAbout {
   Role role = Role::kMeasured;
 };
 
-/// `properties`: of its creation. `axes` are dimension scales, one for each
-/// dimension, or none for a variable that becomes a scale itself.
+/// Makes a variable. `properties` are those of its creation. `axes` are
+/// dimension scales, one for each dimension, or none for a variable that
+/// becomes a scale itself.
 H5Id make_variable(hid_t file, const VariableAbout& about, hid_t type,
                    hid_t space, hid_t properties,
                    std::span<const H5Id* const> axes);
 
-/// The variable of states of the gyro, and the attributes that tell its bits.
+/// The variable `status`, with the attributes that name its bits.
 VariableAbout status_about();
 void write_status_bits(hid_t status);
 
@@ -67,7 +69,7 @@ struct NamedText {
   std::string_view text;  // without NUL
 };
 
-/// The group /meta with one text of fixed length for each, ended by NUL: HDF5
+/// Writes the group /meta with each text in fixed length, ended by NUL. HDF5
 /// 1.10 can crash on damage among texts of variable length.
 void write_meta(hid_t file, std::span<const NamedText> texts);
 

@@ -13,8 +13,8 @@
 namespace beamgyro {
 
 /// A value of a JSON file together with its place, "FILE: key.key[2]", for
-/// checked reading. Every error is one std::invalid_argument with that place,
-/// the value met and what would be right.
+/// checked reading. Every error is a std::invalid_argument with that place, the
+/// value met and what would be right.
 class JsonNode {
  public:
   JsonNode(const nlohmann::ordered_json& value, std::string file,
@@ -46,10 +46,11 @@ class JsonNode {
   std::string path_;  // "key.key[2]", empty for the whole file
 };
 
-/// The one way to read JSON. Throws std::invalid_argument naming `file` for a
-/// text that is not JSON, and before it is parsed for one that nests deeper
-/// than 64 or has an object of more than 1000 members: the library copies and
-/// prints values by recursion, and looks at all members to add one.
+/// Parses JSON; all JSON is read through this function. Throws
+/// std::invalid_argument naming `file` for a text that is not JSON. A text that
+/// is nested deeper than 64 or has an object of more than 1000 members is
+/// refused before it is parsed, because the library copies and prints values by
+/// recursion and compares all members to add one.
 nlohmann::ordered_json parse_json(std::string_view text,
                                   const std::string& file);
 

@@ -17,22 +17,24 @@ struct LogTicks {
   std::optional<std::int64_t> count;  // when it is a whole number
 };
 
-/// Makes times of the numbers of the rows or of a column (LogTime).
+/// Converts the numbers of the rows or of a column to times (LogTime).
 class LogClock {
  public:
   /// Both must outlive it. Throws as LogNumbers::slot().
   LogClock(LogNumbers& log, const LogTime& time);
 
-  /// Ticks of the row the log is at, none when they are missing. A column of
-  /// wrap_bits bits that falls or rises by more than half its range since the
-  /// row before has gone through its end. Throws as LogNumbers::present().
+  /// Returns the ticks of the present row, or nothing when they are missing. A
+  /// column of wrap_bits bits that falls or rises by more than half of its
+  /// range since the row before has wrapped around. Throws as
+  /// LogNumbers::present().
   std::optional<LogTicks> read();
   void skip_row() { ++row_; }  // counts one that has no ticks
 
-  /// The time [s] of `ticks` when the first row is at `first`.
+  /// Returns the time [s] of `ticks` when the first row is at `first`.
   double time(const LogTicks& first, const LogTicks& ticks) const;
 
-  /// Throws at the time of the row.
+  /// Throws std::invalid_argument that names the cell of the time in the
+  /// present row.
   [[noreturn]] void fail(const std::string& message) const;
 
  private:

@@ -15,11 +15,12 @@ struct ImportedLog {
   LogCounts counts;
 };
 
-/// The recording that `map` makes of a log. Rows are dropped as its rules say
-/// and counted; times stay what they are, gaps and jitter included. `path`
-/// names the text in messages. Throws std::invalid_argument "file:line:column:
-/// ..." for a log that is not as the map says, for a value that is no number or
-/// not plausible in the unit stated, and for fewer than two usable rows.
+/// Converts a log to a recording as `map` states. Rows are dropped by its rules
+/// and counted. Times keep their gaps and jitter. `path` names the text in
+/// messages. Throws std::invalid_argument "file:line:column: ..." for
+/// - a log that is not as the map states;
+/// - a value that is no number, or not plausible in the stated unit;
+/// - fewer than two usable rows.
 ImportedLog import_log(std::string_view text, const std::filesystem::path& path,
                        const LogMap& map);
 

@@ -14,17 +14,17 @@
 
 namespace beamgyro {
 
-/// The rows that are read: those whose cell in `column` is `text`, or equals
-/// `number`.
+/// Selects the rows that are read: those whose cell in `column` is `text` or
+/// equals `number`.
 struct LogFilter {
   LogColumn column;
   std::string text;
   std::optional<double> number;
 };
 
-/// Where the time comes from: time = ticks / ticks_per_s + offset, ticks being
-/// the number in `column`, or the number of the row from 0. Without an offset
-/// the first row is at 0.
+/// Defines the times: time = ticks / ticks_per_s + offset. Ticks are the number
+/// in `column`, or the number of the row from 0. Without an offset the first
+/// row is at 0.
 struct LogTime {
   std::optional<LogColumn> column;
   double ticks_per_s = 1;        // [1/s]
@@ -32,7 +32,7 @@ struct LogTime {
   int wrap_bits = 0;             // the column starts over at 2^wrap_bits; 0: no
 };
 
-/// What the numbers of a column mean for the status.
+/// Defines which numbers of a column set which bit of the status.
 struct LogStatus {
   LogColumn column;
   std::vector<long> unpowered, saturated, not_locked;
@@ -43,8 +43,9 @@ struct LogStatus {
 
 /// A value is an outlier when
 ///   |x - median| > k max(1.4826 MAD, resolution),
-/// median and median absolute deviation (MAD) over the `window` nearest rows of
-/// its burst, resolution the smallest step between two rows of the log.
+/// with median and median absolute deviation (MAD) over the `window` nearest
+/// rows of its burst. `resolution` is the smallest step between two rows of the
+/// log.
 struct OutlierRule {
   std::size_t window = 25;  // odd
   double k = 20;
@@ -59,7 +60,7 @@ struct LogRules {
   std::optional<OutlierRule> outliers;
 };
 
-/// How a log becomes a recording: the map of docs/reference/log_map.md.
+/// States how a log becomes a recording: the map of docs/reference/log_map.md.
 struct LogMap {
   LogLayout layout;
   std::vector<std::string> missing_markers;  // beside "", nan and NA
@@ -74,9 +75,9 @@ struct LogMap {
   std::string text;  // byte for byte as read
 };
 
-/// Reads the map. `axis` is one of those it has ("x", "y", "z"), or empty when
-/// it has one gyro only. Throws std::invalid_argument for a map with an unknown
-/// or wrong key and for an axis it lacks.
+/// Reads a map. `axis` is one of its axes ("x", "y", "z"), or empty when it has
+/// one gyro only. Throws std::invalid_argument for an unknown or wrong key and
+/// for an axis that the map lacks.
 LogMap read_log_map(const ConfigDocument& document, const std::string& axis);
 
 }  // namespace beamgyro

@@ -12,8 +12,8 @@
 
 namespace beamgyro {
 
-/// The rows of a log and the numbers in them, as its map says. Errors are
-/// std::invalid_argument "file:line:column: ...".
+/// Reads the rows of a log and the numbers in them as the map states. Errors
+/// are std::invalid_argument "file:line:column: ...".
 class LogNumbers {
  public:
   /// The text and the map must outlive it. Throws as LogText.
@@ -24,16 +24,17 @@ class LogNumbers {
   const LogText& text() const { return text_; }
   const std::string& path() const { return path_; }
 
-  /// Slot of a column. Throws, with the place of the key in the map, for one
-  /// the log does not have or has twice.
+  /// Returns the slot of a column. Throws, with the place of the key in the
+  /// map, for a column that the log does not have or has twice.
   std::size_t slot(const LogColumn& column);
 
-  /// The number in a cell, or none when it is missing. Throws for anything
-  /// else, such as text and what is not finite.
+  /// Returns the number in a cell, or nothing when it is missing. Throws for
+  /// text and for a number that is not finite.
   std::optional<double> number_in(std::size_t slot) const;
-  /// The same; throws also for a missing one when the rules do not drop rows.
+  /// The same. Also throws for a missing number when the rules do not drop such
+  /// rows.
   std::optional<double> present(std::size_t slot) const;
-  /// The number in a cell when it is an integer of less than 63 bits.
+  /// Returns the number in a cell if it is an integer of less than 63 bits.
   std::optional<std::int64_t> whole_in(std::size_t slot) const;
 
   /// Throws "file:line:column: 'cell' what; expected ...".

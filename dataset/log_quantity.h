@@ -17,9 +17,10 @@ struct LogColumn {
   std::string place;       // of the key in the map, for messages
 };
 
-/// One variable of a recording and how a number of the log becomes its value:
+/// One variable of a recording, and the conversion of a number of the log to
+/// its value:
 ///   value = (raw - offset) scale + shift,
-/// raw being read as two's complement of `wrap_bits` bits first, if any.
+/// `raw` is first read as two's complement of `wrap_bits` bits, if that is set.
 struct LogQuantity {
   std::string variable;  // this and the next three as of Column
   std::string units;
@@ -34,18 +35,20 @@ struct LogQuantity {
   int wrap_bits = 0;       // 0: not wrapped
   Range plausible = any();
 
-  /// Whether `raw` is a whole number of `wrap_bits` bits, or is not wrapped.
+  /// Returns whether `raw` is a whole number of `wrap_bits` bits; true if that
+  /// is not set.
   bool fits(double raw) const;
   double value(double raw) const;
 };
 
-/// The key `column` of a table: a text is a name, an integer a number.
+/// Reads the key `column` of a table: a text is a name, an integer is a number.
 LogColumn read_log_column(const ConfigTable& table);
 
-/// The keys column, unit and what the unit asks for: an angular rate in deg/s,
-/// rad/s, V or counts, a temperature in degC, degF, K or counts, and numbers
-/// in multiples of their unit. Each throws std::invalid_argument that names the
-/// key for a unit not stated or not known, and as ConfigTable.
+/// Each function reads the keys `column` and `unit`, and the keys that the unit
+/// requires: of an angular rate in deg/s, rad/s, V or counts; of a temperature
+/// in degC, degF, K or counts; of a number in a multiple of its unit. Each
+/// throws std::invalid_argument that names the key for a unit that is missing
+/// or unknown, and as ConfigTable.
 LogQuantity read_log_rate(const ConfigTable& table, const std::string& variable,
                           const std::string& long_name, Role role);
 LogQuantity read_log_temperature(const ConfigTable& table);

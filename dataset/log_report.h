@@ -9,7 +9,7 @@
 
 namespace beamgyro {
 
-/// Why a row of a log did not become a sample.
+/// Reason why a row of a log was dropped.
 enum class DropReason : std::uint8_t {
   kFiltered,
   kRagged,
@@ -21,7 +21,7 @@ enum class DropReason : std::uint8_t {
 };
 constexpr std::size_t kDropReasons = 7;
 
-/// As a report names it: "missing values", ...
+/// Returns the name for reports: "missing values", ...
 const char* reason_name(DropReason reason);
 
 struct DroppedRows {
@@ -29,7 +29,7 @@ struct DroppedRows {
   std::size_t first_line = 0;  // from 1
 };
 
-/// What an import did with the rows of its log.
+/// Number of rows that an import read, kept and dropped.
 struct LogCounts {
   std::size_t rows = 0, kept = 0;
   std::array<DroppedRows, kDropReasons> dropped;  // by DropReason
@@ -37,7 +37,7 @@ struct LogCounts {
   void drop(DropReason reason, std::size_t line);
 };
 
-/// How a recording was sampled. A step over kGapSteps median steps is a gap.
+/// Sampling of a recording. A step longer than kGapSteps median steps is a gap.
 struct Sampling {
   double median_step = 0;  // [s]
   double jitter = 0;       // [s], rms of step - median step within bursts
@@ -48,7 +48,7 @@ struct Sampling {
 
 Sampling sampling_of(const Recording& recording);
 
-/// Range of a variable; NaN left out.
+/// Range of a variable without its NaN.
 struct ValueRange {
   std::size_t samples = 0;
   double low = 0, high = 0;

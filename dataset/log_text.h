@@ -9,7 +9,7 @@
 
 namespace beamgyro {
 
-/// How the text of a log is laid out.
+/// Layout of the text of a log.
 struct LogLayout {
   char delimiter = 0;  // 0: a tab if the first line holds one, else ';', ','
   bool header = true;  // the first line holds names
@@ -18,22 +18,23 @@ struct LogLayout {
   std::vector<std::string> comment_prefixes;  // lines that start so are none
 };
 
-/// Walks over the rows of a delimiter-separated text and cuts out the cells of
-/// the columns somebody wants. Accepts a UTF-8 byte-order mark, CRLF, blanks
-/// around a cell, cells in double quotes, lines without anything, and one
-/// delimiter too many at the end of a row. Errors are std::invalid_argument
-/// "file:line:column: ...". The text must outlive it.
+/// Reads delimiter-separated text row by row and extracts the cells of selected
+/// columns. Accepts a UTF-8 byte-order mark, CRLF, blanks around a cell, cells
+/// in double quotes, empty lines, and one delimiter too many at the end of a
+/// row. Errors are std::invalid_argument "file:line:column: ...". The text must
+/// outlive it.
 class LogText {
  public:
-  /// Reads up to the first row. Throws for an empty text, one that is binary,
-  /// and a line of names that is missing or holds numbers only.
+  /// Reads up to the first row. Throws for an empty or binary text, and for a
+  /// line of names that is missing or has numbers only.
   LogText(std::string_view text, const std::filesystem::path& path,
           const LogLayout& layout);
 
   const std::vector<std::string>& names() const { return names_; }
   std::size_t width() const { return width_; }  // cells of the first line
 
-  /// Cuts out the column `index` (from 0) from now on; the slot of its cells.
+  /// Selects the column `index` (from 0) for the rows to come. Returns the slot
+  /// of its cells.
   std::size_t want(std::size_t index);
 
   bool next();                   // to the next row; false after the last
@@ -73,7 +74,7 @@ class LogText {
   std::vector<std::size_t> order_;  // slots by index
 };
 
-/// A cell as a message shows it.
+/// Returns a cell in the form used in messages.
 std::string shown_cell(std::string_view cell);
 
 }  // namespace beamgyro

@@ -11,47 +11,48 @@
 namespace beamgyro {
 
 /// Owner of a file descriptor. Failures are std::system_error without the name
-/// of the file. What a signal interrupts is done again.
+/// of the file. Calls that a signal interrupts are repeated.
 class OpenFile {
  public:
-  /// `flags` as of open(2); O_CLOEXEC comes by itself.
+  /// Opens a file. `flags` are those of open(2); O_CLOEXEC is added.
   OpenFile(const std::filesystem::path& path, int flags);
-  /// Of a descriptor that is open; a negative one is the failed call, with its
-  /// reason in errno.
+  /// Takes over an open descriptor. A negative one is a failed call with its
+  /// reason in errno, and throws.
   explicit OpenFile(int descriptor);
   ~OpenFile();
   OpenFile(OpenFile&& other) noexcept;
   OpenFile& operator=(OpenFile&& other) = delete;
 
   int descriptor() const { return descriptor_; }
-  /// The descriptor, which somebody else closes from now on.
+  /// Returns the descriptor, which the caller has to close.
   int release() { return std::exchange(descriptor_, -1); }
 
-  /// All of `bytes`, from where the file stands.
+  /// Writes all of `bytes` at the present position.
   void write(std::span<const std::byte> bytes);
 
-  /// All of `bytes`, from byte `place` of the file on.
+  /// Writes all of `bytes` from byte `place` of the file.
   void write_at(std::uint64_t place, std::span<const std::byte> bytes);
 
-  /// Fills `bytes` from where the file stands. Returns how many there were;
-  /// fewer than asked for only at the end of the file.
+  /// Fills `bytes` from the present position. Returns the number of bytes read,
+  /// which is smaller than asked for only at the end of the file.
   std::size_t read(std::span<std::byte> bytes);
 
-  /// The same from byte `place` of the file on.
+  /// The same from byte `place` of the file.
   std::size_t read_at(std::uint64_t place, std::span<std::byte> bytes);
 
   /// Calls `take` with the rest of the file, piece by piece.
   void read_pieces(const std::function<void(std::span<const std::byte>)>& take);
 
-  /// Where the file stands from now on, from its start.
+  /// Sets the position, counted from the start of the file.
   void go_to(std::uint64_t place);
 
   std::uint64_t size();
 
-  /// Cuts off what is beyond `size` bytes, or adds zeros up to there.
+  /// Sets the size of the file: cuts off bytes beyond `size`, or adds zeros up
+  /// to it.
   void resize(std::uint64_t size);
 
-  /// That what was written is on the disk.
+  /// Synchronises what was written with the disk.
   void sync();
 
   void close();

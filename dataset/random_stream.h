@@ -8,8 +8,8 @@
 
 namespace beamgyro {
 
-/// What a stream of random numbers is for. Values are part of the data format:
-/// never renumber them.
+/// Purpose of a stream of random numbers. The values are part of the data
+/// format: never renumber them.
 enum class RandomPurpose : std::uint32_t {
   kWhiteNoise = 0,
   kFlicker = 1,
@@ -29,37 +29,39 @@ enum class RandomPurpose : std::uint32_t {
   kSobolScramble = 15,
 };
 
-/// Inverse of the normal distribution function. Throws std::invalid_argument
-/// for a probability outside (0, 1). Method: Wichura, algorithm AS 241
-/// (PPND16), Applied Statistics 37 (1988) 477; relative error about 1e-15.
+/// Returns the inverse of the normal distribution function. Throws
+/// std::invalid_argument for a probability outside (0, 1). Method: Wichura,
+/// algorithm AS 241 (PPND16), Applied Statistics 37 (1988) 477; relative error
+/// about 1e-15.
 double normal_quantile(double probability);
 
-/// The odd multiple of 2^-53 in (0, 1) with the upper 52 bits of `word`.
+/// Returns the odd multiple of 2^-53 in (0, 1) with the upper 52 bits of
+/// `word`.
 double uniform_number(std::uint64_t word);
 
 /// Numbers from the counter-based generator Philox4x32-10 (Salmon et al., SC
-/// 2011): key = seed, counter = (block, purpose, device, run), two numbers a
-/// block. A stream depends on its four words only, never on the order or thread
-/// in which streams are drawn, and holds 2^33 numbers; std::runtime_error after
-/// those.
+/// 2011): key = seed, counter = (block, purpose, device, run), two numbers for
+/// each block. A stream depends on its four words only, and not on the order or
+/// the thread in which streams are drawn. It has 2^33 numbers; after those it
+/// throws std::runtime_error.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::uint32_t device, std::uint32_t run,
                RandomPurpose purpose);
 
-  /// The 64 random bits that the next number would be made of.
+  /// Returns the 64 random bits from which the next number would be made.
   std::uint64_t next_word();
 
-  /// The next number: an odd multiple of 2^-53, so in (0, 1), symmetric about
-  /// 1/2.
+  /// Returns the next number: an odd multiple of 2^-53 in (0, 1), symmetric
+  /// about 1/2.
   double uniform();
 
-  /// normal_quantile() of the next number: mean 0, variance 1, at most 8.21 in
-  /// magnitude.
+  /// Returns normal_quantile() of the next number: mean 0, variance 1, at most
+  /// 8.21 in magnitude.
   double normal();
 
-  /// The numbers that as many calls of normal() would return, bit by bit, but
-  /// faster.
+  /// Writes the numbers that as many calls of normal() would return, to the
+  /// last bit, but faster.
   void fill_normal(std::span<double> values);
 
  private:

@@ -9,11 +9,12 @@
 
 namespace beamgyro {
 
-/// What a compensator may see: `kMeasured` is what a sensor shows, `kTruth`
-/// what only a simulator knows, `kCompensated` what a compensator answered.
+/// Role of a variable: `kMeasured` is measured by the gyro and may be an input
+/// of a compensator, `kTruth` is known to a simulator only, `kCompensated` is
+/// the answer of a compensator.
 enum class Role { kMeasured, kTruth, kCompensated };
 
-/// The role as files spell it: "measured", "truth", "compensated".
+/// Returns the name of a role in files: "measured", "truth", "compensated".
 std::string_view role_name(Role role);
 
 /// Bits of `Recording::status`.
@@ -32,8 +33,8 @@ struct Column {
 };
 
 /// One run of one gyro in memory, in the units of the file
-/// (docs/reference/recording.md): columns over a common time axis. The contract
-/// between simulator and compensator.
+/// (docs/reference/recording.md): columns over a common time axis. Simulator
+/// and compensators exchange data in this form only.
 struct Recording {
   std::vector<double> time;          // [s], strictly increasing
   std::vector<std::uint8_t> status;  // StatusBit mask, one per time
@@ -48,16 +49,16 @@ struct Recording {
   std::string overrides_text;  // one KEY=VALUE per line
 };
 
-/// The column called `name`, or nullptr.
+/// Returns the column called `name`, or nullptr.
 const Column* find_column(const Recording& recording, std::string_view name);
 
-/// Values of the column called `name`. Throws std::invalid_argument that names
-/// the column and lists those there are.
+/// Returns the values of the column called `name`. Throws std::invalid_argument
+/// that names the column and lists the columns of the recording.
 const std::vector<double>& column_values(const Recording& recording,
                                          std::string_view name);
 
-/// Where files put `status` among the columns: before the column of this index,
-/// the first that is not measured.
+/// Returns the position of `status` among the columns of a file: before the
+/// column of this index, the first one that is not measured.
 std::size_t status_position(const Recording& recording);
 
 }  // namespace beamgyro

@@ -8,12 +8,14 @@
 
 namespace beamgyro {
 
-/// What keeps `recording` from being a recording, as one line that names the
-/// variable and the sample, or an empty text. Whole is a recording with at
-/// least one sample; finite, strictly increasing times; one status and one
-/// value of every column per time; column names that are unique identifiers;
-/// finite values, except NaN in measured and compensated columns where the
-/// status says unpowered; and no NUL in any text.
+/// Returns the first defect of a recording as one line that names the variable
+/// and the sample, or an empty text. A recording without a defect has
+/// - at least one sample, with finite, strictly increasing times;
+/// - one status and one value of every column for each time;
+/// - column names that are unique identifiers;
+/// - finite values, except NaN in measured and compensated columns where the
+///   status says unpowered;
+/// - no NUL in any text.
 std::string recording_defect(const Recording& recording);
 
 /// The same for names and texts alone, and for samples alone, which are

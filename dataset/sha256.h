@@ -10,7 +10,7 @@
 
 namespace beamgyro {
 
-/// SHA-256 (FIPS 180-4) of bytes that come piece by piece.
+/// Computes the SHA-256 (FIPS 180-4) of bytes that come piece by piece.
 class Sha256 {
  public:
   Sha256();
@@ -20,7 +20,8 @@ class Sha256 {
 
   void add(std::span<const std::byte> bytes);
 
-  /// Of all pieces, as 64 lower-case hexadecimal digits; the end of it.
+  /// Returns the checksum of all pieces as 64 lower-case hexadecimal digits. No
+  /// piece may follow.
   std::string digits();
 
  private:
@@ -29,11 +30,11 @@ class Sha256 {
   std::unique_ptr<State> state_;
 };
 
-/// The digits of `bytes`.
+/// Returns the digits of `bytes`.
 std::string sha256(std::span<const std::byte> bytes);
 std::string sha256(std::string_view bytes);
 
-/// The same of a file's content. Throws as read_text_file().
+/// The same for the content of a file. Throws as read_text_file().
 std::string sha256_of_file(const std::filesystem::path& path);
 
 }  // namespace beamgyro

@@ -8,11 +8,12 @@
 
 namespace beamgyro {
 
-/// The bytes of a file. Throws std::invalid_argument naming the file when it is
-/// missing, a directory or not readable, and FileError when reading fails.
+/// Returns the bytes of a file. Throws std::invalid_argument naming the file
+/// when it is missing, a directory or not readable, and FileError when reading
+/// fails.
 std::string read_text_file(const std::filesystem::path& path);
 
-/// The same piece by piece, for a file that may be larger than memory.
+/// Reads the same piece by piece, for a file that may be larger than memory.
 void read_in_pieces(const std::filesystem::path& path,
                     const std::function<void(std::string_view)>& take);
 

@@ -8,7 +8,7 @@
 
 namespace beamgyro {
 
-/// A number in some unit becomes one in another:
+/// Converts a number from one unit to another:
 ///   value = (number - offset) scale.
 struct UnitConversion {
   double offset = 0, scale = 1;
@@ -17,13 +17,13 @@ struct UnitConversion {
   double operator()(double number) const { return (number - offset) * scale; }
 };
 
-/// From `unit`, by any of its names, to `to`: degree/s, degC, V, Hz, s or m/s2,
-/// as recordings have them, or to itself. Throws std::invalid_argument for
-/// another unit, with those there are.
+/// Returns the conversion from `unit`, by any of its names, to `to`, a unit of
+/// recordings (degree/s, degC, V, Hz, s, m/s2) or the same unit. Throws
+/// std::invalid_argument for any other unit and lists those that are known.
 UnitConversion unit_conversion(std::string_view unit, std::string_view to);
 
-/// The unit in which a recording holds the variable of this name; empty for a
-/// variable that beamgyro does not know.
+/// Returns the unit of the variable of this name in recordings, or an empty
+/// text for a variable that beamgyro does not know.
 std::string_view unit_of_variable(std::string_view name);
 
 }  // namespace beamgyro

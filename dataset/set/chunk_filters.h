@@ -9,25 +9,27 @@
 
 namespace beamgyro {
 
-// HDF5's filters shuffle, deflate and fletcher32 outside of HDF5, whose lock
-// lets one thread through at a time.
+// HDF5's filters shuffle, deflate and fletcher32, computed outside of HDF5,
+// whose lock admits one thread at a time.
 
-/// The checksum HDF5 puts behind a chunk: Fletcher's over 16-bit big-endian
-/// words, modulo 65535; an odd last byte is the upper half of a word.
+/// Returns the checksum that HDF5 puts behind a chunk: Fletcher's over 16-bit
+/// big-endian words, modulo 65535. An odd last byte is the upper half of a
+/// word.
 std::uint32_t fletcher32(std::span<const std::byte> bytes);
 
-/// First bytes of all values, then their second bytes, and so on. `values` is
-/// a whole number of values of `width` bytes; `out` has its size.
+/// Writes the first bytes of all values, then their second bytes, and so on.
+/// `values` has a whole number of values of `width` bytes; `out` has the same
+/// size.
 void shuffle(std::span<const std::byte> values, std::size_t width,
              std::span<std::byte> out);
 
-/// A chunk as it stands in the file.
+/// A chunk in the form in which it stands in the file.
 struct PackedChunk {
   std::vector<std::byte> bytes;
   std::uint32_t skipped_filters = 0;  // bit i: filter i was not applied
 };
 
-/// Packs chunks one after the other; not for two threads at once.
+/// Packs chunks one after the other. Not safe for use by two threads at once.
 class ChunkPacker {
  public:
   ChunkPacker();
@@ -35,8 +37,8 @@ class ChunkPacker {
   ChunkPacker(const ChunkPacker&) = delete;
   ChunkPacker& operator=(const ChunkPacker&) = delete;
 
-  /// Shuffled, deflated and summed, or only summed when deflate saves less than
-  /// a tenth.
+  /// Shuffles, deflates and adds the checksum. If deflate saves less than a
+  /// tenth, only the checksum is added.
   PackedChunk pack(std::span<const std::byte> values, std::size_t width);
 
  private:

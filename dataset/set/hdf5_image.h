@@ -8,11 +8,11 @@
 
 namespace beamgyro {
 
-/// A new HDF5 file that is only in memory. Throws Hdf5Error.
+/// Makes a new HDF5 file in memory. Throws Hdf5Error.
 H5Id make_image();
 
-/// The bytes of such a file so far, which live until its next change. All its
-/// variables must be closed. Throws Hdf5Error.
+/// Returns the present bytes of such a file. They are valid until its next
+/// change. All its variables must be closed. Throws Hdf5Error.
 std::span<const std::byte> image_bytes(const H5Id& file);
 
 }  // namespace beamgyro

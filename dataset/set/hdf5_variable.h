@@ -9,24 +9,25 @@
 
 namespace beamgyro {
 
-// The layout that files of a set and views over them have in common. All
-// throws Hdf5Error.
+// The layout that files of a set and views over them have in common. Each
+// function throws Hdf5Error.
 
 hid_t file_type(Storage storage);
 
-/// What tells how the counts of an integer variable read.
+/// Writes the attributes that say how to read the counts of an integer
+/// variable.
 void write_scaling(hid_t variable, const SetVariable& about);
 
 VariableAbout part_about();
 VariableAbout device_status_about();
 
-/// What tells the meanings of their values.
+/// Write the attributes that name the meanings of their values.
 void write_part_flags(hid_t part);
 void write_device_status_flags(hid_t device_status);
 
 void write_root_attributes(hid_t file, const ShardHead& head);
 
-/// Whole values of a variable.
+/// Writes all values of a variable.
 void write_all(hid_t variable, const std::string& name, hid_t memory_type,
                const void* values);
 

@@ -12,7 +12,8 @@
 namespace beamgyro {
 
 inline constexpr const char* kManifestName = "manifest.jsonl";
-/// A manifest with a head alone, for when the other is lost.
+/// A copy of the first line of the manifest, for the case that the manifest is
+/// lost.
 inline constexpr const char* kHeadCopyName = "source/head.jsonl";
 
 /// A file of the set that the campaign read, below source/.
@@ -38,7 +39,7 @@ struct DeviceFailure {
   bool operator==(const DeviceFailure&) const = default;
 };
 
-/// A file of devices that is whole on the disk.
+/// A file of devices that is complete on the disk.
 struct ManifestEntry {
   std::uint32_t index = 0;
   std::string file;  // relative to the set
@@ -56,10 +57,11 @@ struct ManifestView {
   bool operator==(const ManifestView&) const = default;
 };
 
-/// What a set, or one task's part of it, holds: JSON lines, each with a
-/// checksum of its own. While files are made lines are appended; at the end the
-/// whole is written anew, sorted, with the head again and a last line with the
-/// SHA-256 of all before. Nothing in it tells of time or place.
+/// The contents of a set, or of one task's part of it: JSON lines, each with
+/// its own checksum. While files are made lines are appended. At the end the
+/// manifest is written again: sorted, with the head repeated and a last line
+/// with the SHA-256 of all lines before. Nothing in it depends on time or
+/// place.
 struct Manifest {
   std::optional<ManifestHead> head;
   std::vector<ManifestEntry> entries;  // by index, none twice
@@ -71,44 +73,45 @@ struct Manifest {
 
 /// Range and run of a file of the set; index = range * runs + run.
 std::uint32_t file_count(const ManifestHead& head);
-/// What the entry of this index has to say: index, file, first_device, devices.
+/// Returns the entry that this index must have: index, file, first_device,
+/// devices.
 ManifestEntry expected_entry(const ManifestHead& head, std::uint32_t index);
-/// Whether some entry of the set has a file of this name.
+/// Returns whether some entry of the set has a file of this name.
 bool is_file_of(const ManifestHead& head, const std::string& name);
 /// NAME.nc
 std::string view_name(std::string_view run);
 /// manifest.I-of-N.jsonl
 std::string part_name(std::uint32_t task, std::uint32_t tasks);
 
-/// Whether a run may have this name, of which those of its files are made:
-/// [a-z][a-z0-9_]*, 200 characters at most.
+/// Returns whether a run may have this name, from which the names of its files
+/// are made: [a-z][a-z0-9_]*, 200 characters at most.
 bool is_run_name(std::string_view text);
 
-// `name` is that of a manifest in the set's directory: kManifestName, a part or
-// kHeadCopyName. Files are opened as by open_set_file() and published as by
-// publish_file().
+// In the functions below `name` is the name of a manifest in the directory of
+// the set: kManifestName, a part or kHeadCopyName. Files are opened as by
+// open_set_file() and published as by publish_file().
 
-/// Never fails for what the file says: what is damaged is not in the result,
-/// nor is a line with a name that no set has, such as one that leads out of its
-/// directory. Of two lines for one index the later one counts. Throws
-/// std::invalid_argument when there is no such file or it is of a newer
+/// Reads a manifest. Damaged lines are left out of the result and cause no
+/// error. So are lines with a name that no set has, such as one that leads out
+/// of its directory. Of two lines for one index the later one counts. Throws
+/// std::invalid_argument when there is no such file or it has a newer
 /// format_version.
 Manifest read_manifest(const std::filesystem::path& directory,
                        const std::filesystem::path& name);
 
-/// An unfinished manifest, in place of any other.
+/// Writes an unfinished manifest, in place of any other.
 void start_manifest(const std::filesystem::path& directory,
                     const std::filesystem::path& name, const ManifestHead& head,
                     const std::vector<ManifestEntry>& entries = {});
 
-/// Adds a line in one write, and waits until it is on the disk. Throws
-/// std::runtime_error when that fails, and for a file that has another name (a
-/// hard link), which may be a file of somebody else.
+/// Appends a line in one write, and waits until it is on the disk. Throws
+/// std::runtime_error when that fails, and for a file with a second name (hard
+/// link), because that may be somebody else's file.
 void append_entry(const std::filesystem::path& directory,
                   const std::filesystem::path& name,
                   const ManifestEntry& entry);
 
-/// The finished manifest of `manifest`, which has a head.
+/// Writes the finished manifest. `manifest` must have a head.
 void write_manifest(const std::filesystem::path& directory,
                     const std::filesystem::path& name,
                     const Manifest& manifest);

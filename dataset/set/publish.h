@@ -7,12 +7,13 @@
 
 namespace beamgyro {
 
-/// Puts `bytes` under `name` in `directory`, all of them or none: written under
-/// a partial name beside it, on the disk, read back and compared, renamed, and
-/// the name on the disk, too. Directories that `name` has are made; no symbolic
-/// link below `directory` is followed (Directory), one under the name is
-/// replaced. Throws as AtomicFile for a wrong place; std::runtime_error that
-/// names the path, the bytes needed and, if the disk is full, those free there.
+/// Writes `bytes` to `name` in `directory`, all of them or none. They are
+/// written under a partial name, synchronised with the disk, read back and
+/// compared; then the file is renamed and the name synchronised. Directories in
+/// `name` are made. No symbolic link below `directory` is followed (Directory);
+/// one under the name itself is replaced. Throws as AtomicFile for a wrong
+/// place. Otherwise throws std::runtime_error that names the path, the bytes
+/// needed and, if the disk is full, the bytes that are free.
 void publish_file(const std::filesystem::path& directory,
                   const std::filesystem::path& name,
                   std::span<const std::byte> bytes);

@@ -19,14 +19,17 @@ struct SetDefect {
   std::optional<std::uint32_t> index;  // of the file to be made again
 };
 
-/// Called with the bytes checked so far, and those there are to check.
+/// Called with the number of bytes checked so far and the number of all bytes
+/// to check.
 using CheckProgress = std::function<void(std::uint64_t, std::uint64_t)>;
 
-/// Everything in which the files of a set differ from its manifest: files that
-/// are missing, of another size, of other bytes (and whose bytes those are), or
-/// too many; views and source copies likewise; and lines of the manifest that
-/// are damaged or missing. Looks at bytes only, never through HDF5. Empty for a
-/// set that is whole and finished.
+/// Compares the files of a set with its manifest and returns the differences,
+/// none for a set that is complete:
+/// - files that are missing, of another size, of other bytes (and which file
+///   has these bytes), or not in the manifest;
+/// - the same for views and source copies;
+/// - lines of the manifest that are damaged or missing.
+/// It reads bytes only and does not use HDF5.
 std::vector<SetDefect> check_set(const std::filesystem::path& directory,
                                  const Manifest& manifest,
                                  const CheckProgress& progress = {});

@@ -10,26 +10,29 @@
 
 namespace beamgyro {
 
-/// Keeps other processes, on hosts that share the directory too, from the same
-/// work on a set. The kernel holds the lock (flock) and lets go when the
-/// process ends in any way; the file only says who it is. Where the file system
-/// knows no flock only that is left: who is named and lives on this host is
-/// respected, and whether one on another host does cannot be told.
+/// Keeps other processes from the same work on a set, also on other hosts that
+/// share the directory. The kernel holds the lock (flock) and releases it when
+/// the process ends in any way. The file only names the holder. Where the file
+/// system has no flock, the process that the file names is respected as long as
+/// it lives on this host; whether a process on another host lives cannot be
+/// determined.
 class SetLock {
  public:
-  /// `task`: empty for work on the whole set, which no other process may do
-  /// anything to then; else the name of a part, which only excludes the same
-  /// part and work on the whole. Throws std::runtime_error naming host and
-  /// process that hold it, or why locking fails, as for a lock that is a link.
+  /// Locks a set. If `task` is empty the whole set is locked against any other
+  /// process. Otherwise `task` names a part, and only work on the same part or
+  /// on the whole set is excluded. Throws std::runtime_error naming the host
+  /// and the process that hold the lock, or the reason why locking fails, such
+  /// as a lock file that is a link.
   SetLock(const std::filesystem::path& directory, const std::string& task);
   ~SetLock();  // removes the files, too
   SetLock(const SetLock&) = delete;
   SetLock& operator=(const SetLock&) = delete;
 
-  /// Who died with this lock before, as "host, process n"; empty if nobody.
+  /// Returns the process that died while it held this lock, as "host, process
+  /// n", or an empty text.
   const std::string& stale() const { return stale_; }
 
-  /// Whether the kernel holds the lock.
+  /// Returns whether the kernel holds the lock.
   bool is_held_by_kernel() const { return whole_->by_kernel; }
 
  private:

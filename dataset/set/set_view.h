@@ -12,17 +12,18 @@
 
 namespace beamgyro {
 
-/// What write_view() writes. Throws std::runtime_error when HDF5 fails.
+/// Returns the bytes that write_view() writes. Throws std::runtime_error when
+/// HDF5 fails.
 std::vector<std::byte> view_bytes(const ShardHead& head,
                                   std::span<const ManifestEntry> entries);
 
-/// Publishes directory/NAME.nc, NAME the run of `head`: all devices of the run
-/// as one dataset of the same variables, which HDF5 reads from the files that
-/// `entries` name. `head` is that of any file of the run; `entries` are those
-/// of this run, by device. What a file that is missing or damaged should hold
-/// reads back as NaN or the fill value, as unpowered, and 255 in part and
-/// device_status, without any error: HDF5 does not tell, the manifest does.
-/// Throws std::runtime_error when HDF5 fails and as publish_file().
+/// Publishes directory/NAME.nc, where NAME is the run of `head`: all devices of
+/// the run as one dataset with the same variables, which HDF5 reads from the
+/// files that `entries` name. `head` is that of any file of the run; `entries`
+/// are those of this run, by device. The values of a missing or damaged file
+/// read as NaN or the fill value, as unpowered, and as 255 in part and
+/// device_status. HDF5 reports no error then; the manifest tells. Throws
+/// std::runtime_error when HDF5 fails, and as publish_file().
 ManifestView write_view(const std::filesystem::path& directory,
                         const ShardHead& head,
                         std::span<const ManifestEntry> entries);

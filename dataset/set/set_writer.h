@@ -28,7 +28,7 @@ struct SetTask {
   }
 };
 
-/// How far a set is.
+/// Progress of a set.
 struct SetState {
   std::map<std::uint32_t, ManifestEntry> entries;  // by index
   std::uint32_t planned = 0;                       // files
@@ -39,49 +39,52 @@ struct SetState {
   std::uint64_t failures() const;
 };
 
-/// What the manifest of a set and the parts of its tasks say together, with the
-/// head they share. Throws std::invalid_argument when the directory holds no
-/// set, and when the heads of its parts differ.
+/// Contents of the manifest of a set and of the parts of its tasks together,
+/// with their common head. Throws std::invalid_argument when the directory is
+/// no set, and when the heads of its parts differ.
 struct SetContents {
   ManifestHead head;
   SetState state;
 };
 SetContents set_contents(const std::filesystem::path& directory);
 
-/// The same, or nothing when no manifest there has a first line.
+/// Returns the same, or nothing when no manifest there has a first line.
 std::optional<SetContents> find_set(const std::filesystem::path& directory);
 
-/// A set that this process works at. While it lives no other process works at
-/// the same files. A file is part of the set once a manifest has its line: that
-/// of the set, or with tasks each its own. Who finds every file there merges
-/// them.
+/// A set that this process adds files to. While the object lives no other
+/// process makes the same files. A file is part of the set once a manifest has
+/// its line: the manifest of the set or, with tasks, that of the task. The
+/// process that finds every file present merges the manifests.
 class SetWriter {
  public:
-  /// Makes the directory, in one that is there, locks it and copies `sources`,
-  /// if any, to where the head lists them. Throws std::invalid_argument for a
-  /// place that cannot hold a set, for one that holds a set of another campaign
-  /// or program, and for a whole set where there are files of one, unless
-  /// `resume`; std::runtime_error when another process works at the same.
+  /// Makes the directory (its parent must exist), locks it, and copies
+  /// `sources`, if any, to the names in the head.
+  /// - Throws std::invalid_argument for a place that cannot hold a set, and for
+  ///   one that holds a set of another campaign or program.
+  /// - Throws std::invalid_argument for a whole set where there are files of
+  ///   one, unless `resume`.
+  /// - Throws std::runtime_error when another process works on the same.
   SetWriter(const std::filesystem::path& directory, ManifestHead head,
             std::span<const SourceText> sources, const SetTask& task,
             bool resume);
   ~SetWriter();
 
-  /// Who died while working at this, empty if nobody.
+  /// Returns the process that died while working on this, or an empty text.
   const std::string& died_before() const { return lock_->stale(); }
 
-  /// Whether other hosts are kept from this set, too (SetLock).
+  /// Returns whether the lock also excludes other hosts (SetLock).
   bool is_locked() const { return lock_->is_held_by_kernel(); }
 
-  /// Files of the task that no manifest or not the directory has.
+  /// Returns the files of the task that are missing from the manifests or from
+  /// the directory.
   std::vector<std::uint32_t> lacking() const;
 
-  /// Publishes file `index` and then its line. Many threads may call it.
+  /// Publishes file `index` and then its line. Safe to call from many threads.
   void add(std::uint32_t index, std::span<const std::byte> bytes,
            const std::vector<DeviceFailure>& failures);
 
-  /// Merges manifests and writes the views when the set is whole, and `anew`
-  /// even if that was done before.
+  /// Merges manifests and writes the views when the set is complete; with
+  /// `anew` even if that was done before.
   SetState finish(bool anew = false);
 
  private:
@@ -97,9 +100,9 @@ class SetWriter {
   std::mutex mutex_;
 };
 
-/// Numbers of those of `of` tasks that have files to make yet in `directory`,
-/// which may be missing: "1,3-4". Throws as SetWriter for a set of another
-/// campaign or program.
+/// Returns the numbers of the tasks, of `of`, that have files left to make in
+/// `directory`, as "1,3-4". The directory may be missing. Throws as SetWriter
+/// for a set of another campaign or program.
 std::string lacking_tasks(const std::filesystem::path& directory,
                           const ManifestHead& head, std::uint32_t of);
 

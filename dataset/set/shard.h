@@ -17,7 +17,7 @@ namespace beamgyro {
 inline constexpr const char* kSetFiletype = "beamgyro-set";
 inline constexpr int kSetFormatVersion = 2;
 
-/// How values stand in a file.
+/// Storage type of the values in a file.
 enum class Storage { kFloat64, kFloat32, kInt16, kInt32 };
 
 /// A variable over (device, time), or over (device, truth_time) when slow.
@@ -25,8 +25,8 @@ struct SetVariable {
   std::string name, units, long_name;
   Role role = Role::kMeasured;
   Storage storage = Storage::kFloat32;
-  /// Integers: value = count * scale_factor + add_offset; the lowest count of
-  /// the type is NaN.
+  /// For integers: value = count * scale_factor + add_offset. The lowest count
+  /// of the type is NaN.
   double scale_factor = 1, add_offset = 0;
   bool slow = false;
 };
@@ -64,23 +64,23 @@ struct DeviceRow {
   std::uint8_t device_status = 0;  // DeviceStatus
 };
 
-/// Samples of a recording that a set cannot hold: not finite, or beyond their
-/// storage.
+/// Thrown for samples of a recording that a set cannot hold: not finite, or
+/// beyond their storage type.
 class UnstorableSamples : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// One device as it will stand in the file.
+/// One device in the form in which it will stand in the file.
 struct EncodedDevice {
   DeviceRow row;
   /// Chunks of status, then of every variable.
   std::vector<std::vector<PackedChunk>> variables;
 };
 
-/// A file of a set made in memory: an HDF5 image without any file behind it, so
-/// that nothing HDF5 does can meet a full disk. The bytes depend on the input
-/// alone. All calls throw std::runtime_error when HDF5 fails.
+/// Makes a file of a set in memory, as an HDF5 image without a file behind it,
+/// so that HDF5 never meets a full disk. The bytes depend on the input alone.
+/// All calls throw std::runtime_error when HDF5 fails.
 class ShardBuilder {
  public:
   /// Throws std::runtime_error for a head with a defect.
@@ -91,26 +91,27 @@ class ShardBuilder {
 
   const ShardHead& head() const { return head_; }
 
-  /// The expensive part of adding the device of this position in the file; may
-  /// be called from many threads at once and in any order. `recording` holds
-  /// every variable (columns by name, one value per time of the head) and is
-  /// not used of a failed device: all its values are fill values, its status is
-  /// unpowered. Of 16-bit counts the lowest becomes the one above it, since it
-  /// means NaN. Throws, naming device, variable and sample:
-  ///  - UnstorableSamples for samples with a defect (samples_defect()), and for
-  ///    values that their storage cannot hold: no whole number of counts (to
-  ///    1e-6), or beyond its range;
-  ///  - std::runtime_error for a recording that is not one of this file: other
-  ///    times, a variable of the head missing.
+  /// Encodes the device at this position of the file, the expensive part of
+  /// adding it. May be called from many threads at once and in any order.
+  /// `recording` has every variable (columns by name, one value for each time
+  /// of the head). For a failed device it is not used: all values are fill
+  /// values and the status is unpowered. The lowest 16-bit count becomes the
+  /// one above it, because it means NaN. Throws, naming device, variable and
+  /// sample:
+  /// - UnstorableSamples for samples with a defect (samples_defect()), and for
+  ///   values that their storage cannot hold: no whole number of counts (to
+  ///   1e-6), or beyond its range;
+  /// - std::runtime_error for a recording that is not one of this file: other
+  ///   times, a variable of the head missing.
   EncodedDevice encode(std::uint32_t position, const DeviceRow& row,
                        const Recording* recording) const;
 
-  /// The next device.
+  /// Adds the next device.
   void add(const EncodedDevice& device);
   void add(const DeviceRow& row, const Recording* recording);
 
-  /// The bytes of the file once every device is added; they live as long as the
-  /// builder.
+  /// Returns the bytes of the file after every device has been added. They are
+  /// valid as long as the builder lives.
   std::span<const std::byte> finish();
 
  private:
@@ -121,12 +122,12 @@ class ShardBuilder {
   std::unique_ptr<Image> image_;
 };
 
-/// truth_time: every slow_step-th time.
+/// Returns truth_time: every slow_step-th time.
 std::vector<double> slow_times(const ShardHead& head);
 std::size_t slow_length(const ShardHead& head);
 
-/// Of a chunk of a row of `values` values: rows are cut into equal parts of up
-/// to 128 Ki values.
+/// Returns the length of the chunks of a row of `values` values: rows are
+/// divided into equal parts of up to 128 Ki values.
 std::size_t chunk_length(std::size_t values);
 
 }  // namespace beamgyro

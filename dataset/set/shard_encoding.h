@@ -8,23 +8,23 @@
 
 namespace beamgyro {
 
-/// Of one value [byte].
+/// Returns the size of one value [byte].
 std::size_t width_of(Storage storage);
 
-/// What keeps the head from being one, as one line, or an empty text.
+/// Returns the first defect of a head as one line, or an empty text.
 std::string shard_head_defect(const ShardHead& head);
 
-/// Every `step`-th value as `variable` stores it, little-endian. Throws
-/// UnstorableSamples "NAME: sample K is ...".
+/// Returns every `step`-th value in the storage of `variable`, little-endian.
+/// Throws UnstorableSamples "NAME: sample K is ...".
 std::vector<std::byte> encoded_values(const SetVariable& variable,
                                       const std::vector<double>& values,
                                       std::size_t step);
 
-/// `count` fill values.
+/// Returns `count` fill values.
 std::vector<std::byte> fill_values(const SetVariable& variable,
                                    std::size_t count);
 
-/// The values `bytes` stand for.
+/// Returns the values that `bytes` stand for.
 std::vector<double> decoded_values(const SetVariable& variable,
                                    const std::vector<std::byte>& bytes);
 

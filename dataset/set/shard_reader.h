@@ -12,18 +12,18 @@
 
 namespace beamgyro {
 
-/// Whether `path` is an HDF5 file that says it is one of a set.
+/// Returns whether `path` is an HDF5 file with the file type of a set.
 bool is_shard_file(const std::filesystem::path& path);
 
-/// A file of a set, open. Every call throws std::invalid_argument naming the
+/// An open file of a set. Every call throws std::invalid_argument naming the
 /// file when it is missing, damaged, not HDF5, no file of a set, of a newer
-/// format_version, or its content has a defect. Which bytes are damaged only
-/// the manifest tells for sure (check_set()).
+/// format_version, or has content with a defect. Only a comparison with the
+/// manifest finds all damage (check_set()).
 class ShardFile {
  public:
   explicit ShardFile(const std::filesystem::path& path);
-  /// Of a set, which may come from somebody else: an ordinary file by that name
-  /// in its directory, as for open_set_file().
+  /// Opens a file of a set that may come from somebody else: an ordinary file
+  /// of that name in its directory, as open_set_file().
   ShardFile(const std::filesystem::path& directory, const std::string& name);
   ~ShardFile();
   ShardFile(const ShardFile&) = delete;
@@ -32,15 +32,16 @@ class ShardFile {
   const ShardHead& head() const;
   std::uint32_t devices() const { return head().devices; }
 
-  /// `position` in the file, from 0. Throws std::out_of_range beyond it.
+  /// Returns the row at `position` in the file, from 0. Throws
+  /// std::out_of_range beyond it.
   const DeviceRow& row(std::uint32_t position) const;
 
-  /// One device without its slow variables, as read_recording() would give it.
-  /// Reads nothing of the others. Throws std::invalid_argument for a device
-  /// that failed.
+  /// Reads one device without its slow variables, in the form of
+  /// read_recording(). Reads nothing of the others. Throws
+  /// std::invalid_argument for a device that failed.
   Recording recording(std::uint32_t position) const;
 
-  /// The same of the slow variables, over truth_time.
+  /// The same for the slow variables, over truth_time.
   Recording slow_recording(std::uint32_t position) const;
 
  private:

@@ -10,9 +10,9 @@
 
 namespace beamgyro {
 
-/// Views that are not what write_view() makes of the files they show, in the
-/// manifest or on the disk. Reads the first file of each run, so a run with one
-/// of the `known` defects among its files is left out. Throws as ShardFile.
+/// Returns the views that differ from what write_view() makes of their files,
+/// in the manifest or on the disk. It reads the first file of each run, so a
+/// run with one of the `known` defects is left out. Throws as ShardFile.
 std::vector<SetDefect> check_views(const std::filesystem::path& directory,
                                    const Manifest& manifest,
                                    std::span<const SetDefect> known);
