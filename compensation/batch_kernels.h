@@ -7,16 +7,16 @@
 
 namespace beamgyro {
 
-/// Samples a block of BatchNetwork has room for; a multiple of kLanes.
+/// Number of samples in a block of BatchNetwork, a multiple of kLanes.
 constexpr Eigen::Index kBlockSamples = 64;
-/// Sums over samples are kept in this many parts, whatever the processor.
+/// Number of parts in which sums over samples are kept, on every processor.
 constexpr Eigen::Index kLanes = 4;
 /// The augmented Jacobian has a multiple of this many columns.
 constexpr Eigen::Index kTile = 4;
 
-/// One block of samples. All arrays have kBlockSamples entries a row and are
-/// aligned to kLanes doubles; entries from `samples` on up to a multiple of
-/// kLanes are evaluated and weigh nothing.
+/// One block of samples. All arrays have kBlockSamples entries in a row and are
+/// aligned to kLanes doubles. Entries from `samples` up to the next multiple of
+/// kLanes are evaluated with weight 0.
 struct SampleBlock {
   double* activations;   // a row per input, then one per hidden neuron
   const double* target;  // one row
@@ -25,24 +25,25 @@ struct SampleBlock {
   Eigen::Index samples;
 };
 
-/// a_k of every hidden layer and the errors, by equations (2) and (3).
+/// Computes a_k of every hidden layer and the errors by equations (2) and (3).
 void forward(const std::vector<NetworkLayer>& layers, const double* w,
              const SampleBlock& block);
 
-/// dy/dw of a block that went forward(), a row of `jacobian` per weight in the
-/// order of w; `delta` is scratch of two rows per neuron of the widest layer.
+/// Computes dy/dw of a block after forward(), one row of `jacobian` for each
+/// weight in the order of w. `delta` is scratch memory of two rows for each
+/// neuron of the widest layer.
 void jacobian(const std::vector<NetworkLayer>& layers, const double* w,
               const SampleBlock& block, double* delta, double* jacobian);
 
-/// d2y/dt2 at t = 0 along w + t v, of a block that went forward(), in
-/// `curvature` (one row); `scratch` has four rows per neuron of the widest
-/// layer.
+/// Computes d2y/dt2 at t = 0 along w + t v of a block after forward() and
+/// writes it to `curvature` (one row). `scratch` has four rows for each neuron
+/// of the widest layer.
 void second_derivative(const std::vector<NetworkLayer>& layers, const double* w,
                        const double* v, const SampleBlock& block,
                        double* scratch, double* curvature);
 
-/// Adds J^T e of a block that went forward() to `gradient` (one entry per
-/// weight) for the row `e`; `delta` as of jacobian().
+/// Adds J^T e of a block after forward() to `gradient` (one entry for each
+/// weight), for the row `e`. `delta` is as in jacobian().
 void add_gradient(const std::vector<NetworkLayer>& layers, const double* w,
                   const SampleBlock& block, const double* e, double* delta,
                   double* gradient);
@@ -52,8 +53,8 @@ void add_gradient(const std::vector<NetworkLayer>& layers, const double* w,
 void add_products(const double* jacobian, Eigen::Index rows,
                   Eigen::Index samples, double* products);
 
-/// tanh(z) of the entries of z, a multiple of kLanes and so aligned, within
-/// 5e-16 of std::tanh.
+/// Replaces the entries of z by tanh(z), within 5e-16 of std::tanh. Their
+/// number is a multiple of kLanes, and z is aligned to kLanes doubles.
 void tanh_in_place(double* z, Eigen::Index entries);
 
 }  // namespace beamgyro

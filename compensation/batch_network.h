@@ -9,31 +9,31 @@
 
 namespace beamgyro {
 
-/// A BP network over all rows of a training set, for the trainers. Its outputs
-/// are those of BpNetwork but for rounding. Rows are cut into chunks by their
-/// number alone and the sums of the chunks are added in their order, so results
-/// do not depend on `threads`.
+/// Evaluates a BP network over all rows of a training set, for the trainers.
+/// Its outputs are those of BpNetwork except for rounding. The division of the
+/// rows into chunks depends on their number alone, and the sums of the chunks
+/// are added in order, so results do not depend on `threads`.
 class BatchNetwork {
  public:
   BatchNetwork(const std::vector<int>& layer_sizes, const ScaledRows& rows,
                int threads);
 
-  /// Σ e^2 over the rows, e = y - target, at weights w. Keeps the outputs of
-  /// all neurons.
+  /// Returns Σ e^2 over the rows at weights w, e = y - target. Keeps the
+  /// outputs of all neurons.
   double sum_of_squares(const Eigen::VectorXd& w);
 
-  /// J^T e at the weights of the last sum_of_squares().
+  /// Returns J^T e at the weights of the last sum_of_squares().
   Eigen::VectorXd gradient();
 
-  /// J^T J (lower triangle) and J^T e, J = dy/dw, at the weights of the last
-  /// sum_of_squares().
+  /// Computes J^T J (lower triangle) and J^T e with J = dy/dw, at the weights
+  /// of the last sum_of_squares().
   void normal_equations(Eigen::MatrixXd& matrix, Eigen::VectorXd& gradient);
 
-  /// J^T d2y/dt2 at t = 0 along w + t v, at the same weights.
+  /// Returns J^T d2y/dt2 at t = 0 along w + t v, at the same weights.
   Eigen::VectorXd curvature(const Eigen::VectorXd& v);
 
  private:
-  // Doubles on the boundaries that the kernels want.
+  // Doubles with the alignment that the kernels need.
   struct alignas(kLanes * sizeof(double)) Lanes {
     double value[kLanes];
   };
@@ -44,7 +44,7 @@ class BatchNetwork {
     double* data() { return lanes.data()->value; }
   };
 
-  // Blocks [first, last), and what their evaluation leaves.
+  // Blocks [first, last), and the results of their evaluation.
   struct Chunk {
     Eigen::Index first, last;
     Values jacobian, scratch, products;

@@ -23,15 +23,16 @@ struct Scale {
   bool operator==(const Scale&) const = default;
 };
 
-/// Takes the values to [-1, 1]. Throws std::invalid_argument when they are all
-/// equal; `what` names them in the message.
+/// Returns the scale that maps the values to [-1, 1]. Throws
+/// std::invalid_argument when they are all equal; `what` names them in the
+/// message.
 Scale scale_to_unit(const Eigen::Ref<const Eigen::ArrayXd>& values,
                     const std::string& what);
 
-/// No bias at all: the raw rate.
+/// Bias 0 everywhere: the raw rate.
 struct NoBias {};
 
-/// The same bias everywhere.
+/// The same bias at all inputs.
 struct ConstantBias {
   double value = 0.0;
 };
@@ -50,8 +51,8 @@ struct BiasModel {
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
 };
 
-/// (1 - weight) constant + weight b, b as `model` predicts it: the same
-/// function with another bias scale.
+/// Returns the model (1 - weight) constant + weight b, where b is the
+/// prediction of `model`: the same function with another bias scale.
 BiasModel averaged_with_constant(BiasModel model, double constant,
                                  double weight);
 
@@ -68,12 +69,12 @@ struct EquationOne {
   std::vector<double> coefficients;  // a_n [1/K^n]; not finite if F(T0) = 0
 };
 
-/// Coefficients [deg/s/K^n] of the polynomial of `model` in T - `reference`.
-/// Throws as equation_one().
+/// Returns the coefficients [deg/s/K^n] of the polynomial of `model` in T -
+/// `reference`. Throws as equation_one().
 std::vector<double> coefficients_about(const BiasModel& model,
                                        double reference);
 
-/// The polynomial of `model` written as equation (1). Throws
+/// Returns the polynomial of `model` in the form of equation (1). Throws
 /// std::invalid_argument when the model is of another kind or has other inputs
 /// than the temperature.
 EquationOne equation_one(const BiasModel& model);

@@ -10,10 +10,10 @@
 
 namespace beamgyro {
 
-/// The number as JSON. Throws std::runtime_error when it is not finite.
+/// Returns the number as JSON. Throws std::runtime_error when it is not finite.
 nlohmann::ordered_json finite_json(double value);
 
-/// An array of numbers, each as finite_json().
+/// Returns an array of numbers, each as finite_json().
 template <class Numbers>
 nlohmann::ordered_json numbers_json(const Numbers& numbers) {
   nlohmann::ordered_json array = nlohmann::ordered_json::array();
@@ -25,7 +25,8 @@ nlohmann::ordered_json numbers_json(const Numbers& numbers) {
 /// (docs/reference/compensator_file.md), to `json`. Throws as finite_json().
 void put_bias_model(const BiasModel& model, nlohmann::ordered_json& json);
 
-/// The name of a kind of model. Throws as JsonNode when there is none such.
+/// Reads the name of a kind of model. Throws as JsonNode when there is no such
+/// kind.
 std::string read_bias_kind(const JsonNode& node);
 
 /// Reads what put_bias_model() wrote for a model of that kind and so many
@@ -33,7 +34,8 @@ std::string read_bias_kind(const JsonNode& node);
 BiasModel read_bias_model(const JsonNode& node, const std::string& kind,
                           std::size_t inputs);
 
-/// Temperatures that increase, and as many numbers under the key `values`.
+/// Reads temperatures that increase, and as many numbers under the key
+/// `values`.
 LookupTable read_lookup_table(const JsonNode& node, const std::string& values);
 
 }  // namespace beamgyro

@@ -8,8 +8,8 @@
 
 namespace beamgyro {
 
-/// Where the weights of one layer lie in the flat vector: W column by column
-/// from `weights`, b from `biases`.
+/// Positions of the weights of one layer in the flat vector: W begins at
+/// `weights`, column by column, and b at `biases`.
 struct NetworkLayer {
   Eigen::Index in, out, weights, biases;
   bool last;
@@ -22,15 +22,15 @@ std::vector<NetworkLayer> layers_of(const std::vector<int>& layer_sizes);
 ///
 ///   a_0 = x,   a_k = tanh(W_k a_{k-1} + b_k),   y = W_n a_{n-1} + b_n
 ///
-/// with tansig(n) = 2 / (1 + exp(-2 n)) - 1 = tanh(n). All weights live in one
+/// with tansig(n) = 2 / (1 + exp(-2 n)) - 1 = tanh(n). All weights are in one
 /// flat vector: W_1 column by column, b_1, W_2, b_2, ... Inputs and output are
-/// scaled to order one. One sample per row; the answer for a sample does not
-/// depend, to the last bit, on the samples it is evaluated with.
+/// scaled to order one. There is one sample in each row. The answer to a sample
+/// does not depend, to the last bit, on the samples that are evaluated with it.
 class BpNetwork {
  public:
-  /// `layer_sizes` = {inputs, hidden..., 1}, zero weights. Throws
-  /// std::invalid_argument for fewer than two layers, a size below one or more
-  /// than one output.
+  /// Makes a network with zero weights; `layer_sizes` = {inputs, hidden..., 1}.
+  /// Throws std::invalid_argument for fewer than two layers, a size below one
+  /// or more than one output.
   explicit BpNetwork(std::vector<int> layer_sizes);
 
   const std::vector<int>& layer_sizes() const { return layer_sizes_; }
@@ -38,21 +38,22 @@ class BpNetwork {
   /// Throws std::invalid_argument for another number of weights.
   void set_weights(const Eigen::VectorXd& weights);
 
-  /// Initial weights after Nguyen and Widrow (IJCNN 1990): the rows of a hidden
-  /// W have length 0.7 S^(1/R) in random directions, its biases spread the
-  /// transitions evenly over [-1, 1]; output weights uniform in (-0.5, 0.5).
+  /// Sets initial weights after Nguyen and Widrow (IJCNN 1990): the rows of a
+  /// hidden W have length 0.7 S^(1/R) in random directions, its biases spread
+  /// the transitions evenly over [-1, 1]; output weights uniform in (-0.5,
+  /// 0.5).
   void randomise(RandomStream& random);
 
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
 
-  /// Output of every sample, and dy/dw in `jacobian`, one row per sample and
-  /// one column per weight, by back-propagation.
+  /// Returns the output of every sample, and dy/dw in `jacobian` by
+  /// back-propagation: one row for each sample and one column for each weight.
   Eigen::ArrayXd predict_with_jacobian(
       const Eigen::Ref<const Eigen::ArrayXXd>& x,
       Eigen::MatrixXd& jacobian) const;
 
-  /// Output of every sample, and d(1/2 Σ e^2)/dw in `gradient` for the errors
-  /// e = y - target, equation (4).
+  /// Returns the output of every sample, and d(1/2 Σ e^2)/dw in `gradient` for
+  /// the errors e = y - target, equation (4).
   Eigen::ArrayXd predict_with_gradient(
       const Eigen::Ref<const Eigen::ArrayXXd>& x,
       const Eigen::Ref<const Eigen::ArrayXd>& target,

@@ -5,15 +5,16 @@
 
 namespace beamgyro {
 
-/// Shortest decimal literal of C that reads back to the same single.
+/// Returns the shortest decimal C literal that reads back to the same float.
 std::string c_literal(float value);
 
-/// A C identifier from a file name: what is neither letter nor digit becomes _,
-/// and c_ comes before one that would not start with a letter.
+/// Returns a C identifier made from a file name. Characters that are neither
+/// letter nor digit become _, and c_ is put before a name that does not start
+/// with a letter.
 std::string c_identifier(const std::string& text);
 
-/// `text` as it may stand in a comment of C: anything but letters, digits,
-/// spaces and ().,:;+-=% becomes _, so that nothing ends the comment.
+/// Returns `text` for a C comment. Characters other than letters, digits,
+/// spaces and ().,:;+-=% become _, so that the text cannot end the comment.
 std::string c_comment(const std::string& text);
 
 }  // namespace beamgyro

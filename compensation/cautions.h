@@ -16,7 +16,7 @@ constexpr double kWidestGap = 10.5;  // [K], between neighbouring temperatures
 constexpr double kHysteresisBin = 5.0;  // [K]
 constexpr double kSignificance = 4.0;   // [-], standard errors
 
-/// A fit and what it was fitted to, for cautions().
+/// A fit and the data that it was fitted to, for cautions().
 struct FittedCase {
   const std::vector<Input>& inputs;
   const BiasModel& model;
@@ -27,19 +27,23 @@ struct FittedCase {
   bool knows_between = false;     // the model knows what lies between the rows
 };
 
-/// What the data do not support, one line each: a temperature span under
-/// kLeastSpan; gaps in coverage; a temperature too coarse for the slope of the
-/// bias; held-out temperatures outside the training's; hysteresis() above the
-/// rms residual and above kSignificance standard errors, of a model without an
-/// input that tells rising from falling; an input that feels the rate in a
-/// training at rest.
+/// Returns one line for each claim that the data do not support:
+/// - a temperature span under kLeastSpan;
+/// - gaps in coverage;
+/// - a temperature too coarse for the slope of the bias;
+/// - held-out temperatures outside those of training;
+/// - hysteresis() above the rms residual and above kSignificance standard
+///   errors, for a model without an input that distinguishes rising from
+///   falling temperature;
+/// - an input that feels the rate, with training at rest.
 std::vector<std::string> cautions(const FittedCase& fitted);
 
-/// Whether cautions() warned of an input that feels the rate and a training at
-/// rest.
+/// Returns whether cautions() warned of an input that feels the rate with
+/// training at rest.
 bool warned_of_rate(const std::vector<std::string>& warnings);
 
-/// Smallest difference of two measured temperatures [K], 0 when all are equal.
+/// Returns the smallest difference of two measured temperatures [K], or 0 when
+/// all are equal.
 double temperature_resolution(const Recording& recording);
 
 struct Hysteresis {
@@ -47,18 +51,22 @@ struct Hysteresis {
   double standard_error;  // [deg/s], of it
 };
 
-/// What a model leaves that differs between legs of rising and of falling
-/// temperature: the largest difference of the means of `residual` (one per row
-/// [deg/s]) in bins of kHysteresisBin. The standard error takes the scatter
-/// within a bin and direction, pooled. Nothing without a bin that has both.
+/// Returns the hysteresis that a model leaves: the largest difference between
+/// the means of `residual` (one per row [deg/s]) on legs of rising and of
+/// falling temperature, in bins of kHysteresisBin. The standard error comes
+/// from the pooled scatter within a bin and direction. Returns nothing when no
+/// bin has both directions.
 std::optional<Hysteresis> hysteresis(const TrainingRows& rows,
                                      const Eigen::ArrayXd& residual);
 
-/// Why the model must not claim to be better than a constant bias: nothing was
-/// unseen; fewer than kLeastGroups were; its rms on unseen groups is not below
-/// the constant's by kUsefulGain; its mean square is not below by more than the
-/// standard error of the difference; or the groups disagree, so that its
-/// `weight` beside a constant is below 1. Empty when it may.
+/// Returns why the model must not claim to be better than a constant bias, or
+/// an empty text when it may. The reasons are:
+/// - no group, or fewer than kLeastGroups, was unseen;
+/// - its rms on unseen groups is not below that of the constant by kUsefulGain;
+/// - its mean square is not below by more than the standard error of the
+///   difference;
+/// - the groups disagree, so that its `weight` in the average with a constant
+///   is below 1.
 std::string objection_to_claim(const std::optional<GroupErrors>& model,
                                const std::optional<GroupErrors>& constant,
                                double weight = 1.0);

@@ -16,7 +16,7 @@
 
 namespace beamgyro {
 
-/// A file a compensator was trained on or held against.
+/// A file that a compensator was trained on, or that was held out.
 struct SourceFile {
   std::string name;
   std::string sha256;  // 64 hexadecimal digits
@@ -26,8 +26,8 @@ struct SourceFile {
   bool operator==(const SourceFile&) const = default;
 };
 
-/// Residuals of a model fitted to all groups of rows but one, on that one, for
-/// each group in turn.
+/// Cross-validation: residuals on each group of rows of a model fitted to all
+/// other groups.
 struct CrossValidated {
   std::string by;  // "run", "cycle", "leg" or "segment"
   std::size_t groups = 0;
@@ -40,12 +40,12 @@ struct CrossValidated {
   bool operator==(const CrossValidated&) const = default;
 };
 
-/// Where a compensator comes from.
+/// Origin of a compensator: data, model file and scores of training.
 struct Provenance {
   std::string method;  // "cubic as PX4 fits it", ...
   std::vector<SourceFile> training;
   std::vector<SourceFile> held_out;
-  // In place of files: the set the runs come from.
+  // In place of files: the set that the runs come from.
   std::optional<SetPart> training_set, held_out_set;
   std::string model_text;  // model file byte for byte as read
   std::uint64_t seed = 0;
@@ -71,24 +71,25 @@ struct Compensator {
   std::optional<LookupTable> scale_factor;  // s(T) [-]; 1 without
   BiasModel baseline;  // of the temperature: the cubic of equation (1)
   TemperatureRange temperature_range;  // [degC], seen in training
-  // Learned with the bias, which then is its mean: to adapt to devices.
+  // The population that was learned, from which devices are adapted. The bias
+  // is its mean then.
   std::optional<Population> population = {};
   Provenance provenance;
 };
 
-/// Compensated rate [deg/s] of every sample; NaN where unpowered.
-/// Throws std::invalid_argument naming an input the recording lacks, or the
-/// time of a powered sample whose input is not finite.
+/// Returns the compensated rate [deg/s] of every sample, NaN where unpowered.
+/// Throws std::invalid_argument naming an input that the recording lacks, or
+/// the time of a powered sample whose input is not finite.
 std::vector<double> compensated_rate(const Compensator& compensator,
                                      const Recording& recording);
 
-/// The same for the compensator's own baseline, the cubic of equation (1), with
-/// s = 1.
+/// Returns the same for the baseline of the compensator, the cubic of equation
+/// (1), with s = 1.
 std::vector<double> baseline_rate(const Compensator& compensator,
                                   const Recording& recording);
 
-/// Number of powered samples whose measured temperature lies outside the range
-/// of the compensator, so that it was clamped.
+/// Returns the number of powered samples whose measured temperature was clamped
+/// because it lies outside the range of the compensator.
 std::size_t clamped_samples(const Compensator& compensator,
                             const Recording& recording);
 

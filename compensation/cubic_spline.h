@@ -10,13 +10,13 @@ enum class SplineEnd {
   kNotAKnot,  // s''' continuous at the second and the last but one knot
 };
 
-/// Piecewise cubic with two continuous derivatives, held as its values y_k and
-/// second derivatives M_k at the knots x_k. With h = x_{k+1} - x_k,
-/// a = (x_{k+1} - x) / h, b = 1 - a:
+/// Piecewise cubic with two continuous derivatives, given by its values y_k and
+/// second derivatives M_k at the knots x_k. With h = x_{k+1} - x_k, a =
+/// (x_{k+1} - x) / h, b = 1 - a:
 ///
 ///   s(x) = a y_k + b y_{k+1} + [(a^3 - a) M_k + (b^3 - b) M_{k+1}] h^2 / 6
 ///
-/// Beyond the outer knots the outer cubics go on.
+/// Beyond the outer knots the outer cubics continue.
 struct CubicSpline {
   Eigen::ArrayXd knots;               // [degC], increasing, at least 4
   Eigen::ArrayXd values;              // [deg/s]
@@ -25,18 +25,18 @@ struct CubicSpline {
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXd>& x) const;
 };
 
-/// The spline on `knots` with the least sum of squared residuals at the points
-/// (x, y): it goes through the points when there is one per knot. Throws
-/// std::invalid_argument for fewer than 4 knots, knots that do not increase or
-/// points that do not determine the values at all knots.
+/// Returns the spline on `knots` with the least sum of squared residuals at the
+/// points (x, y). It passes through the points when there is one for each knot.
+/// Throws std::invalid_argument for fewer than 4 knots, knots that do not
+/// increase or points that do not determine the values at all knots.
 CubicSpline fit_cubic_spline(const Eigen::Ref<const Eigen::ArrayXd>& x,
                              const Eigen::Ref<const Eigen::ArrayXd>& y,
                              const Eigen::ArrayXd& knots, SplineEnd end);
 
-/// Knots from the data. Points with a gap of more than spacing / 4 between
-/// neighbours form separate groups: a group no wider than spacing / 2 (a soak)
-/// gets one knot at its mean, a wider one (a ramp) knots from end to end in
-/// equal steps no longer than `spacing` [K].
+/// Chooses knots from the data. Points with a gap of more than spacing / 4
+/// between neighbours form separate groups. A group no wider than spacing / 2
+/// (a soak) gets one knot at its mean. A wider one (a ramp) gets knots from end
+/// to end, in equal steps no longer than `spacing` [K].
 Eigen::ArrayXd spline_knots(const Eigen::Ref<const Eigen::ArrayXd>& x,
                             double spacing);
 

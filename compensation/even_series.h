@@ -16,7 +16,8 @@ struct TimeWindow {
   double to = std::numeric_limits<double>::infinity();
 };
 
-/// A signal at even steps, in stretches that no difference may join.
+/// A signal at equal steps, divided into stretches; no difference may join two
+/// of them.
 struct EvenSeries {
   std::vector<std::vector<double>> stretches;  // NaN: no sample at this place
   double interval = 0.0;     // [s], mean step between neighbouring samples
@@ -28,8 +29,8 @@ struct EvenSeries {
 };
 
 /// Puts the samples of column `name` that are powered, finite and within
-/// `window` on a grid of even steps. A step of more than 1.5 times the usual
-/// one is a gap: the places in it hold NaN. A new stretch begins
+/// `window` on a grid of equal steps. A step of more than 1.5 times the median
+/// one is a gap, which is filled with NaN. A new stretch begins
 /// - where power comes on, since the bias then has another turn-on offset;
 /// - at a gap that would leave fewer than one place in four of the stretch so
 ///   far with a sample.

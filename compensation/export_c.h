@@ -17,13 +17,13 @@ struct ExportedC {
   std::vector<std::string> warnings;  // what `force` overrode
 };
 
-/// `name` is a C identifier. Throws std::invalid_argument with the first
-/// objection of findings_of(), unless with `force`, which carries objections as
-/// warnings into the text.
+/// Writes the source text; `name` is a C identifier. Throws
+/// std::invalid_argument with the first objection of findings_of(). With
+/// `force` the objections become warnings in the text instead.
 ///
-/// Bits are the same on every machine with IEEE-754 single precision when the
-/// compiler does not contract a * b + c: gcc and clang want -ffp-contract=off.
-/// Throws as findings_of().
+/// The results have the same bits on every machine with IEEE-754 single
+/// precision when the compiler does not contract a * b + c: gcc and clang want
+/// -ffp-contract=off. Throws as findings_of().
 ExportedC export_c(const Compensator& compensator, const std::string& name,
                    bool force = false);
 

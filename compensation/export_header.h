@@ -12,10 +12,10 @@ namespace beamgyro {
 
 bool has_filter(const Input& input);
 
-/// Whether the input is a signal other than the temperature.
+/// Returns whether the input is a signal other than the temperature.
 bool reads_a_signal(const Input& input);
 
-/// What the exported code of a compensator consists of.
+/// The parts of the exported code of a compensator.
 struct FirmwareParts {
   explicit FirmwareParts(const Compensator& compensator);
 
@@ -25,12 +25,13 @@ struct FirmwareParts {
   bool reads_more = false;  // than the rate and the temperature
 };
 
-/// NAME.h: what was trained, its warnings and findings, and the interface.
+/// Returns the text of NAME.h: origin of the compensator, warnings and
+/// findings, and the interface.
 std::string header_text(const Compensator& compensator, const std::string& name,
                         const FirmwareModel& model,
                         const ExportFindings& found);
 
-/// Comments of C, one for each warning.
+/// Returns C comments, one for each warning.
 std::string warning_comments(const std::vector<std::string>& warnings);
 
 }  // namespace beamgyro

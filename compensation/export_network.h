@@ -6,8 +6,8 @@
 
 namespace beamgyro {
 
-/// C99 statements that return the answer of a network of these layer sizes to
-/// its scaled inputs x, from the arrays weights_1, biases_1, ... of
+/// Returns the C99 statements that evaluate a network of these layer sizes at
+/// its scaled inputs x, with the arrays weights_1, biases_1, ... of
 /// FirmwareModel.
 std::string network_lines(const std::vector<int>& sizes);
 

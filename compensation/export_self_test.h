@@ -7,14 +7,16 @@
 
 namespace beamgyro {
 
-/// Samples the self-test runs through, in four power cycles of different rates.
+/// Number of samples of the self-test, in four power cycles with different
+/// sample rates.
 constexpr int kGoldenSamples = 10000;
-/// Of them, one in so many is compared on its own, all by their CRC-32.
+/// One sample in so many is compared by itself, all of them by their CRC-32.
 constexpr int kGoldenStep = 100;
 
-/// C99 source of main() that feeds NAME_step() with temperatures 5 K beyond the
-/// range and other inputs within theirs, and compares with FirmwareModel. Exit
-/// status 0 when all bits are equal. Throws as FirmwareModel.
+/// Returns the C99 source of main(). It calls NAME_step() with temperatures up
+/// to 5 K beyond the range and with other inputs within theirs, and compares
+/// with FirmwareModel. Its exit status is 0 when all bits are equal. Throws as
+/// FirmwareModel.
 std::string self_test_source(const Compensator& compensator,
                              const std::string& name);
 

@@ -13,7 +13,7 @@
 
 namespace beamgyro {
 
-/// Temperatures [degC] a compensator accepts; others are clamped to it.
+/// Range of temperatures [degC] of a compensator. Others are clamped to it.
 struct TemperatureRange {
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
@@ -21,14 +21,16 @@ struct TemperatureRange {
   bool operator==(const TemperatureRange&) const = default;
 };
 
-/// Causal low-pass tau y' = x - y with y = x at the first sample, exact when
-/// x runs straight between samples however irregular. It steps the lag
-/// L = x - y:   L <- e^-h L + (x - x_before) (1 - e^-h) / h,   h = dt / tau.
+/// Causal low-pass tau y' = x - y with y = x at the first sample. It is exact
+/// for an x with straight lines between samples at any intervals. It advances
+/// the lag L = x - y: L <- e^-h L + (x - x_before) (1 - e^-h) / h, h = dt /
+/// tau.
 class LowPass {
  public:
   explicit LowPass(double time_constant) : time_constant_(time_constant) {}
 
-  /// Output at `time` [s], later than the time before; x in any unit.
+  /// Returns the output at `time` [s], which must be later than the time
+  /// before. x has any unit.
   double step(double time, double x);
   void reset() { started_ = false; }
 
@@ -40,10 +42,10 @@ class LowPass {
   double lag_ = 0.0;
 };
 
-/// The inputs of a compensator sample by sample, the same in training and at
-/// run time, as firmware would compute them. Filters and the time since
-/// power-on start at the first powered sample after each unpowered one: a
-/// low-pass at the temperature there, its rate of change (x - y) / tau at 0.
+/// Computes the inputs of a compensator sample by sample, as firmware would, in
+/// training and at run time alike. Filters and the time since power-on start at
+/// the first powered sample after an unpowered one: a low-pass starts at the
+/// temperature there, its rate of change (x - y) / tau at 0.
 class FeatureStream {
  public:
   explicit FeatureStream(std::vector<Input> inputs,
@@ -65,9 +67,10 @@ class FeatureStream {
   double power_on_time_ = 0.0;  // [s]
 };
 
-/// Inputs of every sample of a recording: one row per sample, one column per
-/// input, NaN where unpowered. Throws std::invalid_argument naming an input
-/// whose column the recording lacks, or as FeatureStream::step().
+/// Returns the inputs of every sample of a recording, one row for each sample
+/// and one column for each input, NaN where unpowered. Throws
+/// std::invalid_argument naming an input whose column the recording lacks, and
+/// as FeatureStream::step().
 Eigen::ArrayXXd features_of(const std::vector<Input>& inputs,
                             const Recording& recording,
                             const TemperatureRange& range = {});

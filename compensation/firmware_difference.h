@@ -8,22 +8,22 @@ namespace beamgyro {
 /// Sample periods [s] at which firmware_difference() compares.
 constexpr float kComparedPeriods[] = {0.0005f, 0.01f, 0.1f, 1.0f, 20.0f};
 
-/// The difference exported code may have [deg/s].
+/// Largest difference that exported code may have [deg/s].
 constexpr double kLargestDifference = 1e-4;
 
-/// Largest difference [deg/s] of FirmwareModel, in single precision, from
-/// compensated_rate(), in double precision, over 20,000 samples at each of
-/// kComparedPeriods. Samples are what the compensator was trained for:
+/// Returns the largest difference [deg/s] between FirmwareModel in single
+/// precision and compensated_rate() in double precision, over 20,000 samples at
+/// each of kComparedPeriods. The samples are in the range of training:
 ///
 /// - temperatures that rise and fall between the ends of its range in eight
 ///   power cycles, as fast as its inputs temperature_rate() saw in training, or
 ///   10 K/min without one, and down to 3 % of that;
 /// - rates within 150 deg/s, and other signals within their scales.
 ///
-/// Samples are rounded to singles for the firmware only, as its sensors do.
-/// Throws std::invalid_argument for an input other than the temperature whose
-/// scale says nothing of its range (a polynomial with normalised = false), for
-/// answers that are not finite in single precision, and as FirmwareModel.
+/// Samples are rounded to single precision for the firmware only. Throws
+/// std::invalid_argument for an input other than the temperature whose scale
+/// does not give its range (a polynomial with normalised = false), for answers
+/// that are not finite in single precision, and as FirmwareModel.
 double firmware_difference(const Compensator& compensator);
 
 }  // namespace beamgyro

@@ -12,7 +12,8 @@
 
 namespace beamgyro {
 
-/// Signals a compensator can read, in the order and units of firmware samples.
+/// Signals that a compensator can read, in the order and units of firmware
+/// samples.
 constexpr const char* kFirmwareSignals[] = {
     "rate",       "temperature",     "output",
     "quadrature", "drive_frequency", "drive_voltage"};
@@ -23,21 +24,22 @@ constexpr std::size_t kFirmwareSignalCount = 6;
 
 constexpr std::size_t kFirmwareDriveFrequency = 4;
 
-/// One sample, indexed as kFirmwareSignals. The drive frequency is told as its
-/// change from FirmwareModel::drive_frequency(): of 9 kHz a single holds 1 mHz.
+/// One sample, indexed as kFirmwareSignals. The drive frequency is given as its
+/// difference from FirmwareModel::drive_frequency(), because single precision
+/// resolves 1 mHz only at 9 kHz.
 struct FirmwareSample {
   float value[kFirmwareSignalCount] = {};
 };
 
-/// A row of constants of the exported code.
+/// An array of constants of the exported code.
 struct FirmwareArray {
   std::string name, comment;
   std::vector<float> values;
 };
 
-/// A compensator in single precision: the constants that exported code holds,
-/// and step by step the operations it carries out. Built with contraction of
-/// multiplications and additions off, the code gives the same bits.
+/// A compensator in single precision, with the constants and the operations of
+/// the exported code. Exported code that is compiled without contraction of
+/// multiplications and additions gives the same bits.
 class FirmwareModel {
  public:
   /// Throws std::invalid_argument for a parameter beyond single precision.
@@ -46,22 +48,23 @@ class FirmwareModel {
   FirmwareModel(const FirmwareModel&) = delete;
   FirmwareModel& operator=(const FirmwareModel&) = delete;
 
-  /// At power-on; samples then come every `period` [s], > 0.
+  /// Starts at power-on. Samples then come every `period` [s], > 0.
   void start(float period);
 
-  /// Compensated rate [deg/s]. Temperatures out of range are clamped. NaN for
-  /// an input that is not finite; when it is the temperature, filters wait for
-  /// the next.
+  /// Returns the compensated rate [deg/s]. Temperatures out of range are
+  /// clamped. An input that is not finite gives NaN; if it is the temperature,
+  /// filters wait for the next finite one.
   float step(const FirmwareSample& sample);
 
   const std::vector<FirmwareArray>& arrays() const { return arrays_; }
   const std::vector<float>& array(std::string_view name) const;
   bool reads(std::size_t signal) const;  // index of kFirmwareSignals
 
-  /// Whole [Hz] nearest to the middle of the drive frequencies of training.
+  /// Returns the whole number of Hz nearest to the middle of the drive
+  /// frequencies of training.
   int drive_frequency() const { return drive_frequency_; }
 
-  /// crc32() of all arrays in their order.
+  /// Returns crc32() of all arrays in their order.
   std::uint32_t crc() const;
 
  private:
@@ -78,11 +81,12 @@ class FirmwareModel {
   std::unique_ptr<State> state_;
 };
 
-/// CRC-32 (IEEE 802.3) of the values, each least significant byte first.
+/// Returns the CRC-32 (IEEE 802.3) of the values, each with the least
+/// significant byte first.
 std::uint32_t crc32(const std::vector<float>& values);
 
-/// Source text (C99) of the functions that the named section of the run-time
-/// holds: exp, lowpass, finite, tanh, polynomial, table, spline, thermistor,
+/// Returns the C99 source of the functions in the named section of the
+/// run-time: exp, lowpass, finite, tanh, polynomial, table, spline, thermistor,
 /// fuzzy or crc. Throws std::logic_error for another name.
 std::string firmware_runtime(std::string_view section);
 

@@ -25,23 +25,22 @@ struct Fit {
   const TrainSummary& summary() const { return restarts[chosen]; }
 };
 
-/// Fits `kind` to rows whose input columns are `inputs`. A population's model
-/// is its mean, an adapted one the conditional mean: both depend on the first
-/// input alone, the temperature. A network stops early
-/// on `held_out`, which may be empty; best_network() says which of its restarts
-/// and weight decays is kept.
-/// Restart k starts from the stream (seed, 0, k, kInitialWeights). Throws
-/// std::invalid_argument when the temperatures are too few or too close
-/// together, or an input never varies.
+/// Fits `kind` to rows whose input columns are `inputs`. The model of a
+/// population is its mean, that of an adapted device the conditional mean; both
+/// depend on the temperature alone, the first input. A network stops early on
+/// `held_out`, which may be empty; best_network() chooses among its restarts
+/// and weight decays. Restart k starts from the stream (seed, 0, k,
+/// kInitialWeights). Throws std::invalid_argument when the temperatures are too
+/// few or too close together, or an input never varies.
 Fit fit_model(const FitSpec& kind, const std::vector<Input>& inputs,
               const TrainingRows& rows, const TrainingRows& held_out,
               std::uint64_t seed);
 
-/// The cubic of equation (1) of the measured temperature; of lower degree where
-/// the temperatures do not determine a cubic.
+/// Fits the cubic of equation (1) of the measured temperature; of lower degree
+/// where the temperatures do not determine a cubic.
 BiasModel fit_baseline(const TrainingRows& rows);
 
-/// Root of the mean square residual [deg/s] over the rows.
+/// Returns the rms residual [deg/s] over the rows.
 double rms_residual(const BiasModel& model, const TrainingRows& rows);
 
 }  // namespace beamgyro

@@ -12,24 +12,26 @@ namespace beamgyro {
 struct AdaptiveRate {
   double rate;  // > 0
 
-  /// Updates the rate; true when the step is to be kept.
+  /// Updates the rate. Returns true when the step is to be kept.
   bool keep_step(double old_error, double new_error);
 };
 
-/// Sample by sample: after each row, in an order shuffled anew every epoch,
+/// Trains sample by sample. After each row, in an order that is shuffled again
+/// for every epoch,
 ///
 ///   dw(t+1) = h dw(t) - eta dE/dw,   E = e^2 / 2,   w(t+1) = w(t) + dw(t+1)
 ///
-/// which is equation (5) with the momentum h on the step: on the weight itself,
-/// as (5) is printed, h < 1 would shrink every weight at every sample.
+/// This is equation (5) with the momentum h applied to the step. Applied to the
+/// weight itself, as (5) is printed, h < 1 would shrink every weight at every
+/// sample.
 TrainSummary train_incremental(const ScaledRows& rows,
                                const ScaledRows& held_out,
                                const TrainOptions& options, RandomStream& order,
                                BpNetwork& network);
 
-/// Full batch: the same rule once an epoch with E = mean(e^2) / 2 and the rate
-/// of AdaptiveRate, `error` being the sum of squares. A discarded step clears
-/// the momentum, or it would be tried again.
+/// Trains on the full batch: the same rule once for each epoch, with E =
+/// mean(e^2) / 2 and the rate of AdaptiveRate; `error` is the sum of squares. A
+/// discarded step clears the momentum, or it would be tried again.
 TrainSummary train_gradient_adaptive(const ScaledRows& rows,
                                      const ScaledRows& held_out,
                                      const TrainOptions& options,

@@ -14,7 +14,7 @@ enum class InputKind {
   kSincePowerOn,        // since_power_on(TAU) = exp(-t / TAU)
 };
 
-/// One input of a compensator: something a sensor shows, never the truth.
+/// One input of a compensator: a measured quantity, never the truth.
 struct Input {
   InputKind kind = InputKind::kColumn;
   std::string column;          // measured column read; "" for since_power_on
@@ -26,15 +26,15 @@ struct Input {
 /// Reads "output", "temperature", "temperature_lowpass(100)",
 /// "temperature_rate(60)", "since_power_on(300)", "drive_frequency",
 /// "drive_voltage", "quadrature" or "rate". Throws std::invalid_argument for
-/// anything else, with what there is.
+/// any other name and lists these.
 Input parse_input(std::string_view name);
 
-/// The name parse_input() reads back to the same input, to the last bit of the
-/// time constant.
+/// Returns the name from which parse_input() reads the same input, to the last
+/// bit of the time constant.
 std::string input_name(const Input& input);
 
-/// Whether the input is the gyro's own answer, `output` or `rate`: a network
-/// that sees it can take the rate for drift.
+/// Returns whether the input is the gyro's own answer, `output` or `rate`. A
+/// network with such an input can mistake the rate for drift.
 bool sees_the_rate(const Input& input);
 
 std::vector<std::string> input_names(const std::vector<Input>& inputs);

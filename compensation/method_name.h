@@ -7,7 +7,7 @@
 
 namespace beamgyro {
 
-/// What reports call it: "cubic", "BP network 2-8", ...
+/// Returns the name of a method in reports: "cubic", "BP network 2-8", ...
 std::string method_name(const FitSpec& kind);
 
 }  // namespace beamgyro

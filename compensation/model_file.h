@@ -62,12 +62,12 @@ struct BpSpec {
   TrainOptions training;
 };
 
-/// Table [population]: what the devices of a set have in common.
+/// Table [population].
 struct PopulationSpec {
   double grid_K = 5.0;  // [K], > 0
 };
 
-/// Table [adapted]: a device of a population, known from a few rows.
+/// Table [adapted].
 struct AdaptedSpec {
   Population population;
   std::string source;  // of it, for the provenance
@@ -85,7 +85,7 @@ struct Candidate {
   FitSpec kind;
 };
 
-/// What to train, as a model file says it.
+/// The contents of a model file: what to train.
 struct ModelSpec {
   std::vector<Input> inputs = {};
   RowOptions rows = {};
@@ -99,7 +99,7 @@ struct ModelSpec {
 /// Reads a model file (docs/reference/model_file.md). Throws
 /// std::invalid_argument with file, line and column for a key, type or value
 /// that is not allowed, an unknown key, or inputs the kind of model cannot
-/// take; of an adapted model also for its population's file, whose place is
+/// take; of an adapted model also for the file of its population, whose name is
 /// relative to the model file.
 ModelSpec read_model(const std::filesystem::path& file);
 ModelSpec read_model(const ConfigDocument& document);

@@ -19,15 +19,15 @@ enum class Trainer {
   kLevenbergMarquardt
 };
 
-/// Defaults of the two gradient trainers, whose epochs are cheap and many.
+/// Default of the two gradient trainers, which need many cheap epochs.
 constexpr int kGradientMaxEpochs = 20000;
 constexpr int kGradientPatience = 2000;
 
-/// Of L-BFGS, which needs more epochs than Levenberg-Marquardt.
+/// Default of L-BFGS, which needs more epochs than Levenberg-Marquardt.
 constexpr int kLbfgsMaxEpochs = 5000;
 constexpr int kLbfgsPatience = 500;
 
-/// Why a training ended; sentence() says it in words.
+/// Reason why a training ended. sentence() returns it in words.
 enum class StopReason {
   kLeastSquares,   // no iteration: the normal equations have one solution
   kGoalReached,    // in-sample rms <= goal
@@ -53,8 +53,9 @@ struct TrainOptions {
   int cores = 0;         // of all restarts together; 0 = those there are
   double goal = 0.0;     // rms, >= 0
   double weight_decay = 0.0;  // >= 0; kLevenbergMarquardt, kLbfgs
-  // Adds rate_penalty mean(g^2) / 2 to F, g the share of the rate taken for
-  // drift along rate_direction (RatePenalty); kLevenbergMarquardt.
+  // Adds rate_penalty mean(g^2) / 2 to F, where g is the share of a rate along
+  // rate_direction that is mistaken for drift (RatePenalty). For
+  // kLevenbergMarquardt only.
   double rate_penalty = 0.0;                // >= 0
   std::vector<double> rate_direction = {};  // one per input
   double learning_rate = 0.02;  // eta of equation (5), > 0; its first value
@@ -85,29 +86,30 @@ struct ScaledRows {
 
 double rms_error(const BpNetwork& network, const ScaledRows& rows);
 
-/// Squared errors of the rows, one each.
+/// Returns the squared error of each row.
 Eigen::ArrayXd squared_errors(const BpNetwork& network, const ScaledRows& rows);
 
-/// Whether squared errors are no larger than `least`, those of the same rows
-/// with other weights, by what noise explains: the mean difference is within
-/// two standard errors, taken from the means of 20 stretches of rows because
-/// neighbours share their noise.
+/// Returns whether squared errors are no larger than `least`, those of the same
+/// rows with other weights, within noise: the mean difference is within two
+/// standard errors. These come from the means of 20 stretches of rows, because
+/// neighbouring rows share their noise.
 bool no_worse(const Eigen::ArrayXd& squares, const Eigen::ArrayXd& least);
 
-/// Keeps the weights with the lowest held-out mean(e^2) / 2 + rate penalty met
-/// so far (held-out rows at rest are predicted best by cancelling the rate);
-/// without held-out rows, the last weights shown to it.
+/// Keeps the weights with the lowest held-out mean(e^2) / 2 + rate penalty so
+/// far. The penalty is included because held-out rows at rest are predicted
+/// best by cancelling the rate. Without held-out rows it keeps the last
+/// weights.
 class BestWeights {
  public:
   BestWeights(const ScaledRows& held_out, int patience)
       : held_out_(held_out), patience_(patience) {}
 
-  /// Shows it the network after `epoch`; true when the lowest value is
+  /// Compares the network after `epoch`. Returns true when the lowest value is
   /// `patience` or more epochs old.
   bool stale_after(int epoch, const BpNetwork& network,
                    double rate_penalty = 0.0);
 
-  /// Puts the kept weights into `network` and writes the summary's scores.
+  /// Copies the kept weights to `network` and writes the scores of the summary.
   void restore(const ScaledRows& rows, BpNetwork& network,
                TrainSummary& summary) const;
 
@@ -120,9 +122,9 @@ class BestWeights {
   Eigen::VectorXd weights_;
 };
 
-/// One training from the present weights of `network`, which ends with the
-/// best ones. `held_out` may be empty. `order` shuffles the rows of the
-/// incremental rule and is used by no other trainer.
+/// Trains once from the present weights of `network` and leaves the best
+/// weights in it. `held_out` may be empty. `order` shuffles the rows of the
+/// incremental rule; other trainers do not use it.
 TrainSummary train_network(const ScaledRows& rows, const ScaledRows& held_out,
                            const TrainOptions& options, RandomStream& order,
                            BpNetwork& network);

@@ -16,22 +16,23 @@ struct Estimate {
   double uncertainty;  // 1-sigma
 };
 
-/// A tau that the fit leaves out.
+/// A tau that the fit does not use.
 struct LeftOutTau {
   double tau;  // [s]
   double
       ratio;  // [-], its deviation over that of the fit; NaN if that has none
 };
 
-/// What an Allan curve of rates in u shows, with u = deg/s or any other unit.
-/// A term that the curve does not show is missing.
+/// Noise coefficients of an Allan curve of rates in the unit u (deg/s or any
+/// other). A term that the curve does not show is missing.
 struct NoiseCoefficients {
   std::optional<Estimate> angle_quantisation;  // Q [u s]
   std::optional<Estimate> angle_random_walk;   // N [u sqrt(s)]
   std::optional<Estimate> bias_instability;    // B [u]
   std::optional<Estimate> rate_random_walk;    // K [u/sqrt(s)]
   std::optional<Estimate> rate_ramp;           // R [u/s]
-  // Of the one pole that would limit the band of N as the curve shows [s].
+  // Time constant [s] of the one pole that would limit the band of N as the
+  // curve does.
   std::optional<double> band_limit;
   AllanPoint lowest{};               // of the curve
   bool still_falling = false;        // the lowest is at the longest tau
@@ -46,34 +47,34 @@ struct NoiseCoefficients {
 ///             + R^2 tau^2/2,
 ///
 /// fitted to the squared deviations. White noise of a limited band, with the
-/// autocovariance r(u), has N^2/tau - 3 M/tau^2 at taus beyond its memory,
-/// M = integral of u r(u): where that outweighs Q the first term is below zero,
-/// and `band_limit` 2 M/N^2 is told in place of Q.
+/// autocovariance r(u), has N^2/tau - 3 M/tau^2 at taus beyond its memory, M =
+/// integral of u r(u): where that outweighs Q the first term is below zero, and
+/// `band_limit` 2 M/N^2 is returned in place of Q.
 ///
-/// A deviation has the relative variance u^2 + f^2: u is chance
-/// (relative_uncertainty()), f what the terms do not describe, the same at
-/// every tau, of the most likely size. Without f the shortest taus, whose u is
-/// 1e-3 and less, would decide alone. Of all sets of terms, and of all taus
-/// from which the fit may start, those are kept that minimise
+/// A deviation has the relative variance u^2 + f^2. u is its statistical
+/// uncertainty (relative_uncertainty()). f is the misfit of the terms, the same
+/// at every tau, of the most likely size; without it the shortest taus, whose u
+/// is 1e-3 and less, would decide alone. Of all sets of terms, and of all taus
+/// at which the fit may start, it takes those that minimise
 ///
 ///   sum over taus fitted of r^2/(u^2 + f^2) + sum over all of ln(u^2 + f^2)
 ///     + 3^2 (terms + taus left out),   r = ln(deviation / fit):
 ///
-/// a term must be seen at three standard errors, and so must a defect of a tau
-/// that is left out, at most half of them. Taus with an uncertainty above 25 %
-/// (fewer than nine clusters) are not fitted, and there are two taus more than
-/// terms.
+/// So a term must differ from 0 by three standard errors, and a tau that is
+/// left out must deviate by as much; at most half of the taus are left out.
+/// Taus with an uncertainty above 25 % (fewer than nine clusters) are not
+/// fitted, and there are at least two taus more than terms.
 ///
 /// Throws std::invalid_argument with fewer than five taus to fit, or a
 /// deviation that is not finite.
 NoiseCoefficients noise_coefficients(const std::vector<AllanPoint>& points);
 
-/// Whether there are enough points for noise_coefficients().
+/// Returns whether there are enough points for noise_coefficients().
 bool has_noise_coefficients(const std::vector<AllanPoint>& points);
 
-/// A coefficient in seconds and in hours, with its units: of rates in "deg/s"
-/// 0.01 deg/sqrt(s) and 0.6 deg/sqrt(h), of another unit U 0.01 U sqrt(s) and
-/// U sqrt(h).
+/// A coefficient in seconds and in hours, with its units: deg/sqrt(s) and
+/// deg/sqrt(h) for rates in "deg/s", U sqrt(s) and U sqrt(h) for another unit
+/// U.
 struct CoefficientReport {
   char symbol;       // Q, N, B, K or R
   const char* name;  // "angle random walk"

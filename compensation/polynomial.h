@@ -12,26 +12,26 @@ struct Polynomial {
   std::vector<double> coefficients;  // c_0 ... c_n
   std::vector<double> slopes = {};   // d_1 ... d_m
 
-  /// One sample per row, 1 + m columns.
+  /// Returns p of each row of x, which has 1 + m columns.
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
 };
 
-/// Least squares by Householder QR. Throws std::invalid_argument when `x` does
-/// not determine a polynomial of that degree and the slopes.
+/// Fits by least squares with Householder QR. Throws std::invalid_argument when
+/// `x` does not determine a polynomial of that degree and the slopes.
 Polynomial fit_polynomial(const Eigen::Ref<const Eigen::ArrayXXd>& x,
                           const Eigen::Ref<const Eigen::ArrayXd>& y,
                           int degree);
 
-/// The same by the normal equations and Cholesky, as least squares is written
-/// where scaling is not thought of: their condition is the square of that of
-/// the powers of `x`, harmless for a cubic in kelvins about 25 degC, and
-/// ruinous for a high degree over a range far from it. Throws
-/// std::invalid_argument when that is more than double precision holds.
+/// Fits the same by the normal equations and Cholesky, as programs do that do
+/// not scale their inputs. Their condition is the square of that of the powers
+/// of `x`: harmless for a cubic in kelvins about 25 degC, and ruinous for a
+/// high degree over a range far from it. Throws std::invalid_argument when that
+/// is more than double precision holds.
 Polynomial fit_polynomial_by_normal_equations(
     const Eigen::Ref<const Eigen::ArrayXXd>& x,
     const Eigen::Ref<const Eigen::ArrayXd>& y, int degree);
 
-/// The coefficients of p(x) about another origin: q(x) = p(x + origin).
+/// Returns the coefficients of p about another origin: q(x) = p(x + origin).
 std::vector<double> shifted(std::vector<double> coefficients, double origin);
 
 }  // namespace beamgyro

@@ -10,9 +10,9 @@
 
 namespace beamgyro {
 
-/// What the gyros of a population have in common: over devices the bias b and
-/// further channels q_1, q_2, ... (quadrature, ...) of the temperature T are
-/// together a Gaussian process,
+/// The distribution of the gyros of a population. Over devices, the bias b and
+/// further channels q_1, q_2, ... (quadrature, ...) as functions of the
+/// temperature T are one Gaussian process,
 ///
 ///   (b, q_1, ...)(T) = mu(T) + Phi(T) c,   c ~ N(0, I).
 ///
@@ -20,7 +20,8 @@ namespace beamgyro {
 struct Population {
   std::vector<Input> channels;  // kColumn each; beside the bias
   Eigen::ArrayXd temperatures;  // [degC], the grid, increasing, at least 4
-  // On the grid the bias [deg/s], then each channel in its own unit.
+  // Values on the grid: of the bias [deg/s], then of each channel in its own
+  // unit.
   Eigen::VectorXd mean;   // (1 + channels) * grid
   Eigen::MatrixXd modes;  // as many rows, one column per mode
   int devices = 0;        // it was learned from
@@ -29,46 +30,49 @@ struct Population {
   TemperatureRange range() const;
 };
 
-/// Learned from rows of two devices or more, the inputs being the temperature
-/// and the channels: each device's curves are splines (spline_knots() with a
-/// spacing of `grid_K`, [K]) through its rows, taken on a grid of that spacing
-/// or less over the temperatures all devices have; mu and Phi Phi^T are their
-/// mean and sample covariance. Throws std::invalid_argument for fewer devices,
-/// rows of a device that determine no spline, or devices that share less than
-/// three steps of the grid.
+/// Learns a population from the rows of two devices or more, whose inputs are
+/// the temperature and the channels. The curves of each device are splines
+/// through its rows (spline_knots() with a spacing of `grid_K` [K]). They are
+/// evaluated on a grid of that spacing or less over the temperatures that all
+/// devices have. mu and Phi Phi^T are their mean and sample covariance. Throws
+/// std::invalid_argument for
+/// - fewer than two devices;
+/// - rows of a device that determine no spline;
+/// - devices that share less than three steps of the grid.
 Population fit_population(const std::vector<Input>& inputs,
                           const TrainingRows& rows, double grid_K);
 
 constexpr double kPointWidth = 2.0;  // [K]
 
-/// 1-sigma of a point, the mean of rows within kPointWidth of each other: rows
-/// of a soak share slow noise and the turn-on offset, and many are no better
-/// than one.
+/// 1-sigma of a point, which is the mean of rows within kPointWidth of each
+/// other. Rows of a soak share slow noise and the turn-on offset, so many are
+/// no better than one.
 struct PointNoise {
   double bias = 0.03;  // [deg/s], > 0
   // [-], > 0, of a channel: over its spread within the population
   double channel_share = 0.01;
 };
 
-/// What the population knows of the bias of a device once points of it are
-/// known, on the grid.
+/// Bias of a device on the grid, given some points of it: conditional mean and
+/// 1-sigma.
 struct AdaptedBias {
   Eigen::ArrayXd mean;       // [deg/s]
   Eigen::ArrayXd deviation;  // [deg/s], 1-sigma
 };
 
-/// The exact conditional of the Gaussian: E[b | y] and its deviation, y being
-/// the points of the rows, mu and H theirs of the population, R the noise,
+/// Returns the exact conditional E[b | y] of the Gaussian process and its
+/// deviation. y are the points of the rows, mu and H the values of the
+/// population at them, R their noise:
 ///
 ///   c | y ~ N(A^-1 H^T R^-1 (y - mu), A^-1),   A = I + H^T R^-1 H.
 ///
-/// Without rows it is the population's own. `inputs` are the columns of the
-/// rows: the temperature, then some of the population's channels.
+/// Without rows it is the mean of the population. `inputs` are the columns of
+/// the rows: the temperature, then some of the channels of the population.
 AdaptedBias adapted_bias(const Population& population,
                          const std::vector<Input>& inputs,
                          const TrainingRows& rows, const PointNoise& noise);
 
-/// The spline through values of the bias [deg/s] on the grid.
+/// Returns the spline through values of the bias [deg/s] on the grid.
 CubicSpline bias_curve(const Population& population,
                        const Eigen::ArrayXd& values);
 

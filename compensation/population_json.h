@@ -8,12 +8,12 @@
 
 namespace beamgyro {
 
-/// The key `population` of a compensator file
+/// Returns the value of the key `population` of a compensator file
 /// (docs/reference/compensator_file.md). Throws std::runtime_error for a number
 /// that is not finite.
 nlohmann::ordered_json population_json(const Population& population);
 
-/// Reads what population_json() wrote. Throws as JsonNode.
+/// Reads a value that population_json() wrote. Throws as JsonNode.
 Population read_population(const JsonNode& node);
 
 }  // namespace beamgyro

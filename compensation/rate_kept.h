@@ -7,15 +7,16 @@
 
 namespace beamgyro {
 
-/// Share of a small rate that a compensator lets through where it was trained:
-/// 1 less the mean slope of its bias over the rate, for rates within 1 deg/s,
-/// over the range of its temperature and of its input `rate` or `output`.
+/// Returns the share of a small rate that a compensator passes in the range of
+/// its training: 1 less the mean slope of its bias over the rate, for rates
+/// within 1 deg/s, over the range of its temperature and of its input `rate` or
+/// `output`.
 ///
-/// A file does not tell the volts that `output` shows for a rate. Trained at
-/// rest, where nothing but the bias moved the output, they follow from the
-/// spans of the two. Trained on rates, a model cannot take them for bias:
-/// nothing is answered for an input `output` then, and for compensators that
-/// look at neither input.
+/// A compensator file does not have the scale factor of `output`. If training
+/// was at rest, only the bias moved the output, and the scale factor follows
+/// from the spans of the two. Returns nothing for an input `output` with
+/// training on rates, where a model cannot mistake them for bias, and for
+/// compensators that use neither input.
 std::optional<double> rate_kept(const Compensator& compensator);
 
 }  // namespace beamgyro

@@ -8,22 +8,22 @@
 namespace beamgyro {
 
 /// P = penalty mean(g^2) / 2 over the rows. g is the share of a rate that the
-/// network takes for drift: from row x to x + s d, with d the change of the
+/// network mistakes for drift between row x and x + s d. d is the change of the
 /// scaled inputs with the rate in units of the scaled bias
-/// (TrainOptions::rate_direction),
+/// (TrainOptions::rate_direction):
 ///
 ///   g = (y(x + s d) - y(x)) / s
 ///
-/// and s |d| one of kPenaltySteps, for each row the next: a network whose slope
-/// vanishes at the rows alone can still bend, or saturate, on its way to the
-/// rates that training at rest never shows it.
+/// s |d| is one of kPenaltySteps, for each row the next one. A penalty on the
+/// slope at the rows alone would not be enough: the network could still bend or
+/// saturate on the way to rates that are not in a training at rest.
 class RatePenalty {
  public:
   /// Throws std::invalid_argument when no input changes with the rate.
   RatePenalty(const BpNetwork& network, const ScaledRows& rows,
               const TrainOptions& options);
 
-  /// Whether there is anything to penalise.
+  /// Returns whether the penalty is above 0.
   bool active() const { return penalty_ > 0.0; }
 
   double value(const Eigen::VectorXd& w);
@@ -38,8 +38,8 @@ class RatePenalty {
   Eigen::ArrayXd inverse_step_;   // 1 / s
 };
 
-/// Of the scaled inputs, whose half width is that of the training rows: from
-/// the slope to a hundred times what the rows span.
+/// Steps of the scaled inputs, whose half width is that of the training rows:
+/// from the slope to a hundred times the span of the rows.
 constexpr double kPenaltySteps[] = {1e-3, -1.0,  10.0, -100.0,
                                     1.0,  -10.0, 100.0};
 

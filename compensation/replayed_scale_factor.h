@@ -14,7 +14,7 @@
 
 namespace beamgyro {
 
-/// What recorded rates test where a replay cannot: inputs that a replayed rate
+/// Recorded rates that test what a replay cannot: inputs that a replayed rate
 /// does not move, and the values of a scale-factor table.
 struct RecordedRates {
   // Plateaus whose true rate departs by kTableRate.
@@ -23,33 +23,35 @@ struct RecordedRates {
   std::vector<double> large;
 };
 
-/// Whether the compensator has any such input, or a table.
+/// Returns whether the compensator has such an input, or a table.
 bool needs_recorded_rates(const Compensator& compensator);
 
-/// Adds those of a run. `compensated` are the answers to it.
+/// Adds the recorded rates of a run. `compensated` are the answers to it.
 void add_recorded_rates(const Recording& recording,
                         std::span<const double> compensated, double full_scale,
                         RecordedRates& rates);
 
-/// What the replay of a run shows of the whole compensator.
+/// Result of the replay of a run through the whole compensator.
 struct ReplayedScaleFactor {
   double full_scale = 0.0;  // [deg/s], the largest rate replayed
   TemperatureRange temperatures = {HUGE_VAL, -HUGE_VAL};  // [degC], of blocks
-  // Where recorded rates bear out a scale-factor table, what a block retains is
-  // multiplied by the table's value.
+  // Where recorded rates confirm a scale-factor table, the share that a block
+  // retains is multiplied by the value of the table.
   WorstBlocks worst = {};
-  // Inputs that the replayed rate does not move, though a real one might.
+  // Inputs that the replayed rate does not move, although a real rate might.
   std::vector<std::string> not_moved = {};
-  // Of these, and "scale_factor" for the table, what no recorded rate tests.
+  // Those of these inputs, and "scale_factor" for the table, that no recorded
+  // rate tests.
   std::vector<std::string> untested = {};
   double untested_temperature = 0.0;  // [degC], one of those where it is so
-  // Retained on the worst plateau with recorded rates, if inputs are not moved.
+  // Scale factor retained on the worst plateau with recorded rates, if there
+  // are inputs that a replay does not move.
   std::optional<double> worst_plateau = {};
 
-  // worst_over_temperature(), of a compensator that sees the rate.
+  // worst_over_temperature() of a compensator that sees the rate.
   WorstBlocks over_temperature = {};
 
-  /// The worst of both.
+  /// Keeps the worst of both.
   void add(const ReplayedScaleFactor& other);
 };
 
@@ -57,12 +59,12 @@ constexpr double kRateReach = 10.5;     // [K], as far as a recorded rate speaks
 constexpr double kLargeShare = 0.5;     // [-], of full scale
 constexpr double kTableSupport = 1e-2;  // [-], of a table's value
 
-/// Replays a run. Each block whose temperature lies within kRateReach of a
-/// plateau and of a large rate of `rates` is tested by these, too. A value of
-/// the compensator's table that is not 1 within `tolerance` is borne out when a
-/// plateau within kRateReach shows the gyro's own scale factor within
-/// kTableSupport of it; a replay moves the rate by the nominal one and cannot
-/// tell. Nothing where replay() has nothing.
+/// Replays a run. A block is also tested by recorded rates if its temperature
+/// lies within kRateReach of a plateau and of a large rate of `rates`. A value
+/// of the compensator's table that differs from 1 by more than `tolerance` is
+/// confirmed when a plateau within kRateReach has a scale factor within
+/// kTableSupport of it; a replay moves the rate by the nominal scale factor and
+/// cannot tell. Returns nothing where replay() returns nothing.
 std::optional<ReplayedScaleFactor> replayed_scale_factor(
     const Compensator& compensator, const Recording& recording,
     std::span<const double> answers, double full_scale,

@@ -21,14 +21,15 @@ struct ResidualScores {
   double largest = 0.0;       // [deg/s], max |r_i|
 };
 
-/// Means of rate - true_rate [deg/s] over each block; one that is not finite
-/// makes the mean of its block so.
+/// Returns the mean of rate - true_rate [deg/s] over each block. A value that
+/// is not finite makes the mean of its block not finite.
 std::vector<double> block_residuals(std::span<const SampleRange> blocks,
                                     std::span<const double> rate,
                                     std::span<const double> true_rate);
 
-/// All NaN when a block is not finite: a missing answer is never scored as a
-/// good one. Throws std::invalid_argument without a block.
+/// Returns the scores. All are NaN when a block is not finite, so that a
+/// missing answer is never scored as a good one. Throws std::invalid_argument
+/// when there is no block.
 ResidualScores residual_scores(std::span<const double> block_residuals);
 
 }  // namespace beamgyro

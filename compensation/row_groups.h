@@ -10,8 +10,8 @@
 
 namespace beamgyro {
 
-/// What is held out as a whole. Random samples are no such thing: neighbours
-/// in time share the drift.
+/// Kind of group that is held out as a whole. Random samples are not among
+/// them, because neighbours in time share the drift.
 enum class Grouping {
   kRun,      // recordings
   kCycle,    // times from power-on to the loss of power
@@ -27,34 +27,36 @@ struct RowGroups {
   int count = 0;
 };
 
-/// The groups of at least 2 rows each: a smaller one joins the one before it.
+/// Divides the rows into groups of at least 2 rows. A smaller group joins the
+/// one before it.
 RowGroups group_rows(const TrainingRows& rows, Grouping by);
 
-/// By run where that gives `least` groups or more, else by cycle, else by leg,
-/// and in the end by segment.
+/// Groups the rows by run if that gives `least` groups or more, else by cycle,
+/// else by leg, else by segment.
 RowGroups coarsest_groups(const TrainingRows& rows, int least);
 
-/// Groups with rows in each tenth of the span of temperatures; a tenth without
-/// rows is left out.
+/// Returns for each tenth of the span of temperatures the groups with rows in
+/// it. A tenth without rows is left out.
 std::vector<std::set<int>> groups_in_tenths(const TrainingRows& rows,
                                             const Eigen::ArrayXi& group_of_row);
 
-/// Largest share of the temperatures that one group alone may hold.
+/// Largest share of the temperatures that may be in one group alone.
 constexpr double kLargestAlone = 0.25;  // [-]
 
-/// Whether the others still cover the temperatures when any one group is held
-/// out: of the tenths of the whole span that have rows, no group is alone in
-/// more than kLargestAlone. Otherwise a fit to the others says nothing of a fit
-/// to all.
+/// Returns whether the other groups still cover the temperatures when any one
+/// group is held out: no group is alone in more than kLargestAlone of the
+/// tenths of the span that have rows. Otherwise a fit to the others says
+/// nothing about a fit to all.
 bool others_cover(const TrainingRows& rows, const RowGroups& groups);
 
-/// Least share of the temperatures that a leg spans to be one of its own.
+/// Smallest share of the temperatures that a separate leg spans.
 constexpr double kLeastLeg = 0.25;  // [-]
 
-/// What to hold out by turns: coarsest_groups() of which others_cover() the
-/// temperatures, or two legs that do, before segments. A leg below kLeastLeg,
-/// such as self-heating before the chamber cools, joins its neighbour of the
-/// same power cycle that spans more, if two or more legs do.
+/// Returns the groups to hold out in turn: coarsest_groups() for which
+/// others_cover() holds, or two legs for which it holds, before segments. A leg
+/// below kLeastLeg, such as self-heating before the chamber cools, joins the
+/// neighbour of the same power cycle that spans more, if there are two legs or
+/// more above kLeastLeg.
 RowGroups folds_of(const TrainingRows& rows, int least);
 
 }  // namespace beamgyro

@@ -5,7 +5,7 @@
 
 namespace beamgyro {
 
-/// Table [rows] of a model file: how samples become training rows.
+/// Table [rows] of a model file: how samples are averaged to training rows.
 struct RowOptions {
   // [s], length of the blocks that are averaged; 0 = every sample is a row
   double seconds = 60.0;

@@ -21,26 +21,25 @@ constexpr double kScoreBlock = 60.0;       // [s]
 constexpr double kPlateauTolerance = 0.5;  // [K]
 constexpr double kLongestStep = 1.5;  // [-], usual steps; a longer one is a gap
 
-/// The usual distance of two samples: the median of the steps of `time` [s]; 0
-/// with fewer than two samples.
+/// Returns the median step of `time` [s], or 0 with fewer than two samples.
 double usual_step(const Recording& recording);
 
-/// Every stretch of samples with power, from one power-on to the next loss of
-/// power. A gap in time does not end a stretch. Throws std::invalid_argument
+/// Returns every stretch of powered samples, from a power-on to the next loss
+/// of power. A gap in time does not end a stretch. Throws std::invalid_argument
 /// unless `status` has one entry per time.
 std::vector<SampleRange> powered_stretches(const Recording& recording);
 
-/// Blocks of `length` [s] counted from each power-on: sample k of a stretch
-/// that starts at t_0 belongs to block floor((t_k - t_0) / length). A block
-/// with less than half of its samples, mostly the last one of a stretch, is
-/// left out. In a stretch that fills no block, being short or sampled in
+/// Returns blocks of `length` [s], counted from each power-on: sample k of a
+/// stretch that starts at t_0 belongs to block floor((t_k - t_0) / length). A
+/// block with less than half of its samples, mostly the last one of a stretch,
+/// is left out. In a stretch that fills no block, being short or sampled in
 /// bursts, half of the samples of its fullest block are enough.
 std::vector<SampleRange> score_blocks(const Recording& recording,
                                       double length = kScoreBlock);
 
-/// Each powered stretch cut where the measured temperature has moved by
-/// kPlateauTolerance from the first sample of the piece; not cut when there is
-/// no column `temperature`.
+/// Divides each powered stretch into pieces. A piece ends where the measured
+/// temperature has moved by kPlateauTolerance from its first sample. Without a
+/// column `temperature` a stretch is one piece.
 std::vector<SampleRange> temperature_plateaus(const Recording& recording);
 
 }  // namespace beamgyro

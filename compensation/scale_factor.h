@@ -29,13 +29,13 @@ struct ScaleFactorTolerance {
   }
 };
 
-/// Sums from which slopes over the true rate Omega are made, of one run or, by
-/// addition, of many. Within each temperature plateau, w is what the measured
-/// temperature leaves of the rate and v what temperature and drift leave of it
-/// (without_temperature(), without_drift()). Σ w y / Σ w Omega then is the
-/// slope of y over Omega with a bias and a temperature slope of its own for
-/// every plateau, Σ v y / Σ v Omega moreover with a smooth drift: what drifts,
-/// or what a compensator takes off a drift, is not mistaken for scale factor.
+/// Sums for slopes over the true rate Omega, of one run or, by addition, of
+/// many. Within each temperature plateau, w is the rate without its part along
+/// the measured temperature, and v without temperature and drift
+/// (without_temperature(), without_drift()). Then Σ w y / Σ w Omega is the
+/// slope of y over Omega with a separate bias and temperature slope for every
+/// plateau. Σ v y / Σ v Omega also allows for a smooth drift. So neither a
+/// drift nor its compensation is mistaken for scale factor.
 struct SlopeSums {
   double compensated = 0.0;                // [(deg/s)^2], Σ w compensated_rate
   double raw = 0.0;                        // [(deg/s)^2], Σ w rate
@@ -49,15 +49,15 @@ struct SlopeSums {
   SlopeSums& operator+=(const SlopeSums& other);
 };
 
-/// Over powered, unsaturated samples with |true_rate| <= `largest_rate` that
-/// have been so for kSettlingTime (an output filter still remembers a larger
-/// rate). Throws std::invalid_argument naming a column that is missing, or when
-/// `compensated` has not one entry per time.
+/// Sums over powered, unsaturated samples with |true_rate| <= `largest_rate`
+/// for at least kSettlingTime, because the output filter still contains an
+/// earlier larger rate. Throws std::invalid_argument naming a column that is
+/// missing, or when `compensated` has not one entry per time.
 SlopeSums slope_sums(const Recording& recording,
                      std::span<const double> compensated,
                      double largest_rate = kEveryRate);
 
-/// What one temperature plateau says of the scale factor.
+/// Slopes on one temperature plateau.
 struct PlateauSlope {
   double temperature;  // [degC], mean
   double raw;          // [(deg/s)^2], Σ v rate
@@ -65,10 +65,10 @@ struct PlateauSlope {
   double compensated;  // [(deg/s)^2], Σ v compensated_rate
 };
 
-/// Of every plateau whose true rate departs by `least_departure` [deg/s].
-/// Samples within kSettlingTime after a step of the rate by more than that are
-/// left out, unless nothing is left then: the output lags behind the step.
-/// `compensated` may be empty: then it is the rate.
+/// Returns the slopes of every plateau whose true rate departs by
+/// `least_departure` [deg/s]. Samples within kSettlingTime after a larger step
+/// of the rate are left out, because the output lags behind, unless no sample
+/// would remain. An empty `compensated` means the rate itself.
 std::vector<PlateauSlope> plateau_slopes(
     const Recording& recording, double least_departure,
     std::span<const double> compensated = {});
@@ -80,8 +80,8 @@ struct ScaleFactor {
   double largest_departure;  // [deg/s], of the true rate: SlopeSums
 };
 
-/// Nothing when the true rate nowhere departs by kLeastRateDeparture: a slope
-/// over a rate that does not vary is noise.
+/// Returns nothing when the true rate nowhere departs by kLeastRateDeparture,
+/// because a slope over a constant rate is noise.
 std::optional<ScaleFactor> scale_factor(const SlopeSums& sums);
 
 }  // namespace beamgyro

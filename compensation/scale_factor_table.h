@@ -6,11 +6,11 @@
 
 namespace beamgyro {
 
-/// The gyro's scale factor over its nominal one at each temperature [-]: the
-/// slope of rate over true_rate from every plateau at which the true rate
-/// varies by kTableRate or more, together in bins of `bin_width` [K]. The runs
-/// are visited once.
-/// Throws std::invalid_argument when there is no such plateau.
+/// Fits the scale factor of the gyro over temperature, relative to the nominal
+/// one [-]: the slope of rate over true_rate on every plateau at which the true
+/// rate varies by kTableRate or more, pooled in bins of `bin_width` [K]. The
+/// runs are visited once. Throws std::invalid_argument when there is no such
+/// plateau.
 LookupTable fit_scale_factor(const RunSource& runs, double bin_width);
 
 }  // namespace beamgyro

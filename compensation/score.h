@@ -14,7 +14,7 @@
 
 namespace beamgyro {
 
-/// A run and what a compensator answered to it.
+/// A run and the answers of a compensator to it.
 struct AnsweredRun {
   std::string name;
   const Recording* recording = nullptr;           // not owned
@@ -32,10 +32,11 @@ struct Score {
   std::size_t saturated = 0;   // of them with a saturated output
   ResidualScores residual;     // of the compensated rate
   ResidualScores raw;          // of the recorded one: the drift there was
-  // Of the cubic that the compensator claims for its training.
+  // Scores of the cubic that the compensator's file claims.
   std::optional<ResidualScores> baseline;
-  // Of a constant, and a cubic of the temperature, fitted to the raw blocks
-  // that are scored; the cubic of lower degree where these do not determine it.
+  // Scores of a constant and of a cubic of the temperature that are fitted to
+  // the raw blocks of the scored runs. The cubic has a lower degree where the
+  // blocks do not determine it.
   ResidualScores constant;
   std::optional<ResidualScores> cubic;
   std::optional<double> percent_of_cubic;  // [%], of baseline's variance
@@ -47,7 +48,7 @@ struct Score {
   std::optional<double> white_noise;  // [-], white_noise_ratio()
 };
 
-/// What scores of several runs together are made of.
+/// Sums from which the scores of several runs together are computed.
 struct RunSums {
   std::vector<double> residual;     // [deg/s], block means
   std::vector<double> raw;          // [deg/s]
@@ -62,23 +63,29 @@ struct ScoredRun {
   RunSums sums;
 };
 
-/// Every powered sample counts towards the residual, saturated ones too: their
-/// user gets that rate. Throws std::invalid_argument naming the run for a
-/// missing column `rate` or `true_rate`, one that is not finite while powered,
-/// an answer with another number of samples than the run, a run never powered.
+/// Scores a run. Every powered sample counts towards the residual, also
+/// saturated ones, because the user gets that rate. Throws
+/// std::invalid_argument naming the run for
+/// - a column `rate` or `true_rate` that is missing, or not finite while
+///   powered;
+/// - answers with another number of samples than the run;
+/// - a run that is never powered.
 ScoredRun score_run(const AnsweredRun& run);
 
-/// Blocks of all runs pooled and slope_sums() added; of linearity, replays and
-/// white noise the worst run. Cubics count when every run has one.
+/// Scores several runs together: their blocks are pooled and their slope_sums()
+/// added. Linearity, replays and white noise are those of the worst run. A
+/// cubic is scored when every run has one.
 Score score_together(const std::vector<ScoredRun>& runs);
 
-/// White noise kept: Allan deviation at 1 s of the compensated residual over
+/// Returns the Allan deviation at 1 s of the compensated residual divided by
 /// that of the raw one, in the longest gapless stretch. A compensator that does
-/// not see the rate cannot lower it: well below 1 is the fingerprint of one
-/// that cancels the rate, above 1 it adds noise of its own. Nothing where the
-/// raw residual shows no white noise there (its deviation at 4 s is above 0.75
-/// of that at 1 s; white noise has 0.5), where 1 s is no multiple of the step,
-/// or for less than 10 s.
+/// not see the rate cannot lower the white noise: a ratio well below 1 is the
+/// sign of one that cancels the rate. A compensator with a ratio above 1 adds
+/// noise. Returns nothing
+/// - where the raw residual has no white noise at 1 s (its deviation at 4 s is
+///   above 0.75 of that at 1 s; white noise has 0.5);
+/// - where 1 s is no multiple of the step;
+/// - for less than 10 s.
 std::optional<double> white_noise_ratio(const AnsweredRun& run);
 
 }  // namespace beamgyro

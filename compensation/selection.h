@@ -12,7 +12,7 @@
 
 namespace beamgyro {
 
-/// What the models are fitted to and judged on.
+/// The data that models are fitted to and judged on.
 struct SelectionData {
   const std::vector<Input>& inputs;  // of the columns of the rows
   const TrainingRows& rows;
@@ -21,12 +21,12 @@ struct SelectionData {
   std::uint64_t seed;
 };
 
-/// A model and how it came to be.
+/// A model and the reasons for its choice.
 struct Selected {
   Candidate candidate;
   double weight = 1.0;  // of the candidate; the rest is a constant's
   Fit fit;              // to all rows; its choices tell of every candidate
-  // Residuals on unseen groups, of it and of a constant.
+  // Residuals of the model and of a constant on unseen groups.
   std::optional<GroupErrors> errors, constant_errors;
 };
 

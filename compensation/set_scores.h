@@ -11,7 +11,7 @@
 
 namespace beamgyro {
 
-/// What a compensator leaves of one device in one run.
+/// Scores of a compensator on one device in one run.
 struct DeviceScore {
   std::string device, run;
   double residual_rms = 0.0;  // [deg/s]
@@ -26,19 +26,20 @@ struct DeviceScore {
   std::vector<std::string> not_tested = {};  // ReplayedScaleFactor::untested
 };
 
-/// Every run validated by itself, one in memory at a time. Throws
+/// Validates every run by itself, with one run in memory at a time. Throws
 /// std::invalid_argument without runs and as validate().
 std::vector<DeviceScore> score_devices(const Compensator& compensator,
                                        const RunSource& runs,
                                        const Specification& specification = {});
 
-/// Median and worst residual, raw rate and the compensator's cubic over the
-/// devices of each run, how many passed, and how many leave more than a
-/// constant fitted to the run.
+/// Returns a table for each run: median and worst residual over the devices,
+/// the same for the raw rate and for the cubic of the compensator, the number
+/// of devices that passed, and the number on which the compensator is worse
+/// than a constant fitted to the run.
 std::string device_table(const std::vector<DeviceScore>& scores);
 
-/// What the scores do not tell by themselves: temperatures outside those of the
-/// training, devices that training used.
+/// Returns warnings about temperatures outside those of training and about
+/// devices that training used.
 std::vector<std::string> warnings_of(const Compensator& compensator,
                                      const RunSource& runs,
                                      const std::vector<DeviceScore>& scores);

@@ -15,13 +15,13 @@ struct TakagiSugeno {
   double width = 1.0;           // > 0, scaled
   Eigen::MatrixXd consequents;  // one row per rule: a_i0, a_i1, ...
 
-  /// One sample per row.
+  /// Returns y of each row of x.
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
 };
 
-/// `rules` centres spread evenly over [-1, 1], half of their distance as width,
-/// consequents by least squares; of all solutions the one of least norm, so
-/// that a rule without points stays at its neighbours' blend. Throws
+/// Fits a model with `rules` centres spread evenly over [-1, 1] and half of
+/// their distance as width. The consequents are the least-squares solution of
+/// least norm, so that a rule without points follows its neighbours. Throws
 /// std::invalid_argument for fewer than 2 rules or no points.
 TakagiSugeno fit_takagi_sugeno(const Eigen::Ref<const Eigen::ArrayXXd>& x,
                                const Eigen::Ref<const Eigen::ArrayXd>& y,

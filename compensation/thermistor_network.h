@@ -6,14 +6,15 @@
 namespace beamgyro {
 
 /// Compensation by hardware: an NTC and three resistors divide a reference
-/// voltage, and the part that is left is added to the output,
+/// voltage, and the divided voltage is added to the output,
 ///
 ///   n(T)  = exp(B (1 / T - 1 / 298.15 K)),   the NTC over its value at 25 degC
 ///   p     = n r_p / (n + r_p),               with a resistor beside it
 ///   b(T)  = offset + gain r_d / (r_d + r_s + p)   [deg/s]
 ///
-/// with all resistances over that of the NTC at 25 degC. Its shape depends on
-/// the resistances through one number alone, n' of the bend:
+/// with all resistances divided by that of the NTC at 25 degC. The shape
+/// depends on the resistances through one number only, the position n' of the
+/// bend:
 ///
 ///   b(T) = b_0 + b_1 / (1 + n / n'),   1 / n' = 1 / (r_s + r_d) + 1 / r_p
 struct ThermistorNetwork {
@@ -24,15 +25,15 @@ struct ThermistorNetwork {
   double offset = 0.0;    // [deg/s]
   double gain = 0.0;      // [deg/s]
 
-  /// x in degC.
+  /// Returns b(T) [deg/s] at the temperatures x [degC].
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXd>& x) const;
 };
 
 constexpr double kLeastBend = 1e-3, kLargestBend = 1e3;  // n' of a fit [-]
 
-/// Least squares over b_0, b_1 and kLeastBend <= n' <= kLargestBend, told as
-/// the network with r_s = r_d = n' and r_p = 2 n'. Throws std::invalid_argument
-/// for fewer than 3 points or points of one temperature.
+/// Fits b_0, b_1 and kLeastBend <= n' <= kLargestBend by least squares. Returns
+/// them as the network with r_s = r_d = n' and r_p = 2 n'. Throws
+/// std::invalid_argument for fewer than 3 points or points of one temperature.
 ThermistorNetwork fit_thermistor_network(
     const Eigen::Ref<const Eigen::ArrayXd>& x,
     const Eigen::Ref<const Eigen::ArrayXd>& y, double b_K);

@@ -25,20 +25,23 @@ struct TrainResult {
 };
 
 /// Fits `spec` and the baseline, the cubic of equation (1), to the rows of
-/// `runs` (training_rows()), which are visited once, with a scale-factor table
-/// twice. A network also stops early on the rows of
-/// `held_out`; best_network() says which of its restarts and weight decays is
-/// kept. With `cross_validation` every group of that kind is
-/// predicted by a fit to the others (cross_validate()); a network without
-/// held-out runs takes its weight decay from there and runs all its epochs. Of
-/// several candidates select_model() chooses one, or its average with a
-/// constant, by cross-validation, or without it by the groups of the held-out
-/// runs, or without those by folds_of() the rows.
+/// `runs` (training_rows()). The runs are visited once, with a scale-factor
+/// table twice.
+/// - A network stops early on the rows of `held_out`; best_network() chooses
+///   among its restarts and weight decays.
+/// - With `cross_validation` every group of that kind is predicted by a fit to
+///   the others (cross_validate()). A network without held-out runs then takes
+///   its weight decay from there and runs all its epochs.
+/// - Of several candidates select_model() chooses one, or its average with a
+///   constant. It judges by cross-validation, or else by the groups of the
+///   held-out runs, or else by folds_of() the rows.
 ///
-/// Throws std::invalid_argument when there is no run, a network has neither
-/// held-out runs nor cross-validation, a run is on both sides, the temperatures
-/// are too few or too close together, an input never varies, or as
-/// training_rows().
+///
+/// Throws as training_rows(), and std::invalid_argument when
+/// - there is no run, or a run is both trained on and held out;
+/// - a network has neither held-out runs nor cross-validation;
+/// - the temperatures are too few or too close together, or an input never
+///   varies.
 TrainResult train(const ModelSpec& spec, const RunSource& runs,
                   const RunSource& held_out, std::uint64_t seed,
                   std::optional<Grouping> cross_validation = {});

@@ -11,7 +11,7 @@
 
 namespace beamgyro {
 
-/// What a compensator has to hold.
+/// Limits that a compensator has to meet.
 struct Specification {
   double scale_factor_tolerance = 1e-3;  // [-], |scale factor - 1|
   double small_rate_tolerance = 1e-2;    // [-], the same within kSmallRate: the
@@ -48,8 +48,8 @@ struct Validation {
   bool passed() const;  // every check
 };
 
-/// "constant", "cubic": what leaves less than the compensator when fitted to
-/// the scored runs themselves.
+/// Returns which of "constant" and "cubic", fitted to the scored runs
+/// themselves, leave less than the compensator.
 std::vector<std::string> better_fits(const Score& score);
 
 /// Scores the answers and judges them by the first verdict that applies:
@@ -63,13 +63,13 @@ std::vector<std::string> better_fits(const Score& score);
 ///   rate.
 /// - keeps the rate.
 ///
-/// The scale factors looked at are those within kSmallRate and over every rate,
-/// of all runs together; of each run whose rate departs by kTableRate; and of
-/// the worst block of each replay (ReplayedScaleFactor).
+/// The scale factors judged are those within kSmallRate and over every rate: of
+/// all runs together, of each run whose rate departs by kTableRate, and of the
+/// worst block of each replay (ReplayedScaleFactor).
 ///
 /// The scale factor is the one retained, or with `corrects_scale_factor` the
-/// absolute slope. A limit is met only by a number: NaN fails it. Throws
-/// std::invalid_argument without runs and as score_run().
+/// absolute slope. NaN meets no limit. Throws std::invalid_argument without
+/// runs and as score_run().
 Validation validate(const std::string& method,
                     const std::vector<AnsweredRun>& runs,
                     const Specification& specification = {},
@@ -81,10 +81,10 @@ struct NamedRecording {
   std::string sha256 = {};     // of its file, if it has one of its own
 };
 
-/// The same of a compensator's own answers, with the cubic it carries, with
-/// replayed_scale_factor() of each run up to full scale (of `specification`,
-/// else stated_full_scale(), else kFullScale), and with warnings of runs that
-/// training used and of temperatures it never saw.
+/// Validates the answers of a compensator, with the cubic in its file and with
+/// replayed_scale_factor() of each run up to full scale (that of
+/// `specification`, else stated_full_scale(), else kFullScale). Adds warnings
+/// about runs that training used and about temperatures that it never saw.
 Validation validate(const Compensator& compensator, const std::string& method,
                     const std::vector<NamedRecording>& runs,
                     const Specification& specification = {});
