@@ -13,7 +13,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "dataset/hdf5_file.h"
+#include "dataset/netcdf/recording_reader.h"
 #include "sim/device/device_file.h"
 #include "sim/dynamics/carrier.h"
 #include "sim/numerics/explicit_rk.h"

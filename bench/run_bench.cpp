@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "bench/shipped_device.h"
-#include "dataset/recording_file.h"
+#include "dataset/netcdf/recording_file.h"
 #include "sim/scenario/simulation.h"
 
 namespace beamgyro {

@@ -5,9 +5,10 @@
 #include <filesystem>
 #include <vector>
 
-#include "dataset/open_file.h"
-#include "dataset/set/publish.h"
-#include "dataset/sha256.h"
+#include "dataset/files/open_file.h"
+#include "dataset/files/publish.h"
+#include "dataset/files/sha256.h"
+#include "dataset/set/shard/shard_builder.h"
 #include "sim/campaign/shard_making.h"
 #include "sim/scenario/simulation.h"
 

@@ -15,10 +15,10 @@
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/terminal.h"
-#include "compensation/allan_deviation.h"
-#include "compensation/noise_coefficients.h"
-#include "dataset/atomic_file.h"
-#include "dataset/csv_file.h"
+#include "compensation/scoring/allan_deviation.h"
+#include "compensation/scoring/noise_coefficients.h"
+#include "dataset/files/atomic_file.h"
+#include "dataset/log/csv_file.h"
 
 namespace beamgyro {
 namespace {

@@ -11,7 +11,7 @@
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "config/units.h"
-#include "dataset/atomic_file.h"
+#include "dataset/files/atomic_file.h"
 #include "sim/dynamics/gyro.h"
 
 namespace beamgyro {

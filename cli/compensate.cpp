@@ -8,9 +8,9 @@
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/terminal.h"
-#include "compensation/compensator_file.h"
-#include "dataset/atomic_file.h"
-#include "dataset/recording_file.h"
+#include "compensation/compensator/compensator_file.h"
+#include "dataset/files/atomic_file.h"
+#include "dataset/netcdf/recording_file.h"
 
 namespace beamgyro {
 namespace {

@@ -12,12 +12,12 @@
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/terminal.h"
-#include "compensation/c_text.h"
-#include "compensation/compensator_file.h"
-#include "compensation/export_c.h"
-#include "compensation/export_parameters.h"
+#include "compensation/compensator/compensator_file.h"
+#include "compensation/export/c_text.h"
+#include "compensation/export/export_c.h"
+#include "compensation/export/export_parameters.h"
 #include "config/file_error.h"
-#include "dataset/atomic_file.h"
+#include "dataset/files/atomic_file.h"
 
 namespace beamgyro {
 namespace {

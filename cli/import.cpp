@@ -12,9 +12,9 @@
 #include "cli/terminal.h"
 #include "cli/version.h"
 #include "config/document.h"
-#include "dataset/log_import.h"
-#include "dataset/recording_file.h"
-#include "dataset/text_file.h"
+#include "dataset/files/text_file.h"
+#include "dataset/log/log_import.h"
+#include "dataset/netcdf/recording_file.h"
 
 namespace beamgyro {
 namespace {

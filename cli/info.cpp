@@ -14,7 +14,7 @@
 #include "cli/set_info.h"
 #include "cli/terminal.h"
 #include "config/file_error.h"
-#include "dataset/set/shard_reader.h"
+#include "dataset/set/shard/shard_reader.h"
 
 namespace beamgyro {
 namespace {

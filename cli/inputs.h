@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "dataset/recording.h"
+#include "dataset/recording/recording.h"
 #include "dataset/set/manifest.h"
 #include "dataset/set/source_copies.h"
 #include "sim/device/device.h"

@@ -6,7 +6,7 @@
 
 #include "cli/inputs.h"
 #include "config/file_error.h"
-#include "dataset/sha256.h"
+#include "dataset/files/sha256.h"
 
 namespace beamgyro {
 

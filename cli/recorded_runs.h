@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "compensation/run_source.h"
+#include "compensation/rows/run_source.h"
 
 namespace beamgyro {
 

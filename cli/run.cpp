@@ -9,8 +9,8 @@
 #include "cli/inputs.h"
 #include "cli/progress.h"
 #include "cli/version.h"
-#include "dataset/atomic_file.h"
-#include "dataset/recording_file.h"
+#include "dataset/files/atomic_file.h"
+#include "dataset/netcdf/recording_file.h"
 #include "sim/scenario/carrier_run.h"
 #include "sim/scenario/simulation.h"
 

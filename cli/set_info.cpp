@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "dataset/set/set_writer.h"
-#include "dataset/set/shard_reader.h"
+#include "dataset/set/shard/shard_reader.h"
 #include "sim/campaign/campaign.h"
 
 namespace beamgyro {

@@ -5,7 +5,7 @@
 
 #include <csignal>
 
-#include "dataset/atomic_file.h"
+#include "dataset/files/atomic_file.h"
 
 namespace beamgyro {
 namespace {

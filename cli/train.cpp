@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/train.h"
+#include "compensation/training/train.h"
 
 #include <fmt/format.h>
 
@@ -14,9 +14,9 @@
 #include "cli/progress.h"
 #include "cli/recorded_runs.h"
 #include "cli/terminal.h"
-#include "compensation/compensator_file.h"
-#include "compensation/set_runs.h"
-#include "dataset/atomic_file.h"
+#include "compensation/compensator/compensator_file.h"
+#include "compensation/rows/set_runs.h"
+#include "dataset/files/atomic_file.h"
 
 namespace beamgyro {
 namespace {

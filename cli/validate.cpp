@@ -14,12 +14,12 @@
 #include "cli/progress.h"
 #include "cli/recorded_runs.h"
 #include "cli/terminal.h"
-#include "compensation/compensator_file.h"
-#include "compensation/set_runs.h"
-#include "compensation/set_scores.h"
-#include "compensation/validation_report.h"
-#include "dataset/atomic_file.h"
-#include "dataset/sha256.h"
+#include "compensation/compensator/compensator_file.h"
+#include "compensation/rows/set_runs.h"
+#include "compensation/scoring/set_scores.h"
+#include "compensation/scoring/validation_report.h"
+#include "dataset/files/atomic_file.h"
+#include "dataset/files/sha256.h"
 
 namespace beamgyro {
 namespace {

@@ -15,11 +15,11 @@
 #include "cli/terminal.h"
 #include "cli/version.h"
 #include "config/file_error.h"
+#include "dataset/files/set_files.h"
+#include "dataset/files/sha256.h"
 #include "dataset/set/set_check.h"
-#include "dataset/set/set_files.h"
 #include "dataset/set/set_writer.h"
 #include "dataset/set/view_check.h"
-#include "dataset/sha256.h"
 
 namespace beamgyro {
 namespace {

@@ -16,11 +16,11 @@
 #include <system_error>
 
 #include "config/file_error.h"
-#include "dataset/json_node.h"
-#include "dataset/open_file.h"
-#include "dataset/set/publish.h"
-#include "dataset/set/set_files.h"
-#include "dataset/sha256.h"
+#include "dataset/files/json_node.h"
+#include "dataset/files/open_file.h"
+#include "dataset/files/publish.h"
+#include "dataset/files/set_files.h"
+#include "dataset/files/sha256.h"
 
 namespace beamgyro {
 

@@ -11,10 +11,10 @@
 #include <system_error>
 
 #include "config/file_error.h"
-#include "dataset/atomic_file.h"
-#include "dataset/directory.h"
-#include "dataset/open_file.h"
-#include "dataset/sha256.h"
+#include "dataset/files/atomic_file.h"
+#include "dataset/files/directory.h"
+#include "dataset/files/open_file.h"
+#include "dataset/files/sha256.h"
 
 namespace beamgyro {
 namespace {

@@ -17,7 +17,7 @@
 #include <thread>
 
 #include "config/file_error.h"
-#include "dataset/atomic_file.h"
+#include "dataset/files/atomic_file.h"
 
 namespace beamgyro {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "dataset/directory.h"
-#include "dataset/open_file.h"
+#include "dataset/files/directory.h"
+#include "dataset/files/open_file.h"
 
 namespace beamgyro {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "dataset/set/manifest.h"
-#include "dataset/set/shard.h"
+#include "dataset/set/shard/shard.h"
 
 namespace beamgyro {
 

@@ -9,12 +9,12 @@
 #include <utility>
 
 #include "config/file_error.h"
-#include "dataset/set/publish.h"
-#include "dataset/set/set_files.h"
+#include "dataset/files/publish.h"
+#include "dataset/files/set_files.h"
+#include "dataset/files/sha256.h"
 #include "dataset/set/set_view.h"
-#include "dataset/set/shard_reader.h"
+#include "dataset/set/shard/shard_reader.h"
 #include "dataset/set/view_check.h"
-#include "dataset/sha256.h"
 
 namespace beamgyro {
 namespace {

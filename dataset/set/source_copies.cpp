@@ -10,10 +10,10 @@
 #include <set>
 #include <stdexcept>
 
-#include "dataset/set/publish.h"
-#include "dataset/set/set_files.h"
-#include "dataset/set/shard_reader.h"
-#include "dataset/sha256.h"
+#include "dataset/files/publish.h"
+#include "dataset/files/set_files.h"
+#include "dataset/files/sha256.h"
+#include "dataset/set/shard/shard_reader.h"
 
 namespace beamgyro {
 namespace {

@@ -6,9 +6,9 @@
 #include <set>
 #include <string>
 
+#include "dataset/files/sha256.h"
 #include "dataset/set/set_view.h"
-#include "dataset/set/shard_reader.h"
-#include "dataset/sha256.h"
+#include "dataset/set/shard/shard_reader.h"
 
 namespace beamgyro {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "config/units.h"
-#include "dataset/random_stream.h"
+#include "random/random_stream.h"
 #include "sim/campaign/campaign_file.h"
 #include "sim/device/device_file.h"
 #include "sim/numerics/simulation_failure.h"

@@ -12,8 +12,8 @@
 #include <stdexcept>
 
 #include "config/file_error.h"
+#include "dataset/files/text_file.h"
 #include "dataset/set/manifest.h"
-#include "dataset/text_file.h"
 #include "sim/campaign/draw_plan_file.h"
 #include "sim/device/device_file.h"
 #include "sim/scenario/scenario_file.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "dataset/random_stream.h"
+#include "random/random_stream.h"
 #include "sim/campaign/distribution.h"
 
 namespace beamgyro {

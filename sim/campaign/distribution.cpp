@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "dataset/random_stream.h"
+#include "random/random_stream.h"
 
 namespace beamgyro {
 namespace {

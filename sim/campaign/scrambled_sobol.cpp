@@ -7,7 +7,7 @@
 #include <boost/random/sobol.hpp>
 #include <stdexcept>
 
-#include "dataset/random_stream.h"
+#include "random/random_stream.h"
 
 namespace beamgyro {
 

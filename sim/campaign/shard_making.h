@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "dataset/set/manifest.h"
-#include "dataset/set/shard.h"
+#include "dataset/set/shard/shard_builder.h"
 #include "sim/campaign/campaign.h"
 #include "sim/campaign/shard_plan.h"
 #include "sim/dynamics/gyro.h"

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "config/units.h"
-#include "dataset/sha256.h"
+#include "dataset/files/sha256.h"
 #include "sim/scenario/simulation.h"
 
 namespace beamgyro {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dataset/set/manifest.h"
-#include "dataset/set/shard.h"
+#include "dataset/set/shard/shard.h"
 #include "sim/campaign/campaign.h"
 
 namespace beamgyro {

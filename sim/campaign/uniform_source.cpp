@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sim/campaign/uniform_source.h"
 
-#include "dataset/random_stream.h"
+#include "random/random_stream.h"
 
 namespace beamgyro {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "config/table.h"
-#include "dataset/csv_file.h"
+#include "dataset/log/csv_file.h"
 #include "sim/numerics/piecewise_linear.h"
 
 namespace beamgyro {

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "dataset/random_stream.h"
+#include "random/random_stream.h"
 #include "sim/numerics/piecewise_linear.h"
 #include "sim/signal/output_filter.h"
 

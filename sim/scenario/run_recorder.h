@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "dataset/recording.h"
+#include "dataset/recording/recording.h"
 #include "sim/device/device.h"
 #include "sim/scenario/scenario.h"
 #include "sim/signal/noise.h"

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "dataset/random_stream.h"
+#include "random/random_stream.h"
 
 namespace beamgyro {
 

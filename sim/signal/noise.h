@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "dataset/random_stream.h"
+#include "random/random_stream.h"
 #include "sim/signal/flicker.h"
 
 namespace beamgyro {

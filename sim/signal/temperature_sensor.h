@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "dataset/random_stream.h"
+#include "random/random_stream.h"
 
 namespace beamgyro {
 

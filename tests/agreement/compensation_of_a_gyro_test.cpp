@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "compensation/rate_injection.h"
-#include "compensation/train.h"
+#include "compensation/scoring/rate_injection.h"
+#include "compensation/training/train.h"
 #include "sim/dynamics/gyro.h"
 #include "sim/scenario/simulation.h"
 #include "tests/sim/device/nominal_device.h"

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "compensation/network_training.h"
+#include "compensation/network/network_training.h"
 
 namespace beamgyro {
 

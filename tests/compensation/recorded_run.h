@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "dataset/recording.h"
+#include "dataset/recording/recording.h"
 
 namespace beamgyro {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/compensation/rows_of.h"
 
-#include "dataset/random_stream.h"
+#include "random/random_stream.h"
 
 namespace beamgyro {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "compensation/training_rows.h"
+#include "compensation/rows/training_rows.h"
 
 namespace beamgyro {
 

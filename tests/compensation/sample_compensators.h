@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "compensation/compensator.h"
+#include "compensation/compensator/compensator.h"
 
 namespace beamgyro {
 

@@ -4,7 +4,7 @@
 #include <iostream>
 #include <string>
 
-#include "dataset/recording_file.h"
+#include "dataset/netcdf/recording_file.h"
 #include "tests/dataset/sample_recording.h"
 
 /// write_sample SAMPLES FILE.h5|FILE.csv

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "compensation/compensator_file.h"
-#include "compensation/export_c.h"
+#include "compensation/compensator/compensator_file.h"
+#include "compensation/export/export_c.h"
 #include "tests/dataset/sample_recording.h"
 #include "tests/fuzz/fuzz_input.h"
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "dataset/open_file.h"
+#include "dataset/files/open_file.h"
 
 namespace beamgyro {
 namespace {

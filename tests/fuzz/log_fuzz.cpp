@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A map, "=====", and the log that it describes.
-#include "dataset/log_import.h"
-#include "dataset/recording_defect.h"
+#include "dataset/log/log_import.h"
+#include "dataset/recording/recording_defect.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

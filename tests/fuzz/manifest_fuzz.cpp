@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "dataset/files/sha256.h"
 #include "dataset/set/set_check.h"
-#include "dataset/sha256.h"
 #include "tests/fuzz/fuzz_input.h"
 
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A map of a log, read for each axis it may have.
-#include "dataset/log_map.h"
+#include "dataset/log/log_map.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

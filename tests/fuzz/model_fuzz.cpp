@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A model file.
-#include "compensation/model_file.h"
+#include "compensation/training/model_file.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

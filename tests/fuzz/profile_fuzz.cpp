@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A CSV file of numbers, read as a profile of the temperature and of the rate.
 #include "config/document.h"
-#include "dataset/csv_file.h"
+#include "dataset/log/csv_file.h"
 #include "sim/scenario/scenario_file.h"
 #include "tests/fuzz/fuzz_input.h"
 

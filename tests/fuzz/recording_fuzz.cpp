@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A recording; one that is accepted has no defect.
-#include "dataset/hdf5_file.h"
-#include "dataset/recording_defect.h"
+#include "dataset/netcdf/recording_reader.h"
+#include "dataset/recording/recording_defect.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

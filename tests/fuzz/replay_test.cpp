@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "dataset/text_file.h"
+#include "dataset/files/text_file.h"
 
 // LLVMFuzzerTestOneInput of each target; CMakeLists.txt renames them.
 extern "C" {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A file of a set, with all its devices.
-#include "dataset/set/shard_reader.h"
+#include "dataset/set/shard/shard_reader.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

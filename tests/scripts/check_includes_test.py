@@ -33,21 +33,21 @@ class CheckIncludes(unittest.TestCase):
 
     def test_sim_and_compensation_never_see_each_other(self):
         self.assert_offends("sim/device/a.h",
-                            '#include "compensation/metrics.h"\n',
-                            'must not include "compensation/metrics.h"')
-        self.assert_offends("compensation/a.h",
+                            '#include "compensation/scoring/score.h"\n',
+                            'must not include "compensation/scoring/score.h"')
+        self.assert_offends("compensation/training/a.h",
                             '#include "sim/device/device.h"\n',
                             'must not include "sim/device/device.h"')
-        self.assert_offends("tests/compensation/a_test.cpp",
+        self.assert_offends("tests/compensation/training/a_test.cpp",
                             '#include "sim/device/device.h"\n',
                             'must not include "sim/device/device.h"')
 
     def test_files_know_no_model(self):
-        self.assert_clean("dataset/a.cpp", '#include "config/document.h"\n')
-        self.assert_offends("dataset/a.cpp", '#include "sim/device/device.h"\n',
+        self.assert_clean("dataset/files/a.cpp", '#include "config/document.h"\n')
+        self.assert_offends("dataset/files/a.cpp", '#include "sim/device/device.h"\n',
                             'must not include "sim/device/device.h"')
-        self.assert_offends("config/a.cpp", '#include "dataset/recording.h"\n',
-                            'must not include "dataset/recording.h"')
+        self.assert_offends("config/a.cpp", '#include "dataset/recording/recording.h"\n',
+                            'must not include "dataset/recording/recording.h"')
 
     def test_sub_rooms_have_a_direction(self):
         self.assert_offends("sim/numerics/a.h",
@@ -61,12 +61,12 @@ class CheckIncludes(unittest.TestCase):
 
     def test_each_c_library_has_one_home(self):
         for include, home in [("cvode/cvode.h", "sim/numerics/ode.cpp"),
-                              ("hdf5.h", "dataset/hdf5_file.cpp"),
+                              ("hdf5.h", "dataset/netcdf/hdf5_id.cpp"),
                               ("toml++/toml.h", "config/toml_parser.cpp"),
                               ("CLI/CLI.hpp", "cli/main.cpp")]:
             text = f"#include <{include}>\n"
             self.assert_clean(home, text)
-            self.assert_offends("compensation/a.cpp", text, f"<{include}>")
+            self.assert_offends("compensation/models/a.cpp", text, f"<{include}>")
 
     def test_the_library_does_not_print_exit_or_read_the_environment(self):
         for call in ["std::cout << 1;", 'printf("x");', "std::exit(1);",

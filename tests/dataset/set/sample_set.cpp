@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "dataset/set/publish.h"
+#include "dataset/files/publish.h"
+#include "dataset/files/sha256.h"
 #include "dataset/set/set_view.h"
+#include "dataset/set/shard/shard_builder.h"
 #include "dataset/set/source_copies.h"
-#include "dataset/sha256.h"
 
 namespace beamgyro {
 namespace {

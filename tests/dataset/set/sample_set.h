@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "dataset/recording.h"
+#include "dataset/recording/recording.h"
 #include "dataset/set/manifest.h"
-#include "dataset/set/shard.h"
+#include "dataset/set/shard/shard.h"
 
 namespace beamgyro {
 

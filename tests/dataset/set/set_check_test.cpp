@@ -6,8 +6,8 @@
 
 #include <filesystem>
 
-#include "dataset/atomic_file.h"
-#include "dataset/text_file.h"
+#include "dataset/files/atomic_file.h"
+#include "dataset/files/text_file.h"
 #include "tests/dataset/set/sample_set.h"
 #include "tests/dataset/set/set_directory.h"
 

@@ -18,8 +18,8 @@
 #include <thread>
 #include <vector>
 
-#include "dataset/atomic_file.h"
-#include "dataset/text_file.h"
+#include "dataset/files/atomic_file.h"
+#include "dataset/files/text_file.h"
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/set/set_directory.h"
 

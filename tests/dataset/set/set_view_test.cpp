@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "dataset/set/shard_reader.h"
-#include "dataset/text_file.h"
+#include "dataset/files/text_file.h"
+#include "dataset/set/shard/shard_reader.h"
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/set/sample_set.h"
 #include "tests/dataset/set/set_directory.h"

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <map>
 
+#include "dataset/files/text_file.h"
 #include "dataset/set/set_check.h"
-#include "dataset/text_file.h"
 #include "tests/dataset/set/sample_set.h"
 #include "tests/dataset/set/set_directory.h"
 

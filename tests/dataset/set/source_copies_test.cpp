@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "dataset/atomic_file.h"
-#include "dataset/sha256.h"
-#include "dataset/text_file.h"
+#include "dataset/files/atomic_file.h"
+#include "dataset/files/sha256.h"
+#include "dataset/files/text_file.h"
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/set/set_directory.h"
 

@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "dataset/atomic_file.h"
+#include "dataset/files/atomic_file.h"
+#include "dataset/files/text_file.h"
 #include "dataset/set/set_view.h"
 #include "dataset/set/set_writer.h"
-#include "dataset/set/shard_reader.h"
-#include "dataset/text_file.h"
+#include "dataset/set/shard/shard_reader.h"
 #include "tests/dataset/set/sample_set.h"
 #include "tests/dataset/set/set_directory.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "dataset/random_stream.h"
+#include "random/random_stream.h"
 #include "sim/campaign/campaign.h"
 #include "sim/dynamics/gyro.h"
 #include "tests/sim/campaign/kolmogorov_smirnov.h"

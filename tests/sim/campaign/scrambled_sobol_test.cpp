@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dataset/random_stream.h"
+#include "random/random_stream.h"
 
 namespace beamgyro {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "dataset/random_stream.h"
+#include "random/random_stream.h"
 
 namespace beamgyro {
 namespace {

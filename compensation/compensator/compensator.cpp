@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/compensator/compensator.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace beamgyro {
+namespace {
+
+// Keeps the intermediate arrays in the cache; the result does not depend on it.
+constexpr Eigen::Index kFeatureBlockRows = 4096;
+
+std::vector<double> corrected_rate(const BiasModel& bias,
+                                   const std::vector<Input>& inputs,
+                                   const TemperatureRange& range,
+                                   const Recording& recording) {
+  std::vector<double> rate = column_values(recording, "rate");
+  const Eigen::ArrayXXd x = features_of(inputs, recording, range);
+  for (Eigen::Index first = 0; first < x.rows(); first += kFeatureBlockRows) {
+    const Eigen::Index count = std::min(kFeatureBlockRows, x.rows() - first);
+    const Eigen::ArrayXd b = bias.predict(x.middleRows(first, count));
+    Eigen::Map<Eigen::ArrayXd>(rate.data() + first, count) -= b;
+  }
+  // Not every kind of model answers NaN to NaN.
+  for (std::size_t k = 0; k < rate.size(); ++k)
+    if ((recording.status[k] & kUnpowered) != 0) rate[k] = NAN;
+  return rate;
+}
+
+}  // namespace
+
+std::vector<double> compensated_rate(const Compensator& compensator,
+                                     const Recording& recording) {
+  const TemperatureRange& range = compensator.temperature_range;
+  std::vector<double> rate =
+      corrected_rate(compensator.bias, compensator.inputs, range, recording);
+  if (!compensator.scale_factor) return rate;
+  // Clamped, and an error where it is not finite.
+  const Eigen::ArrayXXd temperature =
+      features_of({parse_input("temperature")}, recording, range);
+  for (std::size_t k = 0; k < rate.size(); ++k)
+    rate[k] /=
+        compensator.scale_factor->at(temperature(static_cast<Eigen::Index>(k)));
+  return rate;
+}
+
+std::vector<double> baseline_rate(const Compensator& compensator,
+                                  const Recording& recording) {
+  return corrected_rate(compensator.baseline, {parse_input("temperature")},
+                        compensator.temperature_range, recording);
+}
+
+std::size_t clamped_samples(const Compensator& compensator,
+                            const Recording& recording) {
+  const std::vector<double>& temperature =
+      column_values(recording, "temperature");
+  const TemperatureRange& range = compensator.temperature_range;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < temperature.size(); ++k)
+    if ((recording.status[k] & kUnpowered) == 0 &&
+        (temperature[k] < range.lowest || temperature[k] > range.highest))
+      ++count;
+  return count;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compensation/inputs/features.h"
+#include "compensation/inputs/input.h"
+#include "compensation/methods/bias_model.h"
+#include "compensation/methods/population.h"
+#include "compensation/rows/run_source.h"
+#include "dataset/recording/recording.h"
+
+namespace beamgyro {
+
+/// A file that a compensator was trained on, or that was held out.
+struct SourceFile {
+  std::string name;
+  std::string sha256;  // 64 hexadecimal digits
+  // measured_sha256() of the recording; empty in files of older programs.
+  std::string measured_sha256 = {};
+
+  bool operator==(const SourceFile&) const = default;
+};
+
+/// Cross-validation: residuals on each group of rows of a model fitted to all
+/// other groups.
+struct CrossValidated {
+  std::string by;  // "run", "cycle", "leg" or "segment"
+  std::size_t groups = 0;
+  double rms = 0.0;             // [deg/s], root of the mean of the groups'
+  double standard_error = 0.0;  // [deg/s], of it
+  double constant_rms = 0.0;    // [deg/s], of a constant bias
+  // [deg/s], of each group in turn; empty in files of older programs
+  std::vector<double> group_rms, constant_group_rms;
+
+  bool operator==(const CrossValidated&) const = default;
+};
+
+/// Origin of a compensator: data, model file and scores of training.
+struct Provenance {
+  std::string method;  // "cubic as PX4 fits it", ...
+  std::vector<SourceFile> training;
+  std::vector<SourceFile> held_out;
+  // In place of files: the set that the runs come from.
+  std::optional<SetPart> training_set, held_out_set;
+  std::string model_text;  // model file byte for byte as read
+  std::uint64_t seed = 0;
+  std::string stop_reason;
+  std::vector<std::string> choices;   // what was chosen, from what, and why
+  std::vector<std::string> warnings;  // what the data do not support
+  std::optional<CrossValidated> cross_validated;
+  double in_sample_rms = 0.0;           // [deg/s], over the training rows
+  std::optional<double> held_out_rms;   // [deg/s], over the held-out rows
+  double baseline_in_sample_rms = 0.0;  // [deg/s]
+  std::optional<double> baseline_held_out_rms;  // [deg/s]
+  double constant_in_sample_rms = 0.0;          // [deg/s], a constant bias
+  std::optional<double> constant_held_out_rms;  // [deg/s]
+
+  bool operator==(const Provenance&) const = default;
+};
+
+/// A trained compensator: compensated rate = (rate - bias(inputs)) / s(T).
+/// Works in the units of the recording: temperatures in degC, rates in deg/s.
+struct Compensator {
+  std::vector<Input> inputs;
+  BiasModel bias;                           // of `inputs`
+  std::optional<LookupTable> scale_factor;  // s(T) [-]; 1 without
+  BiasModel baseline;  // of the temperature: the cubic of equation (1)
+  TemperatureRange temperature_range;  // [degC], seen in training
+  // The population that was learned, from which devices are adapted. The bias
+  // is its mean then.
+  std::optional<Population> population = {};
+  Provenance provenance;
+};
+
+/// Returns the compensated rate [deg/s] of every sample, NaN where unpowered.
+/// Throws std::invalid_argument naming an input that the recording lacks, or
+/// the time of a powered sample whose input is not finite.
+std::vector<double> compensated_rate(const Compensator& compensator,
+                                     const Recording& recording);
+
+/// Returns the same for the baseline of the compensator, the cubic of equation
+/// (1), with s = 1.
+std::vector<double> baseline_rate(const Compensator& compensator,
+                                  const Recording& recording);
+
+/// Returns the number of powered samples whose measured temperature was clamped
+/// because it lies outside the range of the compensator.
+std::size_t clamped_samples(const Compensator& compensator,
+                            const Recording& recording);
+
+}  // namespace beamgyro

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/compensator/compensator_file.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <stdexcept>
+#include <system_error>
+
+#include "compensation/compensator/bias_model_json.h"
+#include "compensation/methods/population_json.h"
+#include "dataset/files/atomic_file.h"
+#include "dataset/files/json_node.h"
+#include "dataset/files/text_file.h"
+
+namespace beamgyro {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFiletype = "beamgyro-compensator";
+constexpr long kFormatVersion = 2;
+constexpr long kLargestDevice = 4294967295;
+constexpr std::size_t kMostDevices = 100000000;
+
+Json to_json(const std::optional<double>& value) {
+  return value ? finite_json(*value) : Json();
+}
+
+Json to_json(const std::vector<SourceFile>& files) {
+  Json array = Json::array();
+  for (const SourceFile& file : files)
+    array.push_back({{"name", file.name},
+                     {"sha256", file.sha256},
+                     {"measured_sha256", file.measured_sha256}});
+  return array;
+}
+
+/// [first, last] of each stretch of increasing numbers without a gap.
+Json ranges_of(const std::vector<std::uint32_t>& numbers) {
+  Json ranges = Json::array();
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    if (k > 0 && numbers[k] == numbers[k - 1] + 1)
+      ranges.back()[1] = numbers[k];
+    else
+      ranges.push_back({numbers[k], numbers[k]});
+  }
+  return ranges;
+}
+
+Json to_json(const std::optional<SetPart>& set) {
+  if (!set) return {};
+  return {{"name", set->name},
+          {"manifest_sha256", set->manifest_sha256},
+          {"devices", set->devices},
+          {"files", set->files},
+          {"campaign_sha256", set->campaign_sha256},
+          {"seed", set->seed},
+          {"runs", set->runs},
+          {"device_ranges", ranges_of(set->device_numbers)}};
+}
+
+Json to_json(const std::optional<CrossValidated>& cv) {
+  if (!cv) return {};
+  return {
+      {"by", cv->by},
+      {"groups", cv->groups},
+      {"rms_deg_per_s", finite_json(cv->rms)},
+      {"standard_error_deg_per_s", finite_json(cv->standard_error)},
+      {"constant_rms_deg_per_s", finite_json(cv->constant_rms)},
+      {"group_rms_deg_per_s", numbers_json(cv->group_rms)},
+      {"constant_group_rms_deg_per_s", numbers_json(cv->constant_group_rms)}};
+}
+
+Json to_json(const Provenance& p) {
+  return {{"method", p.method},
+          {"files", to_json(p.training)},
+          {"held_out_files", to_json(p.held_out)},
+          {"set", to_json(p.training_set)},
+          {"held_out_set", to_json(p.held_out_set)},
+          {"model", p.model_text},
+          {"seed", p.seed},
+          {"stop_reason", p.stop_reason},
+          {"in_sample_rms_deg_per_s", finite_json(p.in_sample_rms)},
+          {"held_out_rms_deg_per_s", to_json(p.held_out_rms)},
+          {"baseline_in_sample_rms_deg_per_s",
+           finite_json(p.baseline_in_sample_rms)},
+          {"baseline_held_out_rms_deg_per_s", to_json(p.baseline_held_out_rms)},
+          {"constant_in_sample_rms_deg_per_s",
+           finite_json(p.constant_in_sample_rms)},
+          {"constant_held_out_rms_deg_per_s", to_json(p.constant_held_out_rms)},
+          {"cross_validation", to_json(p.cross_validated)},
+          {"choices", p.choices},
+          {"warnings", p.warnings}};
+}
+
+std::vector<SourceFile> read_files(const JsonNode& node) {
+  std::vector<SourceFile> files;
+  for (const JsonNode& file : node.elements()) {
+    files.push_back({file.at("name").text(), file.at("sha256").text()});
+    if (file.has("measured_sha256"))
+      files.back().measured_sha256 = file.at("measured_sha256").text();
+  }
+  return files;
+}
+
+std::vector<std::uint32_t> read_ranges(const JsonNode& node) {
+  std::vector<std::uint32_t> numbers;
+  for (const JsonNode& range : node.elements()) {
+    const std::vector<JsonNode> ends = range.elements();
+    if (ends.size() != 2) range.fail("must be [first, last]");
+    const long first = ends[0].integer(0, kLargestDevice);
+    const long last = ends[1].integer(first, kLargestDevice);
+    if (numbers.size() + static_cast<std::size_t>(last - first) >= kMostDevices)
+      range.fail(fmt::format("more than {} devices", kMostDevices));
+    for (long k = first; k <= last; ++k)
+      numbers.push_back(static_cast<std::uint32_t>(k));
+  }
+  return numbers;
+}
+
+// Files from before there were sets lack the key, later ones what tells which
+// devices.
+std::optional<SetPart> read_set(const JsonNode& node, const std::string& key) {
+  if (!node.has(key) || node.at(key).is_null()) return std::nullopt;
+  const JsonNode set = node.at(key);
+  SetPart part{
+      set.at("name").text(), set.at("manifest_sha256").text(),
+      static_cast<std::size_t>(set.at("devices").integer(0, kLargestDevice)),
+      static_cast<std::size_t>(set.at("files").integer(0, kLargestDevice))};
+  if (set.has("device_ranges")) {
+    part.campaign_sha256 = set.at("campaign_sha256").text();
+    part.seed = set.at("seed").unsigned_integer();
+    part.runs = set.at("runs").texts();
+    part.device_numbers = read_ranges(set.at("device_ranges"));
+  }
+  return part;
+}
+
+std::optional<CrossValidated> read_cross_validation(const JsonNode& node) {
+  if (node.is_null()) return std::nullopt;
+  const auto numbers = [&](const char* key) {
+    return node.has(key) ? node.at(key).numbers() : std::vector<double>{};
+  };
+  return CrossValidated{
+      node.at("by").text(),
+      static_cast<std::size_t>(node.at("groups").integer(1, 1000000000)),
+      node.at("rms_deg_per_s").number(),
+      node.at("standard_error_deg_per_s").number(),
+      node.at("constant_rms_deg_per_s").number(),
+      numbers("group_rms_deg_per_s"),
+      numbers("constant_group_rms_deg_per_s")};
+}
+
+Provenance read_provenance(const JsonNode& node) {
+  Provenance p;
+  p.method = node.at("method").text();
+  p.training = read_files(node.at("files"));
+  p.held_out = read_files(node.at("held_out_files"));
+  p.training_set = read_set(node, "set");
+  p.held_out_set = read_set(node, "held_out_set");
+  p.model_text = node.at("model").text();
+  p.seed = node.at("seed").unsigned_integer();
+  p.stop_reason = node.at("stop_reason").text();
+  p.in_sample_rms = node.at("in_sample_rms_deg_per_s").number();
+  p.held_out_rms = node.at("held_out_rms_deg_per_s").optional_number();
+  p.baseline_in_sample_rms =
+      node.at("baseline_in_sample_rms_deg_per_s").number();
+  p.baseline_held_out_rms =
+      node.at("baseline_held_out_rms_deg_per_s").optional_number();
+  p.constant_in_sample_rms =
+      node.at("constant_in_sample_rms_deg_per_s").number();
+  p.constant_held_out_rms =
+      node.at("constant_held_out_rms_deg_per_s").optional_number();
+  p.cross_validated = read_cross_validation(node.at("cross_validation"));
+  p.choices = node.at("choices").texts();
+  p.warnings = node.at("warnings").texts();
+  return p;
+}
+
+TemperatureRange read_range(const JsonNode& node) {
+  const std::vector<double> ends = node.numbers();
+  if (ends.size() != 2 || !(ends[0] <= ends[1]))
+    node.fail("must be [lowest, highest]");
+  return {ends[0], ends[1]};
+}
+
+void check_header(const JsonNode& root) {
+  const JsonNode filetype = root.at("filetype");
+  if (filetype.text() != kFiletype)
+    filetype.fail(
+        fmt::format("\"{}\", must be \"{}\"", filetype.text(), kFiletype));
+  const JsonNode version = root.at("format_version");
+  const long number = version.integer(1, 1000000);
+  if (number < kFormatVersion)
+    version.fail(
+        fmt::format("{}, written by an older program; this one reads "
+                    "version {}: train it anew",
+                    number, kFormatVersion));
+  if (number > kFormatVersion)
+    version.fail(
+        fmt::format("{}, written by a newer program; this one reads "
+                    "version {}",
+                    number, kFormatVersion));
+}
+
+Compensator read_root(const JsonNode& root) {
+  check_header(root);
+  const std::string kind = read_bias_kind(root.at("kind"));
+  Compensator c;
+  for (const JsonNode& input : root.at("inputs").elements()) {
+    const std::string text = input.text();
+    try {
+      c.inputs.push_back(parse_input(text));
+    } catch (const std::invalid_argument& error) {
+      input.fail(error.what());
+    }
+  }
+  if (c.inputs.empty()) root.at("inputs").fail("[], must name an input");
+  c.bias = read_bias_model(root, kind, c.inputs.size());
+  if (root.has("scale_factor")) {
+    const JsonNode node = root.at("scale_factor");
+    c.scale_factor = read_lookup_table(node, "values");
+    if (!(c.scale_factor->values > 0.0).all())
+      node.at("values").fail("must be above 0");
+  }
+  c.temperature_range = read_range(root.at("temperature_range_degC"));
+  c.baseline = read_bias_model(root.at("baseline"), "polynomial", 1);
+  if (root.has("population"))
+    c.population = read_population(root.at("population"));
+  c.provenance = read_provenance(root.at("training"));
+  return c;
+}
+
+}  // namespace
+
+std::string compensator_text(const Compensator& compensator) {
+  const Compensator& c = compensator;
+  Json json;
+  json["filetype"] = kFiletype;
+  json["format_version"] = kFormatVersion;
+  json["kind"] = kind_name(c.bias);
+  json["inputs"] = input_names(c.inputs);
+  put_bias_model(c.bias, json);
+  if (c.scale_factor)
+    json["scale_factor"] = {
+        {"temperatures_degC", numbers_json(c.scale_factor->temperatures)},
+        {"values", numbers_json(c.scale_factor->values)}};
+  json["temperature_range_degC"] = {finite_json(c.temperature_range.lowest),
+                                    finite_json(c.temperature_range.highest)};
+  json["baseline"]["kind"] = kind_name(c.baseline);
+  put_bias_model(c.baseline, json["baseline"]);
+  if (c.population) json["population"] = population_json(*c.population);
+  json["training"] = to_json(c.provenance);
+  // A file name need not be UTF-8.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Compensator parse_compensator(const std::string& text,
+                              const std::string& name) {
+  const Json json = parse_json(text, name);
+  return read_root(JsonNode(json, name));
+}
+
+void write_compensator(const Compensator& compensator,
+                       const std::filesystem::path& file) {
+  write_text_file(file, compensator_text(compensator));
+}
+
+Compensator read_compensator(const std::filesystem::path& file) {
+  constexpr std::uintmax_t kLargest = std::uintmax_t{16} << 20;  // [bytes]
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+  if (!unknown && size > kLargest)
+    throw std::invalid_argument(fmt::format(
+        "{}: {} bytes; expected a compensator, which has at most {}",
+        file.string(), size, kLargest));
+  return parse_compensator(read_text_file(file), file.string());
+}
+
+}  // namespace beamgyro

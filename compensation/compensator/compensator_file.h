@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "compensation/compensator/compensator.h"
+
+namespace beamgyro {
+
+/// Returns the text of a compensator file: JSON with `filetype`
+/// "beamgyro-compensator" (docs/reference/compensator_file.md). Every number is
+/// written so that reading it returns the same bits. Throws std::runtime_error
+/// for a parameter that is not finite.
+std::string compensator_text(const Compensator& compensator);
+
+/// Reads the text that compensator_text() made; `name` is the name of the file
+/// in messages. Throws std::invalid_argument with the name and
+/// - line and column, for a text that is not JSON;
+/// - the key, for a value that is missing, of the wrong type or size, or not
+///   finite;
+/// - the version, for a newer format.
+Compensator parse_compensator(const std::string& text, const std::string& name);
+
+/// Writes a compensator file. Throws as compensator_text() and
+/// write_text_file().
+void write_compensator(const Compensator& compensator,
+                       const std::filesystem::path& file);
+
+/// Reads a compensator file. Throws as read_text_file() and
+/// parse_compensator().
+Compensator read_compensator(const std::filesystem::path& file);
+
+}  // namespace beamgyro

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/compensator/training_use.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dataset/files/sha256.h"
+
+namespace beamgyro {
+namespace {
+
+void add_text(const std::string& text, Sha256& hash) {
+  hash.add(std::as_bytes(std::span(text)));
+  hash.add(std::as_bytes(std::span("", 1)));  // NUL, which no name holds
+}
+
+void add_numbers(std::vector<double> numbers, Sha256& hash) {
+  for (double& number : numbers)
+    number = std::isnan(number) ? std::numeric_limits<double>::quiet_NaN()
+                                : number + 0.0;  // one zero
+  hash.add(std::as_bytes(std::span(numbers)));
+}
+
+template <class Is>
+bool any_file(const Provenance& provenance, const Is& is) {
+  return std::ranges::any_of(provenance.training, is) ||
+         std::ranges::any_of(provenance.held_out, is);
+}
+
+bool is_same_set(const SetPart& a, const SetPart& b) {
+  return a.manifest_sha256 == b.manifest_sha256 ||
+         (!a.campaign_sha256.empty() &&
+          a.campaign_sha256 == b.campaign_sha256 && a.seed == b.seed);
+}
+
+bool used(const SetPart& part, const TrainingRun& run) {
+  const auto is_device = [&run](std::uint32_t number) {
+    return std::to_string(number) == run.device;
+  };
+  return std::ranges::any_of(part.device_numbers, is_device) &&
+         (part.devices > 1 ||
+          std::ranges::find(part.runs, run.run) != part.runs.end());
+}
+
+}  // namespace
+
+std::string measured_sha256(const Recording& recording) {
+  std::vector<const Column*> measured;
+  for (const Column& column : recording.columns)
+    if (column.role == Role::kMeasured) measured.push_back(&column);
+  std::ranges::sort(measured, {}, &Column::name);
+  Sha256 hash;
+  add_numbers(recording.time, hash);
+  hash.add(std::as_bytes(std::span(recording.status)));
+  for (const Column* column : measured) {
+    add_text(column->name, hash);
+    add_numbers(column->values, hash);
+  }
+  return hash.digits();
+}
+
+bool was_used_in_training(const Provenance& provenance,
+                          const std::string& file_sha256,
+                          const Recording& recording) {
+  if (any_file(provenance, [&](const SourceFile& file) {
+        return !file_sha256.empty() && file.sha256 == file_sha256;
+      }))
+    return true;
+  const auto tells_measured = [](const SourceFile& file) {
+    return !file.measured_sha256.empty();
+  };
+  if (!any_file(provenance, tells_measured)) return false;
+  const std::string measured = measured_sha256(recording);
+  return any_file(provenance, [&](const SourceFile& file) {
+    return file.measured_sha256 == measured;
+  });
+}
+
+bool was_used_in_training(const Provenance& provenance, const SetPart& set,
+                          const TrainingRun& run) {
+  return std::ranges::any_of(
+      std::array{&provenance.training_set, &provenance.held_out_set},
+      [&](const std::optional<SetPart>* part) {
+        return *part && is_same_set(**part, set) && used(**part, run);
+      });
+}
+
+bool may_have_used(const Provenance& provenance, const SetPart& set) {
+  const std::optional<SetPart>& part = provenance.training_set;
+  return part && part->device_numbers.empty() && is_same_set(*part, set);
+}
+
+}  // namespace beamgyro

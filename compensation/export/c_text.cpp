@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/export/c_text.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+namespace beamgyro {
+namespace {
+
+constexpr std::string_view kDigits = "0123456789";
+constexpr std::string_view kLetters =
+    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
+
+bool holds(std::string_view characters, char c) {
+  return characters.find(c) != std::string_view::npos;
+}
+
+std::string with_underscores(const std::string& text, std::string_view others) {
+  std::string result = text;
+  for (char& c : result)
+    if (!holds(kLetters, c) && !holds(kDigits, c) && !holds(others, c)) c = '_';
+  return result;
+}
+
+}  // namespace
+
+std::string c_literal(float value) {
+  std::string text = fmt::format("{}", value);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text + "f";
+}
+
+std::string c_identifier(const std::string& text) {
+  const std::string name = with_underscores(text, "");
+  if (!name.empty() && holds(kLetters, name[0])) return name;
+  return fmt::format("c_{}", name);
+}
+
+std::string c_comment(const std::string& text) {
+  return with_underscores(text, " ().,:;+-=%");
+}
+
+}  // namespace beamgyro

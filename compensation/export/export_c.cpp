@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/export/export_c.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <variant>
+
+#include "compensation/export/c_text.h"
+#include "compensation/export/export_header.h"
+#include "compensation/export/export_network.h"
+#include "compensation/export/export_self_test.h"
+#include "compensation/export/firmware_model.h"
+
+namespace beamgyro {
+namespace {
+
+std::string array_text(const FirmwareArray& array) {
+  std::string text;
+  if (!array.comment.empty()) text = fmt::format("/* {} */\n", array.comment);
+  text += fmt::format("static const float {}[{}] = {{", array.name,
+                      array.values.size());
+  std::size_t column = 80;
+  for (const float value : array.values) {
+    const std::string next = c_literal(value) + ",";
+    if (column + next.size() + 1 > 78) {
+      text += "\n ";
+      column = 1;
+    }
+    text += " " + next;
+    column += next.size() + 1;
+  }
+  return text + "\n};\n";
+}
+
+// Text of one compensator, written part by part.
+class Writer {
+ public:
+  Writer(const Compensator& compensator, const std::string& name,
+         const FirmwareModel& model)
+      : c_(compensator), name_(name), model_(model), parts_(c_) {}
+
+  std::string source(const std::vector<std::string>& warnings) const {
+    std::string text = fmt::format(
+        "/* See {0}.h. The same bits everywhere need a compiler that does not "
+        "contract\n   a * b + c: gcc and clang want -ffp-contract=off, and "
+        "never -ffast-math. */\n"
+        "#include \"{0}.h\"\n\n#include <float.h>\n#include <string.h>\n\n"
+        "#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0 && "
+        "FLT_EVAL_METHOD != 16\n"
+        "#error \"{0} needs float arithmetic in single precision "
+        "(FLT_EVAL_METHOD 0); on x87: -msse2 -mfpmath=sse\"\n"
+        "#endif\n\n",
+        name_);
+    text += warning_comments(warnings);
+    for (const FirmwareArray& array : model_.arrays())
+      text += array_text(array);
+    text += "\n";
+    text += runtime();
+    if (parts_.uses_inputs) text += bias_function();
+    return text + crc_function() + init_function() + step_function();
+  }
+
+ private:
+  std::string runtime() const {
+    std::string text;
+    const std::string kind = kind_name(c_.bias);
+    const auto add = [&](const char* section) {
+      text += firmware_runtime(section) + "\n";
+    };
+    if (parts_.filters > 0 || parts_.clock || kind == "thermistor" ||
+        kind == "fuzzy")
+      add("exp");
+    if (parts_.filters > 0) add("lowpass");
+    if (parts_.reads_more) add("finite");
+    if (kind == "bp" && layers() > 2) add("tanh");
+    if (kind == "polynomial" || kind == "spline" || kind == "thermistor" ||
+        kind == "fuzzy")
+      add(kind.c_str());
+    if (kind == "table" || c_.scale_factor) add("table");
+    add("crc");
+    return text;
+  }
+
+  std::string crc_function() const {
+    std::string text = fmt::format(
+        "uint32_t {}_crc(void) {{\n  uint32_t crc = 0xffffffffu;\n", name_);
+    for (const FirmwareArray& array : model_.arrays())
+      text += fmt::format("  crc = crc_of(crc, {}, {});\n", array.name,
+                          array.values.size());
+    return text + "  return ~crc;\n}\n\n";
+  }
+
+  std::string init_function() const {
+    std::string text = fmt::format(
+        "int {0}_init({0}_state *state, float period) {{\n"
+        "  if (!(period > 0.0f && period <= FLT_MAX)) return -1;\n"
+        "  memset(state, 0, sizeof *state);\n",
+        name_);
+    if (parts_.clock) text += "  state->period = period;\n";
+    int filter = 0;
+    for (std::size_t i = 0; i < c_.inputs.size() && parts_.uses_inputs; ++i)
+      if (has_filter(c_.inputs[i]))
+        text += fmt::format(
+            "  start_lowpass(state->filter[{}], period, time_constants[{}]);\n",
+            filter++, i);
+    return text + "  return 0;\n}\n\n";
+  }
+
+  std::string step_function() const;
+  std::string input_lines() const;
+  std::string finite_lines() const;
+  std::string bias_function() const;
+
+  std::size_t layers() const {
+    return std::get<BpNetwork>(c_.bias.function).layer_sizes().size();
+  }
+
+  const Compensator& c_;
+  const std::string& name_;
+  const FirmwareModel& model_;
+  const FirmwareParts parts_;
+};
+
+std::string Writer::input_lines() const {
+  std::string text;
+  int filter = 0;
+  for (std::size_t i = 0; i < c_.inputs.size(); ++i) {
+    const Input& input = c_.inputs[i];
+    std::string value = "T";
+    switch (input.kind) {
+      case InputKind::kColumn:
+        for (std::size_t k = 0; k < kFirmwareSignalCount; ++k)
+          if (input.column == kFirmwareSignals[k] && k != 1)
+            value = fmt::format("sample->{}", kFirmwareFields[k]);
+        break;
+      case InputKind::kSincePowerOn:
+        value =
+            fmt::format("exp_minus(since_power_on / time_constants[{}])", i);
+        break;
+      case InputKind::kTemperatureLowpass:
+        value = fmt::format("T - lowpass_lag(state->filter[{}], first, T)",
+                            filter++);
+        break;
+      case InputKind::kTemperatureRate:
+        value = fmt::format(
+            "lowpass_lag(state->filter[{}], first, T) / time_constants[{}]",
+            filter++, i);
+        break;
+    }
+    text += fmt::format(
+        "  x[{0}] = ({1} - centres_of_inputs[{0}]) * gains_of_inputs[{0}];\n",
+        i, input.kind == InputKind::kColumn ? value : "(" + value + ")");
+  }
+  return text;
+}
+
+// No number for inputs that are none; a temperature was told apart before.
+std::string Writer::finite_lines() const {
+  std::string text;
+  for (std::size_t i = 0; i < c_.inputs.size(); ++i)
+    if (reads_a_signal(c_.inputs[i]))
+      text +=
+          fmt::format("  if (!is_finite(x[{0}])) return x[{0}] - x[{0}];\n", i);
+  return text;
+}
+
+std::string Writer::bias_function() const {
+  const std::string kind = kind_name(c_.bias);
+  const auto count = [&](const char* name) {
+    return model_.array(name).size();
+  };
+  std::string text;
+  if (kind == "table")
+    text = fmt::format("  return table_at(temperatures, values, {}, x[0]);\n",
+                       count("values"));
+  if (kind == "spline")
+    text =
+        fmt::format("  return spline_at(knots, values, seconds, {}, x[0]);\n",
+                    count("values"));
+  if (kind == "thermistor") text = "  return thermistor_at(network, x[0]);\n";
+  if (kind == "fuzzy")
+    text =
+        fmt::format("  return fuzzy_of(centres, width[0], rules, {}, {}, x);\n",
+                    count("centres"), c_.inputs.size());
+  if (kind == "polynomial") {
+    text = fmt::format("  float y = polynomial_of(coefficients, {}, x[0]);\n",
+                       count("coefficients"));
+    for (std::size_t j = 1; j < c_.inputs.size(); ++j)
+      text += fmt::format("  y = y + slopes[{}] * x[{}];\n", j - 1, j);
+    text += "  return y;\n";
+  }
+  if (kind == "bp")
+    text = network_lines(std::get<BpNetwork>(c_.bias.function).layer_sizes());
+  return "static float bias_of(const float *x) {\n" + text + "}\n\n";
+}
+
+std::string Writer::step_function() const {
+  std::string text = fmt::format(
+      "float {0}_step({0}_state *state, const {0}_sample *sample) {{\n", name_);
+  text += "  float T = sample->temperature_degC, y;\n";
+  if (parts_.uses_inputs)
+    text += fmt::format("  float x[{}];\n", c_.inputs.size());
+  if (parts_.filters > 0) text += "  const int first = !state->started;\n";
+  if (parts_.clock)
+    text +=
+        "  const float since_power_on = (float)state->samples * "
+        "state->period;\n"
+        "  if (state->samples < 0xffffffffu) ++state->samples;\n";
+  text +=
+      "  state->clamped = 0;\n"
+      "  if (!(T >= range[0])) {\n"
+      "    state->clamped = 1;\n"
+      "    if (!(T >= -FLT_MAX)) return T - T;\n"
+      "    T = range[0];\n"
+      "  } else if (T > range[1]) {\n"
+      "    state->clamped = 1;\n"
+      "    if (T > FLT_MAX) return T - T;\n"
+      "    T = range[1];\n"
+      "  }\n";
+  if (parts_.filters > 0) text += "  state->started = 1;\n";
+  if (parts_.uses_inputs)
+    text += input_lines() + finite_lines() + "  y = bias_of(x);\n";
+  else
+    text +=
+        kind_name(c_.bias) == "none" ? "  y = 0.0f;\n" : "  y = constant[0];\n";
+  text += "  y = sample->rate_deg_per_s - (unit[0] + unit[1] * y);\n";
+  if (c_.scale_factor)
+    text += fmt::format(
+        "  y = y / table_at(scale_factor_temperatures, scale_factors, {}, "
+        "T);\n",
+        model_.array("scale_factors").size());
+  return text + "  return y;\n}\n";
+}
+
+}  // namespace
+
+ExportedC export_c(const Compensator& compensator, const std::string& name,
+                   bool force) {
+  const FirmwareModel model(compensator);
+  const ExportFindings found = findings_of(compensator);
+  if (!force && !found.objections.empty())
+    throw std::invalid_argument(fmt::format(
+        "{}; --force exports it with this warning", found.objections[0]));
+  const Writer writer(compensator, name, model);
+  return {header_text(compensator, name, model, found),
+          writer.source(found.objections), self_test_source(compensator, name),
+          found.objections};
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/export/export_findings.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "compensation/export/firmware_difference.h"
+#include "compensation/scoring/validation.h"
+#include "compensation/training/rate_kept.h"
+
+namespace beamgyro {
+
+ExportFindings findings_of(const Compensator& compensator) {
+  ExportFindings found;
+  found.difference = firmware_difference(compensator);
+  const std::optional<double> kept = rate_kept(compensator);
+  if (kept && !(*kept >= kCancelledBelow))
+    found.objections.push_back(fmt::format(
+        "it cancels the rate: of a small rate it lets {:.4f} through, and "
+        "{:g} is the least",
+        *kept, kCancelledBelow));
+  if (!(found.difference <= kLargestDifference))
+    found.objections.push_back(fmt::format(
+        "its answers in single precision differ by up to {:.2g} deg/s from "
+        "those of compensate, and {:g} deg/s is the most; large terms that "
+        "cancel lose digits, and weight_decay keeps those of a network small",
+        found.difference, kLargestDifference));
+  return found;
+}
+
+}  // namespace beamgyro

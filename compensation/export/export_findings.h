@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compensation/compensator/compensator.h"
+
+namespace beamgyro {
+
+/// Measurements of a compensator that is exported as C, and objections to it.
+struct ExportFindings {
+  double difference = 0.0;              // [deg/s], firmware_difference()
+  std::vector<std::string> objections;  // why firmware should not have it
+};
+
+/// Measures a compensator. It objects to one whose firmware_difference()
+/// exceeds kLargestDifference, and to one that cancels the rate (rate_kept()
+/// below kCancelledBelow). Throws as firmware_difference().
+ExportFindings findings_of(const Compensator& compensator);
+
+}  // namespace beamgyro

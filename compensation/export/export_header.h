@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compensation/compensator/compensator.h"
+#include "compensation/export/export_findings.h"
+#include "compensation/export/firmware_model.h"
+
+namespace beamgyro {
+
+bool has_filter(const Input& input);
+
+/// Returns whether the input is a signal other than the temperature.
+bool reads_a_signal(const Input& input);
+
+/// The parts of the exported code of a compensator.
+struct FirmwareParts {
+  explicit FirmwareParts(const Compensator& compensator);
+
+  bool uses_inputs;         // the bias is not a constant
+  int filters = 0;          // of the temperature
+  bool clock = false;       // since power-on
+  bool reads_more = false;  // than the rate and the temperature
+};
+
+/// Returns the text of NAME.h: origin of the compensator, warnings and
+/// findings, and the interface.
+std::string header_text(const Compensator& compensator, const std::string& name,
+                        const FirmwareModel& model,
+                        const ExportFindings& found);
+
+/// Returns C comments, one for each warning.
+std::string warning_comments(const std::vector<std::string>& warnings);
+
+}  // namespace beamgyro

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compensation/compensator/compensator.h"
+
+namespace beamgyro {
+
+/// Signals that a compensator can read, in the order and units of firmware
+/// samples.
+constexpr const char* kFirmwareSignals[] = {
+    "rate",       "temperature",     "output",
+    "quadrature", "drive_frequency", "drive_voltage"};
+constexpr const char* kFirmwareFields[] = {
+    "rate_deg_per_s",       "temperature_degC",          "output_V",
+    "quadrature_deg_per_s", "drive_frequency_change_Hz", "drive_voltage_V"};
+constexpr std::size_t kFirmwareSignalCount = 6;
+
+constexpr std::size_t kFirmwareDriveFrequency = 4;
+
+/// One sample, indexed as kFirmwareSignals. The drive frequency is given as its
+/// difference from FirmwareModel::drive_frequency(), because single precision
+/// resolves 1 mHz only at 9 kHz.
+struct FirmwareSample {
+  float value[kFirmwareSignalCount] = {};
+};
+
+/// An array of constants of the exported code.
+struct FirmwareArray {
+  std::string name, comment;
+  std::vector<float> values;
+};
+
+/// A compensator in single precision, with the constants and the operations of
+/// the exported code. Exported code that is compiled without contraction of
+/// multiplications and additions gives the same bits.
+class FirmwareModel {
+ public:
+  /// Throws std::invalid_argument for a parameter beyond single precision.
+  explicit FirmwareModel(const Compensator& compensator);
+  ~FirmwareModel();
+  FirmwareModel(const FirmwareModel&) = delete;
+  FirmwareModel& operator=(const FirmwareModel&) = delete;
+
+  /// Starts at power-on. Samples then come every `period` [s], > 0.
+  void start(float period);
+
+  /// Returns the compensated rate [deg/s]. Temperatures out of range are
+  /// clamped. An input that is not finite gives NaN; if it is the temperature,
+  /// filters wait for the next finite one.
+  float step(const FirmwareSample& sample);
+
+  const std::vector<FirmwareArray>& arrays() const { return arrays_; }
+  const std::vector<float>& array(std::string_view name) const;
+  bool reads(std::size_t signal) const;  // index of kFirmwareSignals
+
+  /// Returns the whole number of Hz nearest to the middle of the drive
+  /// frequencies of training.
+  int drive_frequency() const { return drive_frequency_; }
+
+  /// Returns crc32() of all arrays in their order.
+  std::uint32_t crc() const;
+
+ private:
+  struct State;
+
+  float bias(const std::vector<float>& x) const;
+
+  std::vector<Input> inputs_;
+  std::string kind_;
+  std::vector<int> layers_;  // of a network
+  bool corrects_scale_factor_;
+  int drive_frequency_;  // [Hz]
+  std::vector<FirmwareArray> arrays_;
+  std::unique_ptr<State> state_;
+};
+
+/// Returns the CRC-32 (IEEE 802.3) of the values, each with the least
+/// significant byte first.
+std::uint32_t crc32(const std::vector<float>& values);
+
+/// Returns the C99 source of the functions in the named section of the
+/// run-time: exp, lowpass, finite, tanh, polynomial, table, spline, thermistor,
+/// fuzzy or crc. Throws std::logic_error for another name.
+std::string firmware_runtime(std::string_view section);
+
+}  // namespace beamgyro

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/methods/bias_model.h"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cmath>
+#include <stdexcept>
+
+namespace beamgyro {
+namespace {
+
+struct Predict {
+  const Eigen::ArrayXXd& x;
+
+  Eigen::ArrayXd operator()(const NoBias&) const {
+    return Eigen::ArrayXd::Zero(x.rows());
+  }
+  Eigen::ArrayXd operator()(const ConstantBias& constant) const {
+    return Eigen::ArrayXd::Constant(x.rows(), constant.value);
+  }
+  Eigen::ArrayXd operator()(const Polynomial& f) const { return f.predict(x); }
+  Eigen::ArrayXd operator()(const TakagiSugeno& f) const {
+    return f.predict(x);
+  }
+  Eigen::ArrayXd operator()(const BpNetwork& f) const { return f.predict(x); }
+  template <class OneInput>
+  Eigen::ArrayXd operator()(const OneInput& curve) const {
+    return curve.predict(x.col(0));
+  }
+};
+
+}  // namespace
+
+Scale scale_to_unit(const Eigen::Ref<const Eigen::ArrayXd>& values,
+                    const std::string& what) {
+  const double low = values.minCoeff(), high = values.maxCoeff();
+  if (!(high > low))
+    throw std::invalid_argument(
+        fmt::format("{} is {} in all {} training rows; the model needs rows "
+                    "where it varies",
+                    what, low, values.size()));
+  return {0.5 * (low + high), 0.5 * (high - low)};
+}
+
+Eigen::ArrayXd BiasModel::predict(
+    const Eigen::Ref<const Eigen::ArrayXXd>& x) const {
+  assert(x.cols() == static_cast<Eigen::Index>(input_scales.size()));
+  Eigen::ArrayXXd scaled(x.rows(), x.cols());
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    const Scale& scale = input_scales[static_cast<std::size_t>(i)];
+    scaled.col(i) = (x.col(i) - scale.centre) / scale.half_width;
+  }
+  return bias_scale.centre +
+         bias_scale.half_width * std::visit(Predict{scaled}, function);
+}
+
+BiasModel averaged_with_constant(BiasModel model, double constant,
+                                 double weight) {
+  Scale& scale = model.bias_scale;
+  scale = {(1.0 - weight) * constant + weight * scale.centre,
+           weight * scale.half_width};
+  return model;
+}
+
+std::string kind_name(const BiasModel& model) {
+  constexpr const char* kNames[] = {"none",  "constant", "polynomial",
+                                    "table", "spline",   "thermistor",
+                                    "fuzzy", "bp"};
+  return kNames[model.function.index()];
+}
+
+std::vector<double> coefficients_about(const BiasModel& model,
+                                       double reference) {
+  const auto* polynomial = std::get_if<Polynomial>(&model.function);
+  if (polynomial == nullptr)
+    throw std::invalid_argument(fmt::format(
+        "equation (1) belongs to a polynomial, not to a model of kind {}",
+        kind_name(model)));
+  if (!polynomial->slopes.empty())
+    throw std::invalid_argument(fmt::format(
+        "equation (1) has the temperature alone; this polynomial has {} more "
+        "inputs",
+        polynomial->slopes.size()));
+  const Scale scale = model.input_scales.at(0);
+  std::vector<double> c = shifted(
+      polynomial->coefficients, (reference - scale.centre) / scale.half_width);
+  for (std::size_t n = 0; n < c.size(); ++n)
+    c[n] *= model.bias_scale.half_width / std::pow(scale.half_width, n);
+  c[0] += model.bias_scale.centre;
+  return c;
+}
+
+EquationOne equation_one(const BiasModel& model) {
+  std::vector<double> c = coefficients_about(model, kReferenceTemperature);
+  EquationOne result{c[0], {}};
+  for (std::size_t n = 1; n < c.size(); ++n)
+    result.coefficients.push_back(c[n] / c[0]);
+  return result;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "compensation/models/bp_network.h"
+#include "compensation/models/cubic_spline.h"
+#include "compensation/models/lookup_table.h"
+#include "compensation/models/polynomial.h"
+#include "compensation/models/takagi_sugeno.h"
+#include "compensation/models/thermistor_network.h"
+
+namespace beamgyro {
+
+/// scaled = (value - centre) / half_width
+struct Scale {
+  double centre = 0.0;
+  double half_width = 1.0;  // > 0
+
+  bool operator==(const Scale&) const = default;
+};
+
+/// Returns the scale that maps the values to [-1, 1]. Throws
+/// std::invalid_argument when they are all equal; `what` names them in the
+/// message.
+Scale scale_to_unit(const Eigen::Ref<const Eigen::ArrayXd>& values,
+                    const std::string& what);
+
+/// Bias 0 everywhere: the raw rate.
+struct NoBias {};
+
+/// The same bias at all inputs.
+struct ConstantBias {
+  double value = 0.0;
+};
+
+/// Bias predicted from inputs in the units of the recording (degC, V, Hz, ...):
+///
+///   b = bias.centre + bias.half_width * function(scaled inputs)   [deg/s]
+struct BiasModel {
+  std::vector<Scale> input_scales;  // one per input
+  Scale bias_scale;                 // [deg/s]
+  std::variant<NoBias, ConstantBias, Polynomial, LookupTable, CubicSpline,
+               ThermistorNetwork, TakagiSugeno, BpNetwork>
+      function;
+
+  /// One sample per row, one input per column.
+  Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
+};
+
+/// Returns the model (1 - weight) constant + weight b, where b is the
+/// prediction of `model`: the same function with another bias scale.
+BiasModel averaged_with_constant(BiasModel model, double constant,
+                                 double weight);
+
+/// "none", "constant", "polynomial", "table", "spline", "thermistor", "fuzzy"
+/// or "bp".
+std::string kind_name(const BiasModel& model);
+
+constexpr double kReferenceTemperature = 25.0;  // [degC], T0 of equation (1)
+
+/// Equation (1) at rest: F(T) = F(T0) [1 + a_1 dT + a_2 dT^2 + ...],
+/// dT = T - T0.
+struct EquationOne {
+  double bias_at_reference = 0.0;    // F(T0) [deg/s]
+  std::vector<double> coefficients;  // a_n [1/K^n]; not finite if F(T0) = 0
+};
+
+/// Returns the coefficients [deg/s/K^n] of the polynomial of `model` in T -
+/// `reference`. Throws as equation_one().
+std::vector<double> coefficients_about(const BiasModel& model,
+                                       double reference);
+
+/// Returns the polynomial of `model` in the form of equation (1). Throws
+/// std::invalid_argument when the model is of another kind or has other inputs
+/// than the temperature.
+EquationOne equation_one(const BiasModel& model);
+
+}  // namespace beamgyro

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/methods/population.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace beamgyro {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kLeastSteps = 3;  // of the grid: a spline has four knots
+// Modes with less of the largest variance are rounding.
+constexpr double kLeastVariance = 1e-14;
+
+// Rows of each device that has any.
+using RowsOfDevices = std::vector<std::vector<Index>>;
+RowsOfDevices rows_of_devices(const TrainingRows& rows) {
+  RowsOfDevices found(static_cast<std::size_t>(rows.device.maxCoeff() + 1));
+  for (Index k = 0; k < rows.size(); ++k)
+    found[static_cast<std::size_t>(rows.device(k))].push_back(k);
+  std::erase_if(found, [](const auto& own) { return own.empty(); });
+  return found;
+}
+
+ArrayXd common_grid(const TrainingRows& rows, const RowsOfDevices& devices,
+                    double grid_K) {
+  double lowest = -HUGE_VAL, highest = HUGE_VAL;
+  for (const std::vector<Index>& own : devices) {
+    const ArrayXd T = rows.temperature(own);
+    lowest = std::max(lowest, T.minCoeff());
+    highest = std::min(highest, T.maxCoeff());
+  }
+  if (!(highest - lowest >= kLeastSteps * grid_K))
+    throw std::invalid_argument(fmt::format(
+        "the devices share the temperatures {:.2f} to {:.2f} degC; a "
+        "population needs {} steps of grid_K, {} K, or more in common",
+        lowest, highest, kLeastSteps, grid_K));
+  const auto steps = static_cast<Index>(std::ceil((highest - lowest) / grid_K));
+  return ArrayXd::LinSpaced(steps + 1, lowest, highest);
+}
+
+// Bias and channels of one device on the grid, one below the other.
+VectorXd curves_of(const TrainingRows& rows, const std::vector<Index>& own,
+                   const ArrayXd& grid, double grid_K) {
+  const ArrayXd T = rows.temperature(own);
+  const ArrayXd knots = spline_knots(T, grid_K);
+  const auto on_grid = [&](const ArrayXd& values) {
+    return fit_cubic_spline(T, values, knots, SplineEnd::kNotAKnot)
+        .predict(grid);
+  };
+  const Index curves = rows.inputs.cols();  // the temperature is none
+  VectorXd stacked(curves * grid.size());
+  stacked.head(grid.size()) = on_grid(rows.bias(own));
+  for (Index i = 1; i < curves; ++i)
+    stacked.segment(i * grid.size(), grid.size()) =
+        on_grid(rows.inputs.col(i)(own));
+  return stacked;
+}
+
+// One column per device.
+MatrixXd curves_of_all(const TrainingRows& rows, const RowsOfDevices& devices,
+                       const ArrayXd& grid, double grid_K) {
+  MatrixXd all(rows.inputs.cols() * grid.size(),
+               static_cast<Index>(devices.size()));
+  for (std::size_t k = 0; k < devices.size(); ++k) try {
+      all.col(static_cast<Index>(k)) =
+          curves_of(rows, devices[k], grid, grid_K);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("device {} of {}: {}", k + 1,
+                                              devices.size(), error.what()));
+    }
+  return all;
+}
+
+// Root mean square over the grid of each curve's deviations, one per row.
+VectorXd spreads(const MatrixXd& deviations, Index grid) {
+  VectorXd spread(deviations.rows());
+  for (Index first = 0; first < deviations.rows(); first += grid) {
+    const double square =
+        deviations.middleRows(first, grid).squaredNorm() / double(grid);
+    spread.segment(first, grid)
+        .setConstant(square > 0.0 ? std::sqrt(square) : 1.0);
+  }
+  return spread;
+}
+
+// Columns whose outer products add up to X X^T: scaled first, because a
+// channel in large units would push the bias below rounding.
+MatrixXd modes_of(const MatrixXd& X, Index grid) {
+  const VectorXd unit = spreads(X, grid);
+  const MatrixXd scaled = unit.cwiseInverse().asDiagonal() * X;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scaled *
+                                                      scaled.transpose());
+  const VectorXd& variance = eigen.eigenvalues();  // increasing
+  const double least = kLeastVariance * variance.maxCoeff();
+  Index kept = 0;
+  while (kept < variance.size() && variance(variance.size() - 1 - kept) > least)
+    ++kept;
+  return unit.asDiagonal() * eigen.eigenvectors().rightCols(kept) *
+         variance.tail(kept).cwiseSqrt().asDiagonal();
+}
+
+// Values at temperatures of the spline through values on the grid.
+ArrayXd between(const Population& population, const VectorXd& on_grid,
+                const ArrayXd& T) {
+  return bias_curve(population, on_grid.array()).predict(T);
+}
+
+// Curve number `curve` (0: the bias) of each mode and of the mean at the rows,
+// over the noise: the equations H c = y of unit variance.
+struct Equations {
+  MatrixXd H;
+  VectorXd y;
+};
+Equations equations(const Population& p, Index curve, const ArrayXd& T,
+                    const ArrayXd& measured, double noise) {
+  const Index first = curve * p.grid();
+  Equations e{MatrixXd(T.size(), p.modes.cols()), VectorXd(T.size())};
+  for (Index m = 0; m < p.modes.cols(); ++m)
+    e.H.col(m) = between(p, p.modes.col(m).segment(first, p.grid()), T) / noise;
+  e.y = (measured - between(p, p.mean.segment(first, p.grid()), T)) / noise;
+  return e;
+}
+
+Index curve_number(const Population& population, const Input& input) {
+  const auto found =
+      std::find(population.channels.begin(), population.channels.end(), input);
+  if (found == population.channels.end())
+    throw std::invalid_argument(fmt::format(
+        "the population does not know the input \"{}\"", input_name(input)));
+  return 1 + (found - population.channels.begin());
+}
+
+// Means of the rows within kPointWidth of each other.
+struct Points {
+  ArrayXd temperature, bias;
+  Eigen::ArrayXXd inputs;
+};
+Points points_of(const TrainingRows& rows) {
+  std::vector<Index> order(static_cast<std::size_t>(rows.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return rows.temperature(a) < rows.temperature(b);
+  });
+  std::vector<std::vector<Index>> groups;
+  for (const Index k : order) {
+    if (groups.empty() ||
+        rows.temperature(k) - rows.temperature(groups.back().front()) >=
+            kPointWidth)
+      groups.emplace_back();
+    groups.back().push_back(k);
+  }
+  const auto count = static_cast<Index>(groups.size());
+  Points points{ArrayXd(count), ArrayXd(count),
+                Eigen::ArrayXXd(count, rows.inputs.cols())};
+  for (Index k = 0; k < count; ++k) {
+    const std::vector<Index>& group = groups[static_cast<std::size_t>(k)];
+    points.temperature(k) = rows.temperature(group).mean();
+    points.bias(k) = rows.bias(group).mean();
+    for (Index i = 0; i < rows.inputs.cols(); ++i)
+      points.inputs(k, i) = rows.inputs.col(i)(group).mean();
+  }
+  return points;
+}
+
+// Prior and points, one equation below the other.
+Equations all_equations(const Population& p, const std::vector<Input>& inputs,
+                        const Points& points, const PointNoise& noise) {
+  const Index modes = p.modes.cols(), count = points.bias.size();
+  const auto curves = static_cast<Index>(inputs.size());
+  Equations all{MatrixXd(modes + curves * count, modes),
+                VectorXd::Zero(modes + curves * count)};
+  all.H.topRows(modes).setIdentity();
+  const VectorXd unit = spreads(p.modes, p.grid());
+  for (Index i = 0; i < curves && count > 0; ++i) {
+    const Index curve =
+        i == 0 ? 0 : curve_number(p, inputs[static_cast<std::size_t>(i)]);
+    const ArrayXd measured =
+        i == 0 ? points.bias : ArrayXd(points.inputs.col(i));
+    const Equations own = equations(
+        p, curve, points.temperature, measured,
+        i == 0 ? noise.bias : noise.channel_share * unit(curve * p.grid()));
+    all.H.middleRows(modes + i * count, count) = own.H;
+    all.y.segment(modes + i * count, count) = own.y;
+  }
+  return all;
+}
+
+}  // namespace
+
+TemperatureRange Population::range() const {
+  return {temperatures(0), temperatures(grid() - 1)};
+}
+
+Population fit_population(const std::vector<Input>& inputs,
+                          const TrainingRows& rows, double grid_K) {
+  const RowsOfDevices devices = rows_of_devices(rows);
+  const auto count = static_cast<Index>(devices.size());
+  if (count < 2)
+    throw std::invalid_argument(
+        "a population needs recordings of two devices or more; the rows are "
+        "of one");
+  Population population;
+  population.channels.assign(inputs.begin() + 1, inputs.end());
+  population.devices = static_cast<int>(count);
+  population.temperatures = common_grid(rows, devices, grid_K);
+  const MatrixXd curves =
+      curves_of_all(rows, devices, population.temperatures, grid_K);
+  population.mean = curves.rowwise().mean();
+  const MatrixXd deviations = (curves.colwise() - population.mean) /
+                              std::sqrt(static_cast<double>(count - 1));
+  population.modes = modes_of(deviations, population.grid());
+  return population;
+}
+
+AdaptedBias adapted_bias(const Population& population,
+                         const std::vector<Input>& inputs,
+                         const TrainingRows& rows, const PointNoise& noise) {
+  if (population.modes.cols() == 0)
+    return {population.mean.head(population.grid()).array(),
+            ArrayXd::Zero(population.grid())};
+  const Equations all =
+      all_equations(population, inputs, points_of(rows), noise);
+  const Index modes = population.modes.cols(), grid = population.grid();
+  // A = R^T R of the QR decomposition: its squares are never formed.
+  const Eigen::HouseholderQR<MatrixXd> qr(all.H);
+  const VectorXd c = qr.solve(all.y);
+  const MatrixXd bias_modes = population.modes.topRows(grid);
+  const MatrixXd R =
+      qr.matrixQR().topRows(modes).triangularView<Eigen::Upper>();
+  const MatrixXd roots = R.transpose().triangularView<Eigen::Lower>().solve(
+      bias_modes.transpose());
+  return {(population.mean.head(grid) + bias_modes * c).array(),
+          roots.colwise().norm().transpose().array()};
+}
+
+CubicSpline bias_curve(const Population& population, const ArrayXd& values) {
+  return fit_cubic_spline(population.temperatures, values,
+                          population.temperatures, SplineEnd::kNotAKnot);
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "compensation/inputs/input.h"
+#include "compensation/models/cubic_spline.h"
+#include "compensation/rows/training_rows.h"
+
+namespace beamgyro {
+
+/// The distribution of the gyros of a population. Over devices, the bias b and
+/// further channels q_1, q_2, ... (quadrature, ...) as functions of the
+/// temperature T are one Gaussian process,
+///
+///   (b, q_1, ...)(T) = mu(T) + Phi(T) c,   c ~ N(0, I).
+///
+/// mu and each column of Phi, a mode, are splines through values on a grid.
+struct Population {
+  std::vector<Input> channels;  // kColumn each; beside the bias
+  Eigen::ArrayXd temperatures;  // [degC], the grid, increasing, at least 4
+  // Values on the grid: of the bias [deg/s], then of each channel in its own
+  // unit.
+  Eigen::VectorXd mean;   // (1 + channels) * grid
+  Eigen::MatrixXd modes;  // as many rows, one column per mode
+  int devices = 0;        // it was learned from
+
+  Eigen::Index grid() const { return temperatures.size(); }
+  TemperatureRange range() const;
+};
+
+/// Learns a population from the rows of two devices or more, whose inputs are
+/// the temperature and the channels. The curves of each device are splines
+/// through its rows (spline_knots() with a spacing of `grid_K` [K]). They are
+/// evaluated on a grid of that spacing or less over the temperatures that all
+/// devices have. mu and Phi Phi^T are their mean and sample covariance. Throws
+/// std::invalid_argument for
+/// - fewer than two devices;
+/// - rows of a device that determine no spline;
+/// - devices that share less than three steps of the grid.
+Population fit_population(const std::vector<Input>& inputs,
+                          const TrainingRows& rows, double grid_K);
+
+constexpr double kPointWidth = 2.0;  // [K]
+
+/// 1-sigma of a point, which is the mean of rows within kPointWidth of each
+/// other. Rows of a soak share slow noise and the turn-on offset, so many are
+/// no better than one.
+struct PointNoise {
+  double bias = 0.03;  // [deg/s], > 0
+  // [-], > 0, of a channel: over its spread within the population
+  double channel_share = 0.01;
+};
+
+/// Bias of a device on the grid, given some points of it: conditional mean and
+/// 1-sigma.
+struct AdaptedBias {
+  Eigen::ArrayXd mean;       // [deg/s]
+  Eigen::ArrayXd deviation;  // [deg/s], 1-sigma
+};
+
+/// Returns the exact conditional E[b | y] of the Gaussian process and its
+/// deviation. y are the points of the rows, mu and H the values of the
+/// population at them, R their noise:
+///
+///   c | y ~ N(A^-1 H^T R^-1 (y - mu), A^-1),   A = I + H^T R^-1 H.
+///
+/// Without rows it is the mean of the population. `inputs` are the columns of
+/// the rows: the temperature, then some of the channels of the population.
+AdaptedBias adapted_bias(const Population& population,
+                         const std::vector<Input>& inputs,
+                         const TrainingRows& rows, const PointNoise& noise);
+
+/// Returns the spline through values of the bias [deg/s] on the grid.
+CubicSpline bias_curve(const Population& population,
+                       const Eigen::ArrayXd& values);
+
+}  // namespace beamgyro

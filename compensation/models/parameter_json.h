@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+namespace beamgyro {
+
+/// Returns the number as JSON. Throws std::runtime_error when it is not finite.
+nlohmann::ordered_json finite_json(double value);
+
+/// Returns an array of numbers, each as finite_json().
+template <class Numbers>
+nlohmann::ordered_json numbers_json(const Numbers& numbers) {
+  nlohmann::ordered_json array = nlohmann::ordered_json::array();
+  for (const double number : numbers) array.push_back(finite_json(number));
+  return array;
+}
+
+}  // namespace beamgyro

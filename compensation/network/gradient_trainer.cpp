@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/network/gradient_trainer.h"
+
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace beamgyro {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// Fisher-Yates.
+void shuffle(std::vector<Index>& order, RandomStream& random) {
+  for (std::size_t n = order.size(); n > 1; --n) {
+    const auto k =
+        static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
+    std::swap(order[n - 1], order[k]);
+  }
+}
+
+void check_finite(double rms, double learning_rate) {
+  if (!std::isfinite(rms))
+    throw std::runtime_error(
+        "bp training diverged: the error is no longer finite with a learning "
+        "rate of " +
+        std::to_string(learning_rate) + "; a smaller learning_rate is needed");
+}
+
+}  // namespace
+
+bool AdaptiveRate::keep_step(double old_error, double new_error) {
+  if (!(new_error <= 1.05 * old_error)) {
+    rate *= 0.70;
+    return false;
+  }
+  if (new_error < old_error) rate *= 1.05;
+  return true;
+}
+
+TrainSummary train_incremental(const ScaledRows& rows,
+                               const ScaledRows& held_out,
+                               const TrainOptions& options, RandomStream& order,
+                               BpNetwork& network) {
+  TrainSummary summary;
+  BestWeights best(held_out, options.patience);
+  std::vector<Index> sequence(static_cast<std::size_t>(rows.size()));
+  std::iota(sequence.begin(), sequence.end(), 0);
+  VectorXd step = VectorXd::Zero(network.weights().size()), gradient;
+  std::optional<StopReason> stop;
+  while (!stop && summary.epochs < options.max_epochs) {
+    ++summary.epochs;
+    shuffle(sequence, order);
+    for (const Index k : sequence) {
+      network.predict_with_gradient(rows.inputs.middleRows(k, 1),
+                                    rows.target.segment(k, 1), gradient);
+      step = options.momentum * step - options.learning_rate * gradient;
+      network.set_weights(network.weights() + step);
+    }
+    const double rms = rms_error(network, rows);
+    check_finite(rms, options.learning_rate);
+    const bool stale = best.stale_after(summary.epochs, network);
+    if (rms <= options.goal)
+      stop = StopReason::kGoalReached;
+    else if (stale)
+      stop = StopReason::kHeldOutRising;
+  }
+  summary.stop_reason = stop.value_or(StopReason::kMaxEpochs);
+  best.restore(rows, network, summary);
+  return summary;
+}
+
+TrainSummary train_gradient_adaptive(const ScaledRows& rows,
+                                     const ScaledRows& held_out,
+                                     const TrainOptions& options,
+                                     BpNetwork& network) {
+  TrainSummary summary;
+  BestWeights best(held_out, options.patience);
+  AdaptiveRate adaptive{options.learning_rate};
+  const double count = static_cast<double>(rows.size());
+  VectorXd gradient, trial_gradient;
+  double error =
+      (network.predict_with_gradient(rows.inputs, rows.target, gradient) -
+       rows.target)
+          .square()
+          .sum();
+  VectorXd step = VectorXd::Zero(gradient.size());
+  std::optional<StopReason> stop;
+  while (!stop && summary.epochs < options.max_epochs) {
+    ++summary.epochs;
+    const VectorXd w = network.weights();
+    step = options.momentum * step - adaptive.rate / count * gradient;
+    network.set_weights(w + step);
+    const double trial = (network.predict_with_gradient(
+                              rows.inputs, rows.target, trial_gradient) -
+                          rows.target)
+                             .square()
+                             .sum();
+    if (adaptive.keep_step(error, trial)) {
+      error = trial;
+      gradient.swap(trial_gradient);
+    } else {
+      network.set_weights(w);
+      step.setZero();
+    }
+    const bool stale = best.stale_after(summary.epochs, network);
+    if (std::sqrt(error / count) <= options.goal)
+      stop = StopReason::kGoalReached;
+    else if (gradient.lpNorm<Eigen::Infinity>() <= options.min_gradient * count)
+      stop = StopReason::kGradientSmall;
+    else if (adaptive.rate < options.min_learning_rate)
+      stop = StopReason::kRateSmall;
+    else if (stale)
+      stop = StopReason::kHeldOutRising;
+  }
+  summary.stop_reason = stop.value_or(StopReason::kMaxEpochs);
+  best.restore(rows, network, summary);
+  return summary;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/network/network_training.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "compensation/network/gradient_trainer.h"
+#include "compensation/network/lbfgs_trainer.h"
+#include "compensation/network/levenberg_marquardt.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr Eigen::Index kBlockRows = 1024;  // keeps a block in the cache
+constexpr Eigen::Index kStretches = 20;
+
+}  // namespace
+
+std::string sentence(StopReason reason) {
+  switch (reason) {
+    case StopReason::kLeastSquares:
+      return "least squares: solved in one step";
+    case StopReason::kGoalReached:
+      return "the in-sample error reached its goal";
+    case StopReason::kGradientSmall:
+      return "the gradient vanished: a minimum of the in-sample error";
+    case StopReason::kStepSmall:
+      return "the steps became negligible against the weights";
+    case StopReason::kDampingLimit:
+      return "no step lowers the error any more: damping at its limit";
+    case StopReason::kRateSmall:
+      return "no step lowers the error any more: learning rate at its limit";
+    case StopReason::kLineSearchFailed:
+      return "no step lowers the error any more: line search at its limit";
+    case StopReason::kHeldOutRising:
+      return "the held-out error no longer falls: stopped early";
+    case StopReason::kMaxEpochs:
+      break;
+  }
+  return "the largest number of epochs was reached";
+}
+
+Eigen::ArrayXd squared_errors(const BpNetwork& network,
+                              const ScaledRows& rows) {
+  Eigen::ArrayXd squares(rows.size());
+  for (Eigen::Index first = 0; first < rows.size(); first += kBlockRows) {
+    const Eigen::Index count = std::min(kBlockRows, rows.size() - first);
+    squares.segment(first, count) =
+        (network.predict(rows.inputs.middleRows(first, count)) -
+         rows.target.segment(first, count))
+            .square();
+  }
+  return squares;
+}
+
+double rms_error(const BpNetwork& network, const ScaledRows& rows) {
+  return std::sqrt(squared_errors(network, rows).mean());
+}
+
+bool no_worse(const Eigen::ArrayXd& squares, const Eigen::ArrayXd& least) {
+  const Eigen::Index rows = squares.size();
+  const Eigen::Index stretches = std::min(kStretches, rows);
+  Eigen::ArrayXd excess(stretches);
+  for (Eigen::Index k = 0; k < stretches; ++k) {
+    const Eigen::Index first = k * rows / stretches;
+    const Eigen::Index count = (k + 1) * rows / stretches - first;
+    excess(k) = (squares - least).segment(first, count).mean();
+  }
+  const auto count = static_cast<double>(stretches);
+  const double variance =
+      (excess - excess.mean()).square().sum() / std::max(count - 1.0, 1.0);
+  return excess.mean() <= 2.0 * std::sqrt(variance / count);
+}
+
+bool BestWeights::stale_after(int epoch, const BpNetwork& network,
+                              double rate_penalty) {
+  if (held_out_.size() == 0) {
+    epoch_ = epoch;
+    weights_ = network.weights();
+    return false;
+  }
+  const double rms = rms_error(network, held_out_);
+  const double here = 0.5 * rms * rms + rate_penalty;
+  if (here < lowest_) {
+    lowest_ = here;
+    rms_ = rms;
+    epoch_ = epoch;
+    weights_ = network.weights();
+  }
+  return epoch - epoch_ >= patience_;
+}
+
+void BestWeights::restore(const ScaledRows& rows, BpNetwork& network,
+                          TrainSummary& summary) const {
+  network.set_weights(weights_);
+  summary.best_epoch = epoch_;
+  summary.in_sample_rms = rms_error(network, rows);
+  if (held_out_.size() > 0) summary.held_out_rms = rms_;
+}
+
+TrainSummary train_network(const ScaledRows& rows, const ScaledRows& held_out,
+                           const TrainOptions& options, RandomStream& order,
+                           BpNetwork& network) {
+  switch (options.trainer) {
+    case Trainer::kIncremental:
+      return train_incremental(rows, held_out, options, order, network);
+    case Trainer::kGradientAdaptive:
+      return train_gradient_adaptive(rows, held_out, options, network);
+    case Trainer::kLbfgs:
+      return train_lbfgs(rows, held_out, options, network);
+    case Trainer::kLevenbergMarquardt:
+      break;
+  }
+  return train_levenberg_marquardt(rows, held_out, options, network);
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compensation/models/bp_network.h"
+
+namespace beamgyro {
+
+enum class Trainer {
+  kIncremental,
+  kGradientAdaptive,
+  kLbfgs,
+  kLevenbergMarquardt
+};
+
+/// Default of the two gradient trainers, which need many cheap epochs.
+constexpr int kGradientMaxEpochs = 20000;
+constexpr int kGradientPatience = 2000;
+
+/// Default of L-BFGS, which needs more epochs than Levenberg-Marquardt.
+constexpr int kLbfgsMaxEpochs = 5000;
+constexpr int kLbfgsPatience = 500;
+
+/// Reason why a training ended. sentence() returns it in words.
+enum class StopReason {
+  kLeastSquares,   // no iteration: the normal equations have one solution
+  kGoalReached,    // in-sample rms <= goal
+  kGradientSmall,  // max |dF/dw| <= min_gradient
+  kStepSmall,      // |step| <= min_step (|w| + min_step)
+  kDampingLimit,   // damping > max_damping: no step lowers the error
+  kRateSmall,  // learning rate < min_learning_rate: no step lowers the error
+  kLineSearchFailed,  // no step along the L-BFGS direction lowers the error
+  kHeldOutRising,     // no new lowest held-out error for `patience` epochs
+  kMaxEpochs,         // epochs = max_epochs
+};
+
+std::string sentence(StopReason reason);
+
+/// Errors are of scaled quantities (order one). F = mean(e^2) / 2 +
+/// weight_decay |w|^2 / 2.
+struct TrainOptions {
+  Trainer trainer = Trainer::kLevenbergMarquardt;
+  int restarts = 4;      // >= 1, from different initial weights
+  int max_epochs = 300;  // >= 1; passes over the rows
+  int patience = 60;     // [epochs], >= 1
+  int threads = 1;       // >= 1; of one training; the gradient rules use one
+  int cores = 0;         // of all restarts together; 0 = those there are
+  double goal = 0.0;     // rms, >= 0
+  double weight_decay = 0.0;  // >= 0; kLevenbergMarquardt, kLbfgs
+  // Adds rate_penalty mean(g^2) / 2 to F, where g is the share of a rate along
+  // rate_direction that is mistaken for drift (RatePenalty). For
+  // kLevenbergMarquardt only.
+  double rate_penalty = 0.0;                // >= 0
+  std::vector<double> rate_direction = {};  // one per input
+  double learning_rate = 0.02;  // eta of equation (5), > 0; its first value
+  double momentum = 0.9;        // h of equation (5), in [0, 1)
+  double min_learning_rate = 1e-9;
+  double initial_damping = 1e-2;
+  double max_damping = 1e10;
+  double min_gradient = 1e-10;
+  double min_step = 1e-10;
+};
+
+/// Outcome of one training from one set of initial weights.
+struct TrainSummary {
+  StopReason stop_reason = StopReason::kMaxEpochs;
+  int epochs = 0;              // done
+  int best_epoch = 0;          // whose weights were kept
+  double in_sample_rms = 0.0;  // with the weights kept, in the rows' unit
+  std::optional<double> held_out_rms;
+};
+
+/// Rows of a training or held-out set, scaled to order one.
+struct ScaledRows {
+  Eigen::ArrayXXd inputs;  // one row per sample, one column per input
+  Eigen::ArrayXd target;   // one per sample
+
+  Eigen::Index size() const { return target.size(); }
+};
+
+double rms_error(const BpNetwork& network, const ScaledRows& rows);
+
+/// Returns the squared error of each row.
+Eigen::ArrayXd squared_errors(const BpNetwork& network, const ScaledRows& rows);
+
+/// Returns whether squared errors are no larger than `least`, those of the same
+/// rows with other weights, within noise: the mean difference is within two
+/// standard errors. These come from the means of 20 stretches of rows, because
+/// neighbouring rows share their noise.
+bool no_worse(const Eigen::ArrayXd& squares, const Eigen::ArrayXd& least);
+
+/// Keeps the weights with the lowest held-out mean(e^2) / 2 + rate penalty so
+/// far. The penalty is included because held-out rows at rest are predicted
+/// best by cancelling the rate. Without held-out rows it keeps the last
+/// weights.
+class BestWeights {
+ public:
+  BestWeights(const ScaledRows& held_out, int patience)
+      : held_out_(held_out), patience_(patience) {}
+
+  /// Compares the network after `epoch`. Returns true when the lowest value is
+  /// `patience` or more epochs old.
+  bool stale_after(int epoch, const BpNetwork& network,
+                   double rate_penalty = 0.0);
+
+  /// Copies the kept weights to `network` and writes the scores of the summary.
+  void restore(const ScaledRows& rows, BpNetwork& network,
+               TrainSummary& summary) const;
+
+ private:
+  const ScaledRows& held_out_;
+  int patience_;
+  int epoch_ = 0;
+  double rms_ = std::numeric_limits<double>::infinity();
+  double lowest_ = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd weights_;
+};
+
+/// Trains once from the present weights of `network` and leaves the best
+/// weights in it. `held_out` may be empty. `order` shuffles the rows of the
+/// incremental rule; other trainers do not use it.
+TrainSummary train_network(const ScaledRows& rows, const ScaledRows& held_out,
+                           const TrainOptions& options, RandomStream& order,
+                           BpNetwork& network);
+
+}  // namespace beamgyro

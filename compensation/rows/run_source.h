@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dataset/recording/recording.h"
+
+namespace beamgyro {
+
+/// A recording that is trained on or held out.
+struct TrainingRun {
+  std::string name;    // file name, for messages and the provenance
+  std::string sha256;  // of the file; empty of a run of a set
+  Recording recording;
+  std::string device = {};  // whose run it is; empty: of a gyro of its own
+  std::string run = {};     // of a set: which of its runs
+};
+
+/// The set of devices that the runs of a source come from.
+struct SetPart {
+  std::string name;             // of the set's directory
+  std::string manifest_sha256;  // tells every file of the set
+  std::size_t devices = 0;
+  std::size_t files = 0;  // shard files
+  // Campaign and seed by which the devices were drawn, the runs, and which
+  // devices. Empty when an older program wrote the file.
+  std::string campaign_sha256 = {};
+  std::uint64_t seed = 0;
+  std::vector<std::string> runs = {};
+  std::vector<std::uint32_t> device_numbers = {};  // increasing
+
+  bool operator==(const SetPart&) const = default;
+};
+
+/// A source of runs, one after the other, so that only one is in memory at a
+/// time.
+struct RunSource {
+  using Visitor = std::function<void(const TrainingRun&)>;
+
+  std::size_t count = 0;  // of runs
+  /// Calls the visitor with each run, in the same order every time. An
+  /// exception for a run that cannot be read names the file.
+  std::function<void(const Visitor&)> each;
+  std::optional<SetPart> set = {};  // nothing for runs in files of their own
+};
+
+/// Returns a source of runs in memory, which must outlive the source.
+RunSource source_of(const std::vector<TrainingRun>& runs);
+
+}  // namespace beamgyro

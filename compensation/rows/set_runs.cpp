@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/rows/set_runs.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "dataset/files/set_files.h"
+#include "dataset/set/manifest.h"
+#include "dataset/set/shard/shard_reader.h"
+
+namespace beamgyro {
+namespace {
+
+// Devices of one file of the set.
+struct FileMembers {
+  std::filesystem::path directory;
+  std::string file, run;
+  std::vector<std::uint32_t> positions;
+};
+
+template <class T>
+bool holds(const std::vector<T>& all, const T& one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+Manifest finished_manifest(const std::filesystem::path& directory) {
+  Manifest manifest = read_manifest(directory, kManifestName);
+  if (!manifest.head || !manifest.is_finished)
+    throw std::invalid_argument(fmt::format(
+        "{}: the set is not finished; generate goes on where it stopped",
+        directory.string()));
+  if (!manifest.damaged_lines.empty() ||
+      manifest.entries.size() != file_count(*manifest.head))
+    throw std::invalid_argument(fmt::format(
+        "{}: the manifest is damaged; verify tells more", directory.string()));
+  return manifest;
+}
+
+// A file that was changed may still open and show other values.
+void check_bytes(const std::filesystem::path& directory,
+                 const ManifestEntry& entry) {
+  if (sha256_of_set_file(directory, entry.file) != entry.sha256)
+    throw std::invalid_argument(
+        fmt::format("{}: holds other bytes than the manifest says; "
+                    "verify tells more",
+                    (directory / entry.file).string()));
+}
+
+void check_selection(const ManifestHead& head, const SetSelection& selection,
+                     const std::string& place) {
+  for (const std::string& run : selection.runs)
+    if (!holds(head.runs, run))
+      throw std::invalid_argument(
+          fmt::format("{}: the set has no run \"{}\"; its runs are {}", place,
+                      run, fmt::join(head.runs, ", ")));
+  for (const std::uint32_t device : selection.devices)
+    if (device >= head.devices)
+      throw std::invalid_argument(
+          fmt::format("{}: device {}; the set has devices 0 to {}", place,
+                      device, head.devices - 1));
+}
+
+bool is_selected(const SetSelection& selection, std::uint32_t device,
+                 const DeviceRow& row) {
+  return row.failure.empty() &&
+         (!selection.part ||
+          row.part == static_cast<std::uint8_t>(*selection.part)) &&
+         (selection.devices.empty() || holds(selection.devices, device));
+}
+
+void visit_file(const FileMembers& members, const RunSource::Visitor& visit) {
+  const ShardFile shard(members.directory, members.file);
+  for (const std::uint32_t position : members.positions) {
+    const auto device = fmt::format("{}", shard.head().first_device + position);
+    visit({fmt::format("{}, device {}", members.file, device), "",
+           shard.recording(position), device, members.run});
+  }
+}
+
+}  // namespace
+
+RunSource runs_of_set(const std::filesystem::path& directory,
+                      const SetSelection& selection) {
+  const Manifest manifest = finished_manifest(directory);
+  check_selection(*manifest.head, selection, directory.string());
+  std::vector<FileMembers> files;
+  std::set<std::uint32_t> devices;
+  std::size_t count = 0;
+  const std::vector<std::string>& runs = manifest.head->runs;
+  for (const ManifestEntry& entry : manifest.entries) {
+    const std::string& run = runs[entry.index % runs.size()];
+    if (!selection.runs.empty() && !holds(selection.runs, run)) continue;
+    FileMembers members{directory, entry.file, run, {}};
+    check_bytes(directory, entry);
+    const ShardFile shard(directory, entry.file);
+    for (std::uint32_t k = 0; k < shard.devices(); ++k) {
+      const std::uint32_t device = shard.head().first_device + k;
+      if (!is_selected(selection, device, shard.row(k))) continue;
+      members.positions.push_back(k);
+      devices.insert(device);
+    }
+    count += members.positions.size();
+    if (!members.positions.empty()) files.push_back(std::move(members));
+  }
+  RunSource source;
+  source.count = count;
+  source.set =
+      SetPart{std::filesystem::weakly_canonical(directory).filename().string(),
+              sha256_of_set_file(directory, kManifestName),
+              devices.size(),
+              files.size(),
+              manifest.head->campaign_sha256,
+              manifest.head->seed,
+              selection.runs.empty() ? runs : selection.runs,
+              {devices.begin(), devices.end()}};
+  source.each = [files = std::move(files)](const RunSource::Visitor& visit) {
+    for (const FileMembers& members : files) visit_file(members, visit);
+  };
+  return source;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "compensation/inputs/features.h"
+#include "compensation/inputs/input.h"
+#include "compensation/models/lookup_table.h"
+#include "compensation/rows/row_options.h"
+#include "compensation/rows/run_source.h"
+
+namespace beamgyro {
+
+/// Means over blocks of samples, to which models are fitted.
+struct TrainingRows {
+  Eigen::ArrayXXd inputs;      // one row per block, one column per input
+  Eigen::ArrayXd temperature;  // [degC], measured
+  Eigen::ArrayXd bias;         // [deg/s], measured rate - known true rate
+  TemperatureRange range;      // [degC], of the samples that were averaged
+  // Run, cycle and so on that each block belongs to, numbered from 0 through
+  // all runs.
+  Eigen::ArrayXd time;   // [s], mean
+  Eigen::ArrayXi run;    // recording
+  Eigen::ArrayXi cycle;  // time from a power-on to the next loss of power
+  Eigen::ArrayXi leg;    // part of a cycle between reversals of temperature
+  double output_per_rate = 0.0;  // [V/(deg/s)]; 0 without an output that varies
+  double true_rate_span = 0.0;   // [deg/s], of the samples that were averaged
+  // Whether the mean measured temperature lies beyond the value that it was
+  // clamped to.
+  Eigen::Array<bool, Eigen::Dynamic, 1> outside;
+  Eigen::ArrayXi device;  // whose run it was
+
+  Eigen::Index size() const { return bias.size(); }
+};
+
+/// A reversal of the temperature by this much begins another leg.
+constexpr double kLegReversal = 2.0;  // [K]
+
+/// Makes the rows of all runs, which are visited once. Inputs are computed at
+/// the sample rate of the recording. They and the label, rate - true_rate, are
+/// then averaged over consecutive blocks of `options.seconds` (0: every sample
+/// is a block), counted from each power-on.
+/// - Samples without power, saturated or with a loop not locked are left out.
+/// - Blocks with less than half the samples of the fullest block of their run
+///   are left out, and with steady_K_per_min also blocks over which the
+///   measured temperature changes faster (slope of a straight line).
+/// - Temperatures are clamped to `range` as at run time.
+/// - With `scale_factor`, s of the measured temperature, the label is rate - s
+///   true_rate.
+/// Throws std::invalid_argument naming the run when it lacks an input or
+/// true_rate, has a sample that is not finite or no usable sample; also when no
+/// row is left.
+TrainingRows training_rows(const RunSource& runs,
+                           const std::vector<Input>& inputs,
+                           const RowOptions& options,
+                           const TemperatureRange& range = {},
+                           const LookupTable* scale_factor = nullptr);
+TrainingRows training_rows(const std::vector<TrainingRun>& runs,
+                           const std::vector<Input>& inputs,
+                           const RowOptions& options,
+                           const TemperatureRange& range = {},
+                           const LookupTable* scale_factor = nullptr);
+
+/// Returns the rows for which `keep` is true. The range stays.
+TrainingRows selected(const TrainingRows& rows,
+                      const Eigen::Array<bool, Eigen::Dynamic, 1>& keep);
+
+/// Returns the rows with the columns of the inputs `wanted`, which are some of
+/// `all`, in that order.
+TrainingRows with_columns(const TrainingRows& rows,
+                          const std::vector<Input>& all,
+                          const std::vector<Input>& wanted);
+
+}  // namespace beamgyro

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "dataset/recording/recording.h"
+
+namespace beamgyro {
+
+constexpr std::size_t kLeastRatesOfTable = 5;
+
+/// Linearity of a rate table: the mean answers V_i at the held rates Omega_i of
+/// one temperature plateau, compared with their least-squares line V_0 + K
+/// Omega.
+struct Linearity {
+  double nonlinearity = 0.0;  // [ppm], max |V_i - line| / (K max |Omega_i|)
+  double asymmetry = 0.0;     // [ppm], 2 (K+ - K-) / (K+ + K-), of the lines
+                              // through the rates >= 0 and <= 0
+  std::size_t rates = 0;      // different held rates of that plateau
+};
+
+/// Returns the plateau of worst nonlinearity among those with
+/// kLeastRatesOfTable held rates or more, two of them on each side of zero, or
+/// nothing when there is none. A rate counts from kSettlingTime after it was
+/// set; saturated samples are left out. Drift along the plateau counts as
+/// nonlinearity. Throws std::invalid_argument naming a column that is missing,
+/// or when `rate` has not one entry per time.
+std::optional<Linearity> linearity(const Recording& recording,
+                                   std::span<const double> rate);
+
+}  // namespace beamgyro

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dataset/recording/recording.h"
+
+namespace beamgyro {
+
+/// A function that returns the compensated rate [deg/s] of every sample.
+using RateEstimator = std::function<std::vector<double>(const Recording&)>;
+
+constexpr double kFullScale = 150.0;  // [deg/s], of a gyro that tells none
+
+/// Returns the largest rate [deg/s] that the gyro measures:
+/// readout.full_scale_deg_per_s of the device file and overrides of the
+/// recording, or nothing without such a file.
+std::optional<double> stated_full_scale(const Recording& recording);
+
+/// Returns the rate [deg/s] that is injected over hold j = 0, 1, ... of a
+/// replay,
+///
+///   (-1)^j `largest` 10^(-4 frac(j (sqrt(5) - 1)/2)):
+///
+/// of both signs, from `largest` down to a ten-thousandth of it, evenly spread
+/// over the logarithm.
+double held_rate(std::size_t hold, double largest);
+
+/// Returns what would have been measured with the rates `injected` [deg/s], one
+/// for each time: `rate` + Omega and `output` + S Omega. S [V/(deg/s)] and the
+/// offset are recovered from the two columns. Returns nothing when there is an
+/// `output` whose S cannot be recovered, because the rate never changed. Throws
+/// std::invalid_argument when `rate` is missing or not a straight line in
+/// `output`.
+std::optional<Recording> with_injected_rate(const Recording& recording,
+                                            std::span<const double> injected);
+
+/// A block of a replay, one second or less, over which the injected rate was
+/// constant.
+struct ReplayedBlock {
+  double time;         // [s], of the first sample
+  double temperature;  // [degC], measured; NaN in a recording without
+  double rate;         // [deg/s], injected
+  double retained;     // [-], share of it in the answers
+};
+
+/// Replays a run twice, with rates held for 4 s and with rates held for 600 s
+/// (or for a quarter of a run that is shorter than four of those). Returns for
+/// each block the difference between the answers with and without the injected
+/// rate, divided by the rate. Drift and noise are the same in both and cancel,
+/// so the result is 1 to rounding for a compensator that uses neither `output`
+/// nor `rate`.
+/// - `answers` are those of the estimator to the recording.
+/// - Left out are samples without power, within kSettlingTime after a step, and
+///   with a total true rate beyond `full_scale` [deg/s].
+/// - Saturation and the limits of the converter are not replayed.
+/// Returns nothing where with_injected_rate() returns nothing.
+std::optional<std::vector<ReplayedBlock>> replay(
+    const RateEstimator& estimator, const Recording& recording,
+    std::span<const double> answers, double full_scale);
+
+/// Returns whether `a` is worse than `b`. The worst is NaN; then blocks that
+/// cancel the rate (retained below kCancelledBelow), the least first; then
+/// those that are farther from 1.
+bool is_worse(const ReplayedBlock& a, const ReplayedBlock& b);
+
+/// The worst blocks of replays, for small and for larger injected rates, which
+/// have different tolerances (ScaleFactorTolerance).
+struct WorstBlocks {
+  std::optional<ReplayedBlock> small;  // within kSmallRate
+  std::optional<ReplayedBlock> large;  // beyond
+
+  void add(const ReplayedBlock& block);
+  void add(const WorstBlocks& other);
+  std::optional<ReplayedBlock> worse() const;  // of the two
+};
+
+/// Returns the scale factor retained in the worst block of a replay, or nothing
+/// where replay() returns nothing or no block.
+std::optional<double> injected_scale_factor(const RateEstimator& estimator,
+                                            const Recording& recording,
+                                            double full_scale = kFullScale);
+
+}  // namespace beamgyro

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dataset/recording/recording.h"
+
+namespace beamgyro {
+
+constexpr double kSmallRate = 2.0;           // [deg/s]
+constexpr double kLeastRateDeparture = 0.1;  // [deg/s]
+constexpr double kTableRate = 5.0;           // [deg/s], of a rate table
+constexpr double kCancelledBelow = 0.5;      // [-], scale factor retained
+constexpr double kSettlingTime = 1.0;        // [s]
+constexpr double kEveryRate = std::numeric_limits<double>::infinity();
+
+/// |scale factor - 1| allowed.
+struct ScaleFactorTolerance {
+  double every_rate = 1e-3;   // [-]
+  double small_rates = 1e-2;  // [-], within kSmallRate
+
+  double at(double rate) const {  // [deg/s]
+    return std::abs(rate) <= kSmallRate ? small_rates : every_rate;
+  }
+};
+
+/// Sums for slopes over the true rate Omega, of one run or, by addition, of
+/// many. Within each temperature plateau, w is the rate without its part along
+/// the measured temperature, and v without temperature and drift
+/// (without_temperature(), without_drift()). Then Σ w y / Σ w Omega is the
+/// slope of y over Omega with a separate bias and temperature slope for every
+/// plateau. Σ v y / Σ v Omega also allows for a smooth drift. So neither a
+/// drift nor its compensation is mistaken for scale factor.
+struct SlopeSums {
+  double compensated = 0.0;                // [(deg/s)^2], Σ w compensated_rate
+  double raw = 0.0;                        // [(deg/s)^2], Σ w rate
+  double truth = 0.0;                      // [(deg/s)^2], Σ w Omega
+  double compensated_without_drift = 0.0;  // [(deg/s)^2], Σ v compensated_rate
+  double raw_without_drift = 0.0;          // [(deg/s)^2], Σ v rate
+  double truth_without_drift = 0.0;        // [(deg/s)^2], Σ v Omega
+  double largest_departure = 0.0;          // [deg/s], max |w|
+  std::size_t samples = 0;
+
+  SlopeSums& operator+=(const SlopeSums& other);
+};
+
+/// Sums over powered, unsaturated samples with |true_rate| <= `largest_rate`
+/// for at least kSettlingTime, because the output filter still contains an
+/// earlier larger rate. Throws std::invalid_argument naming a column that is
+/// missing, or when `compensated` has not one entry per time.
+SlopeSums slope_sums(const Recording& recording,
+                     std::span<const double> compensated,
+                     double largest_rate = kEveryRate);
+
+/// Slopes on one temperature plateau.
+struct PlateauSlope {
+  double temperature;  // [degC], mean
+  double raw;          // [(deg/s)^2], Σ v rate
+  double truth;        // [(deg/s)^2], Σ v Omega
+  double compensated;  // [(deg/s)^2], Σ v compensated_rate
+};
+
+/// Returns the slopes of every plateau whose true rate departs by
+/// `least_departure` [deg/s]. Samples within kSettlingTime after a larger step
+/// of the rate are left out, because the output lags behind, unless no sample
+/// would remain. An empty `compensated` means the rate itself.
+std::vector<PlateauSlope> plateau_slopes(
+    const Recording& recording, double least_departure,
+    std::span<const double> compensated = {});
+
+struct ScaleFactor {
+  double retained;   // [-], Σ v compensated_rate / Σ v rate
+  double slope;      // [-], of compensated_rate over true_rate, absolute
+  double raw_slope;  // [-], of rate over true_rate
+  double largest_departure;  // [deg/s], of the true rate: SlopeSums
+};
+
+/// Returns nothing when the true rate nowhere departs by kLeastRateDeparture,
+/// because a slope over a constant rate is noise.
+std::optional<ScaleFactor> scale_factor(const SlopeSums& sums);
+
+}  // namespace beamgyro

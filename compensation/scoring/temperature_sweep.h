@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "compensation/compensator/compensator.h"
+#include "compensation/scoring/rate_injection.h"
+#include "dataset/recording/recording.h"
+
+namespace beamgyro {
+
+constexpr double kSweepStep = 0.02;  // [K]
+
+/// Makes a recording of a gyro like that of `recording` at rest, with one
+/// sample a second while the temperature rises through `range` (within -100 and
+/// 200 degC) in steps of kSweepStep. Every other measured column has its mean,
+/// the rate to 0.01 deg/s, and the output belongs to that rate.
+Recording temperature_sweep(const Recording& recording,
+                            const TemperatureRange& range);
+
+/// Returns the worst blocks of a replay of that sweep with rates up to
+/// `full_scale` [deg/s]. It tests temperatures between those of the recorded
+/// samples. The scale-factor table is left out. Returns nothing for a
+/// compensator whose inputs do not see the rate, and where replay() returns
+/// nothing.
+WorstBlocks worst_over_temperature(const Compensator& compensator,
+                                   const Recording& recording,
+                                   double full_scale);
+
+}  // namespace beamgyro

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/training/cautions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "compensation/methods/fit.h"
+
+namespace beamgyro {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+
+constexpr double kAtRest = 1.0;  // [deg/s], span of the true rate
+constexpr const char* kFeelsTheRate = "feels the rate and training was at rest";
+
+std::string span_caution(const TrainingRows& rows) {
+  const double span = rows.range.highest - rows.range.lowest;
+  if (span >= kLeastSpan) return "";
+  return fmt::format(
+      "the temperature spans {:.1f} K in training, less than {:g} K: what is "
+      "fitted holds from {:.1f} to {:.1f} degC only",
+      span, kLeastSpan, rows.range.lowest, rows.range.highest);
+}
+
+std::string gap_caution(const FittedCase& fitted) {
+  if (fitted.knows_between) return "";
+  const TrainingRows& rows = fitted.rows;
+  std::vector<double> sorted(rows.temperature.begin(), rows.temperature.end());
+  std::sort(sorted.begin(), sorted.end());
+  double widest = 0.0, from = 0.0;
+  for (std::size_t k = 1; k < sorted.size(); ++k)
+    if (sorted[k] - sorted[k - 1] > widest) {
+      widest = sorted[k] - sorted[k - 1];
+      from = sorted[k - 1];
+    }
+  if (widest <= kWidestGap) return "";
+  return fmt::format(
+      "no training row lies between {:.1f} and {:.1f} degC: the bias there is "
+      "a guess",
+      from, from + widest);
+}
+
+// The bias follows the cubic's slope, rms over the rows [deg/s/K].
+double bias_slope(const FittedCase& fitted) {
+  constexpr double kStep = 0.1;  // [K]
+  const ArrayXd& T = fitted.rows.temperature;
+  return std::sqrt((fitted.baseline.predict(T + kStep) -
+                    fitted.baseline.predict(T - kStep))
+                       .square()
+                       .mean()) /
+         (2.0 * kStep);
+}
+
+std::string resolution_caution(const FittedCase& fitted) {
+  const double error =
+      bias_slope(fitted) * fitted.temperature_resolution / std::sqrt(12.0);
+  const double residual = rms_residual(fitted.model, fitted.rows);
+  if (!(error > 0.5 * residual)) return "";
+  return fmt::format(
+      "the temperature comes in steps of {:.3g} K, which alone make {:.3g} "
+      "deg/s rms of the in-sample residual of {:.3g} deg/s",
+      fitted.temperature_resolution, error, residual);
+}
+
+std::string extrapolation_caution(const FittedCase& fitted) {
+  const TrainingRows& held_out = fitted.held_out;
+  if (held_out.size() == 0) return "";
+  const TemperatureRange& range = fitted.rows.range;
+  const auto outside = held_out.outside.count();
+  if (outside == 0) return "";
+  return fmt::format(
+      "{} of {} held-out rows lie outside {:.1f} to {:.1f} degC, the "
+      "temperatures seen in training; clamped",
+      outside, held_out.size(), range.lowest, range.highest);
+}
+
+bool tells_directions_apart(const std::vector<Input>& inputs) {
+  return std::any_of(inputs.begin(), inputs.end(), [](const Input& input) {
+    return input.kind != InputKind::kColumn || input.column != "temperature";
+  });
+}
+
+std::string hysteresis_caution(const FittedCase& fitted) {
+  if (tells_directions_apart(fitted.inputs)) return "";
+  const ArrayXd residual =
+      fitted.rows.bias - fitted.model.predict(fitted.rows.inputs);
+  const auto found = hysteresis(fitted.rows, residual);
+  const double rms = std::sqrt(residual.square().mean());
+  if (!found || found->difference <= rms ||
+      found->difference <= kSignificance * found->standard_error)
+    return "";
+  return fmt::format(
+      "rising and falling temperature differ by up to {:.3g} deg/s, more than "
+      "the residual of {:.3g} deg/s: inputs such as temperature_lowpass(100) "
+      "tell them apart",
+      found->difference, rms);
+}
+
+std::string rate_caution(const FittedCase& fitted) {
+  const auto input =
+      std::find_if(fitted.inputs.begin(), fitted.inputs.end(), sees_the_rate);
+  if (input == fitted.inputs.end() || fitted.rows.true_rate_span > kAtRest)
+    return "";
+  return fmt::format(
+      "the input \"{}\" {}: nothing keeps the model from cancelling the rate; "
+      "validate on runs with rate",
+      input_name(*input), kFeelsTheRate);
+}
+
+}  // namespace
+
+std::vector<std::string> cautions(const FittedCase& fitted) {
+  std::vector<std::string> found;
+  for (std::string& text :
+       std::vector{span_caution(fitted.rows), gap_caution(fitted),
+                   resolution_caution(fitted), extrapolation_caution(fitted),
+                   hysteresis_caution(fitted), rate_caution(fitted)})
+    if (!text.empty()) found.push_back(std::move(text));
+  return found;
+}
+
+bool warned_of_rate(const std::vector<std::string>& warnings) {
+  return std::ranges::any_of(warnings, [](const std::string& warning) {
+    return warning.find(kFeelsTheRate) != std::string::npos;
+  });
+}
+
+double temperature_resolution(const Recording& recording) {
+  const Column* column = find_column(recording, "temperature");
+  if (column == nullptr) return 0.0;
+  double smallest = HUGE_VAL;
+  for (std::size_t k = 1; k < column->values.size(); ++k) {
+    const double step = std::abs(column->values[k] - column->values[k - 1]);
+    if (step > 1e-9 && step < smallest) smallest = step;
+  }
+  return std::isfinite(smallest) ? smallest : 0.0;
+}
+
+namespace {
+
+// Which way the temperature went over the leg of each row: +1, -1, or 0 where
+// it did not move by kLegReversal.
+std::vector<int> directions(const TrainingRows& rows) {
+  std::vector<int> direction(static_cast<std::size_t>(rows.size()), 0);
+  for (Index begin = 0; begin < rows.size();) {
+    Index end = begin;
+    while (end < rows.size() && rows.leg(end) == rows.leg(begin)) ++end;
+    const double change = rows.temperature(end - 1) - rows.temperature(begin);
+    if (std::abs(change) >= kLegReversal)
+      std::fill(direction.begin() + begin, direction.begin() + end,
+                change > 0.0 ? 1 : -1);
+    begin = end;
+  }
+  return direction;
+}
+
+struct Cell {
+  double sum = 0.0, squares = 0.0, count = 0.0;
+
+  double mean() const { return sum / count; }
+  double scatter() const { return squares - sum * sum / count; }
+};
+
+}  // namespace
+
+std::optional<Hysteresis> hysteresis(const TrainingRows& rows,
+                                     const ArrayXd& residual) {
+  std::map<double, Cell> falling, rising;
+  const std::vector<int> direction = directions(rows);
+  for (Index k = 0; k < rows.size(); ++k) {
+    const int way = direction[static_cast<std::size_t>(k)];
+    if (way == 0) continue;
+    Cell& cell =
+        (way > 0 ? rising
+                 : falling)[std::floor(rows.temperature(k) / kHysteresisBin)];
+    cell.sum += residual(k);
+    cell.squares += residual(k) * residual(k);
+    cell.count += 1.0;
+  }
+  double scatter = 0.0, freedom = 0.0;
+  for (const auto* cells : {&falling, &rising})
+    for (const auto& [bin, cell] : *cells) {
+      scatter += std::max(cell.scatter(), 0.0);
+      freedom += cell.count - 1.0;
+    }
+  const double variance =
+      freedom > 0.0 ? scatter / freedom : residual.square().mean();
+  std::optional<Hysteresis> largest;
+  for (const auto& [bin, up] : rising) {
+    const auto down = falling.find(bin);
+    if (down == falling.end()) continue;
+    const double difference = std::abs(up.mean() - down->second.mean());
+    if (!largest || difference > largest->difference)
+      largest = {difference, std::sqrt(variance * (1.0 / up.count +
+                                                   1.0 / down->second.count))};
+  }
+  return largest;
+}
+
+std::string objection_to_claim(const std::optional<GroupErrors>& model,
+                               const std::optional<GroupErrors>& constant,
+                               double weight) {
+  if (!model || !constant)
+    return "no held-out data: every score here is in-sample and claims nothing";
+  const GroupErrors gain = *constant - *model;
+  const double rms = rms_of(*model), plain = rms_of(*constant);
+  const std::string figures = fmt::format(
+      "no improvement to claim: {:.4g} deg/s rms on unseen data, a constant "
+      "{:.4g}",
+      rms, plain);
+  if (gain.size() < kLeastGroups)
+    return fmt::format("{}; fewer than {} groups are no evidence", figures,
+                       kLeastGroups);
+  if (rms > (1.0 - kUsefulGain) * plain)
+    return fmt::format("{}; a useful gain is {:g} %", figures,
+                       100.0 * kUsefulGain);
+  const double error = standard_error(gain);
+  if (gain.mean() > error && weight < 1.0)
+    return fmt::format(
+        "{}; the groups disagree, which lowers the weight of the model beside "
+        "a constant to {:.2f}",
+        figures, weight);
+  if (gain.mean() > error) return "";
+  return fmt::format("{}; the standard error of the difference is {:.2g} deg/s",
+                     figures, error / (rms + plain));
+}
+
+}  // namespace beamgyro

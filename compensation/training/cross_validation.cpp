@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/training/cross_validation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "parallel/work_queue.h"
+
+namespace beamgyro {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+using Mask = Eigen::Array<bool, Eigen::Dynamic, 1>;
+
+TrainingRows clamped(TrainingRows rows, const std::vector<Input>& inputs,
+                     const TemperatureRange& range) {
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    if (inputs[i].column == "temperature" &&
+        inputs[i].kind != InputKind::kTemperatureRate) {
+      auto column = rows.inputs.col(static_cast<Index>(i));
+      column = column.max(range.lowest).min(range.highest).eval();
+    }
+  rows.temperature =
+      rows.temperature.max(range.lowest).min(range.highest).eval();
+  return rows;
+}
+
+// Rows between the temperatures of the other groups; all rows of a group that
+// has none.
+Mask covered_by_others(const TrainingRows& rows, const RowGroups& groups) {
+  Mask covered = Mask::Constant(rows.size(), false);
+  for (int group = 0; group < groups.count; ++group) {
+    const Mask own = groups.of_row == group;
+    const double infinity = std::numeric_limits<double>::infinity();
+    const double lowest = own.select(infinity, rows.temperature).minCoeff();
+    const double highest = own.select(-infinity, rows.temperature).maxCoeff();
+    const Mask between =
+        own && rows.temperature >= lowest && rows.temperature <= highest;
+    covered = own.select(between.any() ? between : own, covered);
+  }
+  return covered;
+}
+
+struct Fold {
+  TrainingRows rows, unseen;
+};
+
+Fold fold_without(int group, const TrainingRows& rows,
+                  const RowGroups& groups) {
+  Fold fold;
+  fold.rows = selected(rows, groups.of_row != group);
+  fold.rows.range = {fold.rows.temperature.minCoeff(),
+                     fold.rows.temperature.maxCoeff()};
+  fold.unseen = selected(rows, groups.of_row == group);
+  return fold;
+}
+
+FitSpec as_in_fold(FitSpec kind, int cores) {
+  if (auto* bp = std::get_if<BpSpec>(&kind)) {
+    bp->training.restarts = std::min(bp->training.restarts, kFoldRestarts);
+    bp->training.cores = cores;
+  }
+  return kind;
+}
+
+}  // namespace
+
+double rms_of(const GroupErrors& errors) { return std::sqrt(errors.mean()); }
+
+double standard_error(const GroupErrors& errors) {
+  if (errors.size() < 2) return std::numeric_limits<double>::infinity();
+  const auto count = static_cast<double>(errors.size());
+  return std::sqrt((errors - errors.mean()).square().sum() / (count - 1.0) /
+                   count);
+}
+
+Predictions predict_all(const BiasModel& model, const TrainingRows& rows) {
+  return {model.predict(rows.inputs), Mask::Constant(rows.size(), true)};
+}
+
+GroupErrors group_errors(const Predictions& predictions, const ArrayXd& bias,
+                         const RowGroups& groups) {
+  const ArrayXd square = (bias - predictions.bias).square();
+  GroupErrors sum = GroupErrors::Zero(groups.count), count = sum;
+  for (Index k = 0; k < bias.size(); ++k) {
+    if (!predictions.scored(k)) continue;
+    sum(groups.of_row(k)) += square(k);
+    count(groups.of_row(k)) += 1.0;
+  }
+  return sum / count;
+}
+
+Predictions predict_unseen(const FitSpec& kind,
+                           const std::vector<Input>& inputs,
+                           const TrainingRows& rows, const RowGroups& groups,
+                           std::uint64_t seed, int threads) {
+  if (groups.count < 2)
+    throw std::invalid_argument(fmt::format(
+        "cross-validation by {} needs two or more; the recordings have {}",
+        grouping_name(groups.by), groups.count));
+  std::vector<ArrayXd> of_group(static_cast<std::size_t>(groups.count));
+  const auto folds = static_cast<std::size_t>(groups.count);
+  const std::size_t cores =
+      thread_count(static_cast<unsigned>(std::max(threads, 0)));
+  const std::size_t at_once = std::min(cores, folds);
+  const FitSpec cheap = as_in_fold(kind, static_cast<int>(cores / at_once));
+  for_each_task(folds, at_once, [&](std::size_t k, std::size_t) {
+    const auto group = static_cast<int>(k);
+    try {
+      const Fold fold = fold_without(group, rows, groups);
+      const Fit fit = fit_model(cheap, inputs, fold.rows, {}, seed);
+      of_group[static_cast<std::size_t>(group)] = fit.model.predict(
+          clamped(fold.unseen, inputs, fold.rows.range).inputs);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("without {} {}: {}",
+                                              grouping_name(groups.by),
+                                              group + 1, error.what()));
+    }
+  });
+  Predictions predictions{ArrayXd(rows.size()),
+                          covered_by_others(rows, groups)};
+  std::vector<Index> next(of_group.size(), 0);
+  for (Index k = 0; k < rows.size(); ++k) {
+    const auto group = static_cast<std::size_t>(groups.of_row(k));
+    predictions.bias(k) = of_group[group](next[group]++);
+  }
+  return predictions;
+}
+
+GroupErrors cross_validate(const FitSpec& kind,
+                           const std::vector<Input>& inputs,
+                           const TrainingRows& rows, const RowGroups& groups,
+                           std::uint64_t seed, int threads) {
+  return group_errors(predict_unseen(kind, inputs, rows, groups, seed, threads),
+                      rows.bias, groups);
+}
+
+Predictions averaged(const Predictions& constant, const Predictions& model,
+                     double weight) {
+  return {(1.0 - weight) * constant.bias + weight * model.bias, model.scored};
+}
+
+// With q the mean square of model - constant in a group and a the mean product
+// of that with what the constant leaves, the errors are e(0) - 2 w a + w^2 q.
+// Their mean is least at w = sum a / sum q, a ratio of means over the groups,
+// whose variance is n/(n - 1) sum (a - w q)^2 / (sum q)^2.
+StackingWeight stacking_weight(const Predictions& constant,
+                               const Predictions& model, const ArrayXd& bias,
+                               const RowGroups& groups) {
+  const GroupErrors q = group_errors(model, constant.bias, groups);
+  const GroupErrors a = 0.5 * (group_errors(constant, bias, groups) + q -
+                               group_errors(model, bias, groups));
+  if (!(q.sum() > 0.0)) return {0.0, 0.0};
+  const double weight = std::clamp(a.sum() / q.sum(), 0.0, 1.0);
+  const auto count = static_cast<double>(groups.count);
+  return {weight,
+          std::sqrt(count / (count - 1.0) * (a - weight * q).square().sum()) /
+              q.sum()};
+}
+
+std::size_t choose(const std::vector<Scored>& models) {
+  const auto rms = [](const Scored& model) { return rms_of(model.errors); };
+  const auto best = std::ranges::min_element(models, {}, rms);
+  const double limit = (1.0 + kAllowedExcess) * rms(*best);
+  const auto chosen = std::ranges::find_if(
+      models, [&](const Scored& model) { return rms(model) <= limit; });
+  return static_cast<std::size_t>(std::min(chosen, best) - models.begin());
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "compensation/methods/fit.h"
+#include "compensation/rows/row_groups.h"
+
+namespace beamgyro {
+
+/// Mean square residual [(deg/s)^2] of each group.
+using GroupErrors = Eigen::ArrayXd;
+
+double rms_of(const GroupErrors& errors);  // root of their mean [deg/s]
+/// Returns the standard error of the mean [(deg/s)^2], infinite with fewer than
+/// two groups.
+double standard_error(const GroupErrors& errors);
+
+/// Predicted bias [deg/s] of each row, by a model that has not seen the row.
+struct Predictions {
+  Eigen::ArrayXd bias;
+  Eigen::Array<bool, Eigen::Dynamic, 1> scored;  // rows that count
+};
+
+Predictions predict_all(const BiasModel& model, const TrainingRows& rows);
+
+/// Returns the mean square of `bias` less the prediction, over the scored rows
+/// of each group.
+GroupErrors group_errors(const Predictions& predictions,
+                         const Eigen::ArrayXd& bias, const RowGroups& groups);
+
+/// Largest number of restarts of a network in a fold; the model that is kept
+/// may have more.
+constexpr int kFoldRestarts = 2;
+
+/// Predicts each group by a fit to all others, with temperatures clamped to
+/// those of the others.
+/// - Rows beyond the temperatures of the others are not scored if the group has
+///   any rows within them, because the fit to all groups has no need to
+///   extrapolate either.
+/// - A network starts from kFoldRestarts sets of weights at most and runs to
+///   its end. Stopping early on one of the groups would stop it by the slow
+///   noise of that group.
+/// - Folds run on `threads` threads, 0 for one per core. Results do not depend
+///   on it.
+/// Throws std::invalid_argument for fewer than two groups and as fit_model(),
+/// with the first group that cannot be held out.
+Predictions predict_unseen(const FitSpec& kind,
+                           const std::vector<Input>& inputs,
+                           const TrainingRows& rows, const RowGroups& groups,
+                           std::uint64_t seed, int threads = 0);
+
+/// Returns group_errors() of predict_unseen().
+GroupErrors cross_validate(const FitSpec& kind,
+                           const std::vector<Input>& inputs,
+                           const TrainingRows& rows, const RowGroups& groups,
+                           std::uint64_t seed, int threads = 0);
+
+/// Returns the predictions (1 - weight) constant + weight model of the same
+/// rows.
+Predictions averaged(const Predictions& constant, const Predictions& model,
+                     double weight);
+
+struct StackingWeight {
+  double value;           // [-], 0 to 1
+  double standard_error;  // [-], from the groups' scatter
+};
+
+/// Returns the weight of `model` in averaged(), from 0 to 1, that gives the
+/// least mean of the groups' mean square residuals. It is near 1 where every
+/// group supports the model, smaller where groups disagree, and 0 where they
+/// contradict it.
+StackingWeight stacking_weight(const Predictions& constant,
+                               const Predictions& model,
+                               const Eigen::ArrayXd& bias,
+                               const RowGroups& groups);
+
+/// One model among several and its residuals on unseen groups.
+struct Scored {
+  std::string name;
+  GroupErrors errors;
+};
+
+/// Fewer groups than this are no evidence.
+constexpr int kLeastGroups = 3;
+
+/// Smallest share of the rms of a constant that a model must take away.
+constexpr double kUsefulGain = 0.1;  // [-]
+
+/// Largest relative excess of rms that a simpler model may have.
+constexpr double kAllowedExcess = 0.02;  // [-]
+
+/// Returns the index of the first model whose rms residual exceeds the least
+/// one by no more than kAllowedExcess. Models are in order, simplest first.
+std::size_t choose(const std::vector<Scored>& models);
+
+}  // namespace beamgyro

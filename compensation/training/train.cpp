@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/training/train.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "compensation/compensator/training_use.h"
+#include "compensation/methods/method_name.h"
+#include "compensation/training/cautions.h"
+#include "compensation/training/scale_factor_table.h"
+#include "compensation/training/selection.h"
+
+namespace beamgyro {
+namespace {
+
+using Eigen::ArrayXd;
+
+bool has_network(const ModelSpec& spec) {
+  return spec.candidates.empty() && std::holds_alternative<BpSpec>(spec.kind);
+}
+
+void check_runs(const ModelSpec& spec, const RunSource& runs,
+                const RunSource& held_out,
+                const std::optional<Grouping>& cross_validation) {
+  if (runs.count == 0)
+    throw std::invalid_argument("training needs at least one recording");
+  if (has_network(spec) && held_out.count == 0 && !cross_validation)
+    throw std::invalid_argument(
+        "a bp network needs held-out recordings to stop early on: pass "
+        "--held-out RUN.h5, or --cv run|cycle|leg");
+}
+
+// What is kept of the runs besides their rows.
+struct RunFacts {
+  std::vector<SourceFile> files;
+  double coarsest_resolution = 0.0;  // [K], of the temperature
+};
+
+// The same runs, noted as they pass.
+RunSource noting(const RunSource& runs, RunFacts& facts) {
+  return {runs.count, [&](const RunSource::Visitor& visit) {
+            runs.each([&](const TrainingRun& run) {
+              if (!run.sha256.empty())
+                facts.files.push_back(
+                    {run.name, run.sha256, measured_sha256(run.recording)});
+              facts.coarsest_resolution =
+                  std::max(facts.coarsest_resolution,
+                           temperature_resolution(run.recording));
+              visit(run);
+            });
+          }};
+}
+
+void check_held_out(const std::vector<SourceFile>& held_out,
+                    const std::vector<SourceFile>& training) {
+  for (const SourceFile& run : held_out)
+    for (const SourceFile& other : training)
+      if (run.sha256 == other.sha256 ||
+          run.measured_sha256 == other.measured_sha256)
+        throw std::invalid_argument(
+            fmt::format("{} is held out but equals {}, which is trained on; a "
+                        "held-out recording must be another run",
+                        run.name, other.name));
+}
+
+// How the rows are cross-validated, if they are.
+std::optional<RowGroups> groups_of(const ModelSpec& spec,
+                                   const TrainingRows& rows,
+                                   const TrainingRows& held_out,
+                                   const std::optional<Grouping>& wanted) {
+  if (wanted) {
+    RowGroups groups = group_rows(rows, *wanted);
+    if (groups.count < 2)
+      throw std::invalid_argument(fmt::format(
+          "cross-validation by {0} needs two {0}s or more; the recordings "
+          "have {1}",
+          grouping_name(*wanted), groups.count));
+    return groups;
+  }
+  if (spec.candidates.empty() || held_out.size() > 0) return std::nullopt;
+  return folds_of(rows, kLeastGroups);
+}
+
+double rms_about(double value, const ArrayXd& bias) {
+  return std::sqrt((bias - value).square().mean());
+}
+
+// Temperatures a model answers for whatever the rows hold.
+TemperatureRange known_range(const FitSpec& kind) {
+  const auto* adapted = std::get_if<AdaptedSpec>(&kind);
+  return adapted != nullptr ? adapted->population.range() : TemperatureRange{};
+}
+
+// A population's channels help to fit; the curve that comes out needs none.
+void leave_out_channels(const FitSpec& kind, Compensator& c) {
+  if (!std::holds_alternative<PopulationSpec>(kind) &&
+      !std::holds_alternative<AdaptedSpec>(kind))
+    return;
+  c.inputs.resize(1);
+  c.bias.input_scales.resize(1);
+}
+
+// Rms residuals of the model, the cubic and a constant.
+void write_scores(const BiasModel& model, const BiasModel& baseline,
+                  const TrainingRows& rows, const TrainingRows& held_out,
+                  Provenance& p) {
+  const auto cubic = [&](const TrainingRows& any) {
+    return std::sqrt(
+        (any.bias - baseline.predict(any.temperature)).square().mean());
+  };
+  p.in_sample_rms = rms_residual(model, rows);
+  p.baseline_in_sample_rms = cubic(rows);
+  p.constant_in_sample_rms = rms_about(rows.bias.mean(), rows.bias);
+  if (held_out.size() == 0) return;
+  p.held_out_rms = rms_residual(model, held_out);
+  p.baseline_held_out_rms = cubic(held_out);
+  p.constant_held_out_rms = rms_about(rows.bias.mean(), held_out.bias);
+}
+
+CrossValidated summary_of(const RowGroups& groups, const Selected& selected) {
+  const double rms = rms_of(*selected.errors);
+  const auto roots = [](const GroupErrors& errors) {
+    const GroupErrors root = errors.sqrt();
+    return std::vector<double>(root.begin(), root.end());
+  };
+  return {grouping_name(groups.by),
+          static_cast<std::size_t>(groups.count),
+          rms,
+          rms > 0.0 ? standard_error(*selected.errors) / (2.0 * rms) : 0.0,
+          rms_of(*selected.constant_errors),
+          roots(*selected.errors),
+          roots(*selected.constant_errors)};
+}
+
+bool claims_nothing(const FitSpec& kind) {
+  return std::holds_alternative<NoneSpec>(kind) ||
+         std::holds_alternative<ConstantSpec>(kind);
+}
+
+// Why the model claims no improvement over a constant; empty when it may.
+std::string why_no_claim(const ModelSpec& spec,
+                         const std::optional<RowGroups>& groups,
+                         const Selected& selected) {
+  if (claims_nothing(selected.candidate.kind))
+    return spec.candidates.empty()
+               ? ""
+               : fmt::format(
+                     "no improvement to claim: no candidate is worth "
+                     "more than \"{}\"",
+                     selected.candidate.name);
+  if (groups && groups->by == Grouping::kSegment)
+    return objection_to_claim({}, {});
+  return objection_to_claim(selected.errors, selected.constant_errors,
+                            selected.weight);
+}
+
+}  // namespace
+
+TrainResult train(const ModelSpec& spec, const RunSource& runs,
+                  const RunSource& held_out, std::uint64_t seed,
+                  std::optional<Grouping> cross_validation) {
+  check_runs(spec, runs, held_out, cross_validation);
+  TrainResult result;
+  Compensator& c = result.compensator;
+  if (spec.scale_factor_bin_K)
+    c.scale_factor = fit_scale_factor(runs, *spec.scale_factor_bin_K);
+  const LookupTable* scale_factor = c.scale_factor ? &*c.scale_factor : nullptr;
+  RunFacts facts, unseen_facts;
+  const TemperatureRange known = known_range(spec.kind);
+  TrainingRows rows = training_rows(noting(runs, facts), spec.inputs, spec.rows,
+                                    known, scale_factor);
+  if (known != TemperatureRange{}) rows.range = known;
+  TrainingRows unseen;
+  if (held_out.count > 0)
+    unseen = training_rows(noting(held_out, unseen_facts), spec.inputs,
+                           spec.rows, rows.range, scale_factor);
+  check_held_out(unseen_facts.files, facts.files);
+  result.rows = rows.size();
+  result.held_out_rows = unseen.size();
+
+  const auto groups = groups_of(spec, rows, unseen, cross_validation);
+  std::vector<Candidate> candidates = spec.candidates;
+  if (candidates.empty())
+    candidates.push_back({method_name(spec.kind), spec.inputs, spec.kind});
+  Selected selected =
+      select_model(candidates, {spec.inputs, rows, unseen, groups, seed});
+
+  c.inputs = selected.candidate.inputs;
+  c.bias = std::move(selected.fit.model);
+  leave_out_channels(selected.candidate.kind, c);
+  c.population = std::move(selected.fit.population);
+  c.temperature_range = c.population ? c.population->range() : rows.range;
+  c.baseline = fit_baseline(rows);
+  result.restarts = std::move(selected.fit.restarts);
+  result.chosen = selected.fit.chosen;
+
+  Provenance& p = c.provenance;
+  p.method = method_name(selected.candidate.kind);
+  if (selected.weight < 1.0)
+    p.method +=
+        fmt::format(" of weight {:.2f} beside a constant", selected.weight);
+  p.training = std::move(facts.files);
+  p.held_out = std::move(unseen_facts.files);
+  p.training_set = runs.set;
+  p.held_out_set = held_out.set;
+  p.model_text = spec.text;
+  p.seed = seed;
+  p.stop_reason = sentence(result.summary().stop_reason);
+  p.choices = std::move(selected.fit.choices);
+  const TrainingRows own = with_columns(rows, spec.inputs, c.inputs);
+  const TrainingRows own_unseen = with_columns(unseen, spec.inputs, c.inputs);
+  write_scores(c.bias, c.baseline, own, own_unseen, p);
+  if (groups) p.cross_validated = summary_of(*groups, selected);
+  p.warnings =
+      cautions({c.inputs, c.bias, c.baseline, own, own_unseen,
+                facts.coarsest_resolution, known != TemperatureRange{}});
+  const std::string objection = why_no_claim(spec, groups, selected);
+  if (!objection.empty()) p.warnings.push_back(objection);
+  return result;
+}
+
+TrainResult train(const ModelSpec& spec, const std::vector<TrainingRun>& runs,
+                  const std::vector<TrainingRun>& held_out, std::uint64_t seed,
+                  std::optional<Grouping> cross_validation) {
+  return train(spec, source_of(runs), source_of(held_out), seed,
+               cross_validation);
+}
+
+}  // namespace beamgyro

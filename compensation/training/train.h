@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "compensation/compensator/compensator.h"
+#include "compensation/network/network_training.h"
+#include "compensation/rows/row_groups.h"
+#include "compensation/rows/training_rows.h"
+#include "compensation/training/model_file.h"
+
+namespace beamgyro {
+
+struct TrainResult {
+  Compensator compensator;
+  std::vector<TrainSummary> restarts;  // one unless it is a network; [deg/s]
+  std::size_t chosen = 0;              // the restart kept
+  Eigen::Index rows = 0;
+  Eigen::Index held_out_rows = 0;
+
+  const TrainSummary& summary() const { return restarts[chosen]; }
+};
+
+/// Fits `spec` and the baseline, the cubic of equation (1), to the rows of
+/// `runs` (training_rows()). The runs are visited once, with a scale-factor
+/// table twice.
+/// - A network stops early on the rows of `held_out`; best_network() chooses
+///   among its restarts and weight decays.
+/// - With `cross_validation` every group of that kind is predicted by a fit to
+///   the others (cross_validate()). A network without held-out runs then takes
+///   its weight decay from there and runs all its epochs.
+/// - Of several candidates select_model() chooses one, or its average with a
+///   constant. It judges by cross-validation, or else by the groups of the
+///   held-out runs, or else by folds_of() the rows.
+///
+///
+/// Throws as training_rows(), and std::invalid_argument when
+/// - there is no run, or a run is both trained on and held out;
+/// - a network has neither held-out runs nor cross-validation;
+/// - the temperatures are too few or too close together, or an input never
+///   varies.
+TrainResult train(const ModelSpec& spec, const RunSource& runs,
+                  const RunSource& held_out, std::uint64_t seed,
+                  std::optional<Grouping> cross_validation = {});
+TrainResult train(const ModelSpec& spec, const std::vector<TrainingRun>& runs,
+                  const std::vector<TrainingRun>& held_out, std::uint64_t seed,
+                  std::optional<Grouping> cross_validation = {});
+
+}  // namespace beamgyro

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dataset/files/open_file.h"
+
+namespace beamgyro {
+
+/// Facts about the file of a name, which itself may be a symbolic link.
+struct FileFacts {
+  bool is_regular = false, is_directory = false, is_link = false;
+  std::uint64_t bytes = 0, names = 0;  // hard links
+};
+
+/// An open directory. Names are relative to it and stay below it: no symbolic
+/// link is followed, neither on the way nor at the end (openat2, or part by
+/// part with openat where the system has no such call). So a directory that
+/// somebody else made cannot lead to files elsewhere. Failures are
+/// std::system_error without the name, with ELOOP for a symbolic link. A name
+/// that is absolute or contains ".." throws std::invalid_argument.
+class Directory {
+ public:
+  /// Opens a directory. Links in `path` itself are followed.
+  explicit Directory(const std::filesystem::path& path);
+
+  int descriptor() const { return file_.descriptor(); }
+
+  /// Opens a file; `flags` are those of open(2).
+  OpenFile open(const std::filesystem::path& name, int flags) const;
+
+  /// Returns the facts about a file, or nothing when there is no such file.
+  std::optional<FileFacts> find(const std::filesystem::path& name) const;
+
+  /// Opens a directory below this one. make_below() makes it, and those above
+  /// it, unless it is there. An empty name means this directory.
+  Directory below(const std::filesystem::path& name) const;
+  Directory make_below(const std::filesystem::path& name) const;
+
+  /// Returns the names of all entries, sorted.
+  std::vector<std::string> names() const;
+
+  /// Returns the relative names of all files below that are not directories.
+  /// Links are not followed.
+  std::vector<std::string> files_below() const;
+
+  /// Removes a file. Does nothing if there is none.
+  void remove(const std::string& name) const;
+
+  /// Synchronises the names in the directory with the disk, where the file
+  /// system can do that.
+  void sync() const;
+
+ private:
+  explicit Directory(OpenFile file) : file_(std::move(file)) {}
+
+  OpenFile file_;
+};
+
+}  // namespace beamgyro

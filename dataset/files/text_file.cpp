@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "dataset/files/text_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include <span>
+#include <stdexcept>
+#include <system_error>
+
+#include "config/file_error.h"
+#include "dataset/files/open_file.h"
+
+namespace beamgyro {
+
+void read_in_pieces(const std::filesystem::path& path,
+                    const std::function<void(std::string_view)>& take) {
+  const auto kind = status_of(path);
+  if (std::filesystem::exists(kind) && !std::filesystem::is_directory(kind) &&
+      !std::filesystem::is_regular_file(kind)) {
+    throw std::invalid_argument(
+        fmt::format("{}: cannot read: it is a device or pipe; "
+                    "expected a file",
+                    path.string()));
+  }
+  try {
+    OpenFile(path, O_RDONLY).read_pieces([&](std::span<const std::byte> piece) {
+      take({reinterpret_cast<const char*>(piece.data()), piece.size()});
+    });
+  } catch (const std::system_error& error) {
+    throw_file_error(path, "cannot read", error.code());
+  }
+}
+
+std::string read_text_file(const std::filesystem::path& path) {
+  std::string text;
+  read_in_pieces(path, [&](std::string_view piece) { text += piece; });
+  return text;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: MIT
+#include "dataset/log/log_import.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "dataset/log/log_clock.h"
+#include "dataset/log/log_numbers.h"
+#include "dataset/log/log_outliers.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// Rows of a log on their way into a recording.
+class LogReader {
+ public:
+  LogReader(std::string_view text, const std::filesystem::path& path,
+            const LogMap& map)
+      : log_(text, path, map), map_(map), clock_(log_, map.time) {
+    if (map.filter) filter_ = log_.slot(map.filter->column);
+    if (map.status) status_ = log_.slot(map.status->column);
+    for (const LogQuantity& quantity : map.quantities) {
+      slots_.push_back(log_.slot(quantity.column));
+      recording_.columns.push_back({quantity.variable,
+                                    quantity.units,
+                                    quantity.long_name,
+                                    quantity.role,
+                                    {}});
+    }
+    values_.resize(slots_.size());
+  }
+
+  ImportedLog read() {
+    while (log_.text().next()) take_row();
+    drop_outliers();
+    check_plausible();
+    counts_.kept = recording_.time.size();
+    check_enough();
+    if (map_.constant_true_rate) {
+      recording_.columns.push_back(
+          {"true_rate", "degree/s", "rate about the input axis", Role::kTruth,
+           std::vector<double>(counts_.kept, *map_.constant_true_rate)});
+    }
+    recording_.fidelity = "imported";
+    recording_.scenario_text = map_.text;
+    return {std::move(recording_), counts_};
+  }
+
+ private:
+  void drop(DropReason reason) { counts_.drop(reason, log_.text().line()); }
+
+  void take_row() {
+    ++counts_.rows;
+    if (!log_.text().is_whole()) {
+      if (map_.rules.drop_ragged) {
+        if (!filter_) clock_.skip_row();
+        return drop(DropReason::kRagged);
+      }
+      log_.text().fail_row(fmt::format(
+          "{} cells; expected {} as in the first line (or rules.ragged = "
+          "\"drop\" in the map)",
+          log_.text().cells(), log_.text().width()));
+    }
+    if (filter_ && !passes_filter()) return drop(DropReason::kFiltered);
+    const std::optional<LogTicks> ticks = clock_.read();
+    if (!ticks) return drop(DropReason::kMissing);
+    const double time = clock_.time(lines_.empty() ? *ticks : first_, *ticks);
+    if (!follows(time)) return;
+    const std::optional<std::uint8_t> status = read_status(time);
+    if (!status || !read_values((*status & kUnpowered) != 0))
+      return drop(DropReason::kMissing);
+    if (lines_.empty()) first_ = *ticks;
+    lines_.push_back(log_.text().line());
+    recording_.time.push_back(time);
+    recording_.status.push_back(*status);
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      recording_.columns[i].values.push_back(values_[i]);
+  }
+
+  bool passes_filter() {
+    const LogFilter& filter = *map_.filter;
+    if (!filter.number) return log_.text().cell(*filter_) == filter.text;
+    const std::optional<double> number = log_.number_in(*filter_);
+    return number && *number == *filter.number;
+  }
+
+  // Whether the time comes after that of the last row kept.
+  bool follows(double time) {
+    if (lines_.empty() || time > recording_.time.back()) return true;
+    const bool equal = time == recording_.time.back();
+    if (equal ? map_.rules.drop_duplicates : map_.rules.drop_backward) {
+      drop(equal ? DropReason::kDuplicate : DropReason::kBackward);
+      return false;
+    }
+    const std::string message =
+        equal ? fmt::format(
+                    "the time is that of line {} again; expected one "
+                    "row a time (rules.duplicates = \"drop_later\" in "
+                    "the map drops the later one)",
+                    lines_.back())
+              : fmt::format(
+                    "the time goes back by {:g} s from that of line {}; "
+                    "expected the rows of one run of one sensor (a [filter] in "
+                    "the map picks them, rules.backward = \"drop\" drops rows)",
+                    recording_.time.back() - time, lines_.back());
+    clock_.fail(message);
+  }
+
+  std::optional<std::uint8_t> read_status(double time) {
+    unsigned bits = 0;
+    if (status_) {
+      const std::optional<double> number = log_.present(*status_);
+      if (!number) return std::nullopt;
+      bits = map_.status->bits(*number);
+    }
+    const auto is_on = [time](const std::array<double, 2>& on_off) {
+      return time >= on_off[0] && time < on_off[1];
+    };
+    if (!map_.powered.empty() &&
+        std::none_of(map_.powered.begin(), map_.powered.end(), is_on))
+      bits |= kUnpowered;
+    return static_cast<std::uint8_t>(bits);
+  }
+
+  bool read_values(bool unpowered) {
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+      const LogQuantity& quantity = map_.quantities[i];
+      if (unpowered && quantity.role == Role::kMeasured) {
+        values_[i] = kNan;
+        continue;
+      }
+      const std::optional<double> raw = log_.present(slots_[i]);
+      if (!raw) return false;
+      if (!quantity.fits(*raw)) {
+        log_.fail(slots_[i],
+                  fmt::format("is no count of {} bits (wrap_bits in the map)",
+                              quantity.wrap_bits),
+                  fmt::format("a whole number from 0 to {:.0f}",
+                              std::ldexp(1.0, quantity.wrap_bits) - 1));
+      }
+      values_[i] = quantity.value(*raw);
+      if (!std::isfinite(values_[i]))
+        log_.fail(slots_[i], "is out of range", "a smaller number");
+    }
+    return true;
+  }
+
+  void drop_outliers() {
+    if (!map_.rules.outliers || lines_.empty()) return;
+    const auto found = [&](const char* name) {
+      return find_outliers(recording_.time, column_values(recording_, name),
+                           *map_.rules.outliers);
+    };
+    const std::vector<bool> rate = found("rate");
+    const std::vector<bool> temperature = found("temperature");
+    std::vector<bool> keep(lines_.size(), true);
+    for (std::size_t k = 0; k < lines_.size(); ++k) {
+      if (!rate[k] && !temperature[k]) continue;
+      keep[k] = false;
+      counts_.drop(
+          rate[k] ? DropReason::kRateOutlier : DropReason::kTemperatureOutlier,
+          lines_[k]);
+    }
+    const auto thin = [&](auto& values) {
+      std::size_t to = 0;
+      for (std::size_t k = 0; k < keep.size(); ++k)
+        if (keep[k]) values[to++] = values[k];
+      values.resize(to);
+    };
+    thin(lines_);
+    thin(recording_.time);
+    thin(recording_.status);
+    for (Column& column : recording_.columns) thin(column.values);
+  }
+
+  // Wrong units show in values no gyro has.
+  void check_plausible() {
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+      const LogQuantity& quantity = map_.quantities[i];
+      const std::vector<double>& values = recording_.columns[i].values;
+      const auto wrong =
+          std::find_if(values.begin(), values.end(), [&](double value) {
+            return !std::isnan(value) && !quantity.plausible.contains(value);
+          });
+      if (wrong == values.end()) continue;
+      log_.text().go_to(
+          lines_[static_cast<std::size_t>(wrong - values.begin())]);
+      log_.fail(slots_[i],
+                fmt::format("is {:g} {} when read as {}: \"{}\"", *wrong,
+                            quantity.units, quantity.unit_place, quantity.unit),
+                text_of(quantity.plausible) + (quantity.unit == "counts"
+                                                   ? ", or another scale or "
+                                                     "wrap_bits"
+                                                   : ", or another unit"));
+    }
+  }
+
+  void check_enough() const {
+    if (counts_.kept >= 2) return;
+    std::string dropped;
+    for (std::size_t i = 0; i < kDropReasons; ++i) {
+      const DroppedRows& rows = counts_.dropped[i];
+      if (rows.rows == 0) continue;
+      dropped +=
+          fmt::format("; {} {}, the first in line {}", rows.rows,
+                      reason_name(static_cast<DropReason>(i)), rows.first_line);
+    }
+    throw std::invalid_argument(
+        fmt::format("{}: {} of {} rows are usable; expected at least two{}",
+                    log_.path(), counts_.kept, counts_.rows, dropped));
+  }
+
+  LogNumbers log_;
+  const LogMap& map_;
+  LogClock clock_;
+  std::optional<std::size_t> filter_, status_;  // slots
+  std::vector<std::size_t> slots_;              // of the quantities
+  std::vector<double> values_;                  // of one row
+  LogTicks first_;                              // of the first row kept
+  Recording recording_;
+  std::vector<std::size_t> lines_;  // of the rows kept
+  LogCounts counts_;
+};
+
+}  // namespace
+
+ImportedLog import_log(std::string_view text, const std::filesystem::path& path,
+                       const LogMap& map) {
+  return LogReader(text, path, map).read();
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+#include "dataset/log/log_map.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "dataset/recording/units.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr long kLongest = std::numeric_limits<std::int32_t>::max();
+
+LogLayout read_layout(const ConfigTable& root) {
+  LogLayout layout;
+  const std::string delimiter =
+      root.choice_or("delimiter", "auto", {"auto", ",", "\t", ";", "|"});
+  if (delimiter != "auto") layout.delimiter = delimiter.front();
+  layout.header = root.flag_or("header", true);
+  if (layout.header) {
+    layout.header_line = static_cast<std::size_t>(
+        root.integer_or("header_line", 0, 1, kLongest));
+  } else {
+    static_cast<void>(root.has("header_line"));
+  }
+  layout.skip_rows =
+      static_cast<std::size_t>(root.integer_or("skip_rows", 0, 0, kLongest));
+  if (root.has("comment_prefixes")) {
+    layout.comment_prefixes = root.texts("comment_prefixes");
+    for (const std::string& prefix : layout.comment_prefixes) {
+      if (prefix.empty())
+        root.fail("comment_prefixes",
+                  "\"\" would make every line a comment; expected a text such "
+                  "as \"#\"");
+    }
+  }
+  return layout;
+}
+
+LogFilter read_filter(const ConfigTable& table) {
+  LogFilter filter;
+  filter.column = read_log_column(table);
+  if (table.holds_number("value")) {
+    filter.number = table.number("value");
+  } else {
+    filter.text = table.text("value");
+  }
+  return filter;
+}
+
+LogTime read_time(const ConfigTable& table) {
+  LogTime time;
+  time.offset = table.optional_number("offset_s");
+  if (!table.has("column")) {
+    static_cast<void>(table.has("unit"));
+    static_cast<void>(table.has("wrap_bits"));
+    time.ticks_per_s = table.number("rate_Hz", positive());
+    return time;
+  }
+  time.column = read_log_column(table);
+  time.wrap_bits = static_cast<int>(table.integer_or("wrap_bits", 0, 8, 53));
+  const std::string unit =
+      table.choice("unit", {"s", "ms", "us", "ns", "index"});
+  if (unit == "index") {
+    time.ticks_per_s = table.number("rate_Hz", positive());
+    return time;
+  }
+  static_cast<void>(table.has("rate_Hz"));
+  time.ticks_per_s = std::round(1.0 / unit_conversion(unit, "s").scale);
+  return time;
+}
+
+LogQuantity read_rate(const ConfigTable& table) {
+  return read_log_rate(table, "rate", "uncompensated rate", Role::kMeasured);
+}
+
+// Every axis is read, so that a mistake in one not asked for shows, too.
+LogQuantity read_gyro(const ConfigTable& root, const std::string& axis) {
+  const ConfigTable gyro = root.table("gyro");
+  std::vector<std::string> axes;
+  std::vector<LogQuantity> rates;
+  for (const char* name : {"x", "y", "z"}) {
+    if (const auto table = gyro.optional_table(name)) {
+      axes.emplace_back(name);
+      rates.push_back(read_rate(*table));
+    }
+  }
+  if (axes.empty()) {
+    if (!axis.empty()) {
+      throw std::invalid_argument(
+          fmt::format("--axis {}: {}: has no axes; expected no --axis", axis,
+                      root.place("gyro")));
+    }
+    return read_rate(gyro);
+  }
+  if (axis.empty() && axes.size() > 1) {
+    root.fail("gyro", fmt::format("has the axes {}; expected --axis to choose "
+                                  "one",
+                                  fmt::join(axes, ", ")));
+  }
+  if (axis.empty()) return rates.front();
+  const auto found = std::find(axes.begin(), axes.end(), axis);
+  if (found == axes.end()) {
+    throw std::invalid_argument(
+        fmt::format("--axis {}: {}: has no such axis; expected one of {}", axis,
+                    root.place("gyro"), fmt::join(axes, ", ")));
+  }
+  return rates[static_cast<std::size_t>(found - axes.begin())];
+}
+
+std::vector<LogQuantity> read_quantities(const ConfigTable& root,
+                                         const std::string& axis) {
+  std::vector<LogQuantity> quantities;
+  const LogQuantity rate = read_gyro(root, axis);
+  if (rate.unit == "V") {
+    quantities.push_back({.variable = "output",
+                          .units = rate.unit,
+                          .long_name = "gyro output",
+                          .column = rate.column,
+                          .unit = rate.unit,
+                          .unit_place = rate.unit_place});
+  }
+  quantities.push_back(rate);
+  quantities.push_back(read_log_temperature(root.table("temperature")));
+  if (const auto table = root.optional_table("drive_frequency"))
+    quantities.push_back(
+        read_log_frequency(*table, "drive_frequency", "drive frequency"));
+  if (const auto table = root.optional_table("drive_voltage"))
+    quantities.push_back(
+        read_log_voltage(*table, "drive_voltage", "drive voltage"));
+  if (const auto table = root.optional_table("quadrature"))
+    quantities.push_back(
+        read_log_rate(*table, "quadrature", "quadrature", Role::kMeasured));
+  return quantities;
+}
+
+void read_true_rate(const ConfigTable& table, LogMap& map) {
+  if (table.has("column")) {
+    map.quantities.push_back(read_log_rate(
+        table, "true_rate", "rate about the input axis", Role::kTruth));
+  } else if (table.has("constant_deg_per_s")) {
+    map.constant_true_rate = table.number("constant_deg_per_s");
+  } else if (table.flag("at_rest")) {
+    map.constant_true_rate = 0.0;
+  }
+  static_cast<void>(table.has("at_rest"));
+}
+
+LogStatus read_status(const ConfigTable& table) {
+  LogStatus status;
+  status.column = read_log_column(table);
+  const auto values = [&](const char* key) {
+    return table.has(key) ? table.integers(key, -kLongest, kLongest)
+                          : std::vector<long>();
+  };
+  status.unpowered = values("unpowered");
+  status.saturated = values("saturated");
+  status.not_locked = values("not_locked");
+  if (table.has("valid")) status.valid = values("valid");
+  if (!status.valid && status.unpowered.empty() && status.saturated.empty() &&
+      status.not_locked.empty()) {
+    table.fail("valid",
+               "missing; expected valid, unpowered, saturated or not_locked "
+               "with the values of the column that mean it");
+  }
+  return status;
+}
+
+std::vector<std::array<double, 2>> read_powered(const ConfigTable& root) {
+  constexpr const char* kKey = "powered_s";
+  constexpr double kEver = std::numeric_limits<double>::infinity();
+  if (!root.has(kKey)) return {};
+  if (root.holds_number(kKey)) return {{root.number(kKey), kEver}};
+  std::vector<std::array<double, 2>> powered;
+  double last = -kEver;
+  for (const std::vector<double>& row : root.rows(kKey, 2)) {
+    if (!(row[0] >= last && row[1] > row[0])) {
+      throw std::invalid_argument(fmt::format(
+          "{}: [{}, {}] is out of order; expected [on, off] times that rise",
+          root.place(kKey, powered.size()), row[0], row[1]));
+    }
+    powered.push_back({row[0], row[1]});
+    last = row[1];
+  }
+  if (powered.empty())
+    root.fail(kKey, "an array of 0 is wrong here; expected [[on, off], ...]");
+  return powered;
+}
+
+LogRules read_rules(const ConfigTable& table) {
+  LogRules rules;
+  const auto drops = [&](const char* key, const char* word, bool otherwise) {
+    return table.choice_or(key, otherwise ? word : "error", {word, "error"}) ==
+           word;
+  };
+  rules.drop_ragged = drops("ragged", "drop", false);
+  rules.drop_missing = drops("missing", "drop", true);
+  rules.drop_duplicates = drops("duplicates", "drop_later", true);
+  rules.drop_backward = drops("backward", "drop", false);
+  if (const auto outliers = table.optional_table("outliers")) {
+    const long window = outliers->integer_or("window", 25, 5, 999);
+    if (window % 2 == 0) {
+      outliers->fail("window", fmt::format("{} is even; expected an odd number "
+                                           "of rows",
+                                           window));
+    }
+    rules.outliers = OutlierRule{static_cast<std::size_t>(window),
+                                 outliers->number_or("k", 20, positive())};
+  }
+  return rules;
+}
+
+}  // namespace
+
+std::uint8_t LogStatus::bits(double value) const {
+  const auto among = [value](const std::vector<long>& values) {
+    return std::any_of(values.begin(), values.end(), [value](long v) {
+      return static_cast<double>(v) == value;
+    });
+  };
+  unsigned bits = 0;
+  if (among(unpowered)) bits |= kUnpowered;
+  if (among(saturated)) bits |= kOutputSaturated;
+  if (among(not_locked)) bits |= kLoopNotLocked;
+  if (valid && bits == 0 && !among(*valid)) bits |= kLoopNotLocked;
+  return static_cast<std::uint8_t>(bits);
+}
+
+LogMap read_log_map(const ConfigDocument& document, const std::string& axis) {
+  const ConfigTable& root = document.root();
+  LogMap map;
+  map.text = document.text();
+  map.layout = read_layout(root);
+  if (root.has("missing_markers"))
+    map.missing_markers = root.texts("missing_markers");
+  if (const auto table = root.optional_table("filter"))
+    map.filter = read_filter(*table);
+  map.time = read_time(root.table("time"));
+  map.quantities = read_quantities(root, axis);
+  if (const auto table = root.optional_table("true_rate"))
+    read_true_rate(*table, map);
+  if (const auto table = root.optional_table("status"))
+    map.status = read_status(*table);
+  map.powered = read_powered(root);
+  map.rules = read_rules(root.table_or_empty("rules"));
+  document.reject_unknown_keys();
+  return map;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/document.h"
+#include "dataset/log/log_quantity.h"
+#include "dataset/log/log_text.h"
+
+namespace beamgyro {
+
+/// Selects the rows that are read: those whose cell in `column` is `text` or
+/// equals `number`.
+struct LogFilter {
+  LogColumn column;
+  std::string text;
+  std::optional<double> number;
+};
+
+/// Defines the times: time = ticks / ticks_per_s + offset. Ticks are the number
+/// in `column`, or the number of the row from 0. Without an offset the first
+/// row is at 0.
+struct LogTime {
+  std::optional<LogColumn> column;
+  double ticks_per_s = 1;        // [1/s]
+  std::optional<double> offset;  // [s]
+  int wrap_bits = 0;             // the column starts over at 2^wrap_bits; 0: no
+};
+
+/// Defines which numbers of a column set which bit of the status.
+struct LogStatus {
+  LogColumn column;
+  std::vector<long> unpowered, saturated, not_locked;
+  std::optional<std::vector<long>> valid;  // every other one: not locked
+
+  std::uint8_t bits(double value) const;  // StatusBit mask
+};
+
+/// A value is an outlier when
+///   |x - median| > k max(1.4826 MAD, resolution),
+/// with median and median absolute deviation (MAD) over the `window` nearest
+/// rows of its burst. `resolution` is the smallest step between two rows of the
+/// log.
+struct OutlierRule {
+  std::size_t window = 25;  // odd
+  double k = 20;
+};
+
+/// Whether rows with a defect are dropped; otherwise they are errors.
+struct LogRules {
+  bool drop_ragged = false;
+  bool drop_missing = true;
+  bool drop_duplicates = true;  // a time equal to that of the last row kept
+  bool drop_backward = false;   // a time before it
+  std::optional<OutlierRule> outliers;
+};
+
+/// States how a log becomes a recording: the map of docs/reference/log_map.md.
+struct LogMap {
+  LogLayout layout;
+  std::vector<std::string> missing_markers;  // beside "", nan and NA
+  std::optional<LogFilter> filter;
+  LogTime time;
+  std::vector<LogQuantity> quantities;  // in the order of the recording
+  std::optional<LogStatus> status;
+  // [on, off) [s]; off may be infinite; none: powered throughout
+  std::vector<std::array<double, 2>> powered;
+  std::optional<double> constant_true_rate;  // [deg/s]
+  LogRules rules;
+  std::string text;  // byte for byte as read
+};
+
+/// Reads a map. `axis` is one of its axes ("x", "y", "z"), or empty when it has
+/// one gyro only. Throws std::invalid_argument for an unknown or wrong key and
+/// for an axis that the map lacks.
+LogMap read_log_map(const ConfigDocument& document, const std::string& axis);
+
+}  // namespace beamgyro

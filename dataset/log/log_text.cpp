@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include "dataset/log/log_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <stdexcept>
+
+namespace beamgyro {
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::string_view unquoted(std::string_view text) {
+  if (text.size() >= 2 && text.front() == '"' && text.back() == '"')
+    return trimmed(text.substr(1, text.size() - 2));
+  return text;
+}
+
+bool is_number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+char delimiter_of(std::string_view line) {
+  for (const char c : {'\t', ';'})
+    if (line.find(c) != line.npos) return c;
+  return ',';
+}
+
+}  // namespace
+
+std::string shown_cell(std::string_view cell) {
+  constexpr std::size_t kShown = 40;
+  std::string text = "'";
+  for (const char c : cell.substr(0, kShown)) {
+    const auto byte = static_cast<unsigned char>(c);
+    text += byte < 0x20 || byte == 0x7f ? fmt::format("\\x{:02x}", byte)
+                                        : std::string(1, c);
+  }
+  return text + (cell.size() > kShown ? "...'" : "'");
+}
+
+LogText::LogText(std::string_view text, const std::filesystem::path& path,
+                 const LogLayout& layout)
+    : text_(text), path_(path.string()), layout_(layout) {
+  if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF"))
+    throw std::invalid_argument(
+        fmt::format("{}:1:1: the text is UTF-16; expected UTF-8", path_));
+  if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
+  if (const std::size_t nul = text_.find('\0'); nul != text_.npos) {
+    const std::string_view before = text_.substr(0, nul);
+    const std::size_t start = before.rfind('\n') + 1;  // 0 when there is none
+    throw std::invalid_argument(fmt::format(
+        "{}:{}:{}: a NUL byte; expected text with one row a line", path_,
+        std::count(before.begin(), before.end(), '\n') + 1, nul - start + 1));
+  }
+  start();
+}
+
+// To the line above the first row; the layout is known afterwards.
+void LogText::start() {
+  rest_ = text_;
+  line_ = 0;
+  const std::size_t above =
+      layout_.header_line > 0 ? layout_.header_line - 1 : 0;
+  while (line_ < above && !rest_.empty()) {
+    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    ++line_;
+  }
+  const auto skip_rows = [this] {
+    for (std::size_t i = 0; i < layout_.skip_rows; ++i)
+      if (!next_line()) return;
+  };
+  if (!layout_.header) skip_rows();
+  const std::string_view first_row = rest_;
+  const std::size_t line_above = line_;
+  if (!next_line()) {
+    throw std::invalid_argument(
+        text_.empty()
+            ? fmt::format("{}:1:1: the file is empty; expected a log", path_)
+            : fmt::format("{}:{}:1: no line is left; expected {}", path_,
+                          std::max(line_, std::size_t{1}),
+                          layout_.header ? "a line of names" : "rows"));
+  }
+  if (layout_.delimiter == 0) layout_.delimiter = delimiter_of(row_);
+  if (layout_.header) {
+    if (names_.empty()) read_names();
+    skip_rows();
+  } else {
+    width_ = all_cells().size();
+    rest_ = first_row;
+    line_ = line_above;
+  }
+}
+
+void LogText::read_names() {
+  const std::vector<std::string_view> cells = all_cells();
+  for (const std::string_view cell : cells) names_.emplace_back(unquoted(cell));
+  width_ = names_.size();
+  if (std::all_of(cells.begin(), cells.end(), is_number))
+    fail_at(1, fmt::format("{} is a number; expected the line of names (or "
+                           "header = false in the map)",
+                           shown_cell(cells.front())));
+}
+
+bool LogText::next_line() {
+  while (!rest_.empty()) {
+    const void* found = std::memchr(rest_.data(), '\n', rest_.size());
+    const std::size_t size =
+        found == nullptr ? rest_.size()
+                         : static_cast<std::size_t>(
+                               static_cast<const char*>(found) - rest_.data());
+    row_ = rest_.substr(0, size);
+    rest_.remove_prefix(std::min(size + 1, rest_.size()));
+    ++line_;
+    if (row_.ends_with('\r')) row_.remove_suffix(1);
+    std::size_t first = 0;
+    while (first < row_.size() && row_[first] == ' ') ++first;
+    const std::string_view shown = row_.substr(first);
+    const bool is_comment = std::any_of(
+        layout_.comment_prefixes.begin(), layout_.comment_prefixes.end(),
+        [&](const auto& prefix) { return shown.starts_with(prefix); });
+    if (!shown.empty() && !is_comment) return true;
+  }
+  return false;
+}
+
+const char* LogText::cell_end(const char* begin, const char* end) const {
+  while (begin != end && *begin == ' ') ++begin;
+  if (begin != end && *begin == '"') {
+    const void* closing =
+        std::memchr(begin + 1, '"', static_cast<std::size_t>(end - begin - 1));
+    if (closing == nullptr)
+      fail_at(static_cast<std::size_t>(begin - row_.data()) + 1,
+              "a quote that is not closed on its line; expected a second '\"'");
+    begin = static_cast<const char*>(closing);
+  }
+  const void* found = std::memchr(begin, layout_.delimiter,
+                                  static_cast<std::size_t>(end - begin));
+  return found == nullptr ? end : static_cast<const char*>(found);
+}
+
+std::vector<std::string_view> LogText::all_cells() const {
+  std::vector<std::string_view> cells;
+  const char* const end = row_.data() + row_.size();
+  for (const char* begin = row_.data();; ++begin) {
+    const char* const stop = cell_end(begin, end);
+    cells.push_back(trimmed({begin, static_cast<std::size_t>(stop - begin)}));
+    begin = stop;
+    if (begin == end) return cells;
+  }
+}
+
+void LogText::cut() {
+  const char* const end = row_.data() + row_.size();
+  const char* begin = row_.data();
+  std::size_t next = 0;  // of order_
+  for (cells_ = 0;; ++begin) {
+    const char* const stop = cell_end(begin, end);
+    for (; next < order_.size() && wanted_[order_[next]].index == cells_;
+         ++next) {
+      Wanted& wanted = wanted_[order_[next]];
+      const std::string_view cell{begin,
+                                  static_cast<std::size_t>(stop - begin)};
+      wanted.text = unquoted(trimmed(cell));
+      wanted.column = static_cast<std::size_t>(begin - row_.data()) + 1;
+      if (!wanted.text.empty())
+        wanted.column =
+            static_cast<std::size_t>(wanted.text.data() - row_.data()) + 1;
+    }
+    const bool empty = stop == begin;
+    begin = stop;
+    ++cells_;
+    if (begin != end) continue;
+    if (empty && cells_ == width_ + 1) --cells_;
+    return;
+  }
+}
+
+std::size_t LogText::want(std::size_t index) {
+  wanted_.push_back({index, {}, 1});
+  order_.push_back(wanted_.size() - 1);
+  std::stable_sort(order_.begin(), order_.end(),
+                   [this](std::size_t a, std::size_t b) {
+                     return wanted_[a].index < wanted_[b].index;
+                   });
+  return wanted_.size() - 1;
+}
+
+bool LogText::next() {
+  if (!next_line()) return false;
+  cut();
+  return true;
+}
+
+void LogText::go_to(std::size_t line) {
+  start();
+  while (line_ < line && next()) continue;
+}
+
+void LogText::fail_at(std::size_t column, const std::string& message) const {
+  throw std::invalid_argument(
+      fmt::format("{}:{}:{}: {}", path_, line_, column, message));
+}
+
+void LogText::fail(std::size_t slot, const std::string& message) const {
+  fail_at(wanted_[slot].column, message);
+}
+
+void LogText::fail_row(const std::string& message) const {
+  fail_at(row_.size() + 1, message);
+}
+
+}  // namespace beamgyro

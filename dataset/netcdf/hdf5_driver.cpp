@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+#include "dataset/netcdf/hdf5_driver.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "dataset/netcdf/hdf5_write.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr haddr_t kLargest = std::numeric_limits<off_t>::max();
+
+/// What HDF5 carries in its properties from open to the driver.
+struct DriverInfo {
+  OpenFile* file;
+};
+
+/// What HDF5 takes for its own structure has to begin with it.
+struct DrivenFile {
+  H5FD_t for_hdf5{};
+  OpenFile* file = nullptr;
+  haddr_t end_of_addresses = 0, size = 0;
+};
+
+DrivenFile& driven(const H5FD_t* file) {
+  return *reinterpret_cast<DrivenFile*>(const_cast<H5FD_t*>(file));
+}
+
+int failed_call = 0;  // errno; QuietHdf5 keeps other threads out
+
+/// No exception may pass through the library.
+template <class Work>
+herr_t guarded(const Work& work) noexcept {
+  try {
+    work();
+    return 0;
+  } catch (const std::system_error& error) {
+    if (failed_call == 0) failed_call = error.code().value();
+  } catch (const std::exception&) {
+    if (failed_call == 0) failed_call = ENOMEM;
+  }
+  return -1;
+}
+
+H5FD_t* open_driven(const char*, unsigned flags, hid_t properties, haddr_t) {
+  const auto* info =
+      static_cast<const DriverInfo*>(H5Pget_driver_info(properties));
+  if (info == nullptr) return nullptr;
+  DrivenFile* opened = nullptr;
+  guarded([&] {
+    if ((flags & H5F_ACC_TRUNC) != 0) info->file->resize(0);
+    auto made = std::make_unique<DrivenFile>();
+    made->file = info->file;
+    made->size = info->file->size();
+    opened = made.release();
+  });
+  return opened == nullptr ? nullptr : &opened->for_hdf5;
+}
+
+herr_t close_driven(H5FD_t* file) {
+  delete &driven(file);
+  return 0;
+}
+
+herr_t query_driven(const H5FD_t*, unsigned long* features) {
+  // Those by which the library's own driver lays out a file.
+  *features = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA |
+              H5FD_FEAT_DATA_SIEVE | H5FD_FEAT_AGGREGATE_SMALLDATA |
+              H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
+  return 0;
+}
+
+haddr_t end_of_addresses(const H5FD_t* file, H5FD_mem_t) {
+  return driven(file).end_of_addresses;
+}
+
+herr_t set_end_of_addresses(H5FD_t* file, H5FD_mem_t, haddr_t end) {
+  driven(file).end_of_addresses = end;
+  return 0;
+}
+
+haddr_t size_of_driven(const H5FD_t* file, H5FD_mem_t) {
+  return driven(file).size;
+}
+
+bool is_beyond(haddr_t place, std::size_t size) {
+  return place > kLargest || size > kLargest - place;
+}
+
+herr_t read_driven(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t place,
+                   std::size_t size, void* buffer) {
+  if (is_beyond(place, size)) return -1;
+  const std::span bytes(static_cast<std::byte*>(buffer), size);
+  return guarded([&] {
+    const std::size_t there = driven(file).file->read_at(place, bytes);
+    std::ranges::fill(bytes.subspan(there), std::byte{0});
+  });
+}
+
+herr_t write_driven(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t place,
+                    std::size_t size, const void* buffer) {
+  if (is_beyond(place, size)) return -1;
+  DrivenFile& to = driven(file);
+  return guarded([&] {
+    to.file->write_at(place, {static_cast<const std::byte*>(buffer), size});
+    to.size = std::max<haddr_t>(to.size, place + size);
+  });
+}
+
+herr_t truncate_driven(H5FD_t* file, hid_t, hbool_t) {
+  DrivenFile& to = driven(file);
+  if (to.size == to.end_of_addresses) return 0;
+  return guarded([&] {
+    to.file->resize(to.end_of_addresses);
+    to.size = to.end_of_addresses;
+  });
+}
+
+hid_t driver() {
+  static const hid_t id = [] {
+    H5FD_class_t about{};
+    about.name = "beamgyro";
+    about.maxaddr = kLargest;
+    about.fc_degree = H5F_CLOSE_WEAK;
+    about.fapl_size = sizeof(DriverInfo);
+    about.open = open_driven;
+    about.close = close_driven;
+    about.query = query_driven;
+    about.get_eoa = end_of_addresses;
+    about.set_eoa = set_end_of_addresses;
+    about.get_eof = size_of_driven;
+    about.read = read_driven;
+    about.write = write_driven;
+    about.truncate = truncate_driven;
+    constexpr std::array<H5FD_mem_t, H5FD_MEM_NTYPES> kMap =
+        H5FD_FLMAP_DICHOTOMY;
+    std::ranges::copy(kMap, about.fl_map);
+    const hid_t registered = H5FDregister(&about);
+    check_hdf5(registered < 0 ? -1 : 0, "start HDF5");
+    return registered;
+  }();
+  return id;
+}
+
+H5Id properties_for(OpenFile& file) {
+  H5Id access = access_properties();
+  const DriverInfo info{&file};
+  check_hdf5(H5Pset_driver(access, driver(), &info), "open the file");
+  return access;
+}
+
+// HDF5 wants some name for a file.
+constexpr const char* kName = "beamgyro";
+
+}  // namespace
+
+H5Id open_hdf5_file(OpenFile& file) {
+  return {H5Fopen(kName, H5F_ACC_RDONLY, properties_for(file)), H5Fclose,
+          "open the file"};
+}
+
+H5Id create_hdf5_file(OpenFile& file) {
+  return {H5Fcreate(kName, H5F_ACC_TRUNC, creation_properties(H5P_FILE_CREATE),
+                    properties_for(file)),
+          H5Fclose, "create the file"};
+}
+
+bool is_hdf5_file(OpenFile& file) {
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  constexpr std::uint64_t kFirst = 512;  // possible end of a block of the user
+  std::array<std::byte, kSignature.size()> bytes{};
+  for (std::uint64_t place = 0; file.read_at(place, bytes) == bytes.size();) {
+    if (std::memcmp(bytes.data(), kSignature.data(), bytes.size()) == 0)
+      return true;
+    place = place == 0 ? kFirst : 2 * place;
+  }
+  return false;
+}
+
+int take_failed_system_call() { return std::exchange(failed_call, 0); }
+
+void check_system_calls() {
+  if (failed_call != 0) check_hdf5(-1, "read the file");
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "dataset/files/open_file.h"
+#include "dataset/netcdf/hdf5_id.h"
+
+namespace beamgyro {
+
+// Lets HDF5 read and write through our own file descriptor. Calls that a signal
+// interrupts are repeated, and the reason of a failed system call is kept,
+// whatever the library makes of it. `file` must outlive the id.
+
+H5Id open_hdf5_file(OpenFile& file);
+
+/// Makes a new HDF5 file in a file that is open for reading and writing, and
+/// discards its content.
+H5Id create_hdf5_file(OpenFile& file);
+
+/// Returns whether the bytes begin like an HDF5 file, with or without a user
+/// block. Throws std::system_error.
+bool is_hdf5_file(OpenFile& file);
+
+/// Throws Hdf5Error when a system call has failed since QuietHdf5 began, even
+/// if the library ignored the failure.
+void check_system_calls();
+
+}  // namespace beamgyro

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "dataset/recording/recording.h"
+
+namespace beamgyro {
+
+/// Returns the first defect of a recording as one line that names the variable
+/// and the sample, or an empty text. A recording without a defect has
+/// - at least one sample, with finite, strictly increasing times;
+/// - one status and one value of every column for each time;
+/// - column names that are unique identifiers;
+/// - finite values, except NaN in measured and compensated columns where the
+///   status says unpowered;
+/// - no NUL in any text.
+std::string recording_defect(const Recording& recording);
+
+/// The same for names and texts alone, and for samples alone, which are
+/// numbered from `first`.
+std::string head_defect(const Recording& recording);
+std::string samples_defect(const Recording& recording, std::size_t first);
+
+}  // namespace beamgyro

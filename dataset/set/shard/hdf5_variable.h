@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "dataset/netcdf/hdf5_write.h"
+#include "dataset/set/shard/shard.h"
+
+namespace beamgyro {
+
+// The layout that files of a set and views over them have in common. Each
+// function throws Hdf5Error.
+
+hid_t file_type(Storage storage);
+
+/// Writes the attributes that say how to read the counts of an integer
+/// variable.
+void write_scaling(hid_t variable, const SetVariable& about);
+
+VariableAbout part_about();
+VariableAbout device_status_about();
+
+/// Write the attributes that name the meanings of their values.
+void write_part_flags(hid_t part);
+void write_device_status_flags(hid_t device_status);
+
+void write_root_attributes(hid_t file, const ShardHead& head);
+
+/// Writes all values of a variable.
+void write_all(hid_t variable, const std::string& name, hid_t memory_type,
+               const void* values);
+
+}  // namespace beamgyro

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/compensator/compensator_file.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+
+#include "dataset/files/atomic_file.h"
+#include "tests/compensation/message_of.h"
+#include "tests/compensation/recorded_run.h"
+#include "tests/compensation/sample_compensators.h"
+
+namespace beamgyro {
+namespace {
+
+std::vector<std::uint64_t> bits(const std::vector<double>& values) {
+  std::vector<std::uint64_t> result;
+  for (const double value : values)
+    result.push_back(std::bit_cast<std::uint64_t>(value));
+  return result;
+}
+
+std::string error_of(const std::string& text) {
+  return message_of([&] { parse_compensator(text, "mine.json"); });
+}
+
+Recording with_loop_signals(Recording recording) {
+  for (const char* name : {"drive_frequency", "drive_voltage", "quadrature"}) {
+    Column column = recording.columns.front();
+    column.name = name;
+    column.role = Role::kMeasured;
+    recording.columns.push_back(column);
+  }
+  return recording;
+}
+
+// The text of a good file with the first `from` replaced.
+std::string with(const std::string& from, const std::string& to,
+                 const Compensator& c = network_compensator()) {
+  std::string text = compensator_text(c);
+  const std::size_t place = text.find(from);
+  EXPECT_NE(place, std::string::npos) << from;
+  return text.replace(place, from.size(), to);
+}
+
+TEST(CompensatorFile, LoadedCompensatorAnswersWithTheSameBits) {
+  RecordedRun run{.duration = 500.0, .step = 0.37};
+  run.temperature = [](double t) { return 20.0 + 15.0 * std::sin(0.01 * t); };
+  run.bias = [](double t) { return std::cos(0.003 * t); };
+  run.powered = [](double t) { return t < 200.0 || t > 230.0; };
+  const Recording recording = with_loop_signals(run.recording());
+  for (const auto& [name, c] : one_of_each_kind()) {
+    SCOPED_TRACE(name);
+    const Compensator loaded =
+        parse_compensator(compensator_text(c), "mine.json");
+    EXPECT_EQ(kind_name(loaded.bias), kind_name(c.bias));
+    EXPECT_EQ(loaded.inputs, c.inputs);
+    EXPECT_EQ(loaded.temperature_range, c.temperature_range);
+    EXPECT_EQ(loaded.provenance, c.provenance);
+    EXPECT_EQ(bits(compensated_rate(loaded, recording)),
+              bits(compensated_rate(c, recording)));
+    EXPECT_EQ(bits(baseline_rate(loaded, recording)),
+              bits(baseline_rate(c, recording)));
+    EXPECT_EQ(compensator_text(loaded), compensator_text(c));
+  }
+}
+
+TEST(CompensatorFile, IsWrittenAndReadThroughAFile) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "compensator_file_test.json";
+  write_compensator(network_compensator(), file);
+  EXPECT_EQ(compensator_text(read_compensator(file)),
+            compensator_text(network_compensator()));
+  std::filesystem::remove(file);
+  EXPECT_NE(message_of([&] {
+              read_compensator(file);
+            }).find("compensator_file_test.json"),
+            std::string::npos);
+}
+
+TEST(CompensatorFile, AnyCutOffFileIsRejectedWithLineAndColumn) {
+  const std::string text = compensator_text(network_compensator());
+  // The last newline and brace: without the newline alone it is still whole.
+  for (std::size_t size = 0; size + 2 <= text.size(); size += 7) {
+    const std::string message = error_of(text.substr(0, size));
+    ASSERT_NE(message.find("mine.json: not a whole JSON file"),
+              std::string::npos)
+        << size << ": " << message;
+    ASSERT_NE(message.find("line "), std::string::npos) << message;
+  }
+}
+
+TEST(CompensatorFile, WrongTypeOrVersionIsNamed) {
+  EXPECT_EQ(error_of("{}"), "mine.json: \"filetype\" is missing");
+  EXPECT_NE(error_of("[1]").find("must be an object"), std::string::npos);
+  EXPECT_NE(error_of(with("beamgyro-compensator", "beamgyro-recording"))
+                .find("mine.json: filetype: \"beamgyro-recording\", must be"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("\"format_version\": 2", "\"format_version\": 3"))
+                .find("written by a newer program"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("\"kind\": \"bp\"", "\"kind\": \"rbf\""))
+                .find("kind: \"rbf\", must be"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("temperature_lowpass(0.1)", "true_bias"))
+                .find("inputs[1]: input \"true_bias\""),
+            std::string::npos);
+}
+
+TEST(CompensatorFile, WrongNumbersAreNamedByTheirKey) {
+  EXPECT_NE(error_of(with("20.1", "null"))
+                .find("input_scales[0].centre: null, must be a finite number"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("20.1", "1e999")).find("mine.json"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("20.1", "NaN")).find("line "), std::string::npos);
+  EXPECT_NE(error_of(with("\"half_width\": 3.3", "\"half_width\": 0"))
+                .find("input_scales[0].half_width: 0, must be positive"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("\"weights\"", "\"weighs\""))
+                .find("parameters: \"weights\" is missing"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("\"weights\": [", "\"weights\": [ 0.5,"))
+                .find("parameters.weights: bp network: 58 weights, its layers "
+                      "need 57"),
+            std::string::npos)
+      << error_of(with("\"weights\": [", "\"weights\": [ 0.5,"));
+  EXPECT_NE(error_of(with("\"knots_degC\": [", "\"knots_degC\": [ -50.0,",
+                          spline_compensator()))
+                .find("15 knots, 14 values"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("\"knots_degC\": [\n   -40.0",
+                          "\"knots_degC\": [\n   40.0", spline_compensator()))
+                .find("knots_degC: must increase"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("50.7", "-50.7")).find("[lowest, highest]"),
+            std::string::npos);
+}
+
+TEST(CompensatorFile, ParameterThatIsNotFiniteIsNotWritten) {
+  Compensator c = spline_compensator();
+  c.bias.function = Polynomial{{1.0, std::nan("")}};
+  EXPECT_THROW(compensator_text(c), std::runtime_error);
+}
+
+const Compensator& sample(const std::string& name) {
+  static const std::vector<NamedCompensator> all = one_of_each_kind();
+  for (const NamedCompensator& each : all)
+    if (each.name == name) return each.compensator;
+  throw std::logic_error(name);
+}
+
+struct Damage {
+  const char* sample;
+  const char* from;
+  const char* to;
+  const char* message;
+};
+
+TEST(CompensatorFile, DamageOfEachKindIsNamedByItsKey) {
+  for (const Damage& damage : {
+           Damage{"constant", "value_deg_per_s", "value",
+                  "parameters: \"value_deg_per_s\" is missing"},
+           Damage{"polynomial_with_slopes", "\"slopes\": [\n   0.25\n  ]",
+                  "\"slopes\": []",
+                  "parameters.slopes: 0 slopes, must be one for each of the 2 "
+                  "inputs but the first"},
+           Damage{"polynomial", "\"coefficients\": [\n   0.1,",
+                  "\"coefficients\": [\n   \"0.1\",",
+                  "parameters.coefficients[0]"},
+           Damage{"table", "\"temperatures_degC\": [\n   -40.0",
+                  "\"temperatures_degC\": [\n   -35.0",
+                  "temperatures_degC: must increase"},
+           Damage{"table", "\"values_deg_per_s\": [",
+                  "\"values_deg_per_s\": [ 1.0,",
+                  "20 values for 19 temperatures"},
+           Damage{"thermistor", "\"series\": ", "\"series\": -",
+                  "parameters.series"},
+           Damage{"thermistor", "\"b_K\": 3950.0", "\"b_K\": 0",
+                  "parameters.b_K: 0, must be above 0"},
+           Damage{"thermistor", "gain_deg_per_s", "gain",
+                  "\"gain_deg_per_s\" is missing"},
+           Damage{"fuzzy", "\"width\": 0.25", "\"width\": 0",
+                  "parameters.width: 0, must be above 0"},
+           Damage{"fuzzy", "\"centres\": [", "\"centres\": [ -2.0,",
+                  "consequents: 5 rules, must be one for each of the 6"},
+           Damage{"fuzzy", "\"consequents\": [\n   [",
+                  "\"consequents\": [\n   [ 0.5,",
+                  "consequents[0]: 4 numbers, must be 3"},
+           Damage{"fuzzy", "\"kind\": \"fuzzy\"", "\"kind\": \"table\"",
+                  "2 inputs, a table takes one"},
+           Damage{"bp_with_every_input", "\"values\": [\n   0.98",
+                  "\"values\": [\n   -0.98",
+                  "scale_factor.values: must be above 0"},
+           Damage{"bp_with_every_input", "\"values\": [", "\"values\": [ 1.0,",
+                  "8 values for 7 temperatures"},
+           Damage{"none", "\"method\"", "\"methods\"",
+                  "training: \"method\" is missing"},
+           Damage{"none", "\"choices\": [", "\"choices\": [ 3,",
+                  "training.choices[0]"},
+           Damage{"none", "\"by\"", "\"bye\"",
+                  "training.cross_validation: \"by\" is missing"},
+           Damage{"none", "\"constant_in_sample_rms_deg_per_s\": 1.5",
+                  "\"constant_in_sample_rms_deg_per_s\": null",
+                  "training.constant_in_sample_rms_deg_per_s"},
+           Damage{"none", "\"format_version\": 2", "\"format_version\": 1",
+                  "written by an older program; this one reads version 2"},
+       }) {
+    const std::string message =
+        error_of(with(damage.from, damage.to, sample(damage.sample)));
+    EXPECT_NE(message.find("mine.json"), std::string::npos) << message;
+    EXPECT_NE(message.find(damage.message), std::string::npos)
+        << damage.sample << ": " << message;
+  }
+}
+
+TEST(CompensatorFile, OfAnyKindCutOffIsRejected) {
+  for (const auto& [name, c] : one_of_each_kind()) {
+    const std::string text = compensator_text(c);
+    for (std::size_t size = 0; size + 2 <= text.size(); size += 97)
+      ASSERT_NE(error_of(text.substr(0, size)).find("not a whole JSON file"),
+                std::string::npos)
+          << name << " " << size;
+  }
+}
+
+TEST(CompensatorFile, NestingThatOverflowsTheStackIsRejected) {
+  const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+  EXPECT_NE(error_of("{\"filetype\": " + deep + "}")
+                .find("mine.json: arrays and objects nest deeper than 64"),
+            std::string::npos);
+  std::string keys = "{\"filetype\": 1";
+  for (int i = 0; i < 200000; ++i) keys += ",\"" + std::to_string(i) + "\":1";
+  EXPECT_NE(error_of(keys + "}").find("an object of more than 1000 members"),
+            std::string::npos);
+}
+
+TEST(CompensatorFile, FilesLargerThanACompensatorAreNotRead) {
+  const std::filesystem::path file =
+      std::filesystem::path(::testing::TempDir()) / "large.json";
+  write_text_file(file, "{}");
+  std::filesystem::resize_file(file, std::uintmax_t{50} << 30);
+  std::string message;
+  try {
+    read_compensator(file);
+  } catch (const std::invalid_argument& error) {
+    message = error.what();
+  }
+  std::filesystem::remove(file);
+  EXPECT_NE(message.find("53687091200 bytes; expected a compensator"),
+            std::string::npos)
+      << message;
+}
+
+}  // namespace
+}  // namespace beamgyro

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/inputs/input.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "tests/compensation/message_of.h"
+
+namespace beamgyro {
+namespace {
+
+TEST(Input, NameReadsBackToTheSameInput) {
+  for (const char* name :
+       {"output", "rate", "temperature", "drive_frequency", "drive_voltage",
+        "quadrature", "temperature_lowpass(100)", "temperature_lowpass(0.3)",
+        "temperature_rate(60)", "since_power_on(412.5)"}) {
+    const Input input = parse_input(name);
+    EXPECT_EQ(input_name(input), name);
+    EXPECT_EQ(parse_input(input_name(input)), input);
+  }
+}
+
+TEST(Input, FilterKnowsItsColumnAndTimeConstant) {
+  const Input low_passed = parse_input("temperature_lowpass(1e2)");
+  EXPECT_EQ(low_passed.column, "temperature");
+  EXPECT_EQ(low_passed.time_constant, 100.0);
+  EXPECT_EQ(parse_input("temperature_rate(60)").column, "temperature");
+  EXPECT_EQ(parse_input("since_power_on(300)").column, "");
+}
+
+TEST(Input, OutputAndRateAloneFeelTheRate) {
+  for (const char* name : {"output", "rate"})
+    EXPECT_TRUE(sees_the_rate(parse_input(name))) << name;
+  for (const char* name : {"temperature", "temperature_lowpass(100)",
+                           "temperature_rate(60)", "since_power_on(300)",
+                           "drive_frequency", "drive_voltage", "quadrature"})
+    EXPECT_FALSE(sees_the_rate(parse_input(name))) << name;
+}
+
+TEST(Input, TruthIsNoInput) {
+  for (const char* name :
+       {"true_rate", "true_bias", "true_beam_temperature", "status", "time"})
+    EXPECT_THROW(parse_input(name), std::invalid_argument) << name;
+}
+
+TEST(Input, WrongNameIsAnsweredWithTheNearestOne) {
+  EXPECT_NE(message_of([] {
+              parse_input("temprature");
+            }).find("did you mean \"temperature\"?"),
+            std::string::npos);
+  EXPECT_NE(message_of([] {
+              parse_input("since_power(3)");
+            }).find("did you mean \"since_power_on\"?"),
+            std::string::npos);
+}
+
+TEST(Input, FilterNeedsOnePositiveTimeConstant) {
+  for (const char* name :
+       {"temperature_lowpass", "temperature_lowpass()", "since_power_on(0)",
+        "temperature_lowpass(-5)", "temperature_lowpass(nan)",
+        "since_power_on(inf)", "temperature_lowpass(100", "since_power_on(1,2)",
+        "temperature_lowpass(100)x", "temperature_rate",
+        "temperature_rate(-1)"})
+    EXPECT_NE(message_of([&] {
+                parse_input(name);
+              }).find("one positive time constant in s"),
+              std::string::npos)
+        << name;
+}
+
+}  // namespace
+}  // namespace beamgyro

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "dataset/files/file_checksum.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <random>
+#include <string>
+
+#include "dataset/files/atomic_file.h"
+#include "dataset/files/sha256.h"
+#include "dataset/files/text_file.h"
+#include "dataset/netcdf/recording_file.h"
+#include "dataset/netcdf/recording_reader.h"
+#include "tests/dataset/rejection.h"
+#include "tests/dataset/sample_recording.h"
+
+namespace beamgyro {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FileChecksumLine : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    file = fs::path(::testing::TempDir()) /
+           ("checksum " + std::to_string(getpid()) + ".h5");
+    write_recording(sample_recording(500), file);
+    bytes = read_text_file(file);
+  }
+  void TearDown() override { fs::remove(file); }
+
+  std::string rejected(const std::string& damaged) const {
+    write_text_file(file, damaged);
+    return rejection([&] { read_recording(file); });
+  }
+
+  fs::path file;
+  std::string bytes;
+};
+
+constexpr std::size_t kLine = 95;  // [bytes]
+
+TEST_F(FileChecksumLine, IsTheSha256OfAllBytesBefore) {
+  ASSERT_GT(bytes.size(), kLine);
+  EXPECT_EQ(bytes.substr(bytes.size() - kLine),
+            "\nSHA-256 of all bytes before: " +
+                sha256(bytes.substr(0, bytes.size() - kLine)) + "\n");
+  OpenFile open(file, O_RDONLY);
+  EXPECT_EQ(checksum_of(open), FileChecksum::kRight);
+  EXPECT_TRUE(has_checksum(open));
+  EXPECT_FALSE(has_bytes_after_hdf5(open));
+}
+
+TEST_F(FileChecksumLine, NoFlippedBitIsAcceptedWhereverItIs) {
+  std::mt19937 random(20261122);
+  for (int k = 0; k < 2000; ++k) {
+    const std::size_t byte = random() % bytes.size();
+    std::string damaged = bytes;
+    damaged[byte] = static_cast<char>(damaged[byte] ^ (1 << k % 8));
+    const std::string message = rejected(damaged);
+    ASSERT_NE(message.find("the file is damaged"), std::string::npos)
+        << byte << ": " << message;
+  }
+}
+
+TEST_F(FileChecksumLine, NoFlippedBitOfTheLineItselfIsAccepted) {
+  for (std::size_t k = 1; k <= kLine; ++k) {
+    std::string damaged = bytes;
+    damaged[bytes.size() - k] =
+        static_cast<char>(damaged[bytes.size() - k] ^ 1);
+    EXPECT_NE(rejected(damaged).find("the file is damaged"), std::string::npos)
+        << k;
+  }
+}
+
+TEST_F(FileChecksumLine, NoCutAndNoAdditionIsAccepted) {
+  for (std::size_t cut = 1; cut < kLine; ++cut)
+    EXPECT_NE(rejected(bytes.substr(0, bytes.size() - cut)), "") << cut;
+  for (const std::size_t cut : {kLine + 1, kLine + 100, bytes.size() / 2})
+    EXPECT_NE(rejected(bytes.substr(0, bytes.size() - cut)), "") << cut;
+  EXPECT_NE(rejected(bytes + '\n'), "");
+  EXPECT_NE(rejected(bytes + bytes), "");
+  EXPECT_NE(rejected(bytes.substr(0, bytes.size() - kLine) +
+                     bytes.substr(bytes.size() - kLine / 2)),
+            "");
+}
+
+TEST_F(FileChecksumLine, AFileWithoutTheLineIsReadAndHasNoChecksum) {
+  write_text_file(file, bytes.substr(0, bytes.size() - kLine));
+  OpenFile open(file, O_RDONLY);
+  EXPECT_EQ(checksum_of(open), FileChecksum::kNone);
+  EXPECT_FALSE(has_checksum(open));
+  EXPECT_EQ(read_recording(file).time.size(), 500u);
+}
+
+}  // namespace
+}  // namespace beamgyro

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+#include <hdf5.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "dataset/files/atomic_file.h"
+#include "dataset/files/text_file.h"
+#include "dataset/netcdf/recording_file.h"
+#include "dataset/netcdf/recording_reader.h"
+#include "tests/dataset/rejection.h"
+#include "tests/dataset/sample_recording.h"
+
+namespace beamgyro {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr hsize_t kSamples = 20;
+
+/// A recording that somebody changed with HDF5 in order to do harm, so that it
+/// has no checksum any more.
+class HostileHdf5 : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder = fs::path(::testing::TempDir()) /
+             ("hostile " + std::to_string(getpid()));
+    fs::create_directory(folder);
+    file = folder / "run.h5";
+    write_recording(sample_recording(kSamples), file);
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  void change(const std::function<void(hid_t)>& work) const {
+    const hid_t id = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    ASSERT_GE(id, 0);
+    work(id);
+    ASSERT_GE(H5Fclose(id), 0);
+  }
+
+  std::string rejected() const {
+    const std::string message = rejection([&] { read_recording(file); });
+    EXPECT_TRUE(message.starts_with(file.string() + ": ")) << message;
+    return message.substr(std::min(message.size(), file.string().size() + 2));
+  }
+
+  fs::path folder, file;
+};
+
+/// /rate anew, of `type` and `length`, with `properties`. Returns its id.
+hid_t make_rate(hid_t file, hid_t type, hsize_t length, hid_t properties) {
+  H5Ldelete(file, "rate", H5P_DEFAULT);
+  const hid_t space = H5Screate_simple(1, &length, nullptr);
+  const hid_t rate = H5Dcreate2(file, "rate", type, space, H5P_DEFAULT,
+                                properties, H5P_DEFAULT);
+  EXPECT_GE(rate, 0);
+  H5Sclose(space);
+  for (const auto& [name, value] :
+       {std::pair("units", "degree/s"), std::pair("long_name", "rate"),
+        std::pair("role", "measured")}) {
+    const hid_t text = H5Tcopy(H5T_C_S1);
+    H5Tset_size(text, std::string(value).size());
+    const hid_t scalar = H5Screate(H5S_SCALAR);
+    const hid_t attribute =
+        H5Acreate2(rate, name, text, scalar, H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(attribute, text, value);
+    H5Aclose(attribute);
+    H5Sclose(scalar);
+    H5Tclose(text);
+  }
+  return rate;
+}
+
+void write_zeros(hid_t rate, hsize_t length) {
+  const std::vector<double> zeros(length);
+  EXPECT_GE(H5Dwrite(rate, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                     zeros.data()),
+            0);
+}
+
+hid_t chunked(hsize_t chunk) {
+  const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(properties, 1, &chunk);
+  return properties;
+}
+
+long peak_memory() {  // [KiB]
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  return used.ru_maxrss;
+}
+
+TEST_F(HostileHdf5, AFileThatAnotherProgramChangedIsRead) {
+  change([](hid_t) {});
+  EXPECT_EQ(read_recording(file).columns.size(), 16u);
+}
+
+TEST_F(HostileHdf5, ShuffleDeflateAndFletcherAreRead) {
+  change([](hid_t id) {
+    const hid_t properties = chunked(7);
+    H5Pset_shuffle(properties);
+    H5Pset_deflate(properties, 9);
+    H5Pset_fletcher32(properties);
+    const hid_t rate = make_rate(id, H5T_IEEE_F32BE, kSamples, properties);
+    write_zeros(rate, kSamples);
+    H5Dclose(rate);
+    H5Pclose(properties);
+  });
+  const Recording recording = read_recording(file);
+  EXPECT_EQ(column_values(recording, "rate"), std::vector<double>(kSamples));
+}
+
+TEST_F(HostileHdf5, LinksAreNotFollowed) {
+  const fs::path other = folder / "other.h5";
+  fs::copy_file(file, other);
+  change([&](hid_t id) {
+    H5Ldelete(id, "rate", H5P_DEFAULT);
+    H5Lcreate_external(other.c_str(), "/rate", id, "rate", H5P_DEFAULT,
+                       H5P_DEFAULT);
+  });
+  EXPECT_EQ(rejected(),
+            "rate is a link to another place; expected the variable itself");
+  change([](hid_t id) {
+    H5Ldelete(id, "rate", H5P_DEFAULT);
+    H5Lcreate_soft("/output", id, "rate", H5P_DEFAULT, H5P_DEFAULT);
+  });
+  EXPECT_EQ(rejected(),
+            "rate is a link to another place; expected the variable itself");
+  change([&](hid_t id) {
+    H5Ldelete(id, "rate", H5P_DEFAULT);
+    H5Ldelete(id, "meta/device", H5P_DEFAULT);
+    H5Lcreate_external(other.c_str(), "/meta/device", id, "meta/device",
+                       H5P_DEFAULT, H5P_DEFAULT);
+  });
+  EXPECT_EQ(rejected(),
+            "meta/device is a link to another place; expected the variable "
+            "itself");
+}
+
+TEST_F(HostileHdf5, AMetaThatIsALinkIsNotFollowed) {
+  const fs::path other = folder / "other.h5";
+  fs::copy_file(file, other);
+  change([&](hid_t id) {
+    H5Ldelete(id, "meta", H5P_DEFAULT);
+    H5Lcreate_external(other.c_str(), "/meta", id, "meta", H5P_DEFAULT,
+                       H5P_DEFAULT);
+  });
+  EXPECT_EQ(rejected(),
+            "meta is a link to another place; expected the group itself");
+}
+
+TEST_F(HostileHdf5, ValuesInOtherFilesAreNotRead) {
+  const fs::path other = folder / "other.bin";
+  write_text_file(other, std::string(kSamples * 8, '\0'));
+  change([&](hid_t id) {
+    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_external(properties, other.c_str(), 0, kSamples * 8);
+    H5Dclose(make_rate(id, H5T_IEEE_F64LE, kSamples, properties));
+    H5Pclose(properties);
+  });
+  EXPECT_EQ(rejected(),
+            "the values of rate are in another file; expected them in this");
+  change([&](hid_t id) {
+    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+    const hid_t space = H5Screate_simple(1, &kSamples, nullptr);
+    H5Pset_virtual(properties, space, "other.h5", "rate", space);
+    H5Dclose(make_rate(id, H5T_IEEE_F64LE, kSamples, properties));
+    H5Sclose(space);
+    H5Pclose(properties);
+  });
+  EXPECT_TRUE(rejected().starts_with("rate is a view of other files"));
+}
+
+TEST_F(HostileHdf5, TextsOfVariableLengthAreNotRead) {
+  const auto set_text = [&](const char* owner, const char* name) {
+    change([&](hid_t id) {
+      H5Adelete_by_name(id, owner, name, H5P_DEFAULT);
+      const hid_t type = H5Tcopy(H5T_C_S1);
+      H5Tset_size(type, H5T_VARIABLE);
+      const hid_t object = H5Oopen(id, owner, H5P_DEFAULT);
+      const hid_t scalar = H5Screate(H5S_SCALAR);
+      const hid_t attribute =
+          H5Acreate2(object, name, type, scalar, H5P_DEFAULT, H5P_DEFAULT);
+      const char* text = "degree/s";
+      H5Awrite(attribute, type, &text);
+      H5Aclose(attribute);
+      H5Sclose(scalar);
+      H5Oclose(object);
+      H5Tclose(type);
+    });
+  };
+  set_text("/rate", "units");
+  EXPECT_TRUE(rejected().starts_with(
+      "attribute units of rate is text of variable length"));
+  set_text("/", "fidelity");
+  EXPECT_TRUE(rejected().starts_with(
+      "attribute fidelity of the file is text of variable length"));
+}
+
+TEST_F(HostileHdf5, AMetaTextOfVariableLengthAsOfVersion1IsNotRead) {
+  change([](hid_t id) {
+    H5Ldelete(id, "meta/device", H5P_DEFAULT);
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, H5T_VARIABLE);
+    const hid_t scalar = H5Screate(H5S_SCALAR);
+    const hid_t text = H5Dcreate2(id, "meta/device", type, scalar, H5P_DEFAULT,
+                                  H5P_DEFAULT, H5P_DEFAULT);
+    const char* value = "text";
+    H5Dwrite(text, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value);
+    H5Dclose(text);
+    H5Sclose(scalar);
+    H5Tclose(type);
+  });
+  EXPECT_TRUE(
+      rejected().starts_with("/meta/device is text of variable length"));
+}
+
+std::size_t pass(unsigned, std::size_t, const unsigned[], std::size_t bytes,
+                 std::size_t*, void**) {
+  return bytes;
+}
+
+TEST_F(HostileHdf5, FiltersOfOthersAreNotRun) {
+  constexpr H5Z_filter_t kForeign = 300;
+  const H5Z_class2_t filter = {H5Z_CLASS_T_VERS, kForeign, 1,       1,
+                               "foreign",        nullptr,  nullptr, pass};
+  ASSERT_GE(H5Zregister(&filter), 0);
+  change([](hid_t id) {
+    const hid_t properties = chunked(kSamples);
+    H5Pset_filter(properties, kForeign, H5Z_FLAG_MANDATORY, 0, nullptr);
+    const hid_t rate = make_rate(id, H5T_IEEE_F64LE, kSamples, properties);
+    write_zeros(rate, kSamples);
+    H5Dclose(rate);
+    H5Pclose(properties);
+  });
+  EXPECT_EQ(rejected(),
+            "rate is stored through filter 300; expected shuffle, deflate and "
+            "fletcher32, each once at most");
+}
+
+TEST_F(HostileHdf5, PlugInsAreNotLoaded) {
+  read_recording(file);
+  unsigned state = 1;
+  ASSERT_GE(H5PLget_loading_state(&state), 0);
+  EXPECT_EQ(state, 0u);
+}
+
+TEST_F(HostileHdf5, DeflateWithinDeflateIsNotInflated) {
+  change([](hid_t id) {
+    static constexpr hsize_t kLong = hsize_t{1} << 20;
+    const hid_t properties = chunked(kLong);
+    H5Pset_deflate(properties, 9);
+    H5Pset_deflate(properties, 9);
+    const hid_t rate = make_rate(id, H5T_IEEE_F64LE, kLong, properties);
+    write_zeros(rate, kLong);
+    H5Dclose(rate);
+    H5Pclose(properties);
+  });
+  EXPECT_TRUE(rejected().starts_with("rate is stored through filter 1;"));
+}
+
+TEST_F(HostileHdf5, ClaimsBeyondTheFileTakeNoMemory) {
+  const long before = peak_memory();
+  // Contiguous, as large as the file system likes, over a short file.
+  change([](hid_t id) {
+    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_alloc_time(properties, H5D_ALLOC_TIME_EARLY);
+    H5Pset_fill_time(properties, H5D_FILL_TIME_NEVER);
+    H5Dclose(make_rate(id, H5T_IEEE_F64LE, hsize_t{1} << 30, properties));
+    H5Pclose(properties);
+  });
+  const std::uintmax_t size = fs::file_size(file);
+  ASSERT_GT(size, std::uintmax_t{1} << 33);
+  EXPECT_TRUE(rejected().starts_with("rate has 1073741824 values"))
+      << rejected();
+  EXPECT_LT(peak_memory() - before, 100'000);
+}
+
+TEST_F(HostileHdf5, ValuesThatInflateToMoreThanAFileMayAskForAreNotRead) {
+  const long before = peak_memory();
+  static constexpr hsize_t kLong = hsize_t{1} << 28;  // 2 GB of zeros in 2 MB
+  change([](hid_t id) {
+    const hid_t properties = chunked(hsize_t{1} << 20);
+    H5Pset_deflate(properties, 9);
+    const hid_t space = H5Screate_simple(1, &kLong, nullptr);
+    H5Ldelete(id, "time", H5P_DEFAULT);
+    const hid_t time = H5Dcreate2(id, "time", H5T_IEEE_F64LE, space,
+                                  H5P_DEFAULT, properties, H5P_DEFAULT);
+    const std::vector<double> zeros(std::size_t{1} << 20);
+    const hsize_t count = zeros.size();
+    const hid_t memory = H5Screate_simple(1, &count, nullptr);
+    for (hsize_t start = 0; start < kLong; start += count) {
+      H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count,
+                          nullptr);
+      H5Dwrite(time, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT,
+               zeros.data());
+    }
+    H5Dclose(time);
+    H5Sclose(memory);
+    H5Sclose(space);
+    H5Pclose(properties);
+  });
+  ASSERT_LT(fs::file_size(file), 4'000'000u);
+  EXPECT_TRUE(
+      rejected().starts_with("268435456 samples of 18 variables take "
+                             "more than the "))
+      << rejected();
+  // Far from 2 GB; the address sanitizer holds on to 256 MB of freed memory.
+  EXPECT_LT(peak_memory() - before, 400'000);
+}
+
+TEST_F(HostileHdf5, ChunksThatAreNotThereAreNoValues) {
+  change([](hid_t id) {
+    const hid_t properties = chunked(5);
+    H5Dclose(make_rate(id, H5T_IEEE_F64LE, kSamples, properties));
+    H5Pclose(properties);
+  });
+  EXPECT_EQ(rejected(),
+            "rate claims 160 bytes of values, and the file has 0 "
+            "for them");
+}
+
+TEST_F(HostileHdf5, NumbersOfKindsThatNoProcessorHasAreNotConverted) {
+  change([](hid_t id) {
+    const hid_t type = H5Tcopy(H5T_IEEE_F64LE);
+    H5Tset_fields(type, 60, 50, 10, 0, 50);
+    H5Tset_precision(type, 61);
+    const hid_t rate = make_rate(id, type, kSamples, H5P_DEFAULT);
+    write_zeros(rate, kSamples);
+    H5Dclose(rate);
+    H5Tclose(type);
+  });
+  EXPECT_EQ(rejected(), "rate has another type; expected floating point");
+}
+
+}  // namespace
+}  // namespace beamgyro
