@@ -113,7 +113,7 @@ Signal csv_signal(const AllanArguments& arguments) {
       {signal.column, signal.unit, "", Role::kMeasured, std::move(values)});
   if (!arguments.unit)
     signal.warnings.push_back(fmt::format(
-        "{}: a CSV states no unit; taken as {}, --unit says otherwise",
+        "{}: a CSV states no unit; taken as {}; --unit names another",
         arguments.file, kRateUnit));
   return signal;
 }
@@ -127,7 +127,7 @@ Signal recorded_signal(const AllanArguments& arguments) {
     signal.unit = column->units == "degree/s" ? kRateUnit : column->units;
   if (arguments.unit)
     throw std::invalid_argument(
-        fmt::format("--unit {}: is for a CSV; {} says itself that it is in {}",
+        fmt::format("--unit {}: is for a CSV only; {} states its unit, {}",
                     *arguments.unit, arguments.file, signal.unit));
   return signal;
 }
@@ -195,7 +195,7 @@ std::string noise_table(const NoiseCoefficients& found,
   fmt::format_to(out, "{:<22}{:>12.4g} {} at {:g} s{}\n", "lowest deviation",
                  found.lowest.deviation, unit, found.lowest.tau,
                  found.still_falling ? ", still falling" : "");
-  fmt::format_to(out, "fitted to {} taus, {:g} to {:g} s, which it misses by ",
+  fmt::format_to(out, "fitted to {} taus, {:g} to {:g} s; the misfit is ",
                  found.taus.size(), found.taus.front(), found.taus.back());
   text += found.misfit > 0.0
               ? fmt::format("{:.2g} % beyond chance\n", 100 * found.misfit)
@@ -205,7 +205,8 @@ std::string noise_table(const NoiseCoefficients& found,
                    std::isfinite(tau.ratio) ? fmt::format("{:.3g}", tau.ratio)
                                             : "nothing");
   if (found.band_limit)
-    fmt::format_to(out, "band of the white noise limited as by {:.3g} s\n",
+    fmt::format_to(out,
+                   "band of the white noise limited as by a pole of {:.3g} s\n",
                    *found.band_limit);
   return text;
 }

@@ -66,7 +66,7 @@ std::string sentence(const SetState& state, std::uint64_t made) {
                   state.entries.size(), state.planned, made,
                   state.device_runs(), state.failures());
   text += state.is_merged ? "the set is whole\n"
-                          : fmt::format("{} files are lacking\n",
+                          : fmt::format("{} files are missing\n",
                                         state.planned - state.entries.size());
   return text;
 }
@@ -89,8 +89,9 @@ int generate(const GenerateArguments& arguments) {
                 task, arguments.resume);
   warn_without_lock(set, arguments.output);
   if (!set.died_before().empty())
-    print_note(fmt::format("{}: going on after {} ended without finishing",
-                           arguments.output, set.died_before()));
+    print_note(fmt::format(
+        "{}: continuing the work of {}, which ended without finishing",
+        arguments.output, set.died_before()));
   const std::vector<std::uint32_t> files = set.lacking();
   generate_with_progress("generating " + arguments.output, plan, files,
                          arguments.jobs,

@@ -82,10 +82,11 @@ std::string listed(const std::vector<SetDefect>& defects) {
 ManifestHead repairable_head(const fs::path& directory,
                              const Manifest& manifest) {
   if (!manifest.head || manifest.head->sources.empty())
-    throw std::runtime_error(fmt::format(
-        "{}: the manifest has lost what tells of the campaign; run generate "
-        "--resume with the campaign",
-        directory.string()));
+    throw std::runtime_error(
+        fmt::format("{}: the manifest has lost the line that names the "
+                    "campaign; run generate "
+                    "--resume with the campaign",
+                    directory.string()));
   if (manifest.head->program_version != kProgramVersion ||
       manifest.head->git_revision != kGitRevision)
     throw std::runtime_error(fmt::format(
@@ -142,8 +143,8 @@ void repair(const fs::path& directory, const Manifest& manifest,
         const auto hash = hashes.find(file);
         if (hash != hashes.end() && hash->second != sha256(shard.bytes))
           throw std::runtime_error(fmt::format(
-              "{}: made again it has other bytes than the manifest says; "
-              "another kind of machine made it",
+              "{}: this machine makes other bytes than the manifest has; "
+              "repair the set on a machine of the kind that made it",
               expected_entry(head, file).file));
         set.add(file, shard.bytes, shard.failures);
       });

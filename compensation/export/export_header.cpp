@@ -72,7 +72,7 @@ std::string macros(const std::string& name, const FirmwareModel& model,
       c_literal(*std::ranges::max_element(kComparedPeriods)));
   if (model.reads(kFirmwareDriveFrequency))
     text += fmt::format(
-        "/* [Hz]; samples tell the change from it. */\n"
+        "/* [Hz]; samples hold the difference from it. */\n"
         "#define {}_DRIVE_FREQUENCY {}\n\n",
         name, model.drive_frequency());
   return text;

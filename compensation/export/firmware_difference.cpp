@@ -80,11 +80,11 @@ Scale range_of(const Compensator& c, std::size_t signal) {
     if (c.inputs[i].column == kFirmwareSignals[signal]) {
       const Scale& scale = c.bias.input_scales[i];
       if (scale == Scale{})
-        throw std::invalid_argument(fmt::format(
-            "the file does not tell which values of {} training saw, so that "
-            "the accuracy of exported code cannot be measured; a model with "
-            "normalised = true tells it",
-            kFirmwareSignals[signal]));
+        throw std::invalid_argument(
+            fmt::format("the file does not have the range of {} in training, "
+                        "so the accuracy of exported code cannot be measured; "
+                        "a model with normalised = true has it",
+                        kFirmwareSignals[signal]));
       return scale;
     }
   return {0.0, kRate};

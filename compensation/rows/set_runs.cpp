@@ -32,12 +32,13 @@ Manifest finished_manifest(const std::filesystem::path& directory) {
   Manifest manifest = read_manifest(directory, kManifestName);
   if (!manifest.head || !manifest.is_finished)
     throw std::invalid_argument(fmt::format(
-        "{}: the set is not finished; generate goes on where it stopped",
+        "{}: the set is not finished; generate --resume finishes it",
         directory.string()));
   if (!manifest.damaged_lines.empty() ||
       manifest.entries.size() != file_count(*manifest.head))
-    throw std::invalid_argument(fmt::format(
-        "{}: the manifest is damaged; verify tells more", directory.string()));
+    throw std::invalid_argument(
+        fmt::format("{}: the manifest is damaged; run beamgyro verify",
+                    directory.string()));
   return manifest;
 }
 
@@ -45,10 +46,9 @@ Manifest finished_manifest(const std::filesystem::path& directory) {
 void check_bytes(const std::filesystem::path& directory,
                  const ManifestEntry& entry) {
   if (sha256_of_set_file(directory, entry.file) != entry.sha256)
-    throw std::invalid_argument(
-        fmt::format("{}: holds other bytes than the manifest says; "
-                    "verify tells more",
-                    (directory / entry.file).string()));
+    throw std::invalid_argument(fmt::format(
+        "{}: holds other bytes than the manifest says; run beamgyro verify",
+        (directory / entry.file).string()));
 }
 
 void check_selection(const ManifestHead& head, const SetSelection& selection,

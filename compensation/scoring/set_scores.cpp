@@ -133,7 +133,7 @@ std::vector<std::string> warnings_of(const Compensator& compensator,
         seen, scores.size()));
   if (runs.set && may_have_used(compensator.provenance, *runs.set))
     warnings.push_back(
-        "the compensator was trained on this set and does not tell on which "
+        "the compensator was trained on this set and does not record on which "
         "devices: these scores may be in-sample");
   return warnings;
 }

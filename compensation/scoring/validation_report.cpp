@@ -196,7 +196,8 @@ std::string notes(const Validation& validation) {
     text += replay_note(*overall.replayed);
   }
   if (overall.baseline) {
-    text += fmt::format("% cubic: of the variance of a cubic {}\n", kClaimed);
+    text += fmt::format("% cubic: percent of the variance of the cubic {}\n",
+                        kClaimed);
   }
   if (overall.white_noise) {
     text += fmt::format("white noise at 1 s: {:.3g} of the raw rate's\n",

@@ -75,7 +75,7 @@ class Check {
     if (!manifest_.is_finished) add(kManifestName, "is not finished");
     if (!manifest_.head) {
       add(kManifestName,
-          "has no first line, which tells what belongs to the set");
+          "has no first line, which defines what belongs to the set");
       return;
     }
     check_head_copy(*manifest_.head);
@@ -113,7 +113,7 @@ class Check {
       if (entry.file != expected.file ||
           entry.first_device != expected.first_device ||
           entry.devices != expected.devices)
-        add(expected.file, "stands otherwise in the manifest", entry.index);
+        add(expected.file, "has a wrong line in the manifest", entry.index);
     }
     std::size_t missing = planned - found.size();
     for (std::uint32_t index = 0, listed = 0;
@@ -125,7 +125,7 @@ class Check {
     }
     if (missing > 0)
       add(kManifestName,
-          fmt::format("does not have {} more of {} files", missing, planned));
+          fmt::format("lacks the lines of {} of {} files", missing, planned));
   }
 
   /// Nothing when it is no ordinary file, which is a defect.

@@ -129,7 +129,7 @@ class Allan(ProgramTest):
                       says="--from 300 --to 100")
         self.rejected("allan", "run.h5", "--from", 1e6, says="from 1e+06")
         self.rejected("allan", "run.h5", "--unit", "V",
-                      says="says itself that it is in deg/s")
+                      says="states its unit, deg/s")
 
 
 if __name__ == "__main__":

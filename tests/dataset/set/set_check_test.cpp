@@ -174,7 +174,7 @@ TEST_F(CheckSet, AHeadMayClaimMoreFilesThanMemoryHolds) {
   getrusage(RUSAGE_SELF, &used);
   EXPECT_LT(used.ru_maxrss, 500'000);  // [KiB]
   EXPECT_EQ(found.back().what,
-            "does not have 3999899994 more of 4000000000 files");
+            "lacks the lines of 3999899994 of 4000000000 files");
 }
 
 }  // namespace
