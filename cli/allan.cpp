@@ -33,7 +33,7 @@ struct AllanArguments {
   TimeWindow window;
 };
 
-/// What the deviations are of.
+/// The signal whose deviations are computed.
 struct Signal {
   Recording recording;  // holds the column
   std::string column, unit;
@@ -83,7 +83,7 @@ std::vector<double> csv_time(const AllanArguments& arguments,
   return time;
 }
 
-/// Angular rates are converted to deg/s; of another unit the numbers stay.
+/// Angular rates are converted to deg/s. Numbers in another unit stay.
 void convert(std::string& unit, std::vector<double>& values) {
   const double scale = unit == "deg/h"   ? 1.0 / 3600.0
                        : unit == "rad/s" ? 180.0 / std::numbers::pi
@@ -241,7 +241,7 @@ int allan(const AllanArguments& arguments) {
   nlohmann::ordered_json json = to_json(curve);
   json["series"] = series_json(series, signal);
   json["noise"] = nullptr;
-  // Fewer points than the coefficients need leave the curve itself.
+  // With fewer points than the coefficients need only the curve is printed.
   if (has_noise_coefficients(curve.overlapping)) {
     const NoiseCoefficients found = noise_coefficients(curve.overlapping);
     text += '\n';

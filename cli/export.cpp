@@ -39,7 +39,7 @@ struct NamedCompensator {
   Compensator compensator;
 };
 
-// Errors of a compensator name its file.
+// Runs `work` and puts the name of the compensator's file before an error.
 template <class Work>
 auto of_file(const fs::path& file, Work work) {
   try {
@@ -139,7 +139,7 @@ void require_options(const ExportArguments& arguments) {
          "px4 and ardupilot");
 }
 
-// Before anything is made.
+// Checks all outputs before the first is written.
 void require_outputs(const fs::path& directory, const NamedTexts& texts,
                      const std::vector<fs::path>& inputs) {
   const fs::file_status status = status_of(directory);
@@ -152,7 +152,7 @@ void require_outputs(const fs::path& directory, const NamedTexts& texts,
     require_output(directory / called, inputs);
 }
 
-// All of them or none.
+// Writes all files or none.
 void write_all(const fs::path& directory, const NamedTexts& texts) {
   std::error_code error;
   fs::create_directories(directory, error);

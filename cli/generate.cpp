@@ -27,7 +27,7 @@ struct GenerateArguments {
   bool resume = false, strict = false;
 };
 
-// Whole number of `text` from 1 on, or nothing.
+// Returns the whole number in `text`, at least 1, or nothing.
 std::optional<std::uint32_t> number(std::string_view text) {
   std::uint32_t value = 0;
   const char* const last = text.data() + text.size();
@@ -48,7 +48,7 @@ SetTask task_of(std::string_view shard) {
       fmt::format("--shard {}: expected I/N with I = 1..N", shard));
 }
 
-// Files of the task that were there and are gone.
+// Throws when files of the task that were made have vanished.
 void require_nothing_lost(const std::string& output, const SetTask& task,
                           const ManifestHead& head, const SetState& state) {
   for (std::uint32_t index = 0; index < state.planned; ++index) {

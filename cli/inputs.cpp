@@ -28,10 +28,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Device and number of a file, which all its names share.
+/// Device and inode of a file, which are the same under all its names.
 using FileIdentity = std::pair<dev_t, ino_t>;
 
-/// Links followed; nothing when there is no such file.
+/// Follows links. Returns nothing when there is no such file.
 std::optional<FileIdentity> identity_of(const fs::path& path) {
   struct stat facts {};
   if (uninterrupted([&] { return ::stat(path.c_str(), &facts); }) == 0)
@@ -41,7 +41,7 @@ std::optional<FileIdentity> identity_of(const fs::path& path) {
   return {};
 }
 
-/// None when there is no such directory.
+/// Returns no names when there is no such directory.
 std::vector<std::string> files_below(const fs::path& directory) {
   try {
     return Directory(directory).files_below();
@@ -104,7 +104,7 @@ void require_set_output(const fs::path& directory, const ManifestHead& head,
   std::set<FileIdentity> read;
   for (const SourceText& input : inputs)
     if (const auto identity = identity_of(input.path)) read.insert(*identity);
-  // Copies that are as they should be are left alone.
+  // Copies with the right bytes will not be written.
   std::map<std::string, std::string> copies;
   for (const SourceEntry& source : head.sources)
     copies.emplace(source.file, source.sha256);

@@ -26,8 +26,8 @@ std::vector<std::string> command_names(const CLI::App& program) {
   return names;
 }
 
-// The first argument that is no option must be a command; CLI11 alone would
-// only say that a subcommand is required.
+// Checks that the first argument that is no option is a command. CLI11 alone
+// would only say that a subcommand is required.
 void check_command(const CLI::App& program, int argc, char** argv) {
   const std::vector<std::string> names = command_names(program);
   for (int i = 1; i < argc; ++i) {

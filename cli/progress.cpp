@@ -25,12 +25,12 @@ Progress::Progress(std::string activity, std::function<Status()> status)
       start_(Clock::now()) {
   try {
     if (shows_progress()) {
-      thread_ = std::thread([this] { show(); });
+      thread_ = std::thread([this] { draw(); });
     } else if (status_) {
       thread_ = std::thread([this] { log(); });
     }
   } catch (const std::system_error&) {
-    // The system grants no thread to tell of the work; it goes on untold.
+    // If the system refuses a thread the work runs without a line of progress.
   }
 }
 
@@ -64,7 +64,7 @@ std::string Progress::line() const {
   return text;
 }
 
-void Progress::show() {
+void Progress::draw() {
   double wait = kPatience;
   while (!over_within(wait)) {
     print_progress(line());

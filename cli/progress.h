@@ -36,7 +36,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
  private:
-  void show();
+  void draw();
   void log();
   bool over_within(double seconds);
   std::string line() const;

@@ -25,7 +25,7 @@ struct RunArguments {
   bool yes = false;
 };
 
-// Above this a run says what it costs before it starts [s].
+// A run that will take longer needs --yes [s].
 constexpr double kLongRun = 3600;
 
 void require_consent(const Scenario& scenario, bool yes) {

@@ -60,10 +60,10 @@ std::string drawn(const ShardHead& head) {
 std::string failures_of(const SetState& state) {
   constexpr int kMost = 5;
   std::string text;
-  int told = 0;
+  int listed = 0;
   for (const auto& [index, entry] : state.entries) {
     for (const DeviceFailure& failure : entry.failures) {
-      if (told++ == kMost) return text + "...\n";
+      if (listed++ == kMost) return text + "...\n";
       fmt::format_to(std::back_inserter(text), "device {} in {}: {}\n",
                      failure.device, entry.file, failure.reason);
     }

@@ -22,15 +22,15 @@ bool colour_wanted() {
   return isatty(STDERR_FILENO) == 1 && !(no_colour && *no_colour);
 }
 
-/// Length of the UTF-8 character that `text` starts with; 0 when there is none,
-/// or a control character.
+/// Returns the length of the UTF-8 character at the start of `text`, or 0 when
+/// there is none or it is a control character.
 std::size_t shown_length(std::string_view text) {
   const auto byte = [&](std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
   };
   const unsigned first = byte(0);
   if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
-  // Overlong forms, surrogates and what lies beyond Unicode are none.
+  // Overlong forms, surrogates and values beyond Unicode are not characters.
   const std::size_t length = first >= 0xc2 && first <= 0xdf   ? 2
                              : first >= 0xe0 && first <= 0xef ? 3
                              : first >= 0xf0 && first <= 0xf4 ? 4
@@ -45,8 +45,9 @@ std::size_t shown_length(std::string_view text) {
   return is_wrong ? 0 : length;
 }
 
-/// Texts come from files of others, and a terminal obeys control characters:
-/// they are shown as \xNN, and so is what is no UTF-8. `kept`: some that stay.
+/// Returns `text` with control characters and bytes that are not UTF-8 replaced
+/// by \xNN, because texts come from other people's files and a terminal obeys
+/// control characters. Characters in `kept` stay.
 std::string harmless(std::string_view text, std::string_view kept) {
   std::string shown;
   shown.reserve(text.size());
@@ -63,7 +64,7 @@ std::string harmless(std::string_view text, std::string_view kept) {
   return shown;
 }
 
-// One line. Standard error may be closed; there is nobody left to tell then.
+// Prints one line. A failure is ignored: standard error may be closed.
 void print_line(std::string_view label, const char* colour,
                 std::string_view text) {
   const std::string safe = harmless(text, "\t");

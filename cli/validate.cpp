@@ -46,7 +46,7 @@ std::vector<std::filesystem::path> inputs_of(
   return inputs;
 }
 
-// Scores of the devices nothing was trained on, or of those asked for.
+// Scores the test devices of a set, or the devices named.
 int validate_on_set(const ValidateArguments& arguments,
                     const Compensator& compensator) {
   if (!arguments.json.empty())

@@ -34,8 +34,8 @@ struct VerifyArguments {
   bool repair = false;
 };
 
-// Parts of tasks count until they are merged. Of a set whose manifests are lost
-// the copy of the first line still tells what belongs to it.
+// Reads the manifest, or the parts of tasks that are not merged yet. If the
+// manifests are lost, the copy of the first line still defines the set.
 Manifest manifest_of(const fs::path& directory) {
   Manifest manifest;
   if (fs::is_directory(status_of(directory))) {
@@ -106,7 +106,7 @@ Campaign campaign_of(const fs::path& directory, const Manifest& manifest) try {
 } catch (const std::bad_alloc&) {
   throw;
 } catch (const std::exception& error) {
-  // What cannot be read is damage like any other.
+  // A file that cannot be read counts as damaged.
   throw std::runtime_error(
       fmt::format("{}; run generate --resume with the campaign that the set "
                   "was made of",
@@ -118,8 +118,8 @@ void repair(const fs::path& directory, const Manifest& manifest,
   const ManifestHead head = repairable_head(directory, manifest);
   const Campaign campaign = campaign_of(directory, manifest);
   const ShardPlan plan(campaign, {kProgramVersion, kGitRevision});
-  // The campaign alone decides what is written. A manifest that says otherwise,
-  // such as one from somebody else, is not followed.
+  // The campaign alone decides what is written. A manifest that differs, such
+  // as a forged one, is refused.
   if (plan.manifest_head() != head)
     throw std::runtime_error(
         fmt::format("{}: the manifest is not that of the campaign beside it; "

@@ -36,7 +36,7 @@ void find_in_tables(const ConfigNode& array, const std::string& path,
 void find_first_unknown(const ConfigNode& table, const std::string& path,
                         UnknownKey& first) {
   for (const ConfigNode& child : table.children) {
-    // What another document's override put here is that document's business.
+    // A key that the override of another document added does not count here.
     const bool put_here = child.bridge || child.origin != table.origin;
     if (!child.known) {
       if (!put_here &&
@@ -50,7 +50,7 @@ void find_first_unknown(const ConfigNode& table, const std::string& path,
   }
 }
 
-/// What to write instead of the unknown `key` of the table `path`.
+/// Returns a suggestion in place of the unknown `key` of the table `path`.
 std::string advice(const DocumentState& document, const std::string& path,
                    const std::string& key) {
   const std::vector<std::string> here = document.keys_asked_in(path);

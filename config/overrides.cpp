@@ -57,7 +57,7 @@ std::vector<std::string> split_key(std::string_view key,
   return path;
 }
 
-/// What to type instead of a value that is not TOML.
+/// Returns a suggestion in place of a value that is not TOML.
 std::string advice(std::string_view key, std::string_view value) {
   std::string lower(value);
   std::transform(lower.begin(), lower.end(), lower.begin(), [](char c) {

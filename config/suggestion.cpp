@@ -38,7 +38,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string suggestion(std::string_view word,
                        const std::vector<std::string>& candidates) {
-  // Beyond 200 characters nobody mistyped one of our keys.
+  // A word of more than 200 characters is not a mistyped key.
   if (word.empty() || word.size() > 200) return {};
   const std::string typed = lower_case(word);
   std::size_t nearest = 2 + typed.size() / 4;  // first distance too far

@@ -14,8 +14,9 @@ namespace {
 constexpr std::size_t kDeepest = 256;
 constexpr std::size_t kMostValues = 500'000;
 
-/// Where strings and comments end, and how deep what is outside of them nests.
-/// It agrees with the parser up to the first error the parser would find.
+/// Scans a text for the ends of strings and comments, and for the depth of
+/// nesting outside of them. It agrees with the parser up to the first error
+/// that the parser would find.
 class TomlScan {
  public:
   explicit TomlScan(std::string_view text) : text_(text) {
@@ -67,7 +68,8 @@ class TomlScan {
     is_line_start_ = false;
   }
 
-  /// The depth at which the keys or values of what is open stand.
+  /// Returns the depth of the keys or values of the innermost open table or
+  /// array.
   std::size_t start() const {
     return open_.empty() ? header_depth_ : open_.back();
   }
@@ -116,7 +118,7 @@ class TomlScan {
     place_ = std::min(text_.find('\n', place_), text_.size());
   }
 
-  /// A string in `quote`; three of them are one of many lines.
+  /// Skips a string in `quote`. Three quotes begin a string of several lines.
   void skip_string(char quote) {
     is_line_start_ = false;
     const std::string_view three(quote == '"' ? "\"\"\"" : "'''");

@@ -119,8 +119,7 @@ std::vector<std::uint32_t> read_ranges(const JsonNode& node) {
   return numbers;
 }
 
-// Files from before there were sets lack the key, later ones what tells which
-// devices.
+// The oldest files lack the key; later ones lack the list of devices.
 std::optional<SetPart> read_set(const JsonNode& node, const std::string& key) {
   if (!node.has(key) || node.at(key).is_null()) return std::nullopt;
   const JsonNode set = node.at(key);

@@ -155,7 +155,8 @@ std::string Writer::input_lines() const {
   return text;
 }
 
-// No number for inputs that are none; a temperature was told apart before.
+// Returns NaN for inputs that are not finite. The temperature was checked
+// before.
 std::string Writer::finite_lines() const {
   std::string text;
   for (std::size_t i = 0; i < c_.inputs.size(); ++i)

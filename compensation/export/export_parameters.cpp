@@ -20,7 +20,8 @@ constexpr char kAxes[] = {'x', 'y', 'z'};
 
 char upper(char axis) { return static_cast<char>(axis - 'x' + 'X'); }
 
-// What the parameters cannot say of this compensator; empty when nothing.
+// Returns what the parameters cannot represent of this compensator, or an empty
+// text.
 std::string obstacle(const Compensator& c) {
   if (c.scale_factor) return "it corrects the scale factor";
   if (std::holds_alternative<ConstantBias>(c.bias.function) ||
@@ -63,7 +64,7 @@ std::string heading(const char* what, const std::vector<AutopilotAxis>& axes) {
   return text;
 }
 
-// As many digits as a single has.
+// Returns a number with the digits of single precision.
 std::string number(double value) {
   return fmt::format("{:.9g}", static_cast<float>(value));
 }
@@ -108,7 +109,8 @@ std::string px4_parameters(const std::vector<AutopilotAxis>& axes,
     throw std::invalid_argument(
         fmt::format("instance {}: PX4 has the gyros 0 to 3", gyro.instance));
   const TemperatureRange range = common_range(axes);
-  // The reference is a single, too; the coefficients belong to what it holds.
+  // The reference is rounded to single precision, too, and the coefficients
+  // belong to the rounded value.
   const auto reference =
       static_cast<float>(0.5 * (range.lowest + range.highest));
   std::string text = heading("PX4 thermal compensation", axes) +
@@ -143,7 +145,8 @@ std::string ardupilot_parameters(const std::vector<AutopilotAxis>& axes,
         "the temperatures of training, {:.2f} to {:.2f} degC, are none that "
         "ArduPilot accepts: within -70 to 80 degC and {} K apart",
         range.lowest, range.highest, kArduPilotSpan));
-  // As the autopilot clamps it: the offset belongs to what it uses.
+  // Clamped as the autopilot does, so that the offset belongs to the value that
+  // it uses.
   const double at = std::clamp(static_cast<float>(kArduPilotReference),
                                static_cast<float>(range.lowest),
                                static_cast<float>(range.highest));

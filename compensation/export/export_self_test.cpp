@@ -13,7 +13,8 @@
 namespace beamgyro {
 namespace {
 
-// What the self-test feeds: low + span u, u from a linear congruence.
+// Values of an input in the self-test: low + span u, with u from a linear
+// congruence.
 struct GoldenRange {
   float low, span;
 };

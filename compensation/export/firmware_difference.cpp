@@ -31,7 +31,7 @@ double spread(std::size_t k, std::size_t signal) {
   return 2.0 * fraction_of(static_cast<double>(k) * kSteps[signal]) - 1.0;
 }
 
-// Of temperatures in training [K/s].
+// Returns the fastest change of temperature in training [K/s].
 double fastest_ramp(const Compensator& c) {
   double fastest = 0.0;
   for (std::size_t i = 0; i < c.inputs.size(); ++i)
@@ -72,7 +72,7 @@ std::vector<double> temperatures(const Compensator& c, double period) {
   return result;
 }
 
-// Range of a signal: that of the input it is, if any.
+// Returns the range of a signal: that of its input, if there is one.
 Scale range_of(const Compensator& c, std::size_t signal) {
   const std::string kind = kind_name(c.bias);
   if (kind == "none" || kind == "constant") return {0.0, kRate};

@@ -50,8 +50,8 @@ ArrayXd median_filtered(const TrainingRows& samples) {
 
 BiasModel cubic_about(double reference, const ArrayXd& temperature,
                       const ArrayXd& bias) {
-  // Fitted over half widths, so that the solution is not lost in rounding, and
-  // told in kelvins about the reference, as the parameters are.
+  // Fitted in half widths, so that the solution is not lost in rounding, and
+  // converted to kelvins about the reference, as the parameters are.
   const double half_width =
       std::max((temperature - reference).abs().maxCoeff(), 1e-3);
   Polynomial p = fit_polynomial((temperature - reference) / half_width, bias,

@@ -48,7 +48,7 @@ class LbfgsObjective final : public ceres::FirstOrderFunction {
   double count_, decay_;
 };
 
-// Every stop of ours, tested after each epoch.
+// Our stopping rules, tested after each epoch.
 class Watch final : public ceres::IterationCallback {
  public:
   Watch(const TrainOptions& options, const VectorXd& w, BpNetwork& network,

@@ -46,8 +46,8 @@ std::vector<LegRows> leg_rows(const TrainingRows& rows, const RowGroups& legs) {
   return result;
 }
 
-// Where a leg belongs: to the next long one of its power cycle, else to the
-// last one before it, else to itself.
+// Returns the leg that a short leg joins: the next long one of its power cycle,
+// else the last one before it, else itself.
 std::size_t joined_leg(const std::vector<LegRows>& legs, std::size_t k) {
   const auto is_target = [&](std::size_t other) {
     return !legs[other].is_short && legs[other].cycle == legs[k].cycle;

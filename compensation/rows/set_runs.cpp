@@ -42,7 +42,8 @@ Manifest finished_manifest(const std::filesystem::path& directory) {
   return manifest;
 }
 
-// A file that was changed may still open and show other values.
+// Compares the bytes, because a changed file may still open and give other
+// values.
 void check_bytes(const std::filesystem::path& directory,
                  const ManifestEntry& entry) {
   if (sha256_of_set_file(directory, entry.file) != entry.sha256)

@@ -69,8 +69,9 @@ double likely_misfit(const ArrayXd& residual, const ArrayXd& chance) {
   return 0.5 * (low + high);
 }
 
-/// Fits the terms of `used` to a curve, in turns with the misfit. Squares below
-/// zero but that of Q, or a sum of terms that is not above zero, are no fit.
+/// Fits the terms of `used` to a curve, alternating with the misfit. Returns
+/// nothing if a square other than that of Q is below zero, or a sum of terms is
+/// not above zero.
 std::optional<TermFit> fit_terms(const Curve& curve,
                                  const std::vector<int>& used) {
   const Eigen::MatrixXd terms = curve.terms(Eigen::all, used);

@@ -43,8 +43,8 @@ std::vector<double>& values_of(Recording& recording, std::string_view name) {
   return found->values;
 }
 
-/// Without what only a simulator knows: an estimator must not look at it, and
-/// of a long run it is the larger part.
+/// Returns the recording without its truth, which an estimator must not use and
+/// which is the larger part of a long run.
 Recording measured_part(const Recording& recording) {
   Recording part;
   part.time = recording.time;

@@ -29,8 +29,8 @@ bool is_borne_out(const RecordedRates& rates, double temperature, double s) {
   });
 }
 
-/// Inputs a rate may move in the gyro and does not move in a replay. The
-/// temperature knows nothing of the rate.
+/// Returns the inputs that a rate may move in the gyro and does not move in a
+/// replay. The temperature does not depend on the rate.
 std::vector<std::string> inputs_not_moved(const std::vector<Input>& inputs) {
   std::vector<std::string> names;
   for (const Input& input : inputs)
@@ -48,9 +48,9 @@ void note_untested(const std::string& name, double temperature,
   found.untested.push_back(name);
 }
 
-/// A block without what the compensator rightly does to the scale factor;
-/// nothing when the table alone changes it and no recorded rate tells whether
-/// rightly.
+/// Removes the wanted correction of the scale factor from a block. Returns
+/// nothing when the table changes the scale factor and no recorded rate tests
+/// the table.
 class BlockJudge {
  public:
   BlockJudge(const Compensator& compensator, const RecordedRates& rates,

@@ -31,7 +31,7 @@ ScaleFactorTolerance tolerance_of(const Specification& specification) {
           specification.small_rate_tolerance};
 }
 
-/// Every scale factor the verdict looks at.
+/// Returns every scale factor that the verdict depends on.
 std::vector<MeasuredScaleFactor> measured_scale_factors(
     const Validation& validation, const Specification& specification) {
   std::vector<MeasuredScaleFactor> all;
@@ -85,8 +85,7 @@ Check finite_check(const Score& overall) {
                       overall.not_finite, overall.samples)};
 }
 
-/// Why the verdict is "scale factor not tested", if nothing worse is found;
-/// empty when it is tested.
+/// Returns why the scale factor was not tested, or an empty text when it was.
 std::string why_untested(const Score& overall,
                          const std::vector<MeasuredScaleFactor>& all) {
   if (overall.replayed && !overall.replayed->untested.empty()) {
@@ -221,7 +220,7 @@ Validation validate(const std::string& method,
 
 namespace {
 
-/// `work` with the run's name before what it throws.
+/// Runs `work` and puts the name of the run before an error.
 template <class Work>
 void for_run(const NamedRecording& named, const Work& work) try {
   work();
@@ -235,7 +234,7 @@ double full_scale_of(const Recording& recording,
   return stated_full_scale(recording).value_or(kFullScale);
 }
 
-/// The compensator's answers and its baseline's, and replays.
+/// Returns the answers of the compensator and of its baseline, and replays.
 std::vector<AnsweredRun> answered_runs(const Compensator& compensator,
                                        const std::vector<NamedRecording>& runs,
                                        const Specification& specification) {

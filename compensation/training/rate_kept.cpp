@@ -27,7 +27,8 @@ double half_span_of_bias(const Compensator& c) {
   return 0.5 * (cubic.maxCoeff() - cubic.minCoeff());
 }
 
-// Change of each input with the rate, per deg/s; 0 where it is not known.
+// Returns the change of each input with the rate, per deg/s; 0 where it is not
+// known.
 std::vector<double> slopes_over_rate(const Compensator& c) {
   std::vector<double> slopes(c.inputs.size(), 0.0);
   const bool at_rest = warned_of_rate(c.provenance.warnings);

@@ -103,7 +103,7 @@ std::size_t simplest(const std::vector<Judged>& judged) {
   return choose(scores);
 }
 
-// The curve or network, unless "none" or "constant" is about as good.
+// Returns the curve or network, unless "none" or "constant" is about as good.
 const Judged& useful(const Judged& chosen, const std::vector<Judged>& judged) {
   const Judged* flat = nullptr;
   for (const Judged& each : judged)
@@ -137,15 +137,15 @@ class Selector {
   }
 
   Selected best_of(const std::vector<Candidate>& candidates) const {
-    std::vector<std::string> told;
-    const std::vector<Judged> judged = judge_all(candidates, told);
+    std::vector<std::string> remarks;
+    const std::vector<Judged> judged = judge_all(candidates, remarks);
     if (judged.empty())
       throw std::invalid_argument("no candidate can be fitted: " +
-                                  told.front());
+                                  remarks.front());
     const Judged& chosen =
         judged[one_leg() ? richest_curve(judged) : simplest(judged)];
     const Judged& kept = one_leg() ? chosen : useful(chosen, judged);
-    told.push_back(reason(judged, chosen, kept));
+    remarks.push_back(reason(judged, chosen, kept));
     Selected result;
     result.candidate = kept.candidate;
     result.weight = kept.weight;
@@ -154,8 +154,8 @@ class Selector {
     if (kept.weight < 1.0)
       result.fit.model = averaged_with_constant(
           std::move(result.fit.model), data_.rows.bias.mean(), kept.weight);
-    result.fit.choices.insert(result.fit.choices.begin(), told.begin(),
-                              told.end());
+    result.fit.choices.insert(result.fit.choices.begin(), remarks.begin(),
+                              remarks.end());
     result.constant_errors = constant_errors();
     return result;
   }
@@ -164,7 +164,7 @@ class Selector {
   bool one_leg() const {
     return data_.groups && groups_.by == Grouping::kSegment;
   }
-  // The rows that judge.
+  // Returns the rows on which candidates are judged.
   const TrainingRows& judging() const {
     return data_.groups ? data_.rows : data_.held_out;
   }
@@ -216,13 +216,13 @@ class Selector {
   }
 
   std::vector<Judged> judge_all(const std::vector<Candidate>& candidates,
-                                std::vector<std::string>& told) const {
+                                std::vector<std::string>& remarks) const {
     std::vector<Judged> judged;
     const Predictions flat = predictions(constant());
     for (const Candidate& candidate : candidates) {
       try {
         const Judged& found = judged.emplace_back(judge(candidate, flat));
-        told.push_back(fmt::format(
+        remarks.push_back(fmt::format(
             "{}: {:.6f} deg/s rms over {} unseen {}s{}", candidate.name,
             found.rms(), groups_.count, grouping_name(groups_.by),
             found.weight < 1.0
@@ -230,7 +230,7 @@ class Selector {
                               found.weight)
                 : ""));
       } catch (const std::invalid_argument& error) {
-        told.push_back(
+        remarks.push_back(
             fmt::format("{}: passed over, {}", candidate.name, error.what()));
       }
     }
@@ -268,7 +268,8 @@ bool sees_power_on(const Candidate& candidate) {
                      });
 }
 
-// Why unseen groups cannot judge a candidate; empty when they can.
+// Returns why unseen groups cannot judge a candidate, or an empty text when
+// they can.
 std::string objection(const Candidate& candidate, const TrainingRows& rows,
                       const RowGroups& groups) {
   if (is_constant(candidate)) return "";
@@ -297,24 +298,26 @@ std::string objection(const Candidate& candidate, const TrainingRows& rows,
 
 Selected select_model(std::vector<Candidate> candidates,
                       const SelectionData& data) {
-  std::vector<std::string> told;
+  std::vector<std::string> remarks;
   if (candidates.size() > 1 && data.groups)
     std::erase_if(candidates, [&](const Candidate& candidate) {
       const std::string why = objection(candidate, data.rows, *data.groups);
       if (!why.empty())
-        told.push_back(fmt::format("{}: passed over, {}", candidate.name, why));
+        remarks.push_back(
+            fmt::format("{}: passed over, {}", candidate.name, why));
       return !why.empty();
     });
   if (candidates.empty())
-    throw std::invalid_argument("no candidate can be judged: " + told.front());
+    throw std::invalid_argument("no candidate can be judged: " +
+                                remarks.front());
   // With held-out rows fit_model() chooses the decay itself.
   if (data.groups && data.held_out.size() == 0)
     candidates = one_decay_each(candidates);
   const Selector selector(data);
   Selected result = candidates.size() == 1 ? selector.only(candidates[0])
                                            : selector.best_of(candidates);
-  result.fit.choices.insert(result.fit.choices.begin(), told.begin(),
-                            told.end());
+  result.fit.choices.insert(result.fit.choices.begin(), remarks.begin(),
+                            remarks.end());
   return result;
 }
 

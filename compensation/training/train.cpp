@@ -34,13 +34,13 @@ void check_runs(const ModelSpec& spec, const RunSource& runs,
         "--held-out RUN.h5, or --cv run|cycle|leg");
 }
 
-// What is kept of the runs besides their rows.
+// Facts about the runs that are kept besides their rows.
 struct RunFacts {
   std::vector<SourceFile> files;
   double coarsest_resolution = 0.0;  // [K], of the temperature
 };
 
-// The same runs, noted as they pass.
+// Returns the same runs and notes facts about each as it passes.
 RunSource noting(const RunSource& runs, RunFacts& facts) {
   return {runs.count, [&](const RunSource::Visitor& visit) {
             runs.each([&](const TrainingRun& run) {
@@ -67,7 +67,7 @@ void check_held_out(const std::vector<SourceFile>& held_out,
                         run.name, other.name));
 }
 
-// How the rows are cross-validated, if they are.
+// Returns the groups of rows for cross-validation, if there is one.
 std::optional<RowGroups> groups_of(const ModelSpec& spec,
                                    const TrainingRows& rows,
                                    const TrainingRows& held_out,
@@ -89,13 +89,13 @@ double rms_about(double value, const ArrayXd& bias) {
   return std::sqrt((bias - value).square().mean());
 }
 
-// Temperatures a model answers for whatever the rows hold.
+// Returns the temperatures for which a model holds whatever the rows are.
 TemperatureRange known_range(const FitSpec& kind) {
   const auto* adapted = std::get_if<AdaptedSpec>(&kind);
   return adapted != nullptr ? adapted->population.range() : TemperatureRange{};
 }
 
-// A population's channels help to fit; the curve that comes out needs none.
+// Removes the channels of a population, which are used for fitting only.
 void leave_out_channels(const FitSpec& kind, Compensator& c) {
   if (!std::holds_alternative<PopulationSpec>(kind) &&
       !std::holds_alternative<AdaptedSpec>(kind))
@@ -141,7 +141,8 @@ bool claims_nothing(const FitSpec& kind) {
          std::holds_alternative<ConstantSpec>(kind);
 }
 
-// Why the model claims no improvement over a constant; empty when it may.
+// Returns why the model claims no improvement over a constant, or an empty text
+// when it may.
 std::string why_no_claim(const ModelSpec& spec,
                          const std::optional<RowGroups>& groups,
                          const Selected& selected) {

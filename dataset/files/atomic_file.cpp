@@ -41,7 +41,7 @@ struct Slot {
 static_assert(std::atomic<int>::is_always_lock_free);
 std::array<Slot, 64> partial_files;
 
-// With more threads than slots the last ones wait.
+// Takes a free slot. With more threads than slots it waits.
 std::size_t take_slot() {
   for (;; std::this_thread::sleep_for(std::chrono::milliseconds(1))) {
     for (std::size_t i = 0; i < partial_files.size(); ++i) {
@@ -67,8 +67,8 @@ std::error_code last_error() { return {errno, std::generic_category()}; }
 
 constexpr std::string_view kPartial = ".partial-";
 
-/// As the kernel has it (protected_symlinks): in a directory that all may write
-/// to a link of somebody else leads to where they want.
+/// Refuses a link of another user in a directory that all may write to, as the
+/// kernel's protected_symlinks does, because it may lead anywhere.
 void require_followable(const fs::path& link) {
   struct stat of_link {
   }, of_directory{};
@@ -130,7 +130,7 @@ struct Writer {
   pid_t process = 0;
 };
 
-/// Who writes the partial file of this name, if it is one.
+/// Returns the writer of the partial file of this name, if it is one.
 std::optional<Writer> writer_of(const std::string& name) {
   const std::size_t mark = name.rfind(kPartial);
   if (mark == std::string::npos) return {};
@@ -211,7 +211,8 @@ void AtomicFile::create() {
   }
   slot.state = kTaken;
   file_.emplace(file);
-  // Nobody reads what the file it replaces does not show.
+  // The new file must not be readable to more users than the one that it
+  // replaces.
   if (const auto mode = replaced_mode())
     fchmod(file, (*mode & 0666) | S_IRUSR | S_IWUSR);
 }
@@ -225,7 +226,7 @@ fs::path AtomicFile::partial_path() const {
   return path_.parent_path() / partial_name_;
 }
 
-/// Of the file under the name asked for, if there is one.
+/// Returns the mode of the file that will be replaced, if there is one.
 std::optional<mode_t> AtomicFile::replaced_mode() const {
   struct stat there {};
   if (fstatat(directory_.descriptor(), name_.c_str(), &there,

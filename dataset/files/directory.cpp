@@ -48,7 +48,7 @@ struct stat stat_of(int descriptor) {
   return facts;
 }
 
-/// Every part by itself, so that none is followed.
+/// Opens the parts of the name one by one, so that no link is followed.
 int open_by_parts(int directory, const fs::path& name, int flags) {
   std::vector<OpenFile> parents;
   for (const fs::path& part : name.parent_path()) {
@@ -75,7 +75,7 @@ int open_beneath(int directory, const fs::path& name, int flags) {
         syscall(SYS_openat2, directory, name.c_str(), &how, sizeof how);
     if (file >= 0) return static_cast<int>(file);
     if (errno == EINTR || errno == EAGAIN) continue;
-    // Without the call, or with a filter that does not know it.
+    // The kernel lacks the call, or a filter refuses it.
     if (errno == ENOSYS || errno == EPERM || errno == EINVAL)
       return open_by_parts(directory, name, flags);
     return -1;

@@ -101,7 +101,7 @@ std::vector<std::string> JsonNode::texts() const {
 
 namespace {
 
-/// That nothing nests too deep and no object has too many members, as far as
+/// Throws when the nesting is too deep or an object has too many members, up to
 /// the first error that the parser would find.
 void check_extent(std::string_view text, const std::string& file) {
   constexpr std::size_t kDeepest = 64, kMostMembers = 1000;

@@ -121,8 +121,8 @@ void OpenFile::sync() {
 }
 
 void OpenFile::close() {
-  // Linux has let go of the descriptor before a signal can interrupt it; who
-  // closed it again might close the file of another thread.
+  // Linux releases the descriptor before a signal can interrupt the call.
+  // Closing it again might close the file of another thread.
   if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail();
 }
 

@@ -42,7 +42,7 @@ OpenFile open_set_file(const fs::path& directory, const fs::path& name,
                        int flags) {
   const fs::path path = directory / name;
   try {
-    // Whoever opens a pipe otherwise waits for its other end.
+    // Without this flag opening a pipe would wait for its other end.
     OpenFile file = Directory(directory).open(name, flags | O_NONBLOCK);
     struct stat facts {};
     if (fstat(file.descriptor(), &facts) != 0)

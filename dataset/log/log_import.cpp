@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Rows of a log on their way into a recording.
+// Converts the rows of a log to a recording.
 class LogReader {
  public:
   LogReader(std::string_view text, const std::filesystem::path& path,
@@ -181,7 +181,7 @@ class LogReader {
     for (Column& column : recording_.columns) thin(column.values);
   }
 
-  // Wrong units show in values no gyro has.
+  // Throws for values that no gyro has, which mean a wrong unit.
   void check_plausible() {
     for (std::size_t i = 0; i < slots_.size(); ++i) {
       const LogQuantity& quantity = map_.quantities[i];

@@ -80,7 +80,8 @@ LogQuantity read_rate(const ConfigTable& table) {
   return read_log_rate(table, "rate", "uncompensated rate", Role::kMeasured);
 }
 
-// Every axis is read, so that a mistake in one not asked for shows, too.
+// Reads every axis, so that a mistake in one that was not asked for is found,
+// too.
 LogQuantity read_gyro(const ConfigTable& root, const std::string& axis) {
   const ConfigTable gyro = root.table("gyro");
   std::vector<std::string> axes;

@@ -31,7 +31,7 @@ LogQuantity quantity(const ConfigTable& table, const std::string& variable,
   return quantity;
 }
 
-/// Of a unit that says by itself how its numbers read.
+/// Sets the conversion of a unit that needs no further keys.
 void set_conversion(LogQuantity& quantity) {
   const UnitConversion conversion =
       unit_conversion(quantity.unit, quantity.units);

@@ -68,7 +68,7 @@ LogText::LogText(std::string_view text, const std::filesystem::path& path,
   start();
 }
 
-// To the line above the first row; the layout is known afterwards.
+// Reads to the line above the first row, after which the layout is known.
 void LogText::start() {
   rest_ = text_;
   line_ = 0;

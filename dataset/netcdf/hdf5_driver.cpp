@@ -18,12 +18,12 @@ namespace {
 
 constexpr haddr_t kLargest = std::numeric_limits<off_t>::max();
 
-/// What HDF5 carries in its properties from open to the driver.
+/// Data that HDF5 passes to the driver in its properties.
 struct DriverInfo {
   OpenFile* file;
 };
 
-/// What HDF5 takes for its own structure has to begin with it.
+/// HDF5 requires its own structure at the beginning.
 struct DrivenFile {
   H5FD_t for_hdf5{};
   OpenFile* file = nullptr;
@@ -71,7 +71,8 @@ herr_t close_driven(H5FD_t* file) {
 }
 
 herr_t query_driven(const H5FD_t*, unsigned long* features) {
-  // Those by which the library's own driver lays out a file.
+  // The features of the library's own driver, so that files have the same
+  // layout.
   *features = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA |
               H5FD_FEAT_DATA_SIEVE | H5FD_FEAT_AGGREGATE_SMALLDATA |
               H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
@@ -157,7 +158,7 @@ H5Id properties_for(OpenFile& file) {
   return access;
 }
 
-// HDF5 wants some name for a file.
+// HDF5 requires a name for a file.
 constexpr const char* kName = "beamgyro";
 
 }  // namespace

@@ -45,7 +45,7 @@ bool has_link(hid_t file, const std::string& name) {
                  "look for /" + name);
 }
 
-/// That `name` is the object itself and leads nowhere else.
+/// Throws unless `name` is the object itself and not a link.
 void check_link(hid_t file, const std::string& name, const char* kind) {
   H5L_info_t link{};
   check_hdf5(H5Lget_info(file, name.c_str(), &link, H5P_DEFAULT),
@@ -79,7 +79,7 @@ H5Id open_attribute(hid_t object, const std::string& owner, const char* name) {
           fmt::format("open attribute {} of {}", name, owner)};
 }
 
-/// A class of types and what a message calls it.
+/// A class of types and its name in messages.
 struct NumberKind {
   H5T_class_t type_class;
   const char* name;
@@ -249,7 +249,7 @@ void reject_hdf5_file(const std::filesystem::path& path,
 
 OpenFile open_to_read(const std::filesystem::path& path,
                       const std::string& kind) try {
-  // Whoever opens a pipe otherwise waits for its other end.
+  // Without this flag opening a pipe would wait for its other end.
   OpenFile file(path, O_RDONLY | O_NONBLOCK);
   struct stat facts {};
   if (fstat(file.descriptor(), &facts) != 0)

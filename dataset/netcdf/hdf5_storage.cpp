@@ -41,8 +41,8 @@ std::uint64_t size_of_file(hid_t variable) {
   return size;
 }
 
-/// What the values take in the file [bytes]. The library answers 0 when it
-/// cannot tell, too.
+/// Returns the size of the values in the file [bytes]. The library also returns
+/// 0 when it cannot determine it.
 std::uint64_t stored_size(hid_t variable, const std::string& name) {
   const hsize_t size = H5Dget_storage_size(variable);
   const bool failed = size == 0 && H5Eget_num(H5E_DEFAULT) > 0;
@@ -73,8 +73,8 @@ bool is_deflated(hid_t properties, const std::string& name) {
   return met.contains(H5Z_FILTER_DEFLATE);
 }
 
-/// Of a chunked variable of values of `width` bytes: that every chunk is there
-/// and may hold what it should.
+/// Checks a chunked variable of values of `width` bytes: every chunk is there
+/// and large enough.
 void check_chunks(hid_t variable, hid_t properties, const std::string& name,
                   const std::vector<hsize_t>& lengths, std::size_t width,
                   std::uint64_t stored) {

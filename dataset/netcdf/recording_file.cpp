@@ -36,7 +36,7 @@ void append_number(double value, std::string& text) {
   text.append(digits.data(), end);
 }
 
-// What has to be the same in every block.
+// Returns the properties of a column that must be the same in every block.
 std::string described(const Column& column) {
   return fmt::format("{} [{}], {}", column.name, column.units,
                      role_name(column.role));
@@ -65,7 +65,7 @@ class RecordingFile::Body {
   }
 
  protected:
-  /// What a file has after all values.
+  /// Writes what follows the values at the end of the file.
   virtual void complete(OpenFile&) {}
 
   OpenFile& file() { return target_.file(); }

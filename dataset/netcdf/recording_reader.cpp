@@ -23,8 +23,8 @@
 namespace beamgyro {
 namespace {
 
-/// What the values of a file of `size` bytes may take in memory [bytes]. Of
-/// signals with noise deflate makes a tenth, and of constants a thousandth.
+/// Returns the memory that the values of a file may take [bytes]. Deflate
+/// compresses signals with noise to a tenth, and constants to a thousandth.
 std::uint64_t room_for_values(hid_t file) {
   constexpr std::uint64_t kMostInflated = 400, kAlways = 256u << 20;
   hsize_t size = 0;
@@ -45,8 +45,8 @@ std::size_t number_of_samples(hid_t file,
   return samples;
 }
 
-/// Brings `values` from the unit that the file says to that of a recording, for
-/// which the variable is known.
+/// Converts `values` from the unit in the file to that of recordings, if the
+/// variable is known.
 void convert(const std::string& name, std::string& units,
              std::vector<double>& values) {
   const std::string_view expected = unit_of_variable(name);
@@ -114,8 +114,8 @@ Recording read_file(OpenFile& bytes) {
   return recording;
 }
 
-/// Damage is found before HDF5 sees it, and may crash. Whether there is a
-/// checksum.
+/// Verifies the checksum before HDF5, which may crash on damage, opens the
+/// file. Returns whether there is one.
 bool check_bytes(const std::filesystem::path& path, OpenFile& file) {
   switch (checksum_of(file)) {
     case FileChecksum::kRight:

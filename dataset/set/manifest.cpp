@@ -88,7 +88,7 @@ void require(const JsonNode& line, bool is_right, const std::string& key) {
   if (!is_right) line.at(key).fail("is a name no set has");
 }
 
-/// Below source/, by a name that leads nowhere else.
+/// Returns whether this is a name below source/ that leads nowhere else.
 bool is_source_name(const std::string& text) {
   const std::filesystem::path name = text;
   return text.starts_with("source/") &&
@@ -97,7 +97,7 @@ bool is_source_name(const std::string& text) {
          std::ranges::find(name, "..") == name.end();
 }
 
-/// What stands before `ending`, if it is the name of a run.
+/// Returns whether the part before `ending` is the name of a run.
 bool is_file_of_run(std::string_view name, std::string_view ending) {
   return name.ends_with(ending) &&
          is_run_name(name.substr(0, name.size() - ending.size()));
@@ -180,7 +180,7 @@ ManifestView view_of(const JsonNode& line) {
   return view;
 }
 
-/// What a manifest says so far.
+/// State of reading a manifest line by line.
 struct Reading {
   Manifest manifest;
   std::map<std::uint32_t, ManifestEntry> entries;

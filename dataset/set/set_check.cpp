@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file the manifest tells of; `bytes` is not known of a source.
+/// A file that the manifest lists; the size of a source is not known.
 struct Listed {
   std::string file, sha256;
   std::optional<std::uint64_t> bytes;

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kWhole = "set.lock";
 
-/// Whether the file system knows no such locks.
+/// Returns whether the error means that the file system has no such locks.
 bool is_unknown(int error) {
   return error == ENOSYS || error == EOPNOTSUPP || error == ENOLCK ||
          error == EINVAL;
@@ -40,7 +40,7 @@ std::string reason(const std::error_code& error) {
 
 std::error_code last_error() { return {errno, std::generic_category()}; }
 
-/// Who is named in the file, empty if nobody.
+/// Returns the holder that the file names, or an empty text.
 std::string holder(const OpenFile& file) {
   std::array<char, 256> text{};
   const ssize_t size = uninterrupted(
@@ -52,7 +52,7 @@ std::string on_this_host() {
   return fmt::format("host {}, process ", host_name());
 }
 
-/// Number of the process of this host that is named, or 0.
+/// Returns the number of the named process if it is of this host, or 0.
 pid_t process_here(const std::string& who) {
   const std::string here = on_this_host();
   pid_t process = 0;
@@ -73,7 +73,8 @@ void SetLock::refuse(const std::string& who) const {
                                        who.empty() ? "another process" : who));
 }
 
-// Who it is gets written into the file, so it must be nobody else's.
+// Opens the lock file. The holder is written into it, so it must not be
+// somebody else's file.
 OpenFile SetLock::open_lock(const std::string& name) const {
   try {
     OpenFile file = directory_.open(name, O_RDWR | O_CREAT | O_NONBLOCK);
@@ -132,7 +133,8 @@ SetLock::Held SetLock::acquire(const std::string& name, int operation) {
     const std::string who = fmt::format("{}{}", on_this_host(), getpid());
     if (ftruncate(file.descriptor(), 0) != 0 ||
         pwrite(file.descriptor(), who.data(), who.size(), 0) < 0) {
-      // Who holds it is for messages only; the disk may be full.
+      // The name of the holder is for messages only, so a full disk is no
+      // failure.
     }
     return {name, std::move(file), by_kernel};
   }

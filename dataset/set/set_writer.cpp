@@ -88,7 +88,7 @@ bool holds_files_of_a_set(const fs::path& directory) {
   });
 }
 
-// A link in the place of a file is none.
+// A link in place of a file does not count.
 bool is_there(const Directory& directory, const ManifestEntry& entry) {
   const std::optional<FileFacts> facts = directory.find(entry.file);
   return facts && facts->is_regular && facts->bytes == entry.bytes;
@@ -131,7 +131,7 @@ std::vector<ManifestView> views_of(const fs::path& directory,
   return views;
 }
 
-// Of a set that is whole and merged.
+// Returns whether a complete and merged set has the right views.
 bool has_right_views(const fs::path& directory) {
   const Manifest manifest = read_manifest(directory, kManifestName);
   return manifest.views.size() == manifest.head.value().runs.size() &&
@@ -166,8 +166,7 @@ std::uint64_t SetState::failures() const {
   return count;
 }
 
-// The parts first: they may be merged while this reads, and what they say is
-// newer.
+// Reads the parts first: they are newer, and may be merged while this reads.
 std::optional<SetContents> find_set(const fs::path& directory) {
   if (!fs::is_directory(status_of(directory))) return {};
   std::optional<ManifestHead> head;
@@ -246,7 +245,7 @@ void SetWriter::enter(std::span<const SourceText> sources, bool resume) {
   if (!copy || copy->head != head_ || !copy->damaged_lines.empty())
     start_manifest(directory_, kHeadCopyName, head_);
   if (lacking().empty() && contents) return;
-  // A merged manifest says that all is there, which is not so.
+  // A merged manifest would claim that every file is there, which is wrong now.
   if (task_.is_whole() && before_.is_merged) {
     drop_missing(directory_, before_);
     std::vector<ManifestEntry> kept;

@@ -21,8 +21,8 @@ std::string one_line(std::string text) {
   return text;
 }
 
-// `work` fills in `result`; what a check rejects becomes its failure, and what
-// keeps the device from being simulated.
+// Lets `work` fill in `result`. A rejected value or a failed simulation becomes
+// the failure of the device.
 template <class Result, class Work>
 void attempt(Result& result, const Work& work) {
   try {
@@ -34,8 +34,8 @@ void attempt(Result& result, const Work& work) {
   }
 }
 
-// Named without its folder: failures are data, and the same data wherever the
-// files lie.
+// The name has no folder, because failures are data and must not depend on
+// where the files are.
 ConfigDocument drawn_from(const ConfigDocument& file, Overrides& overrides) {
   return file.with(overrides, file.path().filename().string());
 }

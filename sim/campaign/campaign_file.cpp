@@ -36,7 +36,7 @@ class CampaignReader {
         folder_(file.parent_path()),
         devices_(devices) {}
 
-  /// Of copies of every file, and nothing else is read.
+  /// Reads copies of every file and nothing else.
   CampaignReader(std::span<const SourceText> copies,
                  std::optional<long> devices)
       : copies_(copies),
@@ -311,8 +311,8 @@ class CampaignReader {
       state_.sources.push_back({document.path(), document.text()});
   }
 
-  // What is wrong with a profile is told with its place in the scenario, unless
-  // there are only copies to read.
+  // An error in a profile names its place in the scenario, unless there are
+  // only copies to read.
   Scenario scenario_of(const ConfigDocument& document) {
     if (!copies_.empty()) add_profiles(document);
     Scenario scenario =

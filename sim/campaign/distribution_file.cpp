@@ -14,7 +14,7 @@ using Kind = Distribution::Kind;
 
 constexpr std::array<std::string_view, 4> kForms = {"normal", "uniform",
                                                     "lognormal", "discrete"};
-// Below, the inverse of the distribution function has too few digits left.
+// Below this share the inverse of the distribution function has too few digits.
 constexpr double kSmallestShare = 1e-6;
 
 std::string form_of(const ConfigTable& table, std::string_view key,

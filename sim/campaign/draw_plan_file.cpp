@@ -39,7 +39,7 @@ bool all_numbers(const std::vector<ConfigNode>& nodes) {
   return std::all_of(nodes.begin(), nodes.end(), is_number);
 }
 
-// Reads the file with one override, which has to be of use.
+// Reads the file with one override, which must be used.
 void check_value(const Draw& draw, const ConfigNode& value,
                  const DrawnFile& file) {
   Overrides overrides;

@@ -19,7 +19,8 @@
 namespace beamgyro {
 namespace {
 
-// Counts of a converter whose step all devices share; else floating point.
+// Stores counts of a converter if all devices have the same step, otherwise
+// floating point.
 void store_counts(double step, double offset, Storage counts, bool shared,
                   SetVariable& variable) {
   if (!shared || step == 0) {
@@ -104,8 +105,9 @@ void set_moving(const std::array<bool, kAxes>& axes,
   }
 }
 
-// Those of two samples of the base device with every axis in motion that some
-// device moves, so that they do not depend on what any device draws.
+// Returns the columns of a run of two samples of the base device, with every
+// axis in motion that some device moves. So they do not depend on the values of
+// any device.
 std::vector<Column> columns_of(const Campaign& campaign, std::size_t run) {
   Scenario scenario = campaign.base_scenario(run);
   scenario.duration = 2 / scenario.output_rate;

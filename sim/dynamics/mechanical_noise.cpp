@@ -62,7 +62,7 @@ Matrix2cd complex_form(const Matrix4d& real) {
   return matrix;
 }
 
-// What the loops hold, at a small change of anything.
+// Quantities that the loops hold constant, under a small change.
 struct Held {
   Complex feedback;  // -Theta_F^T u, relative: amplitude and phase error
   Complex readout;   // Theta_R^T u + C_ft V_D [C]

@@ -24,7 +24,7 @@ using Eigen::Vector2cd;
 // library's division looks after those too and takes several times as long.
 Complex reciprocal(Complex z) { return std::conj(z) / std::norm(z); }
 
-// Position takes the Euler force in.
+// Returns the forces, with the Euler force added to the position term.
 ModeForces forces_of(const ModalParameters& modal, const CaseMotion& motion) {
   const double gain = modal.coriolis_mass / modal.mass;
   ModeForces forces = mode_forces(modal.stiffness / modal.mass,
@@ -40,7 +40,7 @@ Matrix2cd stiffness_at(double omega, double mass, const ModeForces& forces) {
   return S;
 }
 
-// What Newton's method solves again and again.
+// The equations that Newton's method solves at each step.
 struct Problem {
   const ModalParameters& modal;
   ModeForces forces;
@@ -162,7 +162,7 @@ struct LockCurve {
              imag_of(zero1, pole2)};
   }
 
-  // Whether the loop would stay at a root of the cubic.
+  // Returns whether the loop is stable at a root of the cubic.
   bool is_stable_lock(double s) const {
     const double slope = cubic[1] + s * (2 * cubic[2] + 3 * s * cubic[3]);
     return slope < 0 &&
@@ -171,7 +171,7 @@ struct LockCurve {
   }
 };
 
-// Whether another frequency than this one would do as well.
+// Returns whether there is another stable frequency.
 bool has_rival(const Problem& problem, const Lock& lock) {
   const LockCurve curve(problem, lock.response);
   const auto& [c0, c1, c2, c3] = curve.cubic;  // c0 is zero but for roundoff
@@ -185,7 +185,7 @@ bool has_rival(const Problem& problem, const Lock& lock) {
   return is_rival(q / c3) || is_rival(c1 / q);
 }
 
-// All frequencies that the loop would stay at; `omega` is near the modes.
+// Returns all stable frequencies; `omega` is near the modes.
 std::vector<Lock> stable_locks(const Problem& problem, double omega,
                                double half_width) {
   const LockCurve curve(problem, response(problem, omega));

@@ -46,7 +46,7 @@ double target_of(const Cluster& cluster, double output_rate) {
   };
   const double sample = std::round(cluster.last * output_rate) / output_rate;
   if (is_same_time(sample, within(sample))) return sample;
-  // Nine decimals stand for one number each up to here.
+  // Up to here numbers of nine decimals are distinct doubles.
   constexpr double kDecimal = 1e6;  // [s]
   constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
   const double decimal = std::round(cluster.last * 1e9) / 1e9;

@@ -85,7 +85,7 @@ class CarrierTrajectory {
     return at_rest_ ? segment_->at_rest(now) : segment_->at(now);
   }
 
-  // Goes from the piece at hand to another that starts now.
+  // Ends the present piece and begins another one now.
   void begin(std::size_t piece) {
     const double before = segment_ ? segment_->at(pieces_[piece_].end).z : 0;
     piece_ = piece;
@@ -228,7 +228,7 @@ void simulate_carrier(const Scenario& given, const Gyro& gyro,
   std::optional<SensingNoise> noise;
   if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
   const SampleGrid grid = sample_grid(scenario);
-  // Short blocks: they are what shows that a run goes on.
+  // Blocks are short, because progress is reported after each.
   const auto block_size =
       std::clamp(static_cast<std::size_t>(kBlockTime * scenario.output_rate),
                  std::size_t{1}, kBlockSamples);
@@ -237,7 +237,7 @@ void simulate_carrier(const Scenario& given, const Gyro& gyro,
         grid.times(k, std::min(block_size, grid.count - k));
     RunSamples samples = samples_at(block, gyro, temperatures, trajectory,
                                     twin ? &*twin : nullptr);
-    motion.show(samples);
+    motion.sample(samples);
     if (noise) noise->add_next(samples);
     on_block(recorder.block(std::move(samples)));
   }

@@ -35,7 +35,7 @@ void simulate_envelope(const Scenario& given, const Gyro& gyro,
         grid.times(k, std::min(kBlockSamples, grid.count - k));
     RunSamples samples = trajectory.advance(block);
     samples.bias = twin ? twin->advance(block).output : samples.output;
-    motion.show(samples);
+    motion.sample(samples);
     if (noise) noise->add_next(samples);
     on_block(recorder.block(std::move(samples)));
   }

@@ -27,7 +27,7 @@ VectorXd error_weights(Index size) {
   return weights;
 }
 
-// What a sample needs of the state.
+// States that a sample needs.
 constexpr std::array<Index, 12> kShown = {
     kFeedback2,         kFeedback2 + 1,     kPllIntegral,
     kAgcIntegral,       kOutput2,           kOutput2 + 1,
@@ -165,8 +165,8 @@ void EnvelopeTrajectory::begin(std::size_t piece) {
   if (!p.jump && piece > 0) return;
   VectorXd y = state();
   if (powered_ != was_powered) {
-    // What still rings when the power goes is gone within a second; the loops
-    // and an oven start from nothing.
+    // Vibration decays within a second after power-off, and the loops and an
+    // oven start from zero.
     y.head<kEnvelopeNodes>().setZero();
     y.tail(y.size() - kEnvelopeNodes - kThermalNodeCount).setZero();
   }

@@ -123,7 +123,7 @@ MotionSegment Motion::segment(double start, double end) const {
           mount_};
 }
 
-void Motion::show(RunSamples& samples) const {
+void Motion::sample(RunSamples& samples) const {
   samples.rate = values_at(rate_[2], samples.time);
   for (std::size_t i = 0; i < cross_moves_.size(); ++i) {
     if (cross_moves_[i])

@@ -61,7 +61,7 @@ class Motion {
   MotionSegment segment(double start, double end) const;
 
   /// Writes the motion at the times of `samples` to `samples`.
-  void show(RunSamples& samples) const;
+  void sample(RunSamples& samples) const;
 
  private:
   std::array<Signal, 3> rate_, acceleration_;

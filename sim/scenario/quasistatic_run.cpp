@@ -81,7 +81,8 @@ double fastest_rate(const Motion& motion, const OutputFilter& filter,
   return fastest;
 }
 
-// Rate alone: from a table over all temperatures and rates of the run.
+// Response to the rate alone, from a table over all temperatures and rates of
+// the run.
 class RateResponse {
  public:
   RateResponse(const Gyro& gyro, const Motion& motion,
@@ -122,8 +123,8 @@ class RateResponse {
   Samples rate_;
 };
 
-// Cross rates and accelerations, too: the exact solution for every sample of
-// what the output filter makes of everything that moves the case.
+// Response with cross rates and accelerations: the exact solution for every
+// sample, with the motion of the case behind the output filter.
 class MotionResponse {
  public:
   MotionResponse(const Gyro& gyro, const Motion& motion, double output_rate)
@@ -245,7 +246,7 @@ void simulate_quasistatic(const Scenario& given, const Gyro& gyro,
       temperatures.sample(static_cast<ThermalNode>(node), k, samples.time,
                           samples.temperature[node]);
     }
-    motion.show(samples);
+    motion.sample(samples);
     respond(samples);
     on_block(recorder.block(std::move(samples)));
   }

@@ -23,7 +23,7 @@ constexpr double kLargestRecording = 5e7;  // samples, 12 GB at work
 const ProfileUnit kAmbient{"temperature_degC", 1, kZeroCelsius,
                            between(-150, 300)};
 
-// Beyond this the models do not see what a motion does.
+// Higher frequencies of a motion are outside of the validity of the models.
 constexpr Range kMotionFrequency{0, 1e3, true, false};  // [Hz]
 
 // How the motion about or along one axis is written.

@@ -98,7 +98,7 @@ NodeVector ThermalNetwork::steady_state(
     const NodeVector& power, const ThermalSurroundings& surroundings) const {
   constexpr int kMaxIterations = 100;
   constexpr double kSmallestStep = 1e-10;  // [K]
-  // Off ambient, where natural convection alone has no slope.
+  // Start away from ambient, where natural convection alone has no slope.
   NodeVector temperature = NodeVector::Constant(surroundings.ambient + 1.0);
   for (int i = 0; i < kMaxIterations; ++i) {
     const NodeVector step =

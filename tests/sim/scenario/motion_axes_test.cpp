@@ -80,7 +80,7 @@ class EveryAxis : public testing::TestWithParam<AxisCase> {
                              std::vector<double> times) const {
     RunSamples samples;
     samples.time = std::move(times);
-    Motion(scenario, nominal_gyro(), {}).show(samples);
+    Motion(scenario, nominal_gyro(), {}).sample(samples);
     std::vector<double> found = GetParam().samples(samples);
     for (double& v : found) v /= GetParam().unit;
     return found;
@@ -169,7 +169,7 @@ RunSamples all_random(double duration) {
       text, "[ambient]\nconstant_degC = 25\n", std::to_string(duration), "20");
   RunSamples samples;
   samples.time = sample_times(scenario);
-  Motion(scenario, nominal_gyro(), {}).show(samples);
+  Motion(scenario, nominal_gyro(), {}).sample(samples);
   return samples;
 }
 

@@ -125,7 +125,7 @@ TEST(Motion, OfASegmentMeetsTheSamplesOfTheRun) {
   const Motion motion(scenario, nominal_gyro(), {});
   RunSamples samples;
   samples.time = sample_times(scenario);
-  motion.show(samples);
+  motion.sample(samples);
   std::size_t k = 0;
   for (const Piece& piece : pieces(scenario, motion)) {
     const MotionSegment segment = motion.segment(piece.start, piece.end);
