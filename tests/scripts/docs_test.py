@@ -11,8 +11,12 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 WIDTH = 100
 
+ROOMS = ["cli", "compensation", "config", "dataset", "parallel", "random",
+         "sim"]
+
 PAGES = [*ROOT.glob("*.md"), *sorted(ROOT.glob("docs/**/*.md")),
-         ROOT / "bench/experiments.md"]
+         ROOT / "bench/experiments.md",
+         *[page for room in ROOMS for page in ROOT.glob(f"{room}/**/*.md")]]
 
 
 def anchors(text):
@@ -45,9 +49,8 @@ class Docs(unittest.TestCase):
                         self.assertIn(anchor, anchors(target.read_text()))
 
     def test_pages_named_in_the_sources_exist(self):
-        files = [path for folder in ("sim", "compensation", "dataset", "config",
-                                     "cli", "parallel", "scenarios", "tests",
-                                     "scripts", "bench")
+        files = [path for folder in (*ROOMS, "scenarios", "tests", "scripts",
+                                     "bench")
                  for path in sorted((ROOT / folder).rglob("*"))
                  if path.suffix in (".h", ".cpp", ".c", ".py", ".sh", ".toml",
                                     ".c99", ".txt")]
