@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 
+#include "cli/terminal.h"
 #include "dataset/set/set_writer.h"
 #include "dataset/set/shard/shard_reader.h"
 #include "sim/campaign/campaign.h"
@@ -57,6 +59,16 @@ std::string drawn(const ShardHead& head) {
   return text;
 }
 
+/// What the manifest in `directory` says of a file, if there is one.
+std::optional<ManifestEntry> entry_of(const fs::path& directory,
+                                      const std::string& file) {
+  const std::optional<SetContents> set = find_set(directory);
+  if (!set) return {};
+  for (const auto& [index, entry] : set->state.entries)
+    if (entry.file == file) return entry;
+  return {};
+}
+
 std::string failures_of(const SetState& state) {
   constexpr int kMost = 5;
   std::string text;
@@ -74,7 +86,17 @@ std::string failures_of(const SetState& state) {
 }  // namespace
 
 std::string info_on_shard(const fs::path& path) {
-  const ShardFile file(path);
+  const fs::path directory =
+      path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const std::optional<ManifestEntry> entry =
+      entry_of(directory, path.filename().string());
+  if (!entry)
+    keep_warning(fmt::format(
+        "{}: is in no set whose manifest tells its bytes: damage in it would "
+        "not be noticed",
+        path.string()));
+  const ShardFile file =
+      entry ? ShardFile(path, open_listed(directory, *entry)) : ShardFile(path);
   const ShardHead& head = file.head();
   std::string text =
       fmt::format("{}: file of a set, devices {} to {}\n", path.string(),
@@ -114,7 +136,8 @@ std::string info_on_set(const fs::path& path) {
         state.entries,
         [&](const auto& entry) { return entry.first % runs == run; });
     if (first == state.entries.end()) continue;
-    const ShardFile file(path, first->second.file);
+    const ShardFile file(path / first->second.file,
+                         open_listed(path, first->second));
     text += "\n" + described(file.head());
     parameters = drawn(file.head());
   }

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "dataset/files/open_file.h"
+
 namespace beamgyro {
 
 inline constexpr const char* kManifestName = "manifest.jsonl";
@@ -103,6 +105,12 @@ Manifest read_manifest(const std::filesystem::path& directory,
 void start_manifest(const std::filesystem::path& directory,
                     const std::filesystem::path& name, const ManifestHead& head,
                     const std::vector<ManifestEntry>& entries = {});
+
+/// Opens a file of a set to be read. Throws std::invalid_argument as
+/// open_set_file(), and for a file with other bytes than `entry` says, which
+/// HDF5 must not see: damage can crash it.
+OpenFile open_listed(const std::filesystem::path& directory,
+                     const ManifestEntry& entry);
 
 /// Appends a line in one write, and waits until it is on the disk. Throws
 /// std::runtime_error when that fails, and for a file with a second name (hard

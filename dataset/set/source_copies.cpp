@@ -64,20 +64,21 @@ bool is_whole(const fs::path& directory, const SourceEntry& source) {
 std::vector<std::string> texts_of_run(const fs::path& directory,
                                       const Manifest& manifest,
                                       std::size_t run) {
-  std::map<std::string, std::string> hashes;
+  std::map<std::string, ManifestEntry> listed;
   for (const ManifestEntry& entry : manifest.entries)
-    hashes.emplace(entry.file, entry.sha256);
+    listed.emplace(entry.file, entry);
   const std::uint32_t files = file_count(*manifest.head);
   const auto runs = static_cast<std::uint32_t>(manifest.head->runs.size());
   for (auto index = static_cast<std::uint32_t>(run); index < files;
        index += runs) {
     const std::string name = expected_entry(*manifest.head, index).file;
-    const auto hash = hashes.find(name);
+    const auto entry = listed.find(name);
     try {
-      if (hash != hashes.end() &&
-          sha256_of_set_file(directory, name) != hash->second)
-        continue;
-      const ShardFile file(directory, name);
+      const ShardFile file =
+          entry == listed.end()
+              ? ShardFile(directory, name)
+              : ShardFile(directory / name,
+                          open_listed(directory, entry->second));
       return {file.head().campaign_text, file.head().device_text,
               file.head().scenario_text};
     } catch (const std::invalid_argument&) {

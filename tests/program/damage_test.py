@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 
 from program import CUBIC, ProgramTest, ramp
+from sets import Set
 
 
 class Damage(ProgramTest):
@@ -49,6 +50,30 @@ class Damage(ProgramTest):
             self.assertIn(answer.returncode, [0, 3], answer.stderr)
             self.assertEqual(answer.stderr.count("run.h5: has no checksum"), 1)
         self.assertNotIn("checksum", self.beamgyro("info", "out.h5").stderr)
+
+
+class SetFiles(Set):
+    def test_no_flipped_bit_in_a_file_of_a_set_changes_what_info_says(self):
+        self.generate("set")
+        name = "set/ramp_00000.h5"
+        whole = (self.dir / name).read_bytes()
+        self.assertEqual(self.beamgyro("info", name).stderr, "")
+        draw = random.Random(2)
+        for k in range(60):
+            damaged = bytearray(whole)
+            damaged[draw.randrange(len(whole))] ^= 1 << draw.randrange(8)
+            self.write(name, bytes(damaged))
+            self.rejected("info", name if k % 2 else "set",
+                          says=[name, "holds other bytes"])
+
+    def test_a_file_outside_of_its_set_is_read_with_a_warning(self):
+        self.generate("set")
+        text = self.ok("info", "set/ramp_00000.h5")
+        (self.dir / "set/ramp_00000.h5").rename(self.dir / "lone.h5")
+        answer = self.beamgyro("info", "lone.h5")
+        self.assertEqual(answer.stdout.partition("\n")[2],
+                         text.partition("\n")[2])
+        self.assertIn("lone.h5: is in no set", answer.stderr)
 
 
 class Units(ProgramTest):

@@ -25,6 +25,8 @@ class ShardFile {
   /// Opens a file of a set that may come from somebody else: an ordinary file
   /// of that name in its directory, as open_set_file().
   ShardFile(const std::filesystem::path& directory, const std::string& name);
+  /// Of an open file that is called `path` in messages.
+  ShardFile(const std::filesystem::path& path, OpenFile file);
   ~ShardFile();
   ShardFile(const ShardFile&) = delete;
   ShardFile& operator=(const ShardFile&) = delete;
@@ -46,8 +48,6 @@ class ShardFile {
 
  private:
   class File;
-
-  ShardFile(const std::filesystem::path& path, OpenFile file);
 
   Recording read(std::uint32_t position, bool slow) const;
 
