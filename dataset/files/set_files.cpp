@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <stdexcept>
 #include <system_error>
 
@@ -57,9 +58,14 @@ OpenFile open_set_file(const fs::path& directory, const fs::path& name,
 }
 
 std::string read_set_file(const fs::path& directory, const fs::path& name) {
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 30;  // [bytes]
   std::string text;
   OpenFile file = open_set_file(directory, name, O_RDONLY);
   try {
+    if (const std::uint64_t size = file.size(); size > kMost)
+      throw std::invalid_argument(
+          fmt::format("{}: has {} bytes; expected {} at most",
+                      (directory / name).string(), size, kMost));
     file.read_pieces([&](std::span<const std::byte> piece) {
       text.append(reinterpret_cast<const char*>(piece.data()), piece.size());
     });

@@ -53,6 +53,7 @@ class Check {
     for (const Listed& file : files_) {
       total_ += file.bytes.value_or(0);
       names_by_hash_.emplace(file.sha256, file.file);
+      if (file.bytes) sizes_.insert(*file.bytes);
     }
   }
 
@@ -153,6 +154,8 @@ class Check {
     const std::optional<FileFacts> facts = facts_of(file.file, file.index);
     if (!facts) return;
     const std::uint64_t size = facts->bytes;
+    if (file.bytes && !sizes_.contains(size))
+      return add_size(file, size);  // that of no file
     const std::string hash = hash_of(file);
     if (hash == file.sha256 || hash.empty()) return;
     const auto owner = names_by_hash_.find(hash);
@@ -160,12 +163,15 @@ class Check {
       add(file.file, fmt::format("holds the bytes of {}", owner->second),
           file.index);
     } else if (file.bytes && size != *file.bytes) {
-      add(file.file,
-          fmt::format("has {} bytes; expected {}", size, *file.bytes),
-          file.index);
+      add_size(file, size);
     } else {
       add(file.file, "holds other bytes than were written", file.index);
     }
+  }
+
+  void add_size(const Listed& file, std::uint64_t size) {
+    add(file.file, fmt::format("has {} bytes; expected {}", size, *file.bytes),
+        file.index);
   }
 
   /// Empty when the file cannot be read, which is a defect of its own.
@@ -217,6 +223,7 @@ class Check {
   std::vector<Listed> files_;
   const CheckProgress& progress_;
   std::map<std::string, std::string> names_by_hash_;
+  std::set<std::uint64_t> sizes_;
   std::uint64_t done_ = 0, total_ = 0;
   std::vector<SetDefect> defects_;
 };

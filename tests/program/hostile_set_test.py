@@ -182,6 +182,17 @@ class HostileSet(Set):
         self.harmless("generate", "campaign.toml", "-o", "set", "--shard",
                       "1/2", status=2, says="symbolic link")
 
+    def test_a_file_that_claims_a_terabyte_is_not_read(self):
+        tera = 1 << 40
+        os.truncate(self.set / "rest_00000.h5", tera)
+        self.harmless("verify", "set", says=f"has {tera} bytes; expected")
+        self.harmless("info", "set", status=2, says="holds other bytes")
+        os.truncate(self.set / "manifest.jsonl", tera)
+        for command in [["verify", "set"], ["info", "set"],
+                        ["generate", "campaign.toml", "-o", "set", "--resume"]]:
+            self.harmless(*command, status=2,
+                          says=["manifest.jsonl", f"has {tera} bytes; expected"])
+
     def test_a_copy_of_hard_links_is_gone_on_with_by_itself(self):
         text = (self.set / "manifest.jsonl").read_text().splitlines(True)
         (self.set / "manifest.jsonl").write_text("".join(text[:4]))

@@ -21,7 +21,6 @@
 #include "dataset/recording/units.h"
 #include "dataset/set/shard/hdf5_variable.h"
 #include "dataset/set/shard/shard_encoding.h"
-#include "dataset/set/shard/shard_reader.h"
 
 namespace beamgyro {
 namespace {
