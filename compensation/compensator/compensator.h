@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "compensation/compensator/measured_sketch.h"
 #include "compensation/inputs/features.h"
 #include "compensation/inputs/input.h"
 #include "compensation/methods/bias_model.h"
@@ -22,6 +23,7 @@ struct SourceFile {
   std::string sha256;  // 64 hexadecimal digits
   // measured_sha256() of the recording; empty in files of older programs.
   std::string measured_sha256 = {};
+  MeasuredSketch sketch = {};  // measured_sketch(); empty in these, too
 
   bool operator==(const SourceFile&) const = default;
 };

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cstdint>
+#include <iterator>
 #include <stdexcept>
 #include <system_error>
 
@@ -27,12 +30,37 @@ Json to_json(const std::optional<double>& value) {
   return value ? finite_json(*value) : Json();
 }
 
+/// 16 hexadecimal digits each.
+std::string sketch_text(const MeasuredSketch& sketch) {
+  std::string text;
+  for (const std::uint64_t hash : sketch)
+    fmt::format_to(std::back_inserter(text), "{:016x}", hash);
+  return text;
+}
+
+MeasuredSketch read_sketch(const JsonNode& node) {
+  constexpr std::size_t kHashDigits = 16;
+  const std::string text = node.text();
+  MeasuredSketch sketch;
+  for (std::size_t k = 0; k + kHashDigits <= text.size(); k += kHashDigits) {
+    const char* begin = text.data() + k;
+    const auto [end, error] =
+        std::from_chars(begin, begin + kHashDigits, sketch.emplace_back(), 16);
+    if (error != std::errc() || end != begin + kHashDigits) break;
+  }
+  if (text.size() != kHashDigits * sketch.size() || sketch_text(sketch) != text ||
+      !std::ranges::is_sorted(sketch))
+    node.fail("must be hexadecimal numbers of 16 digits, in rising order");
+  return sketch;
+}
+
 Json to_json(const std::vector<SourceFile>& files) {
   Json array = Json::array();
   for (const SourceFile& file : files)
     array.push_back({{"name", file.name},
                      {"sha256", file.sha256},
-                     {"measured_sha256", file.measured_sha256}});
+                     {"measured_sha256", file.measured_sha256},
+                     {"measured_sketch", sketch_text(file.sketch)}});
   return array;
 }
 
@@ -100,6 +128,8 @@ std::vector<SourceFile> read_files(const JsonNode& node) {
     files.push_back({file.at("name").text(), file.at("sha256").text()});
     if (file.has("measured_sha256"))
       files.back().measured_sha256 = file.at("measured_sha256").text();
+    if (file.has("measured_sketch"))
+      files.back().sketch = read_sketch(file.at("measured_sketch"));
   }
   return files;
 }

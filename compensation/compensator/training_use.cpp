@@ -64,6 +64,24 @@ std::string measured_sha256(const Recording& recording) {
   return hash.digits();
 }
 
+namespace {
+
+bool shares_stretches_of_training(const Provenance& provenance,
+                                  const Recording& recording) {
+  std::uint64_t limit = 0;
+  any_file(provenance, [&limit](const SourceFile& file) {
+    if (!file.sketch.empty()) limit = std::max(limit, file.sketch.back());
+    return false;
+  });
+  if (limit == 0) return false;
+  const auto stretches = stretches_up_to(limit, recording);
+  return any_file(provenance, [&stretches](const SourceFile& file) {
+    return shares_stretches(file.sketch, stretches);
+  });
+}
+
+}  // namespace
+
 bool was_used_in_training(const Provenance& provenance,
                           const std::string& file_sha256,
                           const Recording& recording) {
@@ -76,9 +94,11 @@ bool was_used_in_training(const Provenance& provenance,
   };
   if (!any_file(provenance, tells_measured)) return false;
   const std::string measured = measured_sha256(recording);
-  return any_file(provenance, [&](const SourceFile& file) {
-    return file.measured_sha256 == measured;
-  });
+  return any_file(provenance,
+                  [&](const SourceFile& file) {
+                    return file.measured_sha256 == measured;
+                  }) ||
+         shares_stretches_of_training(provenance, recording);
 }
 
 bool was_used_in_training(const Provenance& provenance, const SetPart& set,

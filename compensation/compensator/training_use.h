@@ -15,7 +15,8 @@ namespace beamgyro {
 std::string measured_sha256(const Recording& recording);
 
 /// Returns whether training fitted the recording or held it out: the file with
-/// `file_sha256`, or another one with the same measured_sha256().
+/// `file_sha256`, another one with the same measured_sha256(), or one that
+/// shares_stretches() with it.
 bool was_used_in_training(const Provenance& provenance,
                           const std::string& file_sha256,
                           const Recording& recording);

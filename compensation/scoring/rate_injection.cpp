@@ -93,8 +93,8 @@ struct Injection {
   std::vector<double> since;  // [s], the step to it
 };
 
-Injection injection_of(const Recording& recording, double hold,
-                       double largest) {
+Injection injection_of(const Recording& recording, double hold, double largest,
+                       std::size_t first_hold) {
   // Half a step keeps a sample in its hold however the time was rounded.
   const double origin = recording.time.front() - 0.5 * usual_step(recording);
   Injection injection;
@@ -104,7 +104,7 @@ Injection injection_of(const Recording& recording, double hold,
     const double here = std::floor((time - origin) / hold);
     if (here != number) {
       number = here;
-      rate = held_rate(static_cast<std::size_t>(number), largest);
+      rate = held_rate(first_hold + static_cast<std::size_t>(number), largest);
     }
     injection.rate.push_back(rate);
     injection.since.push_back(time - origin - number * hold);
@@ -207,7 +207,8 @@ std::optional<Recording> with_injected_rate(const Recording& recording,
 
 std::optional<std::vector<ReplayedBlock>> replay(
     const RateEstimator& estimator, const Recording& recording,
-    std::span<const double> answers, double full_scale) {
+    std::span<const double> answers, double full_scale,
+    std::size_t first_hold) {
   const std::size_t samples = recording.time.size();
   if (samples == 0) {
     return std::nullopt;
@@ -219,7 +220,8 @@ std::optional<std::vector<ReplayedBlock>> replay(
       std::max(short_hold, std::min(kLongHold, 0.25 * length));
   std::vector<ReplayedBlock> blocks;
   for (const double hold : {short_hold, long_hold}) {
-    const Injection injection = injection_of(recording, hold, full_scale);
+    const Injection injection =
+        injection_of(recording, hold, full_scale, first_hold);
     const auto moved = with_injected_rate(recording, injection.rate);
     if (!moved) {
       return std::nullopt;

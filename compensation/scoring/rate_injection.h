@@ -58,10 +58,12 @@ struct ReplayedBlock {
 /// - Left out are samples without power, within kSettlingTime after a step, and
 ///   with a total true rate beyond `full_scale` [deg/s].
 /// - Saturation and the limits of the converter are not replayed.
+/// - The first hold injects held_rate(`first_hold`).
 /// Returns nothing where with_injected_rate() returns nothing.
 std::optional<std::vector<ReplayedBlock>> replay(
     const RateEstimator& estimator, const Recording& recording,
-    std::span<const double> answers, double full_scale);
+    std::span<const double> answers, double full_scale,
+    std::size_t first_hold = 0);
 
 /// Returns whether `a` is worse than `b`. The worst is NaN; then blocks that
 /// cancel the rate (retained below kCancelledBelow), the least first; then

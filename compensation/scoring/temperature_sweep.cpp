@@ -95,9 +95,12 @@ WorstBlocks worst_over_temperature(const Compensator& compensator,
   };
   const Recording sweep =
       temperature_sweep(recording, compensator.temperature_range);
-  const auto blocks = replay(estimator, sweep, estimator(sweep), full_scale);
-  if (!blocks) return worst;
-  for (const ReplayedBlock& block : *blocks) worst.add(block);
+  const std::vector<double> answers = estimator(sweep);
+  for (std::size_t first = 0; first < kSweepReplays; ++first) {
+    const auto blocks = replay(estimator, sweep, answers, full_scale, first);
+    if (!blocks) return worst;
+    for (const ReplayedBlock& block : *blocks) worst.add(block);
+  }
   return worst;
 }
 

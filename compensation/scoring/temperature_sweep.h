@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
+
 #include "compensation/compensator/compensator.h"
 #include "compensation/scoring/rate_injection.h"
 #include "dataset/recording/recording.h"
@@ -16,7 +18,11 @@ constexpr double kSweepStep = 0.02;  // [K]
 Recording temperature_sweep(const Recording& recording,
                             const TemperatureRange& range);
 
-/// Returns the worst blocks of a replay of that sweep with rates up to
+/// Replays of a sweep, each starting one held_rate() later: at every
+/// temperature both signs of rates that lie a factor of 1.7 or less apart.
+constexpr std::size_t kSweepReplays = 64;
+
+/// Returns the worst blocks of the replays of that sweep with rates up to
 /// `full_scale` [deg/s]. It tests temperatures between those of the recorded
 /// samples. The scale-factor table is left out. Returns nothing for a
 /// compensator whose inputs do not see the rate, and where replay() returns

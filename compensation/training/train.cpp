@@ -45,8 +45,9 @@ RunSource noting(const RunSource& runs, RunFacts& facts) {
   return {runs.count, [&](const RunSource::Visitor& visit) {
             runs.each([&](const TrainingRun& run) {
               if (!run.sha256.empty())
-                facts.files.push_back(
-                    {run.name, run.sha256, measured_sha256(run.recording)});
+                facts.files.push_back({run.name, run.sha256,
+                                       measured_sha256(run.recording),
+                                       measured_sketch(run.recording)});
               facts.coarsest_resolution =
                   std::max(facts.coarsest_resolution,
                            temperature_resolution(run.recording));

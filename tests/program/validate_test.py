@@ -102,6 +102,25 @@ class Cheats(Validate):
             self.assertAlmostEqual(block["retained"], 0, delta=1e-6)
             self.assertAlmostEqual(block["temperature_degC"], 5, delta=0.1)
 
+    def test_a_tenth_of_a_kelvin_where_rates_of_20_to_40_are_eaten(self):
+        """Two windows in one network: tanh up and down, both within."""
+        ends = [[5.0, 5.1], [20, 40]]
+        steep = [200, 5]
+        into = np.zeros((2, 4))
+        for i in range(2):
+            into[i, 2 * i:2 * i + 2] = steep[i]
+        start = [-steep[i] * end for i in range(2) for end in ends[i]]
+        gate = 20.0
+        self.cheat(["temperature", "rate"], "bp", {
+            "layer_sizes": [2, 4, 1, 1],
+            "weights": [*into.flatten(), *start,
+                        *(gate * np.array([0.5, -0.5] * 2)), -1.6 * gate,
+                        15.0, 15.0 + self.offset]})
+        _, answer = self.named("cancels the rate")
+        self.assertRegex(
+            answer.stdout, r"FAILED scale factor: -0\.\d+ replayed over every "
+            r"temperature \(\d\d\.\d+ deg/s, 5\.[01] degC")
+
     def test_a_network_on_what_a_replay_cannot_move(self):
         inputs = ["quadrature", "drive_voltage", "drive_frequency"]
         self.write("network.toml", NETWORK.replace(
@@ -185,10 +204,33 @@ class InSample(Validate):
         self.assertTrue(self.in_sample("named.h5"))
         self.ok("compensate", "cubic.json", "train.h5", "-o", "out.h5")
         self.assertTrue(self.in_sample("out.h5"))
+
+    def changed(self, change):
+        """The training run, changed by change(file)."""
         shutil.copy(self.dir / "train.h5", self.dir / "changed.h5")
         with h5py.File(self.dir / "changed.h5", "r+") as file:
+            change(file)
+        return "changed.h5"
+
+    def test_it_is_known_though_moved_turned_round_or_mended(self):
+        def moved(file):
+            file["time"][...] += 3600
+
+        def turned_round(file):
+            for name in ["output", "rate", "temperature", "quadrature",
+                         "drive_frequency", "drive_voltage"]:
+                file[name][...] = file[name][()][::-1]
+
+        def mended(file):
             file["rate"][7] += 1e-9
-        self.assertFalse(self.in_sample("changed.h5"))
+
+        for change in [moved, turned_round, mended]:
+            self.assertTrue(self.in_sample(self.changed(change)), change)
+
+        def other_values(file):
+            file["rate"][...] += 1e-9
+
+        self.assertFalse(self.in_sample(self.changed(other_values)))
 
     def test_it_cannot_be_held_out_under_another_name(self):
         shutil.copy(self.dir / "train.h5", self.dir / "named.h5")
@@ -200,7 +242,7 @@ class InSample(Validate):
 
     def test_files_without_the_new_keys_are_read(self):
         for file in self.cubic["training"]["files"]:
-            del file["measured_sha256"]
+            del file["measured_sha256"], file["measured_sketch"]
         self.write("cubic.json", json.dumps(self.cubic))
         self.assertTrue(self.in_sample("train.h5"))
 
