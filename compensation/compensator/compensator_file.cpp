@@ -48,8 +48,8 @@ MeasuredSketch read_sketch(const JsonNode& node) {
         std::from_chars(begin, begin + kHashDigits, sketch.emplace_back(), 16);
     if (error != std::errc() || end != begin + kHashDigits) break;
   }
-  if (text.size() != kHashDigits * sketch.size() || sketch_text(sketch) != text ||
-      !std::ranges::is_sorted(sketch))
+  if (text.size() != kHashDigits * sketch.size() ||
+      sketch_text(sketch) != text || !std::ranges::is_sorted(sketch))
     node.fail("must be hexadecimal numbers of 16 digits, in rising order");
   return sketch;
 }

@@ -115,4 +115,10 @@ bool may_have_used(const Provenance& provenance, const SetPart& set) {
   return part && part->device_numbers.empty() && is_same_set(*part, set);
 }
 
+std::string warning_of_no_training(const Provenance& provenance) {
+  if (!provenance.training.empty() || provenance.training_set) return "";
+  return "the compensator names no recording that it was trained on: these "
+         "scores may be in-sample";
+}
+
 }  // namespace beamgyro

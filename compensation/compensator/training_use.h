@@ -31,4 +31,8 @@ bool was_used_in_training(const Provenance& provenance, const SetPart& set,
 /// that did not record on which devices.
 bool may_have_used(const Provenance& provenance, const SetPart& set);
 
+/// Returns a warning when the compensator names neither files nor a set that it
+/// was trained on, so that no run can be told in-sample; else an empty text.
+std::string warning_of_no_training(const Provenance& provenance);
+
 }  // namespace beamgyro

@@ -131,6 +131,10 @@ std::vector<std::string> warnings_of(const Compensator& compensator,
         "{} of {} runs are of devices that were used in training: these scores "
         "are in-sample and flatter the compensator",
         seen, scores.size()));
+  if (const std::string warning =
+          warning_of_no_training(compensator.provenance);
+      !warning.empty())
+    warnings.push_back(warning);
   if (runs.set && may_have_used(compensator.provenance, *runs.set))
     warnings.push_back(
         "the compensator was trained on this set and does not record on which "

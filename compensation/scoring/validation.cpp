@@ -291,6 +291,10 @@ Validation validate(const Compensator& compensator, const std::string& method,
         "training; clamped",
         clamped, compensator.temperature_range.lowest,
         compensator.temperature_range.highest));
+  if (const std::string warning =
+          warning_of_no_training(compensator.provenance);
+      !warning.empty())
+    validation.warnings.push_back(warning);
   if (seen > 0)
     validation.warnings.push_back(fmt::format(
         "{} of {} runs were used in training: these scores are in-sample and "

@@ -240,6 +240,17 @@ class InSample(Validate):
                       "cubic.toml", "-o", "c.json",
                       says=["named.h5", "train.h5"])
 
+    def test_a_file_that_names_no_training_is_said_to_be_one(self):
+        self.assertNotIn("names no recording", self.beamgyro(
+            "validate", "cubic.json", "test.h5").stderr)
+        self.cubic["training"]["files"] = []
+        self.compensator()
+        said, answer = self.judged("train.h5", status=0)
+        self.assertFalse(said["runs"][0]["in_sample"])
+        self.assertIn("names no recording that it was trained on",
+                      answer.stderr)
+        self.assertIn("names no recording", said["warnings"][0])
+
     def test_files_without_the_new_keys_are_read(self):
         for file in self.cubic["training"]["files"]:
             del file["measured_sha256"], file["measured_sketch"]
