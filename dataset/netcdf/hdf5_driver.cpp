@@ -27,6 +27,7 @@ struct DriverInfo {
 struct DrivenFile {
   H5FD_t for_hdf5{};
   OpenFile* file = nullptr;
+  bool is_read_only = true;
   haddr_t end_of_addresses = 0, size = 0;
 };
 
@@ -34,6 +35,7 @@ DrivenFile& driven(const H5FD_t* file) {
   return *reinterpret_cast<DrivenFile*>(const_cast<H5FD_t*>(file));
 }
 
+bool met_global_heap = false;
 int failed_call = 0;  // errno; QuietHdf5 keeps other threads out
 
 /// No exception may pass through the library.
@@ -59,6 +61,7 @@ H5FD_t* open_driven(const char*, unsigned flags, hid_t properties, haddr_t) {
     if ((flags & H5F_ACC_TRUNC) != 0) info->file->resize(0);
     auto made = std::make_unique<DrivenFile>();
     made->file = info->file;
+    made->is_read_only = (flags & H5F_ACC_RDWR) == 0;
     made->size = info->file->size();
     opened = made.release();
   });
@@ -96,14 +99,25 @@ bool is_beyond(haddr_t place, std::size_t size) {
   return place > kLargest || size > kLargest - place;
 }
 
+/// Returns whether these are the first bytes of a global heap. HDF5 1.10 does
+/// not check it: damage there crashes or hangs the library.
+bool is_global_heap(std::span<const std::byte> bytes) {
+  constexpr std::string_view kStart = "GCOL\x01";
+  return bytes.size() >= kStart.size() &&
+         std::memcmp(bytes.data(), kStart.data(), kStart.size()) == 0;
+}
+
 herr_t read_driven(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t place,
                    std::size_t size, void* buffer) {
   if (is_beyond(place, size)) return -1;
   const std::span bytes(static_cast<std::byte*>(buffer), size);
-  return guarded([&] {
+  const herr_t status = guarded([&] {
     const std::size_t there = driven(file).file->read_at(place, bytes);
     std::ranges::fill(bytes.subspan(there), std::byte{0});
   });
+  if (!driven(file).is_read_only || !is_global_heap(bytes)) return status;
+  met_global_heap = true;
+  return -1;
 }
 
 herr_t write_driven(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t place,
@@ -185,6 +199,8 @@ bool is_hdf5_file(OpenFile& file) {
   }
   return false;
 }
+
+bool take_met_global_heap() { return std::exchange(met_global_heap, false); }
 
 int take_failed_system_call() { return std::exchange(failed_call, 0); }
 

@@ -24,4 +24,10 @@ bool is_hdf5_file(OpenFile& file);
 /// if the library ignored the failure.
 void check_system_calls();
 
+/// Returns whether HDF5 asked for a global heap since this was called last. A
+/// file that is open to be read does not give it: HDF5 1.10 does not check such
+/// a heap, and damage in it crashes or hangs the library. Only texts of
+/// variable length and views of other files need one.
+bool take_met_global_heap();
+
 }  // namespace beamgyro

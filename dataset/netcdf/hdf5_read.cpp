@@ -103,8 +103,10 @@ void read_number(hid_t object, const std::string& owner, const char* name,
 
 H5Id open_variable(hid_t file, const std::string& name) {
   check_link(file, name, "variable");
-  H5Id variable(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose,
-                "open " + name);
+  take_met_global_heap();
+  const hid_t opened = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
+  if (opened < 0 && take_met_global_heap()) reject_view(name);
+  H5Id variable(opened, H5Dclose, "open " + name);
   check_storage(variable, name);
   return variable;
 }

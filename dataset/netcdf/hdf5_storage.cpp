@@ -101,15 +101,18 @@ void check_chunks(hid_t variable, hid_t properties, const std::string& name,
 
 }  // namespace
 
+void reject_view(const std::string& name) {
+  throw Hdf5Error(
+      fmt::format("{} is a view of other files, which does not tell missing "
+                  "files from missing values; expected the values",
+                  name));
+}
+
 void check_storage(hid_t variable, const std::string& name) {
   const H5Id properties(H5Dget_create_plist(variable), H5Pclose,
                         "open " + name);
   const H5D_layout_t layout = H5Pget_layout(properties);
-  if (layout == H5D_VIRTUAL)
-    throw Hdf5Error(
-        fmt::format("{} is a view of other files, which does not tell missing "
-                    "files from missing values; expected the values",
-                    name));
+  if (layout == H5D_VIRTUAL) reject_view(name);
   const H5Id type(H5Dget_type(variable), H5Tclose, "open " + name);
   const H5Id space(H5Dget_space(variable), H5Sclose, "open " + name);
   const int rank = H5Sget_simple_extent_ndims(space);

@@ -15,4 +15,7 @@ namespace beamgyro {
 ///   claims of a variable with the size of the file.
 void check_storage(hid_t variable, const std::string& name);
 
+/// Throws Hdf5Error: the values of `name` are in other files.
+[[noreturn]] void reject_view(const std::string& name);
+
 }  // namespace beamgyro

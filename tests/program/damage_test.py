@@ -66,6 +66,18 @@ class SetFiles(Set):
             self.rejected("info", name if k % 2 else "set",
                           says=[name, "holds other bytes"])
 
+    def test_a_view_with_a_damaged_heap_is_refused_at_once(self):
+        self.generate("set")
+        whole = (self.dir / "set/ramp.nc").read_bytes()
+        heap = whole.index(b"GCOL")
+        for place in [heap + 6, heap + 8, heap + 9, heap + 16, heap + 24,
+                      heap + 25]:
+            for bit in range(8):
+                damaged = bytearray(whole)
+                damaged[place] ^= 1 << bit
+                self.write("view.nc", bytes(damaged))
+                self.rejected("info", "view.nc", says="view of other files")
+
     def test_a_file_outside_of_its_set_is_read_with_a_warning(self):
         self.generate("set")
         text = self.ok("info", "set/ramp_00000.h5")
