@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Makes a set on a Slurm cluster, and goes on with one that is not whole:
+# Makes a set on a Slurm cluster, or continues one that is not complete:
 #
 #   slurm_generate.sh CAMPAIGN.toml DIR [--tasks N] [--at-once N] [--devices N]
 #                     [--rounds N] [-- SBATCH_OPTION...]
 #
-# Submits those of N array tasks (16) that the manifest of DIR still lacks, at
-# most --at-once of them running, and a job after them that merges the manifest
-# and verifies the set, or submits what is lacking once more, in all --rounds
-# times (3). Options after -- go to every job, the one after the array, too:
+# Submits those of N array tasks (16) that have work left in DIR, at most
+# --at-once of them running (16). A job after them merges the manifest and
+# verifies the set, or submits what is missing again, --rounds times in all (3).
+# Options after -- go to every job, also to the one after the array:
 # --cpus-per-task=4, --partition=..., --account=..., --time=... . A task uses as
 # many threads as it has CPUs. On TERM (preemption, end of the time) it ends
 # within seconds; the files that it published stay. The program is $BEAMGYRO,
-# else build/release/beamgyro.
+# or build/release/beamgyro without it.
 set -euo pipefail
 
 fail() {
