@@ -13,9 +13,9 @@
 #include "cli/inputs.h"
 #include "cli/terminal.h"
 #include "compensation/compensator/compensator_file.h"
-#include "compensation/export/c_text.h"
 #include "compensation/export/export_c.h"
 #include "compensation/export/export_parameters.h"
+#include "compensation/firmware/c_text.h"
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 

@@ -16,8 +16,8 @@ DATASET = ["dataset/files", "dataset/recording", "dataset/netcdf",
 SIM = ["sim/numerics", "sim/thermal", "sim/signal", "sim/device",
        "sim/dynamics", "sim/scenario", "sim/campaign"]
 COMPENSATION = [f"compensation/{room}" for room in
-                ("inputs", "models", "rows", "network", "methods",
-                 "compensator", "scoring", "training", "export")]
+                ("inputs", "firmware", "models", "rows", "network",
+                 "methods", "compensator", "scoring", "training", "export")]
 
 BASE = ["config", "random", "parallel"]
 
@@ -45,6 +45,7 @@ MAY_INCLUDE["dataset/log"] -= {"dataset/netcdf"}
 MAY_INCLUDE["dataset/set/shard"] -= {"dataset/log"}
 MAY_INCLUDE["sim/signal"] -= {"sim/thermal"}
 MAY_INCLUDE["sim/numerics"] = set()
+MAY_INCLUDE["compensation/firmware"] -= {"compensation/inputs"}
 MAY_INCLUDE["compensation/models"] -= {"compensation/inputs"}
 MAY_INCLUDE["compensation/network"] -= {"compensation/inputs",
                                         "compensation/rows"}

@@ -24,8 +24,4 @@ std::string read_bias_kind(const JsonNode& node);
 BiasModel read_bias_model(const JsonNode& node, const std::string& kind,
                           std::size_t inputs);
 
-/// Reads temperatures that increase, and as many numbers under the key
-/// `values`.
-LookupTable read_lookup_table(const JsonNode& node, const std::string& values);
-
 }  // namespace beamgyro

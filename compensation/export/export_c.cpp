@@ -3,14 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <variant>
 
-#include "compensation/export/c_text.h"
 #include "compensation/export/export_header.h"
-#include "compensation/export/export_network.h"
 #include "compensation/export/export_self_test.h"
 #include "compensation/export/firmware_model.h"
+#include "compensation/firmware/c_text.h"
+#include "compensation/firmware/runtime.h"
 
 namespace beamgyro {
 namespace {
@@ -33,12 +34,27 @@ std::string array_text(const FirmwareArray& array) {
   return text + "\n};\n";
 }
 
+FirmwareCode code_of(const Compensator& c) {
+  return std::visit(
+      [&]<class Function>(const Function& f) -> FirmwareCode {
+        if constexpr (Function::kInputUse == InputUse::kNone)
+          return {};
+        else
+          return f.firmware_code(c.inputs.size());
+      },
+      c.bias.function);
+}
+
 // Text of one compensator, written part by part.
 class Writer {
  public:
   Writer(const Compensator& compensator, const std::string& name,
          const FirmwareModel& model)
-      : c_(compensator), name_(name), model_(model), parts_(c_) {}
+      : c_(compensator),
+        name_(name),
+        model_(model),
+        parts_(c_),
+        code_(code_of(c_)) {}
 
   std::string source(const std::vector<std::string>& warnings) const {
     std::string text = fmt::format(
@@ -53,39 +69,35 @@ class Writer {
         "#endif\n\n",
         name_);
     text += warning_comments(warnings);
-    for (const FirmwareArray& array : model_.arrays())
+    for (const FirmwareArray& array : model_.arrays().all())
       text += array_text(array);
     text += "\n";
     text += runtime();
-    if (parts_.uses_inputs) text += bias_function();
+    if (parts_.uses_inputs)
+      text += "static float bias_of(const float *x) {\n" + code_.body + "}\n\n";
     return text + crc_function() + init_function() + step_function();
   }
 
  private:
+  // Sections of the run-time that the code calls.
   std::string runtime() const {
+    std::vector<std::string_view> called = code_.sections;
+    if (parts_.filters > 0) called.insert(called.end(), {"exp", "lowpass"});
+    if (parts_.clock) called.push_back("exp");
+    if (parts_.reads_more) called.push_back("finite");
+    if (c_.scale_factor) called.push_back("table");
+    called.push_back("crc");
     std::string text;
-    const std::string kind = kind_name(c_.bias);
-    const auto add = [&](const char* section) {
-      text += firmware_runtime(section) + "\n";
-    };
-    if (parts_.filters > 0 || parts_.clock || kind == "thermistor" ||
-        kind == "fuzzy")
-      add("exp");
-    if (parts_.filters > 0) add("lowpass");
-    if (parts_.reads_more) add("finite");
-    if (kind == "bp" && layers() > 2) add("tanh");
-    if (kind == "polynomial" || kind == "spline" || kind == "thermistor" ||
-        kind == "fuzzy")
-      add(kind.c_str());
-    if (kind == "table" || c_.scale_factor) add("table");
-    add("crc");
+    for (const std::string_view section : runtime_sections())
+      if (std::ranges::find(called, section) != called.end())
+        text += runtime_text(section) + "\n";
     return text;
   }
 
   std::string crc_function() const {
     std::string text = fmt::format(
         "uint32_t {}_crc(void) {{\n  uint32_t crc = 0xffffffffu;\n", name_);
-    for (const FirmwareArray& array : model_.arrays())
+    for (const FirmwareArray& array : model_.arrays().all())
       text += fmt::format("  crc = crc_of(crc, {}, {});\n", array.name,
                           array.values.size());
     return text + "  return ~crc;\n}\n\n";
@@ -110,16 +122,12 @@ class Writer {
   std::string step_function() const;
   std::string input_lines() const;
   std::string finite_lines() const;
-  std::string bias_function() const;
-
-  std::size_t layers() const {
-    return std::get<BpNetwork>(c_.bias.function).layer_sizes().size();
-  }
 
   const Compensator& c_;
   const std::string& name_;
   const FirmwareModel& model_;
   const FirmwareParts parts_;
+  const FirmwareCode code_;
 };
 
 std::string Writer::input_lines() const {
@@ -166,36 +174,6 @@ std::string Writer::finite_lines() const {
   return text;
 }
 
-std::string Writer::bias_function() const {
-  const std::string kind = kind_name(c_.bias);
-  const auto count = [&](const char* name) {
-    return model_.array(name).size();
-  };
-  std::string text;
-  if (kind == "table")
-    text = fmt::format("  return table_at(temperatures, values, {}, x[0]);\n",
-                       count("values"));
-  if (kind == "spline")
-    text =
-        fmt::format("  return spline_at(knots, values, seconds, {}, x[0]);\n",
-                    count("values"));
-  if (kind == "thermistor") text = "  return thermistor_at(network, x[0]);\n";
-  if (kind == "fuzzy")
-    text =
-        fmt::format("  return fuzzy_of(centres, width[0], rules, {}, {}, x);\n",
-                    count("centres"), c_.inputs.size());
-  if (kind == "polynomial") {
-    text = fmt::format("  float y = polynomial_of(coefficients, {}, x[0]);\n",
-                       count("coefficients"));
-    for (std::size_t j = 1; j < c_.inputs.size(); ++j)
-      text += fmt::format("  y = y + slopes[{}] * x[{}];\n", j - 1, j);
-    text += "  return y;\n";
-  }
-  if (kind == "bp")
-    text = network_lines(std::get<BpNetwork>(c_.bias.function).layer_sizes());
-  return "static float bias_of(const float *x) {\n" + text + "}\n\n";
-}
-
 std::string Writer::step_function() const {
   std::string text = fmt::format(
       "float {0}_step({0}_state *state, const {0}_sample *sample) {{\n", name_);
@@ -223,14 +201,15 @@ std::string Writer::step_function() const {
   if (parts_.uses_inputs)
     text += input_lines() + finite_lines() + "  y = bias_of(x);\n";
   else
-    text +=
-        kind_name(c_.bias) == "none" ? "  y = 0.0f;\n" : "  y = constant[0];\n";
+    text += std::holds_alternative<NoBias>(c_.bias.function)
+                ? "  y = 0.0f;\n"
+                : "  y = constant[0];\n";
   text += "  y = sample->rate_deg_per_s - (unit[0] + unit[1] * y);\n";
   if (c_.scale_factor)
     text += fmt::format(
         "  y = y / table_at(scale_factor_temperatures, scale_factors, {}, "
         "T);\n",
-        model_.array("scale_factors").size());
+        model_.arrays().count("scale_factors"));
   return text + "  return y;\n}\n";
 }
 

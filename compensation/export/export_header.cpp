@@ -8,8 +8,8 @@
 #include <iterator>
 #include <sstream>
 
-#include "compensation/export/c_text.h"
 #include "compensation/export/firmware_difference.h"
+#include "compensation/firmware/c_text.h"
 
 namespace beamgyro {
 namespace {
@@ -56,7 +56,7 @@ std::string about(const Compensator& c, const FirmwareParts& parts,
 
 std::string macros(const std::string& name, const FirmwareModel& model,
                    double difference) {
-  const std::vector<float>& range = model.array("range");
+  const std::vector<float>& range = model.arrays().values("range");
   std::string text = fmt::format(
       "/* CRC-32 of the parameters. */\n#define {0}_CRC 0x{1:08x}u\n\n"
       "/* [degC], seen in training. */\n"
@@ -127,8 +127,7 @@ bool reads_a_signal(const Input& input) {
 }
 
 FirmwareParts::FirmwareParts(const Compensator& c) {
-  const std::string kind = kind_name(c.bias);
-  uses_inputs = kind != "none" && kind != "constant";
+  uses_inputs = reads_inputs(c.bias);
   if (!uses_inputs) return;
   for (const Input& input : c.inputs) {
     filters += has_filter(input) ? 1 : 0;

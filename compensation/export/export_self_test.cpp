@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "compensation/export/c_text.h"
 #include "compensation/export/firmware_model.h"
+#include "compensation/firmware/c_text.h"
 
 namespace beamgyro {
 namespace {

@@ -74,8 +74,7 @@ std::vector<double> temperatures(const Compensator& c, double period) {
 
 // Returns the range of a signal: that of its input, if there is one.
 Scale range_of(const Compensator& c, std::size_t signal) {
-  const std::string kind = kind_name(c.bias);
-  if (kind == "none" || kind == "constant") return {0.0, kRate};
+  if (!reads_inputs(c.bias)) return {0.0, kRate};
   for (std::size_t i = 0; i < c.inputs.size(); ++i)
     if (c.inputs[i].column == kFirmwareSignals[signal]) {
       const Scale& scale = c.bias.input_scales[i];

@@ -4,11 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "compensation/compensator/compensator.h"
+#include "compensation/firmware/firmware_arrays.h"
 
 namespace beamgyro {
 
@@ -31,12 +30,6 @@ struct FirmwareSample {
   float value[kFirmwareSignalCount] = {};
 };
 
-/// An array of constants of the exported code.
-struct FirmwareArray {
-  std::string name, comment;
-  std::vector<float> values;
-};
-
 /// A compensator in single precision, with the constants and the operations of
 /// the exported code. Exported code that is compiled without contraction of
 /// multiplications and additions gives the same bits.
@@ -56,8 +49,7 @@ class FirmwareModel {
   /// filters wait for the next finite one.
   float step(const FirmwareSample& sample);
 
-  const std::vector<FirmwareArray>& arrays() const { return arrays_; }
-  const std::vector<float>& array(std::string_view name) const;
+  const FirmwareArrays& arrays() const { return arrays_; }
   bool reads(std::size_t signal) const;  // index of kFirmwareSignals
 
   /// Returns the whole number of Hz nearest to the middle of the drive
@@ -70,24 +62,17 @@ class FirmwareModel {
  private:
   struct State;
 
-  float bias(const std::vector<float>& x) const;
-
   std::vector<Input> inputs_;
-  std::string kind_;
-  std::vector<int> layers_;  // of a network
+  BiasFunction function_;
+  bool uses_inputs_;
   bool corrects_scale_factor_;
   int drive_frequency_;  // [Hz]
-  std::vector<FirmwareArray> arrays_;
+  FirmwareArrays arrays_;
   std::unique_ptr<State> state_;
 };
 
 /// Returns the CRC-32 (IEEE 802.3) of the values, each with the least
 /// significant byte first.
 std::uint32_t crc32(const std::vector<float>& values);
-
-/// Returns the C99 source of the functions in the named section of the
-/// run-time: exp, lowpass, finite, tanh, polynomial, table, spline, thermistor,
-/// fuzzy or crc. Throws std::logic_error for another name.
-std::string firmware_runtime(std::string_view section);
 
 }  // namespace beamgyro

@@ -13,20 +13,12 @@ namespace {
 struct Predict {
   const Eigen::ArrayXXd& x;
 
-  Eigen::ArrayXd operator()(const NoBias&) const {
-    return Eigen::ArrayXd::Zero(x.rows());
-  }
-  Eigen::ArrayXd operator()(const ConstantBias& constant) const {
-    return Eigen::ArrayXd::Constant(x.rows(), constant.value);
-  }
-  Eigen::ArrayXd operator()(const Polynomial& f) const { return f.predict(x); }
-  Eigen::ArrayXd operator()(const TakagiSugeno& f) const {
-    return f.predict(x);
-  }
-  Eigen::ArrayXd operator()(const BpNetwork& f) const { return f.predict(x); }
-  template <class OneInput>
-  Eigen::ArrayXd operator()(const OneInput& curve) const {
-    return curve.predict(x.col(0));
+  template <class Function>
+  Eigen::ArrayXd operator()(const Function& f) const {
+    if constexpr (Function::kInputUse == InputUse::kOne)
+      return f.predict(x.col(0));
+    else
+      return f.predict(x);
   }
 };
 
@@ -64,10 +56,13 @@ BiasModel averaged_with_constant(BiasModel model, double constant,
 }
 
 std::string kind_name(const BiasModel& model) {
-  constexpr const char* kNames[] = {"none",  "constant", "polynomial",
-                                    "table", "spline",   "thermistor",
-                                    "fuzzy", "bp"};
-  return kNames[model.function.index()];
+  return std::visit([](const auto& f) { return f.kKind; }, model.function);
+}
+
+bool reads_inputs(const BiasModel& model) {
+  return std::visit(
+      [](const auto& f) { return f.kInputUse != InputUse::kNone; },
+      model.function);
 }
 
 std::vector<double> coefficients_about(const BiasModel& model,

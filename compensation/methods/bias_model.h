@@ -3,15 +3,9 @@
 
 #include <Eigen/Core>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "compensation/models/bp_network.h"
-#include "compensation/models/cubic_spline.h"
-#include "compensation/models/lookup_table.h"
-#include "compensation/models/polynomial.h"
-#include "compensation/models/takagi_sugeno.h"
-#include "compensation/models/thermistor_network.h"
+#include "compensation/methods/method_list.h"
 
 namespace beamgyro {
 
@@ -29,23 +23,13 @@ struct Scale {
 Scale scale_to_unit(const Eigen::Ref<const Eigen::ArrayXd>& values,
                     const std::string& what);
 
-/// Bias 0 everywhere: the raw rate.
-struct NoBias {};
-
-/// The same bias at all inputs.
-struct ConstantBias {
-  double value = 0.0;
-};
-
 /// Bias predicted from inputs in the units of the recording (degC, V, Hz, ...):
 ///
 ///   b = bias.centre + bias.half_width * function(scaled inputs)   [deg/s]
 struct BiasModel {
   std::vector<Scale> input_scales;  // one per input
   Scale bias_scale;                 // [deg/s]
-  std::variant<NoBias, ConstantBias, Polynomial, LookupTable, CubicSpline,
-               ThermistorNetwork, TakagiSugeno, BpNetwork>
-      function;
+  BiasFunction function = {};
 
   /// One sample per row, one input per column.
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
@@ -56,9 +40,11 @@ struct BiasModel {
 BiasModel averaged_with_constant(BiasModel model, double constant,
                                  double weight);
 
-/// "none", "constant", "polynomial", "table", "spline", "thermistor", "fuzzy"
-/// or "bp".
+/// "none", "constant", "polynomial", ...: F::kKind of its function.
 std::string kind_name(const BiasModel& model);
+
+/// Whether the bias depends on an input.
+bool reads_inputs(const BiasModel& model);
 
 constexpr double kReferenceTemperature = 25.0;  // [degC], T0 of equation (1)
 

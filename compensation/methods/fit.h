@@ -5,21 +5,24 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compensation/methods/bias_model.h"
-#include "compensation/methods/fit_spec.h"
-#include "compensation/network/network_training.h"
-#include "compensation/rows/training_rows.h"
+#include "compensation/methods/method.h"
 
 namespace beamgyro {
 
 /// A model fitted to rows.
 struct Fit {
+  // NOLINTNEXTLINE(google-explicit-constructor): most fits are a model alone
+  Fit(BiasModel fitted) : model(std::move(fitted)) {}
+
   BiasModel model;
-  std::vector<TrainSummary> restarts;  // one unless it is a network; [deg/s]
-  std::size_t chosen = 0;              // the restart kept
-  std::vector<std::string> choices;    // what was chosen, from what, and why
+  std::vector<TrainSummary> restarts =
+      {};                                 // of fit_model() one or more [deg/s]
+  std::size_t chosen = 0;                 // the restart kept
+  std::vector<std::string> choices = {};  // what was chosen, from what, and why
   std::optional<Population> population = {};  // learned, of a PopulationSpec
 
   const TrainSummary& summary() const { return restarts[chosen]; }
@@ -40,7 +43,7 @@ Fit fit_model(const FitSpec& kind, const std::vector<Input>& inputs,
 /// where the temperatures do not determine a cubic.
 BiasModel fit_baseline(const TrainingRows& rows);
 
-/// Returns the rms residual [deg/s] over the rows.
-double rms_residual(const BiasModel& model, const TrainingRows& rows);
+/// Returns the name of a method for people: "cubic spline".
+std::string method_name(const FitSpec& kind);
 
 }  // namespace beamgyro

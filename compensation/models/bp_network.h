@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "compensation/models/bias_function.h"
 #include "random/random_stream.h"
 
 namespace beamgyro {
@@ -45,6 +46,15 @@ class BpNetwork {
   void randomise(RandomStream& random);
 
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
+
+  static constexpr const char* kKind = "bp";
+  static constexpr InputUse kInputUse = InputUse::kAny;
+  nlohmann::ordered_json parameters() const;
+  static BpNetwork read(const JsonNode& node, std::size_t inputs);
+  void put_arrays(FirmwareArrays& arrays) const;
+  float firmware_value(const FirmwareArrays& arrays,
+                       std::span<const float> x) const;
+  FirmwareCode firmware_code(std::size_t inputs) const;
 
   /// Returns the output of every sample, and dy/dw in `jacobian` by
   /// back-propagation: one row for each sample and one column for each weight.

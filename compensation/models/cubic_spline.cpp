@@ -10,6 +10,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "compensation/firmware/runtime.h"
+#include "compensation/models/parameter_json.h"
+
 namespace beamgyro {
 namespace {
 
@@ -128,6 +131,50 @@ ArrayXd spline_knots(const Eigen::Ref<const ArrayXd>& x, double spacing) {
   }
   return Eigen::Map<const ArrayXd>(knots.data(),
                                    static_cast<Index>(knots.size()));
+}
+
+nlohmann::ordered_json CubicSpline::parameters() const {
+  return {{"knots_degC", numbers_json(knots)},
+          {"values_deg_per_s", numbers_json(values)},
+          {"second_derivatives_deg_per_s_per_K2",
+           numbers_json(second_derivatives)}};
+}
+
+CubicSpline CubicSpline::read(const JsonNode& node, std::size_t) {
+  CubicSpline spline{
+      read_array(node.at("knots_degC")),
+      read_array(node.at("values_deg_per_s")),
+      read_array(node.at("second_derivatives_deg_per_s_per_K2"))};
+  const Eigen::Index n = spline.knots.size();
+  if (n < 4 || spline.values.size() != n ||
+      spline.second_derivatives.size() != n)
+    node.fail(
+        fmt::format("{} knots, {} values and {} second derivatives, must "
+                    "be as many of each and at least 4",
+                    n, spline.values.size(), spline.second_derivatives.size()));
+  if (!(spline.knots.tail(n - 1) > spline.knots.head(n - 1)).all())
+    node.at("knots_degC").fail("must increase");
+  return spline;
+}
+
+void CubicSpline::put_arrays(FirmwareArrays& arrays) const {
+  arrays.add({"knots", "[degC]", singles(knots)});
+  arrays.add({"values", "[deg/s]", singles(values)});
+  arrays.add({"seconds", "second derivatives [deg/s/K^2]",
+              singles(second_derivatives)});
+}
+
+float CubicSpline::firmware_value(const FirmwareArrays& arrays,
+                                  std::span<const float> x) const {
+  return runtime::spline_at(arrays.data("knots"), arrays.data("values"),
+                            arrays.data("seconds"), arrays.count("values"),
+                            x[0]);
+}
+
+FirmwareCode CubicSpline::firmware_code(std::size_t) const {
+  return {{"spline"},
+          fmt::format("  return spline_at(knots, values, seconds, {}, x[0]);\n",
+                      values.size())};
 }
 
 }  // namespace beamgyro

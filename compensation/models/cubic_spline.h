@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "compensation/models/bias_function.h"
+
 namespace beamgyro {
 
 enum class SplineEnd {
@@ -23,6 +25,15 @@ struct CubicSpline {
   Eigen::ArrayXd second_derivatives;  // [deg/s/K^2]
 
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXd>& x) const;
+
+  static constexpr const char* kKind = "spline";
+  static constexpr InputUse kInputUse = InputUse::kOne;
+  nlohmann::ordered_json parameters() const;
+  static CubicSpline read(const JsonNode& node, std::size_t inputs);
+  void put_arrays(FirmwareArrays& arrays) const;
+  float firmware_value(const FirmwareArrays& arrays,
+                       std::span<const float> x) const;
+  FirmwareCode firmware_code(std::size_t inputs) const;
 };
 
 /// Returns the spline on `knots` with the least sum of squared residuals at the

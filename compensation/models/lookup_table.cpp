@@ -8,6 +8,9 @@
 #include <map>
 #include <stdexcept>
 
+#include "compensation/firmware/runtime.h"
+#include "compensation/models/parameter_json.h"
+
 namespace beamgyro {
 
 using Eigen::Index;
@@ -54,6 +57,46 @@ LookupTable fit_lookup_table(const Eigen::Ref<const Eigen::ArrayXd>& x,
     table.temperatures(k) = bin.x / bin.count;
     table.values(k++) = bin.y / bin.count;
   }
+  return table;
+}
+
+nlohmann::ordered_json LookupTable::parameters() const {
+  return {{"temperatures_degC", numbers_json(temperatures)},
+          {"values_deg_per_s", numbers_json(values)}};
+}
+
+LookupTable LookupTable::read(const JsonNode& node, std::size_t) {
+  return read_lookup_table(node, "values_deg_per_s");
+}
+
+void LookupTable::put_arrays(FirmwareArrays& arrays) const {
+  arrays.add({"temperatures", "[degC]", singles(temperatures)});
+  arrays.add({"values", "[deg/s]", singles(values)});
+}
+
+float LookupTable::firmware_value(const FirmwareArrays& arrays,
+                                  std::span<const float> x) const {
+  return runtime::table_at(arrays.data("temperatures"), arrays.data("values"),
+                           arrays.count("values"), x[0]);
+}
+
+FirmwareCode LookupTable::firmware_code(std::size_t) const {
+  return {{"table"},
+          fmt::format("  return table_at(temperatures, values, {}, x[0]);\n",
+                      values.size())};
+}
+
+LookupTable read_lookup_table(const JsonNode& node, const std::string& values) {
+  LookupTable table{read_array(node.at("temperatures_degC")),
+                    read_array(node.at(values))};
+  const Eigen::Index n = table.temperatures.size();
+  if (n < 1 || table.values.size() != n)
+    node.at(values).fail(
+        fmt::format("{} values for {} temperatures, must be as many and at "
+                    "least 1",
+                    table.values.size(), n));
+  if (!(table.temperatures.tail(n - 1) > table.temperatures.head(n - 1)).all())
+    node.at("temperatures_degC").fail("must increase");
   return table;
 }
 

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
+
+#include "compensation/models/bias_function.h"
 
 namespace beamgyro {
 
@@ -13,7 +16,20 @@ struct LookupTable {
 
   double at(double temperature) const;  // [degC]
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXd>& x) const;
+
+  static constexpr const char* kKind = "table";
+  static constexpr InputUse kInputUse = InputUse::kOne;
+  nlohmann::ordered_json parameters() const;
+  static LookupTable read(const JsonNode& node, std::size_t inputs);
+  void put_arrays(FirmwareArrays& arrays) const;
+  float firmware_value(const FirmwareArrays& arrays,
+                       std::span<const float> x) const;
+  FirmwareCode firmware_code(std::size_t inputs) const;
 };
+
+/// Reads temperatures that increase, and as many numbers under the key
+/// `values`.
+LookupTable read_lookup_table(const JsonNode& node, const std::string& values);
 
 /// Returns the means of temperature and value over the points of each bin [k
 /// width, (k + 1) width) that has points. Throws std::invalid_argument without

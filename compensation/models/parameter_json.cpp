@@ -15,4 +15,16 @@ nlohmann::ordered_json finite_json(double value) {
   return value;
 }
 
+Eigen::ArrayXd read_array(const JsonNode& node) {
+  const std::vector<double> numbers = node.numbers();
+  return Eigen::Map<const Eigen::ArrayXd>(
+      numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+double read_positive(const JsonNode& node) {
+  const double number = node.number();
+  if (!(number > 0.0)) node.fail(fmt::format("{}, must be above 0", number));
+  return number;
+}
+
 }  // namespace beamgyro

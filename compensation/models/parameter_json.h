@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
+
+#include "dataset/files/json_node.h"
 
 namespace beamgyro {
 
@@ -15,5 +18,9 @@ nlohmann::ordered_json numbers_json(const Numbers& numbers) {
   for (const double number : numbers) array.push_back(finite_json(number));
   return array;
 }
+
+/// Read what numbers_json() and finite_json() wrote. Throw as JsonNode.
+Eigen::ArrayXd read_array(const JsonNode& node);
+double read_positive(const JsonNode& node);
 
 }  // namespace beamgyro

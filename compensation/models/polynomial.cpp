@@ -7,6 +7,9 @@
 #include <Eigen/QR>
 #include <stdexcept>
 
+#include "compensation/firmware/runtime.h"
+#include "compensation/models/parameter_json.h"
+
 namespace beamgyro {
 namespace {
 
@@ -74,6 +77,48 @@ std::vector<double> shifted(std::vector<double> coefficients, double origin) {
     for (std::size_t k = coefficients.size() - 1; k-- > n;)
       coefficients[k] += origin * coefficients[k + 1];
   return coefficients;
+}
+
+nlohmann::ordered_json Polynomial::parameters() const {
+  return {{"coefficients", numbers_json(coefficients)},
+          {"slopes", numbers_json(slopes)}};
+}
+
+Polynomial Polynomial::read(const JsonNode& node, std::size_t inputs) {
+  Polynomial polynomial{node.at("coefficients").numbers(),
+                        node.at("slopes").numbers()};
+  if (polynomial.coefficients.empty())
+    node.at("coefficients").fail("[], must have at least one coefficient");
+  if (polynomial.slopes.size() + 1 != inputs)
+    node.at("slopes").fail(
+        fmt::format("{} slopes, must be one for each of the {} inputs but the "
+                    "first",
+                    polynomial.slopes.size(), inputs));
+  return polynomial;
+}
+
+void Polynomial::put_arrays(FirmwareArrays& arrays) const {
+  arrays.add({"coefficients", "of the powers 0, 1, ... of x[0]",
+              singles(coefficients)});
+  if (!slopes.empty()) arrays.add({"slopes", "of x[1], ...", singles(slopes)});
+}
+
+float Polynomial::firmware_value(const FirmwareArrays& arrays,
+                                 std::span<const float> x) const {
+  float y = runtime::polynomial_of(arrays.data("coefficients"),
+                                   arrays.count("coefficients"), x[0]);
+  for (std::size_t j = 1; j < x.size(); ++j)
+    y = y + arrays.values("slopes")[j - 1] * x[j];
+  return y;
+}
+
+FirmwareCode Polynomial::firmware_code(std::size_t inputs) const {
+  std::string body =
+      fmt::format("  float y = polynomial_of(coefficients, {}, x[0]);\n",
+                  coefficients.size());
+  for (std::size_t j = 1; j < inputs; ++j)
+    body += fmt::format("  y = y + slopes[{}] * x[{}];\n", j - 1, j);
+  return {{"polynomial"}, body + "  return y;\n"};
 }
 
 }  // namespace beamgyro

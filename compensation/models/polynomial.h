@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "compensation/models/bias_function.h"
+
 namespace beamgyro {
 
 /// p(x) = c_0 + c_1 x_0 + ... + c_n x_0^n + d_1 x_1 + ... + d_m x_m: a
@@ -14,6 +16,15 @@ struct Polynomial {
 
   /// Returns p of each row of x, which has 1 + m columns.
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
+
+  static constexpr const char* kKind = "polynomial";
+  static constexpr InputUse kInputUse = InputUse::kAny;
+  nlohmann::ordered_json parameters() const;
+  static Polynomial read(const JsonNode& node, std::size_t inputs);
+  void put_arrays(FirmwareArrays& arrays) const;
+  float firmware_value(const FirmwareArrays& arrays,
+                       std::span<const float> x) const;
+  FirmwareCode firmware_code(std::size_t inputs) const;
 };
 
 /// Fits by least squares with Householder QR. Throws std::invalid_argument when

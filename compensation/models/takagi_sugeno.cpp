@@ -7,6 +7,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "compensation/firmware/runtime.h"
+#include "compensation/models/parameter_json.h"
+
 namespace beamgyro {
 namespace {
 
@@ -68,6 +71,57 @@ TakagiSugeno fit_takagi_sugeno(const Eigen::Ref<const ArrayXXd>& x,
           y.matrix());
   model.consequents = a.reshaped(each, rules).transpose();
   return model;
+}
+
+nlohmann::ordered_json TakagiSugeno::parameters() const {
+  auto rules = nlohmann::ordered_json::array();
+  for (const auto& rule : consequents.rowwise())
+    rules.push_back(numbers_json(rule));
+  return {{"centres", numbers_json(centres)},
+          {"width", finite_json(width)},
+          {"consequents", rules}};
+}
+
+TakagiSugeno TakagiSugeno::read(const JsonNode& node, std::size_t inputs) {
+  TakagiSugeno fuzzy{
+      read_array(node.at("centres")), read_positive(node.at("width")), {}};
+  const std::vector<JsonNode> rules = node.at("consequents").elements();
+  const auto width = static_cast<Eigen::Index>(inputs) + 1;
+  if (rules.empty() ||
+      fuzzy.centres.size() != static_cast<Eigen::Index>(rules.size()))
+    node.at("consequents")
+        .fail(fmt::format("{} rules, must be one for each of the {} centres",
+                          rules.size(), fuzzy.centres.size()));
+  fuzzy.consequents.resize(fuzzy.centres.size(), width);
+  for (std::size_t i = 0; i < rules.size(); ++i) {
+    const Eigen::ArrayXd rule = read_array(rules[i]);
+    if (rule.size() != width)
+      rules[i].fail(fmt::format("{} numbers, must be {}", rule.size(), width));
+    fuzzy.consequents.row(static_cast<Eigen::Index>(i)) = rule.matrix();
+  }
+  return fuzzy;
+}
+
+void TakagiSugeno::put_arrays(FirmwareArrays& arrays) const {
+  arrays.add({"centres", "of x[0]", singles(centres)});
+  arrays.add({"width", "", {single(width)}});
+  const Eigen::MatrixXd rows = consequents.transpose();
+  arrays.add(
+      {"rules", "constant and slopes of each", singles(rows.reshaped())});
+}
+
+float TakagiSugeno::firmware_value(const FirmwareArrays& arrays,
+                                   std::span<const float> x) const {
+  return runtime::fuzzy_of(arrays.data("centres"), arrays.values("width")[0],
+                           arrays.data("rules"), arrays.count("centres"),
+                           static_cast<int>(x.size()), x.data());
+}
+
+FirmwareCode TakagiSugeno::firmware_code(std::size_t inputs) const {
+  return {
+      {"exp", "fuzzy"},
+      fmt::format("  return fuzzy_of(centres, width[0], rules, {}, {}, x);\n",
+                  centres.size(), inputs)};
 }
 
 }  // namespace beamgyro

@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "compensation/models/bias_function.h"
+
 namespace beamgyro {
 
 /// Fuzzy model of Takagi and Sugeno (IEEE Trans. SMC 15, 1985, 116): rules "if
@@ -17,6 +19,15 @@ struct TakagiSugeno {
 
   /// Returns y of each row of x.
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
+
+  static constexpr const char* kKind = "fuzzy";
+  static constexpr InputUse kInputUse = InputUse::kAny;
+  nlohmann::ordered_json parameters() const;
+  static TakagiSugeno read(const JsonNode& node, std::size_t inputs);
+  void put_arrays(FirmwareArrays& arrays) const;
+  float firmware_value(const FirmwareArrays& arrays,
+                       std::span<const float> x) const;
+  FirmwareCode firmware_code(std::size_t inputs) const;
 };
 
 /// Fits a model with `rules` centres spread evenly over [-1, 1] and half of

@@ -7,7 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
+#include "compensation/firmware/runtime.h"
+#include "compensation/models/parameter_json.h"
 #include "config/units.h"
 
 namespace beamgyro {
@@ -103,6 +106,37 @@ ThermistorNetwork fit_thermistor_network(const Eigen::Ref<const ArrayXd>& x,
   // to 1 / 4: share = 1 / 4 + 1 / 4 / (1 + n / n').
   const double bend = std::exp(log_bend);
   return {b_K, bend, 2.0 * bend, bend, line.b0 - line.b1, 4.0 * line.b1};
+}
+
+nlohmann::ordered_json ThermistorNetwork::parameters() const {
+  return {{"b_K", finite_json(b_K)},
+          {"series", finite_json(series)},
+          {"parallel", finite_json(parallel)},
+          {"divider", finite_json(divider)},
+          {"offset_deg_per_s", finite_json(offset)},
+          {"gain_deg_per_s", finite_json(gain)}};
+}
+
+ThermistorNetwork ThermistorNetwork::read(const JsonNode& node, std::size_t) {
+  return {
+      read_positive(node.at("b_K")),        read_positive(node.at("series")),
+      read_positive(node.at("parallel")),   read_positive(node.at("divider")),
+      node.at("offset_deg_per_s").number(), node.at("gain_deg_per_s").number()};
+}
+
+void ThermistorNetwork::put_arrays(FirmwareArrays& arrays) const {
+  arrays.add(
+      {"network", "B [K], r_s, r_p, r_d, offset, gain [deg/s]",
+       singles(std::vector{b_K, series, parallel, divider, offset, gain})});
+}
+
+float ThermistorNetwork::firmware_value(const FirmwareArrays& arrays,
+                                        std::span<const float> x) const {
+  return runtime::thermistor_at(arrays.data("network"), x[0]);
+}
+
+FirmwareCode ThermistorNetwork::firmware_code(std::size_t) const {
+  return {{"exp", "thermistor"}, "  return thermistor_at(network, x[0]);\n"};
 }
 
 }  // namespace beamgyro

@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "compensation/models/bias_function.h"
+
 namespace beamgyro {
 
 /// Compensation by hardware: an NTC and three resistors divide a reference
@@ -27,6 +29,15 @@ struct ThermistorNetwork {
 
   /// Returns b(T) [deg/s] at the temperatures x [degC].
   Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXd>& x) const;
+
+  static constexpr const char* kKind = "thermistor";
+  static constexpr InputUse kInputUse = InputUse::kOne;
+  nlohmann::ordered_json parameters() const;
+  static ThermistorNetwork read(const JsonNode& node, std::size_t inputs);
+  void put_arrays(FirmwareArrays& arrays) const;
+  float firmware_value(const FirmwareArrays& arrays,
+                       std::span<const float> x) const;
+  FirmwareCode firmware_code(std::size_t inputs) const;
 };
 
 constexpr double kLeastBend = 1e-3, kLargestBend = 1e3;  // n' of a fit [-]

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compensation/inputs/input.h"
-#include "compensation/methods/fit_spec.h"
+#include "compensation/methods/method_list.h"
 #include "compensation/rows/row_options.h"
 #include "config/document.h"
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "compensation/compensator/training_use.h"
-#include "compensation/methods/method_name.h"
+#include "compensation/methods/fit.h"
 #include "compensation/training/cautions.h"
 #include "compensation/training/scale_factor_table.h"
 #include "compensation/training/selection.h"

@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <limits>
 
-#include "compensation/export/c_text.h"
 #include "compensation/export/firmware_difference.h"
 #include "compensation/export/firmware_model.h"
+#include "compensation/firmware/c_text.h"
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/sample_compensators.h"
 

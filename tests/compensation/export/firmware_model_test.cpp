@@ -10,6 +10,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "compensation/firmware/runtime.h"
 #include "compensation/inputs/features.h"
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
@@ -303,10 +304,10 @@ TEST(Crc32, CoversEveryParameter) {
 }
 
 TEST(FirmwareRuntime, SectionsAreFoundByName) {
-  const std::string tanh = firmware_runtime("tanh");
+  const std::string tanh = runtime_text("tanh");
   EXPECT_NE(tanh.find("static float tanh_of(float x)"), std::string::npos);
   EXPECT_EQ(tanh.find("polynomial_of"), std::string::npos);
-  EXPECT_THROW(firmware_runtime("cosh"), std::logic_error);
+  EXPECT_THROW(runtime_text("cosh"), std::logic_error);
 }
 
 }  // namespace

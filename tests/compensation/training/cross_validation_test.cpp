@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "compensation/methods/method_name.h"
+#include "compensation/methods/fit.h"
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/rows_of.h"

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "compensation/methods/method_name.h"
+#include "compensation/methods/fit.h"
 #include "tests/compensation/message_of.h"
 
 namespace beamgyro {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/export/c_text.h"
+#include "compensation/firmware/c_text.h"
 
 #include <fmt/format.h>
 

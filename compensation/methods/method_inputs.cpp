@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/methods/method_inputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace beamgyro {
+namespace {
+
+void require_one_temperature(const ConfigTable& root,
+                             const std::vector<Input>& inputs,
+                             const std::string& kind, bool of_samples) {
+  const bool one =
+      inputs.size() == 1 &&
+      (inputs[0] == parse_input("temperature") ||
+       (inputs[0].kind == InputKind::kTemperatureLowpass && !of_samples));
+  if (!one)
+    root.fail(
+        "inputs",
+        fmt::format("{} inputs starting with \"{}\"; a {} takes one "
+                    "input, \"temperature\"{}",
+                    inputs.size(), input_name(inputs[0]), kind,
+                    of_samples ? "" : " or \"temperature_lowpass(TAU)\""));
+}
+
+void require_temperature_first(const ConfigTable& root,
+                               const std::vector<Input>& inputs,
+                               const std::string& kind) {
+  if (inputs[0] != parse_input("temperature"))
+    root.fail("inputs", fmt::format("starts with \"{}\"; the first input of a "
+                                    "{} is \"temperature\"",
+                                    input_name(inputs[0]), kind));
+  for (const Input& input : inputs)
+    if (sees_the_rate(input))
+      root.fail("inputs",
+                fmt::format("\"{}\" feels the rate, and a {} would take the "
+                            "rate for drift; only a bp network takes it, with "
+                            "rate_penalty",
+                            input_name(input), kind));
+}
+
+void require_channels(const ConfigTable& root, const std::vector<Input>& inputs,
+                      const std::string& kind) {
+  require_temperature_first(root, inputs, kind);
+  for (const Input& input : inputs)
+    if (input.kind != InputKind::kColumn)
+      root.fail("inputs",
+                fmt::format("\"{}\"; a {} takes what a soak shows: "
+                            "\"quadrature\", \"drive_voltage\" or "
+                            "\"drive_frequency\" beside the temperature",
+                            input_name(input), kind));
+}
+
+}  // namespace
+
+std::vector<Input> read_inputs(const ConfigTable& root) {
+  const std::vector<std::string> names = root.texts("inputs");
+  if (names.empty()) root.fail("inputs", "[], needs at least one input");
+  std::vector<Input> inputs;
+  for (const std::string& name : names) {
+    try {
+      inputs.push_back(parse_input(name));
+    } catch (const std::invalid_argument& error) {
+      root.fail("inputs", error.what());
+    }
+    if (std::count(inputs.begin(), inputs.end(), inputs.back()) > 1)
+      root.fail("inputs", fmt::format("\"{}\" is there twice", name));
+  }
+  return inputs;
+}
+
+void check_inputs(const ConfigTable& root, const std::vector<Input>& inputs,
+                  InputRule rule, const std::string& method) {
+  switch (rule) {
+    case InputRule::kNamed:
+    case InputRule::kAny:
+    case InputRule::kOfItsOwn:
+      return;
+    case InputRule::kTemperatureFirst:
+      return require_temperature_first(root, inputs, method);
+    case InputRule::kOneTemperature:
+      return require_one_temperature(root, inputs, method, false);
+    case InputRule::kMeasuredOnly:
+      return require_one_temperature(root, inputs, method, true);
+    case InputRule::kChannels:
+      return require_channels(root, inputs, method);
+  }
+}
+
+}  // namespace beamgyro
