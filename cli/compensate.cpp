@@ -11,6 +11,7 @@
 #include "compensation/compensator/compensator_file.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/netcdf/recording_file.h"
+#include "dataset/recording/signals.h"
 
 namespace beamgyro {
 namespace {
@@ -47,8 +48,7 @@ int compensate(const CompensateArguments& arguments) {
         compensator.temperature_range.lowest,
         compensator.temperature_range.highest));
   }
-  recording.columns.push_back({kColumn, "degree/s", "rate after compensation",
-                               Role::kCompensated, std::move(rate)});
+  recording.columns.push_back(column_of(kColumn, std::move(rate)));
   write_recording(recording, arguments.output);
   return 0;
 }

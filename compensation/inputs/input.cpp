@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "config/suggestion.h"
+#include "dataset/recording/signals.h"
 
 namespace beamgyro {
 namespace {
@@ -18,10 +19,12 @@ constexpr std::string_view kTemperatureRate = "temperature_rate";
 constexpr std::string_view kSincePowerOn = "since_power_on";
 
 const std::vector<std::string>& plain_inputs() {
-  static const std::vector<std::string> names{
-      "output",          "rate",          "temperature",
-      "drive_frequency", "drive_voltage", "quadrature",
-  };
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> measured;
+    for (const RecordedSignal& one : recorded_signals())
+      if (one.role == Role::kMeasured) measured.emplace_back(one.name);
+    return measured;
+  }();
   return names;
 }
 

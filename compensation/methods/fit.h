@@ -15,6 +15,7 @@ namespace beamgyro {
 
 /// A model fitted to rows.
 struct Fit {
+  Fit() = default;
   // NOLINTNEXTLINE(google-explicit-constructor): most fits are a model alone
   Fit(BiasModel fitted) : model(std::move(fitted)) {}
 

@@ -29,11 +29,7 @@ class LogReader {
     if (map.status) status_ = log_.slot(map.status->column);
     for (const LogQuantity& quantity : map.quantities) {
       slots_.push_back(log_.slot(quantity.column));
-      recording_.columns.push_back({quantity.variable,
-                                    quantity.units,
-                                    quantity.long_name,
-                                    quantity.role,
-                                    {}});
+      recording_.columns.push_back(column_of(quantity.signal.name, {}));
     }
     values_.resize(slots_.size());
   }
@@ -45,9 +41,9 @@ class LogReader {
     counts_.kept = recording_.time.size();
     check_enough();
     if (map_.constant_true_rate) {
-      recording_.columns.push_back(
-          {"true_rate", "degree/s", "rate about the input axis", Role::kTruth,
-           std::vector<double>(counts_.kept, *map_.constant_true_rate)});
+      recording_.columns.push_back(column_of(
+          "true_rate",
+          std::vector<double>(counts_.kept, *map_.constant_true_rate)));
     }
     recording_.fidelity = "imported";
     recording_.scenario_text = map_.text;
@@ -133,7 +129,7 @@ class LogReader {
   bool read_values(bool unpowered) {
     for (std::size_t i = 0; i < slots_.size(); ++i) {
       const LogQuantity& quantity = map_.quantities[i];
-      if (unpowered && quantity.role == Role::kMeasured) {
+      if (unpowered && quantity.signal.role == Role::kMeasured) {
         values_[i] = kNan;
         continue;
       }
@@ -195,7 +191,8 @@ class LogReader {
           lines_[static_cast<std::size_t>(wrong - values.begin())]);
       log_.fail(slots_[i],
                 fmt::format("is {:g} {} when read as {}: \"{}\"", *wrong,
-                            quantity.units, quantity.unit_place, quantity.unit),
+                            quantity.signal.units, quantity.unit_place,
+                            quantity.unit),
                 text_of(quantity.plausible) + (quantity.unit == "counts"
                                                    ? ", or another scale or "
                                                      "wrap_bits"

@@ -77,7 +77,7 @@ LogTime read_time(const ConfigTable& table) {
 }
 
 LogQuantity read_rate(const ConfigTable& table) {
-  return read_log_rate(table, "rate", "uncompensated rate", Role::kMeasured);
+  return read_log_rate(table, "rate");
 }
 
 // Reads every axis, so that a mistake in one that was not asked for is found,
@@ -120,9 +120,7 @@ std::vector<LogQuantity> read_quantities(const ConfigTable& root,
   std::vector<LogQuantity> quantities;
   const LogQuantity rate = read_gyro(root, axis);
   if (rate.unit == "V") {
-    quantities.push_back({.variable = "output",
-                          .units = rate.unit,
-                          .long_name = "gyro output",
+    quantities.push_back({.signal = recorded_signal("output"),
                           .column = rate.column,
                           .unit = rate.unit,
                           .unit_place = rate.unit_place});
@@ -130,21 +128,17 @@ std::vector<LogQuantity> read_quantities(const ConfigTable& root,
   quantities.push_back(rate);
   quantities.push_back(read_log_temperature(root.table("temperature")));
   if (const auto table = root.optional_table("drive_frequency"))
-    quantities.push_back(
-        read_log_frequency(*table, "drive_frequency", "drive frequency"));
+    quantities.push_back(read_log_frequency(*table, "drive_frequency"));
   if (const auto table = root.optional_table("drive_voltage"))
-    quantities.push_back(
-        read_log_voltage(*table, "drive_voltage", "drive voltage"));
+    quantities.push_back(read_log_voltage(*table, "drive_voltage"));
   if (const auto table = root.optional_table("quadrature"))
-    quantities.push_back(
-        read_log_rate(*table, "quadrature", "quadrature", Role::kMeasured));
+    quantities.push_back(read_log_rate(*table, "quadrature"));
   return quantities;
 }
 
 void read_true_rate(const ConfigTable& table, LogMap& map) {
   if (table.has("column")) {
-    map.quantities.push_back(read_log_rate(
-        table, "true_rate", "rate about the input axis", Role::kTruth));
+    map.quantities.push_back(read_log_rate(table, "true_rate"));
   } else if (table.has("constant_deg_per_s")) {
     map.constant_true_rate = table.number("constant_deg_per_s");
   } else if (table.flag("at_rest")) {

@@ -12,13 +12,10 @@ constexpr double kFastestRate = 20000.0;               // [deg/s]
 constexpr double kColdest = -100.0, kWarmest = 200.0;  // [degC]
 constexpr long kMostColumns = 100000;
 
-LogQuantity quantity(const ConfigTable& table, const std::string& variable,
-                     const std::string& units, const std::string& long_name,
+LogQuantity quantity(const ConfigTable& table, std::string_view name,
                      const std::vector<std::string>& known_units) {
   LogQuantity quantity;
-  quantity.variable = variable;
-  quantity.units = units;
-  quantity.long_name = long_name;
+  quantity.signal = recorded_signal(name);
   quantity.column = read_log_column(table);
   quantity.unit = table.choice("unit", known_units);
   quantity.unit_place = table.place("unit");
@@ -34,7 +31,7 @@ LogQuantity quantity(const ConfigTable& table, const std::string& variable,
 /// Sets the conversion of a unit that needs no further keys.
 void set_conversion(LogQuantity& quantity) {
   const UnitConversion conversion =
-      unit_conversion(quantity.unit, quantity.units);
+      unit_conversion(quantity.unit, quantity.signal.units);
   quantity.offset += conversion.offset;
   quantity.scale = conversion.scale;
 }
@@ -73,11 +70,8 @@ LogColumn read_log_column(const ConfigTable& table) {
   return column;
 }
 
-LogQuantity read_log_rate(const ConfigTable& table, const std::string& variable,
-                          const std::string& long_name, Role role) {
-  LogQuantity rate = quantity(table, variable, "degree/s", long_name,
-                              {"deg/s", "rad/s", "V", "counts"});
-  rate.role = role;
+LogQuantity read_log_rate(const ConfigTable& table, std::string_view signal) {
+  LogQuantity rate = quantity(table, signal, {"deg/s", "rad/s", "V", "counts"});
   rate.plausible = between(-kFastestRate, kFastestRate);
   rate.offset = table.number_or("offset", 0.0);
   if (rate.unit == "V" || rate.unit == "counts") {
@@ -91,8 +85,7 @@ LogQuantity read_log_rate(const ConfigTable& table, const std::string& variable,
 
 LogQuantity read_log_temperature(const ConfigTable& table) {
   LogQuantity temperature =
-      quantity(table, "temperature", "degC", "temperature sensor",
-               {"degC", "degF", "K", "counts"});
+      quantity(table, "temperature", {"degC", "degF", "K", "counts"});
   temperature.plausible = between(kColdest, kWarmest);
   if (temperature.unit == "counts") {
     temperature.scale = read_scale(table, "scale_K");
@@ -106,18 +99,15 @@ LogQuantity read_log_temperature(const ConfigTable& table) {
 }
 
 LogQuantity read_log_frequency(const ConfigTable& table,
-                               const std::string& variable,
-                               const std::string& long_name) {
-  LogQuantity frequency =
-      quantity(table, variable, "Hz", long_name, {"Hz", "kHz"});
+                               std::string_view signal) {
+  LogQuantity frequency = quantity(table, signal, {"Hz", "kHz"});
   set_conversion(frequency);
   return frequency;
 }
 
 LogQuantity read_log_voltage(const ConfigTable& table,
-                             const std::string& variable,
-                             const std::string& long_name) {
-  LogQuantity voltage = quantity(table, variable, "V", long_name, {"V", "mV"});
+                             std::string_view signal) {
+  LogQuantity voltage = quantity(table, signal, {"V", "mV"});
   set_conversion(voltage);
   return voltage;
 }

@@ -3,10 +3,11 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "config/range.h"
 #include "config/table.h"
-#include "dataset/recording/recording.h"
+#include "dataset/recording/signals.h"
 
 namespace beamgyro {
 
@@ -22,10 +23,7 @@ struct LogColumn {
 ///   value = (raw - offset) scale + shift,
 /// `raw` is first read as two's complement of `wrap_bits` bits, if that is set.
 struct LogQuantity {
-  std::string variable;  // this and the next three as of Column
-  std::string units;
-  std::string long_name;
-  Role role = Role::kMeasured;
+  RecordedSignal signal;
   LogColumn column;
   std::string unit;        // of the log, as the map states it
   std::string unit_place;  // of that key in the map
@@ -49,14 +47,10 @@ LogColumn read_log_column(const ConfigTable& table);
 /// in degC, degF, K or counts; of a number in a multiple of its unit. Each
 /// throws std::invalid_argument that names the key for a unit that is missing
 /// or unknown, and as ConfigTable.
-LogQuantity read_log_rate(const ConfigTable& table, const std::string& variable,
-                          const std::string& long_name, Role role);
+LogQuantity read_log_rate(const ConfigTable& table, std::string_view signal);
 LogQuantity read_log_temperature(const ConfigTable& table);
 LogQuantity read_log_frequency(const ConfigTable& table,
-                               const std::string& variable,
-                               const std::string& long_name);
-LogQuantity read_log_voltage(const ConfigTable& table,
-                             const std::string& variable,
-                             const std::string& long_name);
+                               std::string_view signal);
+LogQuantity read_log_voltage(const ConfigTable& table, std::string_view signal);
 
 }  // namespace beamgyro

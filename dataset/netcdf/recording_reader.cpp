@@ -18,6 +18,7 @@
 #include "dataset/netcdf/hdf5_read.h"
 #include "dataset/netcdf/recording_reader.h"
 #include "dataset/recording/recording_defect.h"
+#include "dataset/recording/signals.h"
 #include "dataset/recording/units.h"
 
 namespace beamgyro {

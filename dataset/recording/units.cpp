@@ -70,20 +70,4 @@ UnitConversion unit_conversion(std::string_view unit, std::string_view to) {
                   known.empty() ? std::string(to) : known));
 }
 
-std::string_view unit_of_variable(std::string_view name) {
-  if (name == "time") return "s";
-  if (name == "status") return "1";
-  if (name == "output" || name == "drive_voltage") return "V";
-  if (name == "drive_frequency") return "Hz";
-  if (name == "temperature" ||
-      (name.starts_with("true_") && name.ends_with("_temperature")))
-    return "degC";
-  if (name.starts_with("true_acceleration_")) return "m/s2";
-  if (name == "rate" || name == "quadrature" || name == "true_rate" ||
-      name == "true_bias" || name.starts_with("true_cross_rate_") ||
-      name.starts_with("compensated_rate"))
-    return "degree/s";
-  return {};
-}
-
 }  // namespace beamgyro

@@ -22,8 +22,4 @@ struct UnitConversion {
 /// std::invalid_argument for any other unit and lists those that are known.
 UnitConversion unit_conversion(std::string_view unit, std::string_view to);
 
-/// Returns the unit of the variable of this name in recordings, or an empty
-/// text for a variable that beamgyro does not know.
-std::string_view unit_of_variable(std::string_view name);
-
 }  // namespace beamgyro

@@ -9,7 +9,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "config/units.h"
@@ -19,37 +21,65 @@
 namespace beamgyro {
 namespace {
 
-// Stores counts of a converter if all devices have the same step, otherwise
-// floating point.
-void store_counts(double step, double offset, Storage counts, bool shared,
-                  SetVariable& variable) {
-  if (!shared || step == 0) {
-    variable.storage = Storage::kFloat64;
-    return;
-  }
-  variable.storage = counts;
-  variable.scale_factor = step;
-  variable.add_offset = offset;
-}
+// The converter of a measured signal: value = count * step + offset.
+struct Conversion {
+  double step = 0, offset = 0;  // [units of the signal]; step 0: no counts
+  double most = 0;  // [units], above all values; 0: the range follows from bits
+  int bits = 0;
+  std::vector<const char*> keys;  // of the device, that it depends on
+};
 
-void store_output(const Campaign& campaign, SetVariable& variable) {
-  const ReadoutParameters& readout = campaign.base_device().readout;
-  const auto is_drawn = [&](const char* key) { return campaign.is_drawn(key); };
-  const bool shared = std::ranges::none_of(
-      std::array{"readout.adc_bits", "readout.full_scale_deg_per_s",
-                 "readout.scale_factor_V_per_deg_per_s", "readout.offset_V"},
-      is_drawn);
+// The converter of each measured signal.
+std::map<std::string_view, Conversion> conversions(const Device& device) {
+  const ReadoutParameters& readout = device.readout;
   const double lsb =
       readout.full_scale / std::ldexp(1.0, readout.adc_bits - 1);  // [rad/s]
-  const Storage counts =
-      readout.adc_bits <= 16 ? Storage::kInt16 : Storage::kInt32;
-  if (variable.name == "rate") {
-    store_counts(lsb / kDegree, 0, counts, shared && readout.adc_bits < 32,
-                 variable);
-  } else {
-    store_counts(readout.scale_factor * lsb, readout.offset, counts,
-                 shared && readout.adc_bits < 32, variable);
-  }
+  const std::vector<const char*> of_output = {
+      "readout.adc_bits", "readout.full_scale_deg_per_s",
+      "readout.scale_factor_V_per_deg_per_s", "readout.offset_V"};
+  return {
+      {"output",
+       {.step = readout.scale_factor * lsb,
+        .offset = readout.offset,
+        .bits = readout.adc_bits,
+        .keys = of_output}},
+      {"rate",
+       {.step = lsb / kDegree, .bits = readout.adc_bits, .keys = of_output}},
+      {"temperature",
+       {.step = device.temperature_sensor.resolution,
+        .most = 600,
+        .keys = {"temperature_sensor.resolution_K"}}},
+      {"drive_frequency",
+       {.step = readout.drive_frequency_resolution,
+        .most = 1e5,
+        .keys = {"readout.drive_frequency_resolution_Hz"}}},
+      {"drive_voltage",
+       {.step = readout.drive_voltage_resolution,
+        .most = 1e4,
+        .keys = {"readout.drive_voltage_resolution_V"}}},
+      {"quadrature",
+       {.step = readout.quadrature_resolution / kDegree,
+        .most = 1e6,
+        .keys = {"readout.quadrature_resolution_deg_per_s"}}},
+  };
+}
+
+// The shorter type whose counts reach `most`; floating point with a step too
+// fine for that, or one that is not the same for all devices.
+Storage storage_of(const Conversion& conversion, const Campaign& campaign) {
+  const auto holds = [&](int most_bits, double largest_count) {
+    return conversion.most == 0
+               ? conversion.bits <= most_bits
+               : conversion.step * largest_count >= conversion.most;
+  };
+  const bool is_shared = std::ranges::none_of(
+      conversion.keys, [&](const char* key) { return campaign.is_drawn(key); });
+  if (conversion.step == 0 || !is_shared) return Storage::kFloat64;
+  if (holds(16, std::numeric_limits<std::int16_t>::max()))
+    return Storage::kInt16;
+  if (holds(31, std::numeric_limits<std::int32_t>::max()))
+    return Storage::kInt32;
+  return Storage::kFloat64;
 }
 
 // How a variable of a recording is kept in a set: converters' counts as
@@ -66,34 +96,12 @@ SetVariable set_variable(const Campaign& campaign, const Column& column) {
     variable.slow = column.name != "true_rate";
     return variable;
   }
-  const Device& device = campaign.base_device();
-  const ReadoutParameters& readout = device.readout;
-  // The shorter type whose counts reach `most`, which no value does; with a
-  // step too fine for that, floating point.
-  const auto store = [&](double step, double most, const char* key) {
-    const bool is_short =
-        step * std::numeric_limits<std::int16_t>::max() >= most;
-    const bool fits = step * std::numeric_limits<std::int32_t>::max() >= most;
-    store_counts(step, 0, is_short ? Storage::kInt16 : Storage::kInt32,
-                 fits && !campaign.is_drawn(key), variable);
-  };
-  if (column.name == "output" || column.name == "rate") {
-    store_output(campaign, variable);
-  } else if (column.name == "temperature") {
-    store(device.temperature_sensor.resolution, 600,
-          "temperature_sensor.resolution_K");
-  } else if (column.name == "drive_frequency") {
-    store(readout.drive_frequency_resolution, 1e5,
-          "readout.drive_frequency_resolution_Hz");
-  } else if (column.name == "drive_voltage") {
-    store(readout.drive_voltage_resolution, 1e4,
-          "readout.drive_voltage_resolution_V");
-  } else if (column.name == "quadrature") {
-    store(readout.quadrature_resolution / kDegree, 1e6,
-          "readout.quadrature_resolution_deg_per_s");
-  } else {
-    variable.storage = Storage::kFloat64;
-  }
+  const Conversion conversion =
+      conversions(campaign.base_device())[column.name];
+  variable.storage = storage_of(conversion, campaign);
+  if (variable.storage == Storage::kFloat64) return variable;
+  variable.scale_factor = conversion.step;
+  variable.add_offset = conversion.offset;
   return variable;
 }
 

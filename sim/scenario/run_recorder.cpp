@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "config/units.h"
+#include "dataset/recording/signals.h"
 
 namespace beamgyro {
 namespace {
@@ -36,14 +37,13 @@ Samples quantised(Samples values, double factor, double resolution) {
   return values;
 }
 
-// Appends a measured column with the unpowered samples blanked.
-void add_column(Recording& block, const char* name, const char* units,
-                const char* long_name, Samples values) {
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (block.status[k] & kUnpowered) values[k] = kNaN;
-  }
-  block.columns.push_back(
-      {name, units, long_name, Role::kMeasured, std::move(values)});
+// Appends a column, what is measured without power blanked.
+void add(Recording& block, std::string_view name, Samples values) {
+  Column column = column_of(name, std::move(values));
+  if (column.role == Role::kMeasured)
+    for (std::size_t k = 0; k < column.values.size(); ++k)
+      if (block.status[k] & kUnpowered) column.values[k] = kNaN;
+  block.columns.push_back(std::move(column));
 }
 
 }  // namespace
@@ -106,51 +106,38 @@ void RunRecorder::add_measured(Recording& block, RunSamples& samples) {
     if (sample.saturated) block.status[k] |= kOutputSaturated;
     if (!samples.locked[k]) block.status[k] |= kLoopNotLocked;
   }
-  add_column(block, "output", "V", "voltage at the gyro's pin",
-             std::move(output));
-  add_column(block, "rate", "degree/s", "uncompensated rate", std::move(rate));
-  add_column(block, "temperature", "degC", "temperature sensor",
-             sensor_.readings(samples.temperature[kSensor]));
-  add_column(block, "drive_frequency", "Hz", "drive loop frequency",
-             quantised(std::move(samples.drive_frequency), 1,
-                       readout.drive_frequency_resolution));
-  add_column(block, "drive_voltage", "V", "drive voltage amplitude",
-             quantised(std::move(samples.drive_voltage), 1,
-                       readout.drive_voltage_resolution));
-  add_column(block, "quadrature", "degree/s",
-             "quadrature channel, rate-equivalent",
-             quantised(std::move(samples.quadrature), 1 / kDegree,
-                       readout.quadrature_resolution / kDegree));
+  add(block, "output", std::move(output));
+  add(block, "rate", std::move(rate));
+  add(block, "temperature", sensor_.readings(samples.temperature[kSensor]));
+  add(block, "drive_frequency",
+      quantised(std::move(samples.drive_frequency), 1,
+                readout.drive_frequency_resolution));
+  add(block, "drive_voltage",
+      quantised(std::move(samples.drive_voltage), 1,
+                readout.drive_voltage_resolution));
+  add(block, "quadrature",
+      quantised(std::move(samples.quadrature), 1 / kDegree,
+                readout.quadrature_resolution / kDegree));
 }
 
 void RunRecorder::add_truth(Recording& block, RunSamples& samples) const {
-  const auto add = [&](std::string name, const char* units,
-                       std::string long_name, Samples values) {
-    block.columns.push_back({std::move(name), units, std::move(long_name),
-                             Role::kTruth, std::move(values)});
-  };
-  add("true_rate", "degree/s", "rate about the input axis",
-      scaled(std::move(samples.rate), 1 / kDegree));
-  add("true_bias", "degree/s", "zero-rate output of the noise-free twin",
-      scaled(std::move(samples.bias), 1 / kDegree));
+  add(block, "true_rate", scaled(std::move(samples.rate), 1 / kDegree));
+  add(block, "true_bias", scaled(std::move(samples.bias), 1 / kDegree));
   for (std::size_t i = 0; i < samples.cross_rate.size(); ++i) {
     if (samples.cross_rate[i].empty()) continue;
-    add(fmt::format("true_cross_rate_{}", kAxes[i]), "degree/s",
-        fmt::format("rate about the {} axis", kAxes[i]),
+    add(block, fmt::format("true_cross_rate_{}", kAxes[i]),
         scaled(std::move(samples.cross_rate[i]), 1 / kDegree));
   }
   for (std::size_t i = 0; i < samples.acceleration.size(); ++i) {
     if (samples.acceleration[i].empty()) continue;
-    add(fmt::format("true_acceleration_{}", kAxes[i]), "m/s2",
-        fmt::format("acceleration along the {} axis", kAxes[i]),
+    add(block, fmt::format("true_acceleration_{}", kAxes[i]),
         std::move(samples.acceleration[i]));
   }
   for (std::size_t node = 0; node < kThermalNodeCount; ++node) {
-    add(fmt::format("true_{}_temperature", kThermalNodeNames[node]), "degC",
-        fmt::format("temperature of the {}", kThermalNodeNames[node]),
+    add(block, fmt::format("true_{}_temperature", kThermalNodeNames[node]),
         scaled(std::move(samples.temperature[node]), 1, -kZeroCelsius));
   }
-  add("true_ambient_temperature", "degC", "temperature of air and fixture",
+  add(block, "true_ambient_temperature",
       scaled(scenario_.ambient.sample(block.time), 1, -kZeroCelsius));
 }
 

@@ -18,6 +18,7 @@
 #include "dataset/netcdf/hdf5_id.h"
 #include "dataset/netcdf/hdf5_read.h"
 #include "dataset/recording/recording_defect.h"
+#include "dataset/recording/signals.h"
 #include "dataset/recording/units.h"
 #include "dataset/set/shard/hdf5_variable.h"
 #include "dataset/set/shard/shard_encoding.h"

@@ -40,7 +40,7 @@ std::string rejection_of(const std::string& text,
 
 const LogQuantity& quantity(const LogMap& map, std::string_view variable) {
   for (const LogQuantity& quantity : map.quantities)
-    if (quantity.variable == variable) return quantity;
+    if (quantity.signal.name == variable) return quantity;
   ADD_FAILURE() << variable;
   return map.quantities.front();
 }
@@ -111,16 +111,16 @@ unit = "deg/s"
   EXPECT_DOUBLE_EQ(quantity(map, "drive_frequency").value(7.5), 7500.0);
   EXPECT_DOUBLE_EQ(quantity(map, "drive_voltage").value(812), 0.812);
   EXPECT_DOUBLE_EQ(quantity(map, "quadrature").value(std::numbers::pi), 180.0);
-  EXPECT_EQ(quantity(map, "true_rate").role, Role::kTruth);
+  EXPECT_EQ(quantity(map, "true_rate").signal.role, Role::kTruth);
   EXPECT_FALSE(map.constant_true_rate);
-  EXPECT_EQ(quantity(map, "rate").role, Role::kMeasured);
+  EXPECT_EQ(quantity(map, "rate").signal.role, Role::kMeasured);
 }
 
 TEST(LogMap, OutputComesWithVolts) {
   const LogMap map =
       map_of(changed("unit = \"deg/s\"", "unit = \"V\"\nscale_deg_per_s = 80"));
   ASSERT_EQ(map.quantities.size(), 3u);
-  EXPECT_EQ(map.quantities[0].variable, "output");
+  EXPECT_EQ(map.quantities[0].signal.name, "output");
   EXPECT_EQ(map.quantities[0].units, "V");
   EXPECT_EQ(map.quantities[0].value(2.5), 2.5);
 }

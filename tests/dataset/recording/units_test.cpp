@@ -33,15 +33,5 @@ TEST(Units, AnotherQuantityIsNoUnit) {
             "the unit '' is not known; expected 1");
 }
 
-TEST(Units, EveryVariableThatBeamgyroWritesHasOne) {
-  EXPECT_EQ(unit_of_variable("time"), "s");
-  EXPECT_EQ(unit_of_variable("output"), "V");
-  EXPECT_EQ(unit_of_variable("quadrature"), "degree/s");
-  EXPECT_EQ(unit_of_variable("true_beam_temperature"), "degC");
-  EXPECT_EQ(unit_of_variable("true_acceleration_z"), "m/s2");
-  EXPECT_EQ(unit_of_variable("true_cross_rate_x"), "degree/s");
-  EXPECT_EQ(unit_of_variable("humidity"), "");
-}
-
 }  // namespace
 }  // namespace beamgyro

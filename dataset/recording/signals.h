@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "dataset/recording/recording.h"
+
+namespace beamgyro {
+
+/// A signal that recordings hold, as their files describe it.
+struct RecordedSignal {
+  std::string_view name, units, long_name;
+  Role role = Role::kMeasured;
+};
+
+/// Every signal that this program records, imports or computes, in the order of
+/// a recording's columns. A new one is a line of this table.
+std::span<const RecordedSignal> recorded_signals();
+
+/// The signal of that name, or nullptr.
+const RecordedSignal* find_recorded_signal(std::string_view name);
+
+/// Throws std::logic_error for a name that is not in the table.
+const RecordedSignal& recorded_signal(std::string_view name);
+
+/// A column of that signal. Throws as recorded_signal().
+Column column_of(std::string_view name, std::vector<double> values);
+
+/// Returns the unit of the variable of this name in recordings: of a signal, of
+/// `time` or of `status`. Empty for another name.
+std::string_view unit_of_variable(std::string_view name);
+
+}  // namespace beamgyro
