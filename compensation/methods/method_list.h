@@ -9,6 +9,7 @@
 #include "compensation/methods/fuzzy_method.h"
 #include "compensation/methods/polynomial_method.h"
 #include "compensation/methods/population_method.h"
+#include "compensation/methods/radial_basis.h"
 #include "compensation/methods/spline_method.h"
 #include "compensation/methods/table_method.h"
 #include "compensation/methods/thermistor_method.h"
@@ -19,8 +20,8 @@ namespace beamgyro {
 /// line here.
 using FitSpec =
     std::variant<NoneSpec, ConstantSpec, PolynomialSpec, TableSpec, SplineSpec,
-                 Px4Spec, ArduPilotSpec, ThermistorSpec, FuzzySpec, BpSpec,
-                 PopulationSpec, AdaptedSpec>;
+                 Px4Spec, ArduPilotSpec, ThermistorSpec, FuzzySpec,
+                 RadialBasisSpec, BpSpec, PopulationSpec, AdaptedSpec>;
 
 namespace method_list {
 

@@ -104,6 +104,12 @@ std::vector<NamedCompensator> one_of_each_kind() {
   for (Eigen::Index k = 0; k < rules.consequents.size(); ++k)
     rules.consequents.reshaped()(k) = 0.37 * static_cast<double>(k % 7) - 1.0;
   fuzzy.bias.function = rules;
+  Compensator bells =
+      with_inputs({"temperature", "quadrature"}, {{5, 45}, {40, 25}});
+  RadialBasis basis{Eigen::MatrixXd(3, 2), 0.6, Eigen::Vector3d(0.2, -0.4, 0.1),
+                    Eigen::Vector3d(1.5, -0.7, 0.3)};
+  basis.centres << -0.8, 0.1, 0.0, 0.9, 0.7, -0.5;
+  bells.bias.function = basis;
   return {
       {"none", of_temperature({{Scale{}}, {}, NoBias{}})},
       {"constant", of_temperature({{Scale{}}, {}, ConstantBias{1.0 / 3.0}})},
@@ -116,6 +122,7 @@ std::vector<NamedCompensator> one_of_each_kind() {
       {"thermistor",
        of_temperature({{Scale{}}, {}, fit_thermistor_network(T, b, 3950.0)})},
       {"fuzzy", fuzzy},
+      {"radial_basis", bells},
       {"bp", network_compensator()},
       {"bp_with_every_input", every_input()},
   };

@@ -34,6 +34,9 @@ MODELS = {
     "thermistor": 'kind = "thermistor"\n',
     "fuzzy": 'kind = "fuzzy"\ninputs = ["temperature", "drive_voltage"]\n'
              "[fuzzy]\nrules = 3\n",
+    "radial_basis": 'kind = "radial_basis"\n'
+                    'inputs = ["temperature", "drive_voltage"]\n'
+                    "[radial_basis]\ncentres = 4\n",
     "network": f'kind = "bp"\n{INPUTS}[bp]\nhidden = [5, 3]\n{TRAINING}',
     "wide": 'kind = "bp"\ninputs = ["temperature"]\n'
             f"[bp]\nhidden = [12, 2]\n{TRAINING}",

@@ -111,7 +111,8 @@ class Methods(ProgramTest):
                         self.assertTrue(check["passed"])
         self.assertEqual(kinds - {"auto"},
                          {"none", "constant", "polynomial", "table", "spline",
-                          "px4", "ardupilot", "thermistor", "fuzzy", "bp"})
+                          "px4", "ardupilot", "thermistor", "fuzzy",
+                          "radial_basis", "bp"})
 
     def test_every_kind_on_an_imported_log(self):
         self.write("map.toml", LOG_MAP)

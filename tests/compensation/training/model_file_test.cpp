@@ -160,8 +160,9 @@ Spec spec_of(const std::string& text) {
 }
 
 TEST(ModelFile, EveryKindHasItsDefaultsAndTheTemperatureForInput) {
-  for (const char* kind : {"none", "constant", "polynomial", "table", "spline",
-                           "px4", "ardupilot", "thermistor", "fuzzy"}) {
+  for (const char* kind :
+       {"none", "constant", "polynomial", "table", "spline", "px4", "ardupilot",
+        "thermistor", "fuzzy", "radial_basis"}) {
     const ModelSpec spec = parse(fmt::format("kind = \"{}\"\n", kind));
     EXPECT_EQ(input_names(spec.inputs),
               (std::vector<std::string>{"temperature"}));
@@ -183,6 +184,12 @@ TEST(ModelFile, EveryKindHasItsDefaultsAndTheTemperatureForInput) {
             100);
   EXPECT_EQ(spec_of<ThermistorSpec>("kind = \"thermistor\"\n").b_K, 3950.0);
   EXPECT_EQ(spec_of<FuzzySpec>("kind = \"fuzzy\"\n").rules, 8);
+  const std::string basis = "kind = \"radial_basis\"\n";
+  EXPECT_EQ(spec_of<RadialBasisSpec>(basis).centres, 8);
+  EXPECT_EQ(
+      spec_of<RadialBasisSpec>(basis + "[radial_basis]\nwidth_share = 2\n")
+          .width_share,
+      2.0);
 }
 
 TEST(ModelFile, EveryKeyOfEveryKindIsRead) {
@@ -239,13 +246,13 @@ TEST(ModelFile, AutomaticChoiceNamesItsCandidates) {
 inputs = ["temperature", "temperature_rate(60)"]
 [auto]
 candidates = ["constant", "linear", "cubic", "cubic_and_slopes", "fifth",
-              "table", "spline", "thermistor", "fuzzy", "bp(2,8)"]
+              "table", "spline", "thermistor", "fuzzy", "radial_basis", "bp(2,8)"]
 [bp]
 restarts = 2
 )toml");
-  ASSERT_EQ(spec.candidates.size(), 10u);
-  EXPECT_EQ(candidate_names(spec)[9], "bp(2,8)");
-  const BpSpec& network = std::get<BpSpec>(spec.candidates[9].kind);
+  ASSERT_EQ(spec.candidates.size(), 11u);
+  EXPECT_EQ(candidate_names(spec)[10], "bp(2,8)");
+  const BpSpec& network = std::get<BpSpec>(spec.candidates[10].kind);
   EXPECT_EQ(network.hidden, (std::vector<int>{2, 8}));
   EXPECT_EQ(network.training.restarts, 2);
   EXPECT_EQ(std::get<PolynomialSpec>(spec.candidates[1].kind).degree, 1);
@@ -286,6 +293,11 @@ TEST(ModelFile, WhatAKindCannotTakeIsRefused) {
            Wrong{"kind = \"fuzzy\"\ninputs = [\"temperature\", \"rate\"]\n",
                  "feels the rate"},
            Wrong{"kind = \"fuzzy\"\n[fuzzy]\nrules = 1\n", "rules"},
+           Wrong{"kind = \"radial_basis\"\n[radial_basis]\nridge = 0\n",
+                 "ridge"},
+           Wrong{"kind = \"radial_basis\"\n"
+                 "inputs = [\"temperature\", \"output\"]\n",
+                 "feels the rate"},
            Wrong{"kind = \"table\"\n[table]\nbin_width_K = 0\n", "bin_width_K"},
            Wrong{"kind = \"thermistor\"\n[thermistor]\nb_K = -1\n", "b_K"},
            Wrong{"kind = \"ardupilot\"\n[ardupilot]\nleast_samples = 0\n",

@@ -121,7 +121,7 @@ TEST(LogMap, OutputComesWithVolts) {
       map_of(changed("unit = \"deg/s\"", "unit = \"V\"\nscale_deg_per_s = 80"));
   ASSERT_EQ(map.quantities.size(), 3u);
   EXPECT_EQ(map.quantities[0].signal.name, "output");
-  EXPECT_EQ(map.quantities[0].units, "V");
+  EXPECT_EQ(map.quantities[0].signal.units, "V");
   EXPECT_EQ(map.quantities[0].value(2.5), 2.5);
 }
 
