@@ -12,7 +12,8 @@
 #include "cli/inputs.h"
 #include "config/units.h"
 #include "dataset/files/atomic_file.h"
-#include "sim/dynamics/gyro.h"
+#include "sim/dynamics/characteristic.h"
+#include "sim/scenario/simulation_input.h"
 
 namespace beamgyro {
 namespace {
@@ -61,38 +62,13 @@ std::vector<double> temperature_grid(const std::string& text) {
   return grid;
 }
 
-void append_row(std::string& csv, const Gyro& gyro, double celsius) {
-  const double T = celsius + kZeroCelsius;
-  const ModalParameters modal =
-      modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim);
-  const BeamSignal signal = beam_signal(gyro, modal, {});
-  const Electronics electronics = electronics_at(gyro, T);
-  const std::complex<double> terms = zero_rate_terms(gyro, modal);
-  const double w = signal.drive_frequency;
-  const double w_y = std::sqrt(modal.stiffness(1, 1) / modal.mass);
-  fmt::format_to(std::back_inserter(csv),
-                 "{},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},"
-                 "{:.12g},{:.12g}\n",
-                 celsius, electronics.output(signal.demodulated).rate / kDegree,
-                 terms.real() / kDegree, -terms.imag() / kDegree,
-                 w / (2 * std::numbers::pi), (w_y - w) / (2 * std::numbers::pi),
-                 w * modal.mass / modal.damping(0, 0),
-                 w * modal.mass / modal.damping(1, 1), signal.drive_voltage,
-                 rate_slope(gyro, modal, T));
-}
-
 int characterise(const CharacteriseArguments& arguments) {
   const std::vector<double> grid = temperature_grid(arguments.temperatures);
   const LoadedDevice input = load_device(arguments.device, arguments.overrides);
   require_output(arguments.output, {arguments.device});
 
   const Gyro gyro = make_gyro(input.device);
-  std::string csv =
-      "temperature_degC,bias_deg_per_s,in_phase_deg_per_s,"
-      "quadrature_deg_per_s,drive_frequency_Hz,split_Hz,q_drive,q_sense,"
-      "drive_voltage_V,scale_factor_rel\n";
-  for (const double celsius : grid) append_row(csv, gyro, celsius);
-  write_text_file(arguments.output, csv);
+  write_text_file(arguments.output, characteristic_csv(gyro, grid));
   return 0;
 }
 

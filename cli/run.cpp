@@ -13,6 +13,7 @@
 #include "dataset/netcdf/recording_file.h"
 #include "sim/scenario/carrier_run.h"
 #include "sim/scenario/simulation.h"
+#include "sim/scenario/simulation_input.h"
 
 namespace beamgyro {
 namespace {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "compensation/training/train.h"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -12,11 +10,12 @@
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/progress.h"
-#include "cli/recorded_runs.h"
 #include "cli/terminal.h"
 #include "compensation/compensator/compensator_file.h"
+#include "compensation/rows/recorded_runs.h"
 #include "compensation/rows/set_runs.h"
 #include "dataset/files/atomic_file.h"
+#include "report/training_report.h"
 
 namespace beamgyro {
 namespace {
@@ -55,76 +54,8 @@ Sources sources_of(const TrainArguments& arguments) {
   if (!arguments.set_runs.empty() || !arguments.set_devices.empty())
     throw std::invalid_argument(
         "--run and --device choose from a set, and there is none");
-  return {runs_of_files(arguments.runs), runs_of_files(arguments.held_out)};
-}
-
-std::string shown(const std::optional<double>& value) {
-  return value ? fmt::format("{:.6f}", *value) : "-";
-}
-
-void print_equation_one(const BiasModel& model, const char* label,
-                        std::string& text) {
-  const EquationOne equation = equation_one(model);
-  auto out = std::back_inserter(text);
-  fmt::format_to(out, "{}: F({:g} degC) = {:.6g} deg/s", label,
-                 kReferenceTemperature, equation.bias_at_reference);
-  for (std::size_t i = 0; i < equation.coefficients.size(); ++i) {
-    fmt::format_to(out, ", a{} = {:.6g} K^-{}", i + 1, equation.coefficients[i],
-                   i + 1);
-  }
-  text += '\n';
-}
-
-void print_restarts(const TrainResult& result, std::string& text) {
-  auto out = std::back_inserter(text);
-  for (std::size_t k = 0; k < result.restarts.size(); ++k) {
-    const TrainSummary& summary = result.restarts[k];
-    fmt::format_to(out,
-                   "restart {}{}: {} epochs, best {}, rms in-sample {:.6f}, "
-                   "held-out {} deg/s; {}\n",
-                   k + 1, k == result.chosen ? " (kept)" : "", summary.epochs,
-                   summary.best_epoch, summary.in_sample_rms,
-                   shown(summary.held_out_rms), sentence(summary.stop_reason));
-  }
-}
-
-// One line for each group.
-void print_groups(const CrossValidated& cv, std::string& text) {
-  for (std::size_t k = 0; k < cv.group_rms.size(); ++k)
-    fmt::format_to(std::back_inserter(text),
-                   "{} {}: rms {:.6f} deg/s unseen, of a constant {:.6f}\n",
-                   cv.by, k + 1, cv.group_rms[k], cv.constant_group_rms[k]);
-}
-
-std::string report(const TrainResult& result, bool every_group) {
-  const Provenance& source = result.compensator.provenance;
-  std::string text =
-      fmt::format("{}, {} rows, {} held-out rows\n", source.method, result.rows,
-                  result.held_out_rows);
-  auto out = std::back_inserter(text);
-  for (const std::string& choice : source.choices)
-    fmt::format_to(out, "choice: {}\n", choice);
-  if (std::holds_alternative<BpNetwork>(result.compensator.bias.function))
-    print_restarts(result, text);
-  fmt::format_to(out, "stopped: {}\n", source.stop_reason);
-  fmt::format_to(out, "rms in-sample {:.6f}, held-out {} deg/s\n",
-                 source.in_sample_rms, shown(source.held_out_rms));
-  if (const auto& cv = source.cross_validated) {
-    if (every_group) print_groups(*cv, text);
-    fmt::format_to(out,
-                   "rms cross-validated over {} {}s {:.6f} +- {:.6f} deg/s, of "
-                   "a constant {:.6f} deg/s\n",
-                   cv->groups, cv->by, cv->rms, cv->standard_error,
-                   cv->constant_rms);
-  }
-  fmt::format_to(out, "cubic: rms in-sample {:.6f}, held-out {} deg/s\n",
-                 source.baseline_in_sample_rms,
-                 shown(source.baseline_held_out_rms));
-  fmt::format_to(out, "constant: rms in-sample {:.6f}, held-out {} deg/s\n",
-                 source.constant_in_sample_rms,
-                 shown(source.constant_held_out_rms));
-  print_equation_one(result.compensator.baseline, "cubic", text);
-  return text;
+  return {runs_of_files(arguments.runs, load_recording),
+          runs_of_files(arguments.held_out, load_recording)};
 }
 
 std::optional<Grouping> grouping(const std::string& name) {
@@ -150,7 +81,7 @@ int run_training(const TrainArguments& arguments) {
   progress.reset();
   for (const std::string& warning : result.compensator.provenance.warnings)
     print_warning(warning);
-  print_result(report(result, !arguments.cross_validation.empty()));
+  print_result(training_report(result, !arguments.cross_validation.empty()));
   return 0;
 }
 

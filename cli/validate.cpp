@@ -12,14 +12,14 @@
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/progress.h"
-#include "cli/recorded_runs.h"
 #include "cli/terminal.h"
 #include "compensation/compensator/compensator_file.h"
+#include "compensation/rows/recorded_runs.h"
 #include "compensation/rows/set_runs.h"
 #include "compensation/scoring/set_scores.h"
-#include "compensation/scoring/validation_report.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/sha256.h"
+#include "report/validation_report.h"
 
 namespace beamgyro {
 namespace {

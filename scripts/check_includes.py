@@ -34,8 +34,9 @@ MAY_INCLUDE = {
     **in_order(DATASET, ["config"]),
     **in_order(SIM, [*BASE, *DATASET]),
     **in_order(COMPENSATION, [*BASE, *DATASET]),
-    "cli": set(ALL),
-    "bench": set(ALL),
+    "report": set(ALL),
+    "cli": {*ALL, "report"},
+    "bench": {*ALL, "report"},
     "fuzz": set(ALL),  # of tests/ only
     "agreement": set(ALL),  # of tests/ only
 }

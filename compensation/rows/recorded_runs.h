@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -8,10 +10,11 @@
 
 namespace beamgyro {
 
-/// Returns a source of recordings that reads each file when it is needed.
-/// `paths` must outlive the source. A file that cannot be read throws as
-/// read_recording().
-RunSource runs_of_files(const std::vector<std::string>& paths);
+/// Returns a source of recordings that calls `read`, read_recording() for one,
+/// for each file when it is needed. `paths` must outlive the source.
+RunSource runs_of_files(
+    const std::vector<std::string>& paths,
+    std::function<Recording(const std::filesystem::path&)> read);
 
 /// Returns whether the paths are a single directory, that of a set. Throws
 /// std::invalid_argument when one of several paths is a directory.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/set_info.h"
+#include "report/set_report.h"
 
 #include <fmt/format.h>
 

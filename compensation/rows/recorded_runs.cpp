@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: MIT
-#include "cli/recorded_runs.h"
+#include "compensation/rows/recorded_runs.h"
 
 #include <filesystem>
 #include <stdexcept>
 
-#include "cli/inputs.h"
 #include "config/file_error.h"
 #include "dataset/files/sha256.h"
 
 namespace beamgyro {
 
-RunSource runs_of_files(const std::vector<std::string>& paths) {
-  return {paths.size(), [&paths](const RunSource::Visitor& visit) {
+RunSource runs_of_files(
+    const std::vector<std::string>& paths,
+    std::function<Recording(const std::filesystem::path&)> read) {
+  return {paths.size(), [&paths, read](const RunSource::Visitor& visit) {
             for (const std::string& path : paths)
               visit({std::filesystem::path(path).filename().string(),
-                     sha256_of_file(path), load_recording(path)});
+                     sha256_of_file(path), read(path)});
           }};
 }
 

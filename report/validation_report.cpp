@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/scoring/validation_report.h"
+#include "report/validation_report.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

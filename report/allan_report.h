@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "compensation/scoring/allan_deviation.h"
+#include "compensation/scoring/even_series.h"
+#include "compensation/scoring/noise_coefficients.h"
+
+namespace beamgyro {
+
+/// Returns a line about the samples that are used and those that are not.
+std::string series_line(const EvenSeries& series);
+
+/// Returns a table of the deviations in `unit`, a line for each tau.
+std::string allan_table(const AllanCurve& curve, const std::string& unit);
+
+/// Returns the noise coefficients of a series in `unit` and what the fit of
+/// them used, line by line.
+std::string noise_table(const NoiseCoefficients& found,
+                        const std::string& unit);
+
+}  // namespace beamgyro

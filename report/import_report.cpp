@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "report/import_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace beamgyro {
+namespace {
+
+std::string rows_text(const LogCounts& counts) {
+  std::string text =
+      fmt::format("{} rows read, {} kept\n", counts.rows, counts.kept);
+  for (std::size_t i = 0; i < kDropReasons; ++i) {
+    const DroppedRows& dropped = counts.dropped[i];
+    if (dropped.rows == 0) continue;
+    fmt::format_to(std::back_inserter(text),
+                   "dropped      {} {}, the first in line {}\n", dropped.rows,
+                   reason_name(static_cast<DropReason>(i)), dropped.first_line);
+  }
+  return text;
+}
+
+std::string sampling_text(const Recording& recording) {
+  const Sampling sampling = sampling_of(recording);
+  std::string text = fmt::format(
+      "time         {:g} to {:g} s\n"
+      "sampling     median step {:.6g} s ({:.6g} Hz), jitter {:.3g} s rms\n",
+      recording.time.front(), recording.time.back(), sampling.median_step,
+      1 / sampling.median_step, sampling.jitter);
+  if (sampling.bursts > 1) {
+    fmt::format_to(std::back_inserter(text),
+                   "bursts       {}, the longest {:g} s; {} gaps, the longest "
+                   "{:g} s\n",
+                   sampling.bursts, sampling.longest_burst, sampling.bursts - 1,
+                   sampling.longest_gap);
+  }
+  return text;
+}
+
+std::string range_text(const Recording& recording, const char* column,
+                       const char* unit) {
+  const ValueRange range = range_of(recording, column);
+  if (range.samples == 0)
+    return fmt::format("{:<12} unpowered throughout\n", column);
+  if (range.smallest_step == 0)
+    return fmt::format("{:<12} {:.6g} {} throughout\n", column, range.low,
+                       unit);
+  return fmt::format("{:<12} {:.6g} to {:.6g} {}, smallest step {:.3g}\n",
+                     column, range.low, range.high, unit, range.smallest_step);
+}
+
+std::string status_text(const Recording& recording) {
+  const auto samples = [&](StatusBit bit) {
+    return std::count_if(recording.status.begin(), recording.status.end(),
+                         [bit](unsigned status) { return status & bit; });
+  };
+  const auto unpowered = samples(kUnpowered);
+  const auto saturated = samples(kOutputSaturated);
+  const auto unlocked = samples(kLoopNotLocked);
+  if (unpowered + saturated + unlocked == 0) return {};
+  return fmt::format("status       {} unpowered, {} saturated, {} not locked\n",
+                     unpowered, saturated, unlocked);
+}
+
+}  // namespace
+
+std::string import_report(const ImportedLog& log, const std::string& path) {
+  const Recording& recording = log.recording;
+  std::string text = path + ": " + rows_text(log.counts);
+  text += sampling_text(recording);
+  text += status_text(recording);
+  text += range_text(recording, "rate", "deg/s");
+  text += range_text(recording, "temperature", "degC");
+  if (find_column(recording, "true_rate") != nullptr) {
+    text += range_text(recording, "true_rate", "deg/s");
+  } else {
+    text +=
+        "true_rate    not stated by the map: train and validate need one "
+        "([true_rate] at_rest = true, or a column)\n";
+  }
+  return text;
+}
+
+}  // namespace beamgyro

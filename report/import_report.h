@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "dataset/log/log_import.h"
+
+namespace beamgyro {
+
+/// Returns what an import read and left out: rows and the reasons why some were
+/// dropped, sampling, ranges of the rate and the temperature. `path` is the
+/// name of the log.
+std::string import_report(const ImportedLog& log, const std::string& path);
+
+}  // namespace beamgyro
