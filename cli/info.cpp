@@ -29,7 +29,9 @@ int info(const std::string& path, std::optional<std::uint32_t> device) {
         fmt::format("--device {}: {} is no directory; expected that of a set",
                     *device, path));
   if (is_shard_file(path)) {
-    print_result(info_on_shard(path));
+    std::vector<std::string> warnings;
+    print_result(info_on_shard(path, warnings));
+    for (const std::string& warning : warnings) print_warning(warning);
     return 0;
   }
   const Recording recording = load_recording(path);

@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "cli/terminal.h"
 #include "dataset/set/set_writer.h"
 #include "dataset/set/shard/shard_reader.h"
 #include "sim/campaign/campaign.h"
@@ -85,13 +84,14 @@ std::string failures_of(const SetState& state) {
 
 }  // namespace
 
-std::string info_on_shard(const fs::path& path) {
+std::string info_on_shard(const fs::path& path,
+                          std::vector<std::string>& warnings) {
   const fs::path directory =
       path.has_parent_path() ? path.parent_path() : fs::path(".");
   const std::optional<ManifestEntry> entry =
       entry_of(directory, path.filename().string());
   if (!entry)
-    keep_warning(fmt::format(
+    warnings.push_back(fmt::format(
         "{}: is in no set whose manifest tells its bytes: damage in it would "
         "not be noticed",
         path.string()));

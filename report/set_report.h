@@ -4,12 +4,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace beamgyro {
 
 /// Describes the contents of a file of a set, or of the directory of a set.
-/// Throws std::invalid_argument for anything else.
-std::string info_on_shard(const std::filesystem::path& path);
+/// Adds a warning to `warnings` for a file that no manifest knows. Throws
+/// std::invalid_argument for anything else.
+std::string info_on_shard(const std::filesystem::path& path,
+                          std::vector<std::string>& warnings);
 std::string info_on_set(const std::filesystem::path& path);
 
 /// Returns the KEY=VALUE lines that turn the base device into device number

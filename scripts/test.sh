@@ -56,8 +56,18 @@ program_tests() {
   tally_report "tests of the program and the scripts" "$report"
 }
 
+# What the program does on several threads, under the thread sanitizer.
+races() {
+  local report=build/tsan/junit.xml
+  rm -f "$report"
+  BEAMGYRO=$PWD/build/tsan/beamgyro \
+    /usr/bin/python3 -m pytest tests/program/thread_test.py \
+    --junit-xml="$report" >&2
+  tally_report "thread sanitizer" "$report"
+}
+
 sources() {
-  find config dataset sim compensation cli bench tests -name "$1" | sort
+  find config parallel random dataset sim compensation report cli bench tests -name "$1" | sort
 }
 
 formatting() {
@@ -103,6 +113,11 @@ if scripts/build.sh asan; then
   unit_tests asan
 else
   broken "build (asan)" "no build: see build/asan.log"
+fi
+if scripts/build.sh tsan; then
+  races
+else
+  broken "build (tsan)" "no build: see build/tsan.log"
 fi
 tidy
 

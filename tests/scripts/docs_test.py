@@ -12,7 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 WIDTH = 100
 
 ROOMS = ["cli", "compensation", "config", "dataset", "parallel", "random",
-         "sim"]
+         "report", "sim"]
 
 PAGES = [*ROOT.glob("*.md"), *sorted(ROOT.glob("docs/**/*.md")),
          ROOT / "bench/experiments.md",

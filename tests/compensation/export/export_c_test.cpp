@@ -123,7 +123,7 @@ TEST(ExportedC, HoldsEveryParameterAsTheSameSingle) {
   for (const NamedCompensator& each : one_of_each_kind()) {
     const std::string source = export_c(each.compensator, "gyro").source;
     const FirmwareModel model(each.compensator);
-    for (const FirmwareArray& array : model.arrays()) {
+    for (const FirmwareArray& array : model.arrays().all()) {
       const std::string start = fmt::format("static const float {}[{}] = {{",
                                             array.name, array.values.size());
       ASSERT_TRUE(holds(source, start)) << each.name << ": " << array.name;
