@@ -119,7 +119,7 @@ Signal csv_signal(const AllanArguments& arguments) {
   return signal;
 }
 
-Signal recorded_signal(const AllanArguments& arguments) {
+Signal signal_of_recording(const AllanArguments& arguments) {
   Signal signal;
   signal.recording = load_recording(arguments.file);
   signal.column = arguments.dataset.value_or("rate");
@@ -168,7 +168,7 @@ int allan(const AllanArguments& arguments) {
   check_options(arguments);
   if (!arguments.json.empty()) require_output(arguments.json, {arguments.file});
   const bool csv = std::filesystem::path(arguments.file).extension() == ".csv";
-  Signal signal = csv ? csv_signal(arguments) : recorded_signal(arguments);
+  Signal signal = csv ? csv_signal(arguments) : signal_of_recording(arguments);
   const EvenSeries series =
       even_series(signal.recording, signal.column, arguments.window);
   check_rate(arguments, series);

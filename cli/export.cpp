@@ -153,7 +153,7 @@ void require_outputs(const fs::path& directory, const NamedTexts& texts,
 }
 
 // Writes all files or none.
-void write_all(const fs::path& directory, const NamedTexts& texts) {
+void write_texts(const fs::path& directory, const NamedTexts& texts) {
   std::error_code error;
   fs::create_directories(directory, error);
   if (error)
@@ -185,7 +185,7 @@ int run_export(const ExportArguments& arguments) {
   require_outputs(
       arguments.output, texts,
       {arguments.compensators.begin(), arguments.compensators.end()});
-  write_all(arguments.output, texts);
+  write_texts(arguments.output, texts);
   if (arguments.format == "px4" && arguments.device_id.value_or(0) == 0)
     print_warning(
         "TC_Gn_ID is 0: PX4 applies the parameters to the sensor with this id "

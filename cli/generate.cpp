@@ -60,7 +60,7 @@ void require_nothing_lost(const std::string& output, const SetTask& task,
   }
 }
 
-std::string sentence(const SetState& state, std::uint64_t made) {
+std::string outcome(const SetState& state, std::uint64_t made) {
   std::string text =
       fmt::format("{} of {} files, {} made now; {} device runs, {} failed\n",
                   state.entries.size(), state.planned, made,
@@ -99,7 +99,7 @@ int generate(const GenerateArguments& arguments) {
                            set.add(file, shard.bytes, shard.failures);
                          });
   const SetState state = set.finish();
-  print_result(sentence(state, files.size()));
+  print_result(outcome(state, files.size()));
   require_nothing_lost(arguments.output, task, plan.manifest_head(), state);
   return arguments.strict && state.failures() > 0 ? kSomeDevicesFailed : 0;
 }

@@ -58,7 +58,7 @@ std::vector<std::string> split_key(std::string_view key,
 }
 
 /// Returns a suggestion in place of a value that is not TOML.
-std::string advice(std::string_view key, std::string_view value) {
+std::string override_advice(std::string_view key, std::string_view value) {
   std::string lower(value);
   std::transform(lower.begin(), lower.end(), lower.begin(), [](char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -86,7 +86,7 @@ ConfigNode parse_value(std::string_view key, std::string_view value,
   }
   if (problem.empty()) return std::move(parsed.children.front());
   const std::string shown = printable(value);
-  const std::string help = advice(key, shown);
+  const std::string help = override_advice(key, shown);
   reject(argument,
          help.starts_with("expected")
              ? fmt::format("'{}' is not TOML ({}); {}", shown, problem, help)

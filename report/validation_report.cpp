@@ -132,14 +132,14 @@ std::string residual_cells(const ResidualScores& scores) {
 }
 
 /// Characters on a terminal: UTF-8 continuation bytes take no room.
-std::size_t width_of(const std::string& text) {
+std::size_t display_width(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) {
     return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
   }));
 }
 
 std::string padded(const std::string& text, std::size_t width) {
-  return text + std::string(width - std::min(width, width_of(text)), ' ');
+  return text + std::string(width - std::min(width, display_width(text)), ' ');
 }
 
 std::string run_row(const ResidualScores& residual,
@@ -250,9 +250,9 @@ nlohmann::ordered_json to_json(const Validation& validation) {
 }
 
 std::string table(const Validation& validation) {
-  std::size_t width = width_of("overall");
+  std::size_t width = display_width("overall");
   for (const Score& score : validation.runs) {
-    width = std::max(width, width_of(score.run));
+    width = std::max(width, display_width(score.run));
   }
   std::string text = fmt::format(
       "{}: residual in 60 s blocks [deg/s]\n{} {:>11} {:>9} {:>9} {:>9} {:>9} "
@@ -277,9 +277,9 @@ std::string table(const std::vector<Validation>& methods) {
     return text;
   }
   require_same_runs(methods);
-  std::size_t width = width_of("uncompensated");
+  std::size_t width = display_width("uncompensated");
   for (const Validation& method : methods) {
-    width = std::max(width, width_of(method.method));
+    width = std::max(width, display_width(method.method));
   }
   text = fmt::format("{} {:>11} {:>9} {:>9} {:>9} {:>11} {:>11}  {}\n",
                      padded("method", width), "variance", "1-sigma", "p-p",

@@ -26,7 +26,7 @@ constexpr long kFormatVersion = 2;
 constexpr long kLargestDevice = 4294967295;
 constexpr std::size_t kMostDevices = 100000000;
 
-Json to_json(const std::optional<double>& value) {
+Json json_of(const std::optional<double>& value) {
   return value ? finite_json(*value) : Json();
 }
 
@@ -54,7 +54,7 @@ MeasuredSketch read_sketch(const JsonNode& node) {
   return sketch;
 }
 
-Json to_json(const std::vector<SourceFile>& files) {
+Json json_of(const std::vector<SourceFile>& files) {
   Json array = Json::array();
   for (const SourceFile& file : files)
     array.push_back({{"name", file.name},
@@ -76,7 +76,7 @@ Json ranges_of(const std::vector<std::uint32_t>& numbers) {
   return ranges;
 }
 
-Json to_json(const std::optional<SetPart>& set) {
+Json json_of(const std::optional<SetPart>& set) {
   if (!set) return {};
   return {{"name", set->name},
           {"manifest_sha256", set->manifest_sha256},
@@ -88,7 +88,7 @@ Json to_json(const std::optional<SetPart>& set) {
           {"device_ranges", ranges_of(set->device_numbers)}};
 }
 
-Json to_json(const std::optional<CrossValidated>& cv) {
+Json json_of(const std::optional<CrossValidated>& cv) {
   if (!cv) return {};
   return {
       {"by", cv->by},
@@ -100,24 +100,24 @@ Json to_json(const std::optional<CrossValidated>& cv) {
       {"constant_group_rms_deg_per_s", numbers_json(cv->constant_group_rms)}};
 }
 
-Json to_json(const Provenance& p) {
+Json json_of(const Provenance& p) {
   return {{"method", p.method},
-          {"files", to_json(p.training)},
-          {"held_out_files", to_json(p.held_out)},
-          {"set", to_json(p.training_set)},
-          {"held_out_set", to_json(p.held_out_set)},
+          {"files", json_of(p.training)},
+          {"held_out_files", json_of(p.held_out)},
+          {"set", json_of(p.training_set)},
+          {"held_out_set", json_of(p.held_out_set)},
           {"model", p.model_text},
           {"seed", p.seed},
           {"stop_reason", p.stop_reason},
           {"in_sample_rms_deg_per_s", finite_json(p.in_sample_rms)},
-          {"held_out_rms_deg_per_s", to_json(p.held_out_rms)},
+          {"held_out_rms_deg_per_s", json_of(p.held_out_rms)},
           {"baseline_in_sample_rms_deg_per_s",
            finite_json(p.baseline_in_sample_rms)},
-          {"baseline_held_out_rms_deg_per_s", to_json(p.baseline_held_out_rms)},
+          {"baseline_held_out_rms_deg_per_s", json_of(p.baseline_held_out_rms)},
           {"constant_in_sample_rms_deg_per_s",
            finite_json(p.constant_in_sample_rms)},
-          {"constant_held_out_rms_deg_per_s", to_json(p.constant_held_out_rms)},
-          {"cross_validation", to_json(p.cross_validated)},
+          {"constant_held_out_rms_deg_per_s", json_of(p.constant_held_out_rms)},
+          {"cross_validation", json_of(p.cross_validated)},
           {"choices", p.choices},
           {"warnings", p.warnings}};
 }
@@ -280,7 +280,7 @@ std::string compensator_text(const Compensator& compensator) {
   json["baseline"]["kind"] = kind_name(c.baseline);
   put_bias_model(c.baseline, json["baseline"]);
   if (c.population) json["population"] = population_json(*c.population);
-  json["training"] = to_json(c.provenance);
+  json["training"] = json_of(c.provenance);
   // A file name need not be UTF-8.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -15,7 +15,7 @@
 namespace beamgyro {
 namespace {
 
-constexpr std::size_t kTerms = 4;  // of a cubic
+constexpr std::size_t kCubicTerms = 4;  // of a cubic
 constexpr char kAxes[] = {'x', 'y', 'z'};
 
 char upper(char axis) { return static_cast<char>(axis - 'x' + 'X'); }
@@ -33,7 +33,7 @@ std::string obstacle(const Compensator& c) {
   if (!polynomial->slopes.empty() ||
       c.inputs != std::vector{parse_input("temperature")})
     return "it has other inputs than the temperature";
-  if (polynomial->coefficients.size() > kTerms)
+  if (polynomial->coefficients.size() > kCubicTerms)
     return fmt::format("its degree is {}", polynomial->coefficients.size() - 1);
   return "";
 }
@@ -53,7 +53,7 @@ std::vector<double> coefficients(const std::vector<AutopilotAxis>& axes,
   const auto found = std::ranges::find(axes, name, &AutopilotAxis::axis);
   std::vector<double> c;
   if (found != axes.end()) c = coefficients_about(found->cubic, reference);
-  c.resize(kTerms, 0.0);
+  c.resize(kCubicTerms, 0.0);
   for (double& each : c) each *= kDegree;
   return c;
 }
@@ -125,7 +125,7 @@ std::string px4_parameters(const std::vector<AutopilotAxis>& axes,
   row(prefix + "TREF", number(reference), 9);
   row(prefix + "TMIN", number(range.lowest), 9);
   row(prefix + "TMAX", number(range.highest), 9);
-  for (std::size_t k = 0; k < kTerms; ++k)
+  for (std::size_t k = 0; k < kCubicTerms; ++k)
     for (const char axis : kAxes)
       row(fmt::format("{}X{}_{}", prefix, k, axis - 'x'),
           number(coefficients(axes, axis, reference)[k]), 9);
@@ -158,7 +158,7 @@ std::string ardupilot_parameters(const std::vector<AutopilotAxis>& axes,
   line(calibration + "ENABLE", "1");
   line(calibration + "TMIN", number(range.lowest));
   line(calibration + "TMAX", number(range.highest));
-  for (std::size_t k = 1; k < kTerms; ++k)
+  for (std::size_t k = 1; k < kCubicTerms; ++k)
     for (const char axis : kAxes)
       line(fmt::format("{}GYR{}_{}", calibration, k, upper(axis)),
            number(1e6 * coefficients(axes, axis, kArduPilotReference)[k]));

@@ -73,7 +73,7 @@ std::vector<double> temperatures(const Compensator& c, double period) {
 }
 
 // Returns the range of a signal: that of its input, if there is one.
-Scale range_of(const Compensator& c, std::size_t signal) {
+Scale signal_range(const Compensator& c, std::size_t signal) {
   if (!reads_inputs(c.bias)) return {0.0, kRate};
   for (std::size_t i = 0; i < c.inputs.size(); ++i)
     if (c.inputs[i].column == kFirmwareSignals[signal]) {
@@ -102,7 +102,7 @@ Recording samples_at(const Compensator& c, const FirmwareModel& model,
     if (s == kTemperature) {
       column.values = temperatures(c, period);
     } else {
-      const Scale range = range_of(c, s);
+      const Scale range = signal_range(c, s);
       for (std::size_t k = 0; k < kSamples; ++k)
         column.values.push_back(range.centre + range.half_width * spread(k, s));
     }

@@ -12,14 +12,16 @@ constexpr std::string_view kDigits = "0123456789";
 constexpr std::string_view kLetters =
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
 
-bool holds(std::string_view characters, char c) {
+bool has_character(std::string_view characters, char c) {
   return characters.find(c) != std::string_view::npos;
 }
 
 std::string with_underscores(const std::string& text, std::string_view others) {
   std::string result = text;
   for (char& c : result)
-    if (!holds(kLetters, c) && !holds(kDigits, c) && !holds(others, c)) c = '_';
+    if (!has_character(kLetters, c) && !has_character(kDigits, c) &&
+        !has_character(others, c))
+      c = '_';
   return result;
 }
 
@@ -33,7 +35,7 @@ std::string c_literal(float value) {
 
 std::string c_identifier(const std::string& text) {
   const std::string name = with_underscores(text, "");
-  if (!name.empty() && holds(kLetters, name[0])) return name;
+  if (!name.empty() && has_character(kLetters, name[0])) return name;
   return fmt::format("c_{}", name);
 }
 

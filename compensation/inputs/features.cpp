@@ -12,8 +12,8 @@
 namespace beamgyro {
 namespace {
 
-const std::vector<double>& column_of(const Input& input,
-                                     const Recording& recording) {
+const std::vector<double>& input_column(const Input& input,
+                                        const Recording& recording) {
   const Column* column = find_column(recording, input.column);
   if (column != nullptr && column->role == Role::kMeasured)
     return column->values;
@@ -90,7 +90,7 @@ Eigen::ArrayXXd features_of(const std::vector<Input>& inputs,
   columns.reserve(inputs.size());
   for (const Input& input : inputs)
     columns.push_back(
-        input.column.empty() ? nullptr : column_of(input, recording).data());
+        input.column.empty() ? nullptr : input_column(input, recording).data());
   const std::size_t samples = recording.time.size(), width = inputs.size();
   Eigen::ArrayXXd result = Eigen::ArrayXXd::Constant(
       static_cast<Eigen::Index>(samples), static_cast<Eigen::Index>(width),

@@ -49,7 +49,7 @@ std::vector<double> rate_direction(const FitTask& task,
   return direction;
 }
 
-ScaledRows scaled(const TrainingRows& rows, const BiasModel& model) {
+ScaledRows scaled_rows(const TrainingRows& rows, const BiasModel& model) {
   if (rows.size() == 0) return {};
   return {scaled(rows.inputs, model.input_scales),
           (rows.bias - model.bias_scale.centre) / model.bias_scale.half_width};
@@ -130,8 +130,8 @@ Fit BpSpec::fit(const FitTask& task) const {
   TrainOptions options = training;
   options.goal = goal_deg_per_s / unit;
   options.rate_direction = rate_direction(task, fit.model);
-  const ScaledRows rows = scaled(task.rows, fit.model);
-  const ScaledRows unseen = scaled(task.held_out, fit.model);
+  const ScaledRows rows = scaled_rows(task.rows, fit.model);
+  const ScaledRows unseen = scaled_rows(task.held_out, fit.model);
   std::vector<Restarts> of_decays;
   std::vector<BpNetwork> networks;
   for (const double decay : weight_decays) {

@@ -111,8 +111,8 @@ MatrixXd modes_of(const MatrixXd& X, Index grid) {
 }
 
 // Values at temperatures of the spline through values on the grid.
-ArrayXd between(const Population& population, const VectorXd& on_grid,
-                const ArrayXd& T) {
+ArrayXd point_between(const Population& population, const VectorXd& on_grid,
+                      const ArrayXd& T) {
   return bias_curve(population, on_grid.array()).predict(T);
 }
 
@@ -127,8 +127,10 @@ Equations equations(const Population& p, Index curve, const ArrayXd& T,
   const Index first = curve * p.grid();
   Equations e{MatrixXd(T.size(), p.modes.cols()), VectorXd(T.size())};
   for (Index m = 0; m < p.modes.cols(); ++m)
-    e.H.col(m) = between(p, p.modes.col(m).segment(first, p.grid()), T) / noise;
-  e.y = (measured - between(p, p.mean.segment(first, p.grid()), T)) / noise;
+    e.H.col(m) =
+        point_between(p, p.modes.col(m).segment(first, p.grid()), T) / noise;
+  e.y =
+      (measured - point_between(p, p.mean.segment(first, p.grid()), T)) / noise;
   return e;
 }
 

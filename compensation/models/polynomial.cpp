@@ -26,7 +26,8 @@ Eigen::MatrixXd terms(const Eigen::Ref<const ArrayXXd>& x, int degree) {
   return columns;
 }
 
-[[noreturn]] void fail(int degree, Index rows, Index rank, Index needed) {
+[[noreturn]] void fail_degree(int degree, Index rows, Index rank,
+                              Index needed) {
   throw std::invalid_argument(
       fmt::format("polynomial of degree {}: the {} rows determine only {} of "
                   "its {} coefficients",
@@ -54,7 +55,7 @@ Polynomial fit_polynomial(const Eigen::Ref<const ArrayXXd>& x,
   const Eigen::MatrixXd columns = terms(x, degree);
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
   if (qr.rank() < columns.cols())
-    fail(degree, x.rows(), qr.rank(), columns.cols());
+    fail_degree(degree, x.rows(), qr.rank(), columns.cols());
   return polynomial_of(qr.solve(y.matrix()), degree);
 }
 

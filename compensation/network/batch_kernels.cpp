@@ -91,9 +91,10 @@ BEAMGYRO_INLINE void jacobian_of_layer(const NetworkLayer& layer,
   }
 }
 
-BEAMGYRO_INLINE void propagate_back(const NetworkLayer& layer, const double* w,
-                                    const double* a, const double* delta,
-                                    double* below, Index count) {
+BEAMGYRO_INLINE void propagate_batch_back(const NetworkLayer& layer,
+                                          const double* w, const double* a,
+                                          const double* delta, double* below,
+                                          Index count) {
   for (Index i = 0; i < layer.in; ++i) {
     Lane* sum = row_of(below, i);
     for (Index k = 0; k < count; ++k) sum[k] = Lane{};
@@ -238,7 +239,7 @@ BEAMGYRO_WIDE void jacobian(const std::vector<NetworkLayer>& layers,
     const NetworkLayer& layer = layers[n];
     jacobian_of_layer(layer, a, delta, jacobian, count);
     if (n == 0) break;
-    propagate_back(layer, w, a, delta, next, count);
+    propagate_batch_back(layer, w, a, delta, next, count);
     std::swap(delta, next);
     a -= layers[n - 1].in * kBlockSamples;
   }
@@ -256,7 +257,7 @@ BEAMGYRO_WIDE void add_gradient(const std::vector<NetworkLayer>& layers,
     const NetworkLayer& layer = layers[n];
     gradient_of_layer(layer, a, delta, gradient, count);
     if (n == 0) break;
-    propagate_back(layer, w, a, delta, next, count);
+    propagate_batch_back(layer, w, a, delta, next, count);
     std::swap(delta, next);
     a -= layers[n - 1].in * kBlockSamples;
   }

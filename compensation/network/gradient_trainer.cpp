@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 // Fisher-Yates.
-void shuffle(std::vector<Index>& order, RandomStream& random) {
+void shuffle_rows(std::vector<Index>& order, RandomStream& random) {
   for (std::size_t n = order.size(); n > 1; --n) {
     const auto k =
         static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
@@ -53,7 +53,7 @@ TrainSummary train_incremental(const ScaledRows& rows,
   std::optional<StopReason> stop;
   while (!stop && summary.epochs < options.max_epochs) {
     ++summary.epochs;
-    shuffle(sequence, order);
+    shuffle_rows(sequence, order);
     for (const Index k : sequence) {
       network.predict_with_gradient(rows.inputs.middleRows(k, 1),
                                     rows.target.segment(k, 1), gradient);

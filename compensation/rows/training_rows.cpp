@@ -24,7 +24,7 @@ struct Block {
 };
 
 // Blocks of one run, counted anew from each power-on.
-std::vector<Block> blocks_of(const Recording& recording, double seconds) {
+std::vector<Block> row_blocks_of(const Recording& recording, double seconds) {
   std::vector<Block> blocks;
   bool powered = false;
   double start = 0.0;  // [s]
@@ -133,7 +133,8 @@ class RowCollector {
   void add(const TrainingRun& run, const std::vector<Input>& inputs) {
     const Recording& recording = run.recording;
     const ArrayXXd features = features_of(inputs, recording, clamp_);
-    const std::vector<Block> blocks = blocks_of(recording, options_.seconds);
+    const std::vector<Block> blocks =
+        row_blocks_of(recording, options_.seconds);
     if (blocks.empty())
       throw std::invalid_argument(
           "no sample is powered, locked and not saturated");

@@ -21,7 +21,7 @@ constexpr double kLeastCover = 0.5;     // [-], of the samples of a mean
 // Differences summed at a time: what they read stays in the cache.
 constexpr Index kBlock = 4096;
 
-[[noreturn]] void fail(const std::string& message) {
+[[noreturn]] void fail_series(const std::string& message) {
   throw std::invalid_argument(message);
 }
 
@@ -29,11 +29,13 @@ Index samples_of(double tau, double interval, std::size_t longest) {
   const double ratio = tau / interval;
   const double m = std::round(ratio);
   if (!(m >= 1.0 && std::abs(ratio - m) <= kTauTolerance * ratio))
-    fail(fmt::format("tau: {} s, must be a multiple of the interval of {} s",
-                     tau, interval));
+    fail_series(
+        fmt::format("tau: {} s, must be a multiple of the interval of {} s",
+                    tau, interval));
   if (!(2.0 * m <= static_cast<double>(longest)))
-    fail(fmt::format("tau: {} s, must be at most half of the record of {} s",
-                     tau, static_cast<double>(longest) * interval));
+    fail_series(
+        fmt::format("tau: {} s, must be at most half of the record of {} s",
+                    tau, static_cast<double>(longest) * interval));
   return static_cast<Index>(m);
 }
 
@@ -181,12 +183,12 @@ AllanPoint point_of(const Differences& found, Index m, double interval,
 
 EvenSeries whole_series(std::span<const double> rates, double interval) {
   if (!(std::isfinite(interval) && interval > 0.0))
-    fail(fmt::format("interval: {} s, must be positive", interval));
+    fail_series(fmt::format("interval: {} s, must be positive", interval));
   if (rates.size() < 2)
-    fail(fmt::format("rates: {}, must be at least two", rates.size()));
+    fail_series(fmt::format("rates: {}, must be at least two", rates.size()));
   for (std::size_t k = 0; k < rates.size(); ++k)
     if (!std::isfinite(rates[k]))
-      fail(
+      fail_series(
           fmt::format("rate {}: {} is not finite; an Allan deviation needs a "
                       "series without holes",
                       k, rates[k]));

@@ -25,7 +25,7 @@ constexpr double kLongHold = 600.0;      // [s]
 constexpr double kReplayBlock = 1.0;     // [s]
 constexpr double kBeyond = 1.01;         // [-], of full scale
 constexpr double kLineTolerance = 1e-6;  // [-], of the span of the output
-constexpr double kLeastSpan = 1e-9;      // [deg/s]
+constexpr double kLeastRateSpan = 1e-9;  // [deg/s]
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -67,7 +67,7 @@ std::optional<double> output_scale(const Recording& recording) {
       high = high == rate.size() || rate[k] > rate[high] ? k : high;
     }
   }
-  if (low == rate.size() || !(rate[high] - rate[low] > kLeastSpan)) {
+  if (low == rate.size() || !(rate[high] - rate[low] > kLeastRateSpan)) {
     return std::nullopt;
   }
   const double span = output[high] - output[low];

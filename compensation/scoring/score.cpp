@@ -20,7 +20,7 @@ constexpr double kWhiteNoiseFall = 0.75;  // [-], deviation at 4 s over 1 s
 constexpr double kShortestSeries = 10.0;  // [s]
 constexpr double kStepTolerance = 1e-3;   // [-]
 
-[[noreturn]] void fail(const AnsweredRun& run, const std::string& message) {
+[[noreturn]] void fail_run(const AnsweredRun& run, const std::string& message) {
   throw std::invalid_argument(fmt::format("run {}: {}", run.name, message));
 }
 
@@ -28,13 +28,14 @@ const std::vector<double>& powered_values(const AnsweredRun& run,
                                           const char* name) {
   const Column* column = find_column(*run.recording, name);
   if (column == nullptr) {
-    fail(run, fmt::format("no column '{}', which a score needs", name));
+    fail_run(run, fmt::format("no column '{}', which a score needs", name));
   }
   for (const SampleRange& stretch : powered_stretches(*run.recording)) {
     for (std::size_t k = stretch.begin; k < stretch.end; ++k) {
       if (!std::isfinite(column->values[k])) {
-        fail(run, fmt::format("{} is {} at {} s, must be finite while powered",
-                              name, column->values[k], run.recording->time[k]));
+        fail_run(run,
+                 fmt::format("{} is {} at {} s, must be finite while powered",
+                             name, column->values[k], run.recording->time[k]));
       }
     }
   }
@@ -43,8 +44,8 @@ const std::vector<double>& powered_values(const AnsweredRun& run,
 
 void check_size(const AnsweredRun& run, const std::vector<double>& answer) {
   if (answer.size() != run.recording->time.size()) {
-    fail(run, fmt::format("{} answers to {} samples, must be one each",
-                          answer.size(), run.recording->time.size()));
+    fail_run(run, fmt::format("{} answers to {} samples, must be one each",
+                              answer.size(), run.recording->time.size()));
   }
 }
 
@@ -58,11 +59,11 @@ void count_samples(const AnsweredRun& run, Score& score) {
     }
   }
   if (score.samples == 0) {
-    fail(run, "never powered, must have samples to score");
+    fail_run(run, "never powered, must have samples to score");
   }
 }
 
-Eigen::Map<const Eigen::ArrayXd> array_of(const std::vector<double>& values) {
+Eigen::Map<const Eigen::ArrayXd> array_from(const std::vector<double>& values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
@@ -83,10 +84,10 @@ Eigen::ArrayXd without_cubic(const Eigen::ArrayXd& raw,
 void fill_from_sums(const RunSums& sums, Score& score) {
   score.residual = residual_scores(sums.residual);
   score.raw = residual_scores(sums.raw);
-  const Eigen::ArrayXd raw = array_of(sums.raw);
+  const Eigen::ArrayXd raw = array_from(sums.raw);
   score.constant = scores_of(raw - raw.mean());
   if (!sums.temperature.empty()) {
-    score.cubic = scores_of(without_cubic(raw, array_of(sums.temperature)));
+    score.cubic = scores_of(without_cubic(raw, array_from(sums.temperature)));
   }
   if (!sums.baseline.empty()) {
     score.baseline = residual_scores(sums.baseline);

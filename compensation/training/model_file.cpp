@@ -6,6 +6,7 @@
 
 #include <charconv>
 #include <stdexcept>
+#include <type_traits>
 
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/methods/method_inputs.h"
@@ -80,7 +81,7 @@ Population population_of(const std::filesystem::path& file) {
 }
 
 // Layers of "bp(2,8)"; nothing when it is not of that form.
-std::vector<int> layers_of(std::string_view name) {
+std::vector<int> named_layers(std::string_view name) {
   if (!name.starts_with("bp(") || !name.ends_with(')')) return {};
   std::vector<int> layers;
   const char* at = name.data() + 3;
@@ -111,18 +112,20 @@ const NamedCurve kNamedCurves[] = {{"linear", {1}},
 
 std::vector<std::string> candidate_names() {
   std::vector<std::string> names;
-  for (const NamedCurve& curve : kNamedCurves) names.push_back(curve.name);
   for_each_alternative<FitSpec>([&]<class Method>() {
     if constexpr (requires { Method::kIsCandidate; })
-      names.push_back(Method::kName);
+      names.emplace_back(Method::kName);
+    if constexpr (std::is_same_v<Method, PolynomialSpec>)
+      for (const NamedCurve& curve : kNamedCurves)
+        names.emplace_back(curve.name);
   });
   names.push_back("bp(6)");
   return names;
 }
 
 // A candidate that is no network; nothing for a name that means none.
-std::optional<Candidate> curve_of(const std::string& name,
-                                  const std::vector<Input>& inputs) {
+std::optional<Candidate> candidate_curve(const std::string& name,
+                                         const std::vector<Input>& inputs) {
   for (const auto& [known, curve, all_inputs] : kNamedCurves)
     if (name == known)
       return Candidate{
@@ -169,10 +172,10 @@ std::vector<Candidate> read_candidates(const MethodSource& source) {
   std::vector<Candidate> candidates;
   for (const std::string& name : names) {
     BpSpec network = options;
-    network.hidden = layers_of(name);
+    network.hidden = named_layers(name);
     if (!network.hidden.empty())
       candidates.push_back({name, inputs, network});
-    else if (std::optional<Candidate> curve = curve_of(name, inputs))
+    else if (std::optional<Candidate> curve = candidate_curve(name, inputs))
       candidates.push_back(std::move(*curve));
     else
       reject_candidate(automatic, name);

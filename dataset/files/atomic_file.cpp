@@ -59,7 +59,8 @@ std::error_code last_error() { return {errno, std::generic_category()}; }
       fmt::format("{}: cannot write: {}", path.string(), why));
 }
 
-[[noreturn]] void fail(const fs::path& path, const std::error_code& error) {
+[[noreturn]] void fail_writing(const fs::path& path,
+                               const std::error_code& error) {
   throw FileError(
       fmt::format("{}: cannot write: {}", path.string(), error.message()),
       error);
@@ -101,7 +102,7 @@ fs::path checked_target(const fs::path& path) {
                               return faccessat(AT_FDCWD, target.c_str(), W_OK,
                                                AT_EACCESS);
                             }) != 0) {
-    if (!is_wrong_name(last_error())) fail(path, last_error());
+    if (!is_wrong_name(last_error())) fail_writing(path, last_error());
     reject(path, "the file that is there is write-protected");
   }
   return target;
@@ -109,7 +110,7 @@ fs::path checked_target(const fs::path& path) {
 
 /// A wrong directory is wrong input, any other failure is failed work.
 [[noreturn]] void fail_in(const fs::path& path, const std::error_code& error) {
-  if (!is_wrong_name(error)) fail(path, error);
+  if (!is_wrong_name(error)) fail_writing(path, error);
   const fs::path directory = path.parent_path();
   reject(path, fmt::format("directory {}: {}; expected one that is there and "
                            "writable",
@@ -242,7 +243,7 @@ void AtomicFile::require_own_partial_file() const {
   if (fstat(file_->descriptor(), &ours) != 0 ||
       fstatat(directory_.descriptor(), partial_name_.c_str(), &there,
               AT_SYMLINK_NOFOLLOW) != 0)
-    fail(path_, last_error());
+    fail_writing(path_, last_error());
   if (ours.st_dev != there.st_dev || ours.st_ino != there.st_ino)
     throw std::runtime_error(fmt::format(
         "{}: cannot write: another process has replaced the unfinished {}",
@@ -252,7 +253,8 @@ void AtomicFile::require_own_partial_file() const {
 void AtomicFile::publish() try {
   file_->sync();
   if (const auto mode = replaced_mode()) {
-    if (fchmod(file_->descriptor(), *mode) != 0) fail(path_, last_error());
+    if (fchmod(file_->descriptor(), *mode) != 0)
+      fail_writing(path_, last_error());
   }
   require_own_partial_file();
   file_->close();
@@ -261,11 +263,11 @@ void AtomicFile::publish() try {
         return renameat(directory, partial_name_.c_str(), directory,
                         name_.c_str());
       }) != 0)
-    fail(path_, last_error());
+    fail_writing(path_, last_error());
   published_ = true;
   directory_.sync();
 } catch (const std::system_error& error) {
-  fail(path_, error.code());
+  fail_writing(path_, error.code());
 }
 
 void require_writable(const fs::path& path) { const AtomicFile probe(path); }
@@ -275,7 +277,7 @@ void write_text_file(const fs::path& path, std::string_view text) {
   try {
     target.file().write(std::as_bytes(std::span(text)));
   } catch (const std::system_error& error) {
-    fail(path, error.code());
+    fail_writing(path, error.code());
   }
   target.publish();
 }

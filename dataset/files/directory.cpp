@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr int kFolder = O_PATH | O_DIRECTORY;
 constexpr mode_t kMode = 0666;
 
-[[noreturn]] void fail(int error) {
+[[noreturn]] void fail_directory(int error) {
   throw std::system_error(error, std::generic_category());
 }
 
@@ -44,7 +44,7 @@ void require_below(const fs::path& name) {
 
 struct stat stat_of(int descriptor) {
   struct stat facts {};
-  if (fstat(descriptor, &facts) != 0) fail(errno);
+  if (fstat(descriptor, &facts) != 0) fail_directory(errno);
   return facts;
 }
 
@@ -57,8 +57,8 @@ int open_by_parts(int directory, const fs::path& name, int flags) {
       return openat(at, part.c_str(), O_PATH | O_NOFOLLOW | O_CLOEXEC);
     }));
     const mode_t kind = stat_of(parents.back().descriptor()).st_mode;
-    if (S_ISLNK(kind)) fail(ELOOP);
-    if (!S_ISDIR(kind)) fail(ENOTDIR);
+    if (S_ISLNK(kind)) fail_directory(ELOOP);
+    if (!S_ISDIR(kind)) fail_directory(ENOTDIR);
   }
   const int at = parents.empty() ? directory : parents.back().descriptor();
   const fs::path last = name.filename();
@@ -122,7 +122,7 @@ Directory Directory::make_below(const fs::path& name) const {
     const Directory& parent = made.empty() ? last : made.back();
     const int answer = uninterrupted(
         [&] { return mkdirat(parent.descriptor(), part.c_str(), 0777); });
-    if (answer != 0 && errno != EEXIST) fail(errno);
+    if (answer != 0 && errno != EEXIST) fail_directory(errno);
     made.push_back(parent.below(part));
   }
   return made.empty() ? std::move(last) : std::move(made.back());
@@ -134,14 +134,14 @@ std::vector<std::string> Directory::names() const {
   }));
   const std::unique_ptr<DIR, int (*)(DIR*)> list(fdopendir(file.descriptor()),
                                                  closedir);
-  if (list == nullptr) fail(errno);
+  if (list == nullptr) fail_directory(errno);
   file.release();
   std::vector<std::string> names;
   for (errno = 0; const dirent* entry = readdir(list.get()); errno = 0) {
     const std::string name = entry->d_name;
     if (name != "." && name != "..") names.push_back(name);
   }
-  if (errno != 0) fail(errno);
+  if (errno != 0) fail_directory(errno);
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -164,7 +164,7 @@ std::vector<std::string> Directory::files_below() const {
 void Directory::remove(const std::string& name) const {
   const int answer =
       uninterrupted([&] { return unlinkat(descriptor(), name.c_str(), 0); });
-  if (answer != 0 && errno != ENOENT) fail(errno);
+  if (answer != 0 && errno != ENOENT) fail_directory(errno);
 }
 
 void Directory::sync() const {

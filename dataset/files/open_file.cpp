@@ -15,7 +15,7 @@
 namespace beamgyro {
 namespace {
 
-[[noreturn]] void fail() {
+[[noreturn]] void fail_opening() {
   throw std::system_error(errno, std::generic_category());
 }
 
@@ -26,7 +26,7 @@ OpenFile::OpenFile(const std::filesystem::path& path, int flags)
           [&] { return ::open(path.c_str(), flags | O_CLOEXEC, 0666); })) {}
 
 OpenFile::OpenFile(int descriptor) : descriptor_(descriptor) {
-  if (descriptor_ < 0) fail();
+  if (descriptor_ < 0) fail_opening();
 }
 
 OpenFile::~OpenFile() {
@@ -42,7 +42,7 @@ void OpenFile::write(std::span<const std::byte> bytes) {
     if (count >= 0) {
       bytes = bytes.subspan(static_cast<std::size_t>(count));
     } else if (errno != EINTR) {
-      fail();
+      fail_opening();
     }
   }
 }
@@ -55,7 +55,7 @@ void OpenFile::write_at(std::uint64_t place, std::span<const std::byte> bytes) {
       bytes = bytes.subspan(static_cast<std::size_t>(count));
       place += static_cast<std::uint64_t>(count);
     } else if (errno != EINTR) {
-      fail();
+      fail_opening();
     }
   }
 }
@@ -69,7 +69,7 @@ std::size_t OpenFile::read(std::span<std::byte> bytes) {
     if (count > 0) {
       done += static_cast<std::size_t>(count);
     } else if (errno != EINTR) {
-      fail();
+      fail_opening();
     }
   }
   return done;
@@ -85,7 +85,7 @@ std::size_t OpenFile::read_at(std::uint64_t place, std::span<std::byte> bytes) {
     if (count > 0) {
       done += static_cast<std::size_t>(count);
     } else if (errno != EINTR) {
-      fail();
+      fail_opening();
     }
   }
   return done;
@@ -101,29 +101,31 @@ void OpenFile::read_pieces(
 }
 
 void OpenFile::go_to(std::uint64_t place) {
-  if (lseek(descriptor_, static_cast<off_t>(place), SEEK_SET) < 0) fail();
+  if (lseek(descriptor_, static_cast<off_t>(place), SEEK_SET) < 0)
+    fail_opening();
 }
 
 std::uint64_t OpenFile::size() {
   struct stat facts {};
-  if (fstat(descriptor_, &facts) != 0) fail();
+  if (fstat(descriptor_, &facts) != 0) fail_opening();
   return static_cast<std::uint64_t>(facts.st_size);
 }
 
 void OpenFile::resize(std::uint64_t size) {
   const auto length = static_cast<off_t>(size);
   if (uninterrupted([&] { return ftruncate(descriptor_, length); }) != 0)
-    fail();
+    fail_opening();
 }
 
 void OpenFile::sync() {
-  if (uninterrupted([&] { return ::fsync(descriptor_); }) != 0) fail();
+  if (uninterrupted([&] { return ::fsync(descriptor_); }) != 0) fail_opening();
 }
 
 void OpenFile::close() {
   // Linux releases the descriptor before a signal can interrupt the call.
   // Closing it again might close the file of another thread.
-  if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail();
+  if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR)
+    fail_opening();
 }
 
 }  // namespace beamgyro

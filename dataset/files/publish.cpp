@@ -32,8 +32,8 @@ std::string room_in(const fs::path& file) {
                      std::uint64_t{space.f_bavail} * space.f_frsize);
 }
 
-[[noreturn]] void fail(const fs::path& path, std::size_t size,
-                       const std::error_code& error) {
+[[noreturn]] void fail_publishing(const fs::path& path, std::size_t size,
+                                  const std::error_code& error) {
   const bool is_full =
       error == std::errc::no_space_on_device ||
       error == std::error_code(EDQUOT, std::generic_category());
@@ -81,9 +81,9 @@ void publish_file(const fs::path& directory, const fs::path& name,
     require_same(path, target.file(), bytes);
     target.publish();
   } catch (const FileError& error) {
-    fail(path, bytes.size(), error.code);
+    fail_publishing(path, bytes.size(), error.code);
   } catch (const std::system_error& error) {
-    fail(path, bytes.size(), error.code());
+    fail_publishing(path, bytes.size(), error.code());
   }
 }
 

@@ -23,8 +23,8 @@ namespace {
 /// The text that `read` (H5Aread or H5Dread) fills, of one value of `type`, for
 /// which the file has `room` bytes.
 template <class Read>
-std::string read_text(hid_t type, hid_t space, std::uint64_t room,
-                      const std::string& what, const Read& read) {
+std::string read_string(hid_t type, hid_t space, std::uint64_t room,
+                        const std::string& what, const Read& read) {
   if (H5Tget_class(type) != H5T_STRING ||
       H5Sget_simple_extent_npoints(space) != 1)
     throw Hdf5Error(what + " is no text");
@@ -86,7 +86,7 @@ struct NumberKind {
 };
 
 /// One number of `kind` into `value`, which is of `memory_type`.
-void read_number(hid_t object, const std::string& owner, const char* name,
+void read_scalar(hid_t object, const std::string& owner, const char* name,
                  const NumberKind& kind, hid_t memory_type, void* value) {
   const H5Id attribute = open_attribute(object, owner, name);
   const H5Id type(H5Aget_type(attribute), H5Tclose, "read a type");
@@ -145,14 +145,15 @@ std::string text_attribute(hid_t object, const std::string& owner,
   const H5Id attribute = open_attribute(object, owner, name);
   const H5Id type(H5Aget_type(attribute), H5Tclose, "read a type");
   const H5Id space(H5Aget_space(attribute), H5Sclose, "read a size");
-  return read_text(type, space, H5Aget_storage_size(attribute),
-                   fmt::format("attribute {} of {}", name, owner),
-                   [&](void* text) { return H5Aread(attribute, type, text); });
+  return read_string(
+      type, space, H5Aget_storage_size(attribute),
+      fmt::format("attribute {} of {}", name, owner),
+      [&](void* text) { return H5Aread(attribute, type, text); });
 }
 
 std::uint64_t integer_attribute(hid_t file, const char* name) {
   std::uint64_t value = 0;
-  read_number(file, "the file", name, {H5T_INTEGER, "integer"},
+  read_scalar(file, "the file", name, {H5T_INTEGER, "integer"},
               H5T_NATIVE_UINT64, &value);
   return value;
 }
@@ -160,7 +161,7 @@ std::uint64_t integer_attribute(hid_t file, const char* name) {
 double number_attribute(hid_t object, const std::string& owner,
                         const char* name) {
   double value = 0;
-  read_number(object, owner, name, {H5T_FLOAT, "number"}, H5T_NATIVE_DOUBLE,
+  read_scalar(object, owner, name, {H5T_FLOAT, "number"}, H5T_NATIVE_DOUBLE,
               &value);
   return value;
 }
@@ -173,7 +174,7 @@ std::string meta_text(hid_t file, const std::string& name) {
   const H5Id type(H5Dget_type(dataset), H5Tclose, "read a type");
   const H5Id space(H5Dget_space(dataset), H5Sclose, "read a size");
   const std::uint64_t room = H5Dget_storage_size(dataset);
-  return read_text(type, space, room, "/meta/" + name, [&](void* text) {
+  return read_string(type, space, room, "/meta/" + name, [&](void* text) {
     return H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text);
   });
 }

@@ -66,7 +66,7 @@ std::string units_of(hid_t file, const std::string& name) {
   return text_attribute(open_variable(file, name), name, "units");
 }
 
-void read_time(hid_t file, std::size_t samples, Recording& recording) {
+void read_times(hid_t file, std::size_t samples, Recording& recording) {
   recording.time =
       read_values<double>(file, "time", H5T_FLOAT, H5T_NATIVE_DOUBLE, samples);
   std::string units = units_of(file, "time");
@@ -104,7 +104,7 @@ Recording read_file(OpenFile& bytes) {
 
   const std::vector<std::string> names = variable_names(file);
   const std::size_t samples = number_of_samples(file, names);
-  read_time(file, samples, recording);
+  read_times(file, samples, recording);
   for (const std::string& name : names) {
     if (name == "time" || name == "status") continue;
     recording.columns.push_back(read_column(file, name, samples));

@@ -32,7 +32,7 @@ constexpr double kCostPerSecond = 0.45;  // [s], measured
 
 // Local error of each state that matters as much as one of 1 rad/s in the
 // output.
-VectorXd error_weights() {
+VectorXd carrier_error_weights() {
   VectorXd weights = VectorXd::Ones(kCarrierStates);
   for (const Eigen::Index i : {kPosition, kVelocity}) {
     weights(i) = 0.3;
@@ -58,7 +58,7 @@ class CarrierTrajectory {
         angular_gain_(gyro.beam.angular_gain),
         ode_(gyro) {
     ExplicitRkOptions options;
-    options.absolute_tolerance = kTolerance * error_weights();
+    options.absolute_tolerance = kTolerance * carrier_error_weights();
     rk_ = std::make_unique<ExplicitRk>(
         [this](double t, const auto& y, auto dydt) {
           ode_.rate(t, moving(t), y, dydt);

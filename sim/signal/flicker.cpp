@@ -65,7 +65,7 @@ std::vector<double> residues(const std::vector<double>& mu,
 // Cholesky root of gain_k gain_j / (1 - pole_k pole_j) in closed form: the
 // states' responses in the orthonormal basis of cascaded all-passes
 // (Takenaka-Malmquist) of the same poles.
-std::vector<std::vector<double>> stationary_root(
+std::vector<std::vector<double>> flicker_stationary_root(
     const std::vector<double>& mu, const std::vector<double>& gain) {
   std::vector<std::vector<double>> root(mu.size());
   for (std::size_t k = 0; k < mu.size(); ++k) {
@@ -125,7 +125,7 @@ FlickerFilter flicker_filter(double bias_instability, double output_rate) {
   filter.gain = residues(mu, zeros);
   for (double& gain : filter.gain) gain *= scale;
   for (double m : mu) filter.pole.push_back(std::exp(-m));
-  filter.stationary_root = stationary_root(mu, filter.gain);
+  filter.stationary_root = flicker_stationary_root(mu, filter.gain);
   return filter;
 }
 

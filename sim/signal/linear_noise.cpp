@@ -23,7 +23,7 @@ constexpr double kShort = 0.25;    // |A| h of the first step
 constexpr int kTaylorDegree = 12;  // kShort^13 / 13! = 2e-18
 constexpr Index kDrawnAhead = 64;
 
-void require_finite(const MatrixXd& matrix, const char* name) {
+void require_finite_model(const MatrixXd& matrix, const char* name) {
   for (Index j = 0; j < matrix.cols(); ++j)
     for (Index i = 0; i < matrix.rows(); ++i)
       if (!std::isfinite(matrix(i, j)))
@@ -44,8 +44,8 @@ void check(const NoiseSystem& system) {
         fmt::format("noise system: B is {} x {}, must have {} rows as A, and a "
                     "column for every noise",
                     B.rows(), B.cols(), A.rows()));
-  require_finite(A, "A");
-  require_finite(B, "B");
+  require_finite_model(A, "A");
+  require_finite_model(B, "B");
 }
 
 // The system in units that make rows and columns of A alike, all sums of

@@ -17,7 +17,7 @@ void require_non_negative(double value, const char* name, const char* unit) {
         fmt::format("{} is {} {}, must be 0 or more", name, value, unit));
 }
 
-void check(const NoiseParameters& p) {
+void check_noise(const NoiseParameters& p) {
   require_non_negative(p.angle_random_walk, "angle random walk", "rad/sqrt(s)");
   require_non_negative(p.bias_instability, "bias instability", "rad/s");
   require_non_negative(p.rate_random_walk, "rate random walk", "rad/s/sqrt(s)");
@@ -33,7 +33,7 @@ RateNoise::RateNoise(const NoiseParameters& parameters, double output_rate,
       walk_sigma_(parameters.rate_random_walk / std::sqrt(output_rate)),
       white_stream_(seed, device, run, RandomPurpose::kWhiteNoise),
       walk_stream_(seed, device, run, RandomPurpose::kRateRandomWalk) {
-  check(parameters);
+  check_noise(parameters);
   if (!(output_rate > 0.0) || !std::isfinite(output_rate))
     throw std::invalid_argument(
         fmt::format("output rate is {} Hz, must be above 0", output_rate));
@@ -67,7 +67,7 @@ void RateNoise::add_next(std::span<double> rate) {
 std::vector<double> turn_on_offsets(const NoiseParameters& parameters,
                                     std::size_t cycles, std::uint64_t seed,
                                     std::uint32_t device, std::uint32_t run) {
-  check(parameters);
+  check_noise(parameters);
   RandomStream stream(seed, device, run, RandomPurpose::kTurnOn);
   std::vector<double> offsets(cycles);
   stream.fill_normal(offsets);

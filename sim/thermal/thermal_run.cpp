@@ -18,7 +18,7 @@ namespace {
   throw std::invalid_argument("thermal run: " + message);
 }
 
-void require_valid(const ThermalLoad& load) {
+void require_valid_run(const ThermalLoad& load) {
   double last = -std::numeric_limits<double>::infinity();
   for (const PowerInterval& interval : load.powered) {
     if (!(interval.on >= last && interval.off > interval.on)) {
@@ -119,7 +119,7 @@ CvodeStatistics integrate_temperatures(const ThermalNetwork& network,
                                        const ThermalLoad& load, double end,
                                        const ThermalRunOptions& options,
                                        const ThermalSink& sink) {
-  require_valid(load);
+  require_valid_run(load);
   const ThermalOde ode(network, load.mechanical_power, load.dielectric_power);
   const Eigen::Index size = ode.size();
   LinearStretch ambient{};

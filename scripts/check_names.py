@@ -1,0 +1,98 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Fails when a file-local name could be taken for another one.
+
+Libraries are compiled in bundles of sources, which share their anonymous
+namespaces. There a name that another source of the library defines, or that a
+header declares, would silently hide the other.
+
+check_names.py [ROOT]; one line per offence, exit status 1 if there is one.
+"""
+
+import collections
+import pathlib
+import re
+import sys
+
+# The sources that share bundles, as prefixes of paths; the first that fits.
+LIBRARIES = ["dataset/set/", "dataset/", "sim/numerics/", "sim/thermal/",
+             "sim/signal/", "sim/device/", "sim/dynamics/", "sim/scenario/",
+             "sim/campaign/", "compensation/", "config/", "random/",
+             "parallel/", "report/", "cli/"]
+
+# A library sees no header of these.
+UNSEEN = {"config/": ["dataset/", "sim/", "compensation/", "report/", "cli/"],
+          "random/": ["dataset/", "sim/", "compensation/", "report/", "cli/"],
+          "dataset/": ["dataset/set/", "sim/", "compensation/", "report/",
+                       "cli/"],
+          "dataset/set/": ["sim/", "compensation/", "report/", "cli/"],
+          "compensation/": ["sim/", "report/", "cli/"],
+          "sim/": ["compensation/", "report/", "cli/"],
+          "sim/numerics/": ["sim/"], "sim/thermal/": ["sim/"],
+          "sim/signal/": ["sim/device", "sim/dynamics", "sim/scenario",
+                          "sim/campaign", "sim/thermal"],
+          "sim/device/": ["sim/dynamics", "sim/scenario", "sim/campaign"],
+          "sim/dynamics/": ["sim/scenario", "sim/campaign"],
+          "sim/scenario/": ["sim/campaign"]}
+
+FUNCTION = re.compile(
+    r"^(?:\[\[\w+\]\] )?[A-Za-z_][\w:<>,&* ]*[&* \n](\w+)\(", re.MULTILINE)
+CONSTANT = re.compile(
+    r"^(?:inline |static )?(?:constexpr|const) [\w:<>,&* ]*?\b(\w+)"
+    r"(?:\[\w*\])* ?[={]", re.MULTILINE)
+TYPE = re.compile(r"^(?:struct|class|enum class|enum) (\w+)", re.MULTILINE)
+LOCAL = re.compile(r"^namespace \{\n(.*?)^\}  // namespace$",
+                   re.MULTILINE | re.DOTALL)
+
+
+def names(text):
+    text = re.sub(r"//[^\n]*", "", text)
+    return {name for pattern in (FUNCTION, CONSTANT, TYPE)
+            for name in pattern.findall(text)}
+
+
+def library_of(path):
+    return next((prefix for prefix in LIBRARIES if path.startswith(prefix)),
+                None)
+
+
+def sees(library, header):
+    if header.startswith(library):
+        return not any(header.startswith(unseen) for unseen in
+                       UNSEEN.get(library, []) if len(unseen) > len(library))
+    return not any(header.startswith(unseen)
+                   for prefix, unseens in UNSEEN.items()
+                   if library.startswith(prefix) for unseen in unseens)
+
+
+def offences(root):
+    declared = collections.defaultdict(list)
+    defined = collections.defaultdict(list)
+    folders = {prefix.split("/")[0] for prefix in LIBRARIES}
+    for path in sorted(path for folder in folders
+                       for path in (root / folder).rglob("*")):
+        name = path.relative_to(root).as_posix()
+        if path.suffix == ".h":
+            for one in names(path.read_text()):
+                declared[one].append(name)
+        if path.suffix == ".cpp":
+            local = {one for part in LOCAL.findall(path.read_text())
+                     for one in names(part)}
+            for one in local:
+                defined[library_of(name), one].append(name)
+    for (library, one), files in sorted(defined.items()):
+        hidden = [header for header in declared[one] if sees(library, header)]
+        if len(files) > 1 or hidden:
+            yield f"{one}: local to {', '.join(files)}" + (
+                f", declared in {', '.join(hidden)}" if hidden else "")
+
+
+def main(root):
+    found = list(offences(root))
+    print("\n".join(found), end="\n" if found else "")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    here = pathlib.Path(__file__).resolve().parent.parent
+    sys.exit(main(pathlib.Path(sys.argv[1]) if sys.argv[1:] else here))

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: MIT
+"""The checker of file-local names on small trees made to offend."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+CHECKER = (pathlib.Path(__file__).resolve().parents[2]
+           / "scripts" / "check_names.py")
+
+
+def local(text):
+    return "namespace {\n\n" + text + "\n}  // namespace\n"
+
+
+class CheckNames(unittest.TestCase):
+    def check(self, files):
+        with tempfile.TemporaryDirectory() as root:
+            for path, text in files.items():
+                file = pathlib.Path(root) / path
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_text(text)
+            return subprocess.run([sys.executable, CHECKER, root],
+                                  capture_output=True, text=True, check=False)
+
+    def test_a_constant_that_hides_one_of_a_header(self):
+        answer = self.check({
+            "compensation/a/a.cpp": local("constexpr double kSpan = 1e-9;\n"),
+            "compensation/b/b.h": "constexpr double kSpan = 10.0;  // [K]\n"})
+        self.assertEqual(answer.returncode, 1)
+        self.assertEqual(answer.stdout, "kSpan: local to compensation/a/a.cpp, "
+                         "declared in compensation/b/b.h\n")
+
+    def test_a_function_that_two_sources_of_a_library_define(self):
+        text = local("double scaled(double x) {\n  return x;\n}\n")
+        answer = self.check({"sim/device/a.cpp": text,
+                             "sim/device/b.cpp": text})
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn("scaled: local to sim/device/a.cpp, sim/device/b.cpp",
+                      answer.stdout)
+
+    def test_names_that_cannot_meet(self):
+        text = local("struct Points {};\n")
+        answer = self.check({
+            "sim/device/a.cpp": text, "compensation/a/a.cpp": text,
+            "sim/campaign/a.h": "struct Points {};\n"})
+        self.assertEqual((answer.returncode, answer.stdout), (0, ""))
+
+
+if __name__ == "__main__":
+    unittest.main()
