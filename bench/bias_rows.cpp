@@ -3,11 +3,13 @@
 
 #include <cmath>
 
+#include "sim/signal/random_purposes.h"
+
 namespace beamgyro {
 
 ScaledRows bias_rows(Eigen::Index count, Eigen::Index inputs, double noise,
                      std::uint32_t run) {
-  RandomStream random(5, 0, run, RandomPurpose::kWhiteNoise);
+  RandomStream random(5, 0, run, kWhiteNoiseStream);
   ScaledRows set;
   set.inputs.resize(count, inputs);
   set.target.resize(count);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bench/bias_rows.h"
+#include "compensation/network/random_purposes.h"
 
 namespace beamgyro {
 namespace {
@@ -29,7 +30,7 @@ Case case_named(const std::string& name) {
 }
 
 BpNetwork start(const Case& c, std::uint32_t seed) {
-  RandomStream random(1, 0, seed, RandomPurpose::kInitialWeights);
+  RandomStream random(1, 0, seed, kInitialWeightsStream);
   BpNetwork network(c.layer_sizes);
   network.randomise(random);
   return network;
@@ -68,7 +69,7 @@ json trained(const Case& c, std::uint32_t seed, const TrainOptions& options) {
   while (took.size() < 3 || (total < 0.2 && took.size() < 101)) {
     if (total > 10) break;
     BpNetwork network = initial;
-    RandomStream order(1, 0, seed, RandomPurpose::kSampleOrder);
+    RandomStream order(1, 0, seed, kSampleOrderStream);
     const double begin = now();
     summary = train_network(c.rows, {}, options, order, network);
     took.push_back(now() - begin);

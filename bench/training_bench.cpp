@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "bench/bias_rows.h"
+#include "compensation/network/random_purposes.h"
 
 namespace beamgyro {
 namespace {
@@ -21,8 +22,8 @@ void train(benchmark::State& state, Eigen::Index count, int inputs, int hidden,
     for (int k = 0; k < restarts; ++k) {
       BpNetwork network({inputs, hidden, 1});
       const auto restart = static_cast<std::uint32_t>(k);
-      RandomStream weights(1, 0, restart, RandomPurpose::kInitialWeights);
-      RandomStream order(1, 0, restart, RandomPurpose::kSampleOrder);
+      RandomStream weights(1, 0, restart, kInitialWeightsStream);
+      RandomStream order(1, 0, restart, kSampleOrderStream);
       network.randomise(weights);
       const TrainSummary summary =
           train_network(training, held_out, {}, order, network);

@@ -22,10 +22,10 @@ struct FileError : std::runtime_error {
 /// such file, it is a directory, access is denied, and so on.
 bool is_wrong_name(const std::error_code& error);
 
-/// Throws "PATH: ACTION: REASON; expected EXPECTED" as std::invalid_argument for
-/// a wrong name (wrong input), and "PATH: ACTION: REASON" as FileError for any
-/// other error (failed work). The last part of the first message is left out if
-/// `expected` is empty. Only this function decides between the two.
+/// Throws "PATH: ACTION: REASON; expected EXPECTED" as std::invalid_argument
+/// for a wrong name (wrong input), and "PATH: ACTION: REASON" as FileError for
+/// any other error (failed work). The last part of the first message is left
+/// out if `expected` is empty. Only this function decides between the two.
 [[noreturn]] void throw_file_error(const std::filesystem::path& path,
                                    std::string_view action,
                                    const std::error_code& error,

@@ -8,26 +8,9 @@
 
 namespace beamgyro {
 
-/// Purpose of a stream of random numbers. The values are part of the data
-/// format: never renumber them.
-enum class RandomPurpose : std::uint32_t {
-  kWhiteNoise = 0,
-  kFlicker = 1,
-  kRateRandomWalk = 2,
-  kTurnOn = 3,
-  kTemperatureSensor = 4,
-  kRateProfile = 5,
-  kInitialWeights = 6,
-  kSampleOrder = 7,
-  kDeviceDraw = 8,
-  kMechanicalNoise = 9,
-  kCrossRateX = 10,
-  kCrossRateY = 11,
-  kAccelerationX = 12,
-  kAccelerationY = 13,
-  kAccelerationZ = 14,
-  kSobolScramble = 15,
-};
+/// What a stream of random numbers is for: a number that is part of the data
+/// format. Who draws from a stream names its purpose (random_purposes.h).
+enum class RandomPurpose : std::uint32_t {};
 
 /// Returns the inverse of the normal distribution function. Throws
 /// std::invalid_argument for a probability outside (0, 1). Method: Wichura,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "compensation/network/random_purposes.h"
 #include "compensation/network/rate_penalty.h"
 #include "parallel/work_queue.h"
 
@@ -48,8 +49,8 @@ Restarts train_from_restarts(const std::vector<int>& layer_sizes,
   of_one.threads = std::max(options.threads, static_cast<int>(cores / at_once));
   for_each_task(count, at_once, [&](std::size_t k, std::size_t) {
     const auto run = static_cast<std::uint32_t>(k);
-    RandomStream initial(seed, 0, run, RandomPurpose::kInitialWeights);
-    RandomStream order(seed, 0, run, RandomPurpose::kSampleOrder);
+    RandomStream initial(seed, 0, run, kInitialWeightsStream);
+    RandomStream order(seed, 0, run, kSampleOrderStream);
     networks[k].randomise(initial);
     summaries[k] = train_network(rows, held_out, of_one, order, networks[k]);
   });

@@ -9,6 +9,7 @@
 #include "config/units.h"
 #include "random/random_stream.h"
 #include "sim/campaign/campaign_file.h"
+#include "sim/campaign/random_purposes.h"
 #include "sim/device/device_file.h"
 #include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/scenario_file.h"
@@ -148,7 +149,7 @@ VirtualRun Campaign::run(std::size_t run, std::uint32_t device) const {
 
 Part Campaign::part(std::uint32_t device) const {
   RandomStream stream(seed(), device, stream_number("split"),
-                      RandomPurpose::kDeviceDraw);
+                      kDeviceDrawStream);
   return static_cast<Part>(
       static_cast<int>(quantile(state_->split, stream.uniform())));
 }

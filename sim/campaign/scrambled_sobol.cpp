@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "random/random_stream.h"
+#include "sim/campaign/random_purposes.h"
 
 namespace beamgyro {
 
@@ -51,7 +52,7 @@ std::uint64_t ScrambledSobol::scrambled(std::uint64_t digits,
                         static_cast<std::uint32_t>(dimension << 20) |
                             (level / kLevels) << 17 |
                             static_cast<std::uint32_t>(above >> 32),
-                        RandomPurpose::kSobolScramble);
+                        kSobolScrambleStream);
     const std::uint64_t low = stream.next_word(), high = stream.next_word();
     std::uint64_t node = 1;  // 1, then 2 and 3, 4 to 7, ...
     for (unsigned i = 0; i < kLevels; ++i) {

@@ -2,6 +2,7 @@
 #include "sim/campaign/uniform_source.h"
 
 #include "random/random_stream.h"
+#include "sim/campaign/random_purposes.h"
 
 namespace beamgyro {
 
@@ -19,8 +20,7 @@ std::uint32_t stream_number(std::string_view name) {
 double UniformSource::number(std::uint32_t device, std::uint32_t stream,
                              std::size_t dimension) const {
   if (sobol) return sobol->at(device, dimension);
-  return RandomStream(seed, device, stream, RandomPurpose::kDeviceDraw)
-      .uniform();
+  return RandomStream(seed, device, stream, kDeviceDrawStream).uniform();
 }
 
 }  // namespace beamgyro

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/scenario/random_purposes.h"
+
 namespace beamgyro {
 namespace {
 
@@ -76,7 +78,7 @@ Motion::Motion(const Scenario& scenario, const Gyro& gyro, const RunKey& key)
     cross_moves_[i] = moves(scenario.cross_rate[i]);
     rate_[i] = realise(scenario.cross_rate[i], kCrossPurposes[i]);
   }
-  rate_[2] = realise(scenario.rate, RandomPurpose::kRateProfile);
+  rate_[2] = realise(scenario.rate, kRateProfileStream);
   for (std::size_t i = 0; i < acceleration_.size(); ++i) {
     acceleration_moves_[i] = moves(scenario.acceleration[i]);
     acceleration_[i] =

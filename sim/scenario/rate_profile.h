@@ -9,6 +9,7 @@
 
 #include "random/random_stream.h"
 #include "sim/numerics/piecewise_linear.h"
+#include "sim/scenario/random_purposes.h"
 #include "sim/signal/output_filter.h"
 
 namespace beamgyro {
@@ -31,10 +32,9 @@ bool moves(const Signal& signal);
 /// Random streams of the profiles of the cross axes x, y and of the
 /// accelerations along x, y, z.
 inline constexpr std::array<RandomPurpose, 2> kCrossPurposes = {
-    RandomPurpose::kCrossRateX, RandomPurpose::kCrossRateY};
+    kCrossRateXStream, kCrossRateYStream};
 inline constexpr std::array<RandomPurpose, 3> kAccelerationPurposes = {
-    RandomPurpose::kAccelerationX, RandomPurpose::kAccelerationY,
-    RandomPurpose::kAccelerationZ};
+    kAccelerationXStream, kAccelerationYStream, kAccelerationZStream};
 
 /// Returns a signal at increasing times.
 std::vector<double> values_at(const Signal& signal,
@@ -47,6 +47,6 @@ std::vector<double> values_at(const Signal& signal,
 PiecewiseLinear realised(const RandomRate& random, double duration,
                          std::uint64_t seed, std::uint32_t device,
                          std::uint32_t run,
-                         RandomPurpose purpose = RandomPurpose::kRateProfile);
+                         RandomPurpose purpose = kRateProfileStream);
 
 }  // namespace beamgyro

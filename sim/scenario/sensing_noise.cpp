@@ -5,6 +5,7 @@
 
 #include "sim/dynamics/loop_noise.h"
 #include "sim/scenario/drive_lock.h"
+#include "sim/scenario/random_purposes.h"
 
 namespace beamgyro {
 
@@ -24,7 +25,7 @@ void SensingNoise::add_next(RunSamples& samples) {
       noise_.emplace(loop_noise(gyro_, ode_, beam, board),
                      1 / scenario_.output_rate,
                      RandomStream(scenario_.seed, key_.device, key_.run,
-                                  RandomPurpose::kMechanicalNoise));
+                                  kMechanicalNoiseStream));
       beam_ = beam, board_ = board;
     } else {
       if (std::abs(beam - beam_) > kNoiseRefresh ||

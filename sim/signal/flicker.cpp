@@ -8,6 +8,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "sim/signal/random_purposes.h"
+
 namespace beamgyro {
 namespace {
 
@@ -132,7 +134,7 @@ FlickerFilter flicker_filter(double bias_instability, double output_rate) {
 FlickerNoise::FlickerNoise(double bias_instability, double output_rate,
                            std::uint64_t seed, std::uint32_t device,
                            std::uint32_t run)
-    : stream_(seed, device, run, RandomPurpose::kFlicker) {
+    : stream_(seed, device, run, kFlickerStream) {
   const FlickerFilter filter = flicker_filter(bias_instability, output_rate);
   direct_ = filter.direct;
   std::copy(filter.pole.begin(), filter.pole.end(), pole_.begin());

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sim/signal/random_purposes.h"
+
 namespace beamgyro {
 namespace {
 
@@ -31,8 +33,8 @@ RateNoise::RateNoise(const NoiseParameters& parameters, double output_rate,
                      std::uint32_t run)
     : white_sigma_(parameters.angle_random_walk * std::sqrt(output_rate)),
       walk_sigma_(parameters.rate_random_walk / std::sqrt(output_rate)),
-      white_stream_(seed, device, run, RandomPurpose::kWhiteNoise),
-      walk_stream_(seed, device, run, RandomPurpose::kRateRandomWalk) {
+      white_stream_(seed, device, run, kWhiteNoiseStream),
+      walk_stream_(seed, device, run, kRateRandomWalkStream) {
   check_noise(parameters);
   if (!(output_rate > 0.0) || !std::isfinite(output_rate))
     throw std::invalid_argument(
@@ -68,7 +70,7 @@ std::vector<double> turn_on_offsets(const NoiseParameters& parameters,
                                     std::size_t cycles, std::uint64_t seed,
                                     std::uint32_t device, std::uint32_t run) {
   check_noise(parameters);
-  RandomStream stream(seed, device, run, RandomPurpose::kTurnOn);
+  RandomStream stream(seed, device, run, kTurnOnStream);
   std::vector<double> offsets(cycles);
   stream.fill_normal(offsets);
   for (double& offset : offsets) offset *= parameters.turn_on;

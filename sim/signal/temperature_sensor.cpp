@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "config/units.h"
+#include "sim/signal/random_purposes.h"
 #include "sim/signal/readout.h"
 
 namespace beamgyro {
@@ -15,7 +16,7 @@ TemperatureSensor::TemperatureSensor(
     const TemperatureSensorParameters& parameters, bool noise_enabled,
     std::uint64_t seed, std::uint32_t device, std::uint32_t run)
     : parameters_(parameters),
-      stream_(seed, device, run, RandomPurpose::kTemperatureSensor) {
+      stream_(seed, device, run, kTemperatureSensorStream) {
   if (!(parameters.noise >= 0.0) || !std::isfinite(parameters.noise))
     throw std::invalid_argument(
         fmt::format("temperature sensor noise is {} K, must be 0 or more",

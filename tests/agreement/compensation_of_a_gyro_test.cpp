@@ -9,6 +9,7 @@
 #include "compensation/training/train.h"
 #include "sim/dynamics/gyro.h"
 #include "sim/scenario/simulation.h"
+#include "sim/signal/random_purposes.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
@@ -24,7 +25,7 @@ ModelSpec shipped_model(const std::string& name) {
 // a minute; noise in deg/s.
 Recording bias_curve(const Gyro& gyro, double first, double last, double step,
                      double noise, std::uint32_t run) {
-  RandomStream random(11, 0, run, RandomPurpose::kWhiteNoise);
+  RandomStream random(11, 0, run, kWhiteNoiseStream);
   Recording recording;
   Column rate{"rate", "degree/s", "", Role::kMeasured, {}};
   Column temperature{"temperature", "degC", "", Role::kMeasured, {}};

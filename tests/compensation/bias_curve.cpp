@@ -43,7 +43,7 @@ Eigen::ArrayXd grid(double low, double high, double step) {
 
 ScaledRows curve_rows(const Eigen::ArrayXd& temperature, double noise,
                       std::uint32_t run) {
-  RandomStream random(11, 0, run, RandomPurpose::kWhiteNoise);
+  RandomStream random(11, 0, run, RandomPurpose{0});
   ScaledRows rows{(temperature - 5.0) / 45.0, bias_curve(temperature)};
   for (double& label : rows.target) label += noise * random.normal();
   rows.target = (rows.target - 2.4) / kCurveUnit;

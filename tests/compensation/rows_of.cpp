@@ -34,7 +34,7 @@ TrainingRows rows_of(const std::vector<Leg>& legs,
 }
 
 std::vector<double> white(int count, std::uint32_t run) {
-  RandomStream random(17, 0, run, RandomPurpose::kWhiteNoise);
+  RandomStream random(17, 0, run, RandomPurpose{0});
   std::vector<double> values(static_cast<std::size_t>(count));
   for (double& value : values) value = random.normal();
   return values;

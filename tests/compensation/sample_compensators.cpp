@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/compensation/sample_compensators.h"
 
+#include "compensation/network/random_purposes.h"
 #include "tests/compensation/bias_curve.h"
 
 namespace beamgyro {
@@ -48,7 +49,7 @@ Compensator with_inputs(const std::vector<std::string>& names,
 }
 
 BpNetwork random_network(const std::vector<int>& layers) {
-  RandomStream random(5, 0, 0, RandomPurpose::kInitialWeights);
+  RandomStream random(5, 0, 0, kInitialWeightsStream);
   BpNetwork network(layers);
   network.randomise(random);
   return network;

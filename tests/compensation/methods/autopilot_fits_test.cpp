@@ -118,7 +118,7 @@ TEST(FitAsPx4, EqualsLeastSquaresOverTheBinsOfTheFilteredSamples) {
   RecordedRun run = run_of(900.0, [](double t) {
     return -20.0 + 80.0 * (1.0 - std::exp(-t / 200.0));
   });
-  RandomStream random(3, 0, 0, RandomPurpose::kWhiteNoise);
+  RandomStream random(3, 0, 0, RandomPurpose{0});
   run.bias = [T = run.temperature, &random](double t) {
     return std::sin(0.08 * T(t)) + 0.3 * random.normal();
   };
@@ -211,7 +211,7 @@ TEST(FitAsArduPilot, EqualsLeastSquaresOverTheRisesOfHalfAKelvin) {
   RecordedRun run = run_of(1500.0, [](double t) {
     return -20.0 + 80.0 * (1.0 - std::exp(-t / 600.0)) + 0.4 * std::sin(t);
   });
-  RandomStream random(4, 0, 0, RandomPurpose::kWhiteNoise);
+  RandomStream random(4, 0, 0, RandomPurpose{0});
   run.bias = [T = run.temperature, &random](double t) {
     return std::sin(0.08 * T(t)) + 0.3 * random.normal();
   };

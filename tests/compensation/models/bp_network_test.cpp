@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "compensation/network/random_purposes.h"
 #include "tests/compensation/message_of.h"
 
 namespace beamgyro {
@@ -15,7 +16,7 @@ using Eigen::ArrayXXd;
 using Eigen::VectorXd;
 
 BpNetwork random_network(const std::vector<int>& sizes, std::uint64_t seed) {
-  RandomStream random(seed, 0, 0, RandomPurpose::kInitialWeights);
+  RandomStream random(seed, 0, 0, kInitialWeightsStream);
   BpNetwork network(sizes);
   network.randomise(random);
   return network;

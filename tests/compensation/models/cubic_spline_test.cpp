@@ -107,7 +107,7 @@ TEST(SplineKnots, RampsGetEvenKnotsFromEndToEnd) {
 TEST(CubicSpline, FitsARampOfNoisyPointsBelowTheirNoise) {
   const ArrayXd T = grid(-40.0, 50.0, 0.25);
   ArrayXd y = bias_curve(T);
-  RandomStream random(3, 0, 0, RandomPurpose::kWhiteNoise);
+  RandomStream random(3, 0, 0, RandomPurpose{0});
   for (double& label : y) label += 0.02 * random.normal();
   const CubicSpline spline =
       fit_cubic_spline(T, y, spline_knots(T, 5.0), SplineEnd::kNotAKnot);

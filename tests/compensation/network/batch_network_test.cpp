@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "compensation/network/random_purposes.h"
+
 namespace beamgyro {
 namespace {
 
@@ -15,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 BpNetwork random_network(const std::vector<int>& sizes) {
-  RandomStream random(8, 0, 0, RandomPurpose::kInitialWeights);
+  RandomStream random(8, 0, 0, kInitialWeightsStream);
   BpNetwork network(sizes);
   network.randomise(random);
   return network;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "compensation/network/random_purposes.h"
 #include "tests/compensation/bias_curve.h"
 
 namespace beamgyro {
@@ -22,7 +23,7 @@ ScaledRows straight_line() {
 }
 
 RandomStream sample_order() {
-  return RandomStream(1, 0, 0, RandomPurpose::kSampleOrder);
+  return RandomStream(1, 0, 0, kSampleOrderStream);
 }
 
 TEST(AdaptiveRate, KeepsAndDiscardsByThePapersThreeRules) {
@@ -112,8 +113,8 @@ TEST(Incremental, StopsAtTheGoalOverTheWholeSet) {
 TEST(Incremental, OrderOfTheSamplesComesFromItsStream) {
   const ScaledRows rows = curve_rows(grid(-40.0, 50.0, 5.0), 0.0, 1);
   const auto trained = [&](std::uint64_t seed) {
-    RandomStream initial(1, 0, 0, RandomPurpose::kInitialWeights);
-    RandomStream order(seed, 0, 0, RandomPurpose::kSampleOrder);
+    RandomStream initial(1, 0, 0, kInitialWeightsStream);
+    RandomStream order(seed, 0, 0, kSampleOrderStream);
     BpNetwork network({1, 6, 1});
     network.randomise(initial);
     TrainOptions options;
@@ -144,7 +145,7 @@ TEST(GradientTrainers, BothLearnTheBiasCurveFarBetterThanACubic) {
     options.trainer = trainer;
     options.max_epochs = 4000;
     options.patience = kGradientPatience;
-    RandomStream initial(1, 0, 0, RandomPurpose::kInitialWeights);
+    RandomStream initial(1, 0, 0, kInitialWeightsStream);
     RandomStream order = sample_order();
     BpNetwork network({1, 6, 1});
     network.randomise(initial);

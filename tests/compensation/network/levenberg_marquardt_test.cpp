@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "compensation/network/random_purposes.h"
 #include "compensation/network/restarts.h"
 #include "tests/compensation/bias_curve.h"
 
@@ -14,7 +15,7 @@ namespace {
 using Eigen::ArrayXd;
 
 BpNetwork random_network(const std::vector<int>& sizes, std::uint32_t run) {
-  RandomStream random(21, 0, run, RandomPurpose::kInitialWeights);
+  RandomStream random(21, 0, run, kInitialWeightsStream);
   BpNetwork network(sizes);
   network.randomise(random);
   return network;

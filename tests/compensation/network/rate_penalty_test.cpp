@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "compensation/network/random_purposes.h"
 #include "compensation/scoring/rate_injection.h"
 #include "compensation/scoring/validation.h"
 #include "compensation/training/train.h"
@@ -19,7 +20,7 @@ namespace {
 using Eigen::VectorXd;
 
 BpNetwork random_network(const std::vector<int>& layers) {
-  RandomStream random(5, 0, 0, RandomPurpose::kInitialWeights);
+  RandomStream random(5, 0, 0, kInitialWeightsStream);
   BpNetwork network(layers);
   network.randomise(random);
   return network;

@@ -28,14 +28,14 @@ std::vector<double> normals(RandomPurpose purpose, std::size_t count,
 }
 
 std::vector<double> white() {
-  auto rates = normals(RandomPurpose::kWhiteNoise, kSamples);
+  auto rates = normals(RandomPurpose{0}, kSamples);
   for (double& rate : rates) rate *= kN / std::sqrt(kInterval);
   return rates;
 }
 
 // The walk at the end of each sample.
 std::vector<double> random_walk() {
-  auto rates = normals(RandomPurpose::kRateRandomWalk, kSamples);
+  auto rates = normals(RandomPurpose{2}, kSamples);
   double sum = 0.0;
   for (double& rate : rates) {
     sum += kK * std::sqrt(kInterval) * rate;
@@ -53,7 +53,7 @@ std::vector<double> flicker() {
   std::uint32_t run = 0;
   for (double time_constant = kInterval / 4.0;
        time_constant < 4.0 * kInterval * kSamples; time_constant *= 2.0) {
-    const auto noise = normals(RandomPurpose::kFlicker, kSamples + 1, run++);
+    const auto noise = normals(RandomPurpose{1}, kSamples + 1, run++);
     const double keep = std::exp(-kInterval / time_constant);
     const double renew = deviation * std::sqrt(1.0 - keep * keep);
     double state = deviation * noise[kSamples];
@@ -67,7 +67,7 @@ std::vector<double> flicker() {
 
 // Errors of Q in the angles at both ends of a sample.
 std::vector<double> quantisation() {
-  const auto errors = normals(RandomPurpose::kRateProfile, kSamples + 1);
+  const auto errors = normals(RandomPurpose{5}, kSamples + 1);
   std::vector<double> rates(kSamples);
   for (std::size_t k = 0; k < kSamples; ++k)
     rates[k] = kQ * (errors[k + 1] - errors[k]) / kInterval;
@@ -183,7 +183,7 @@ TEST(Verification, V40AngleQuantisationFallsAsOneOverTau) {
   // Angles rounded to a quantum q that the motion crosses at random: rounding
   // errors of q / sqrt 12 that are independent from sample to sample.
   constexpr double kQuantum = 0.01;  // [deg]
-  RandomStream stream(7, 0, 0, RandomPurpose::kRateProfile);
+  RandomStream stream(7, 0, 0, RandomPurpose{5});
   std::vector<double> rates;
   double before = 0.0;
   double angle = 0.0;
@@ -193,7 +193,7 @@ TEST(Verification, V40AngleQuantisationFallsAsOneOverTau) {
     rates.push_back((read - before) / kInterval);
     before = read;
   }
-  RandomStream again(7, 0, 0, RandomPurpose::kRateProfile);
+  RandomStream again(7, 0, 0, RandomPurpose{5});
   for (double& rate : rates) {
     rate -= kQuantum * (10.0 + 20.0 * again.uniform()) / kInterval;
   }

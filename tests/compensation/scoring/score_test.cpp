@@ -148,7 +148,7 @@ TEST(Score, AnAnswerThatIsNotFiniteIsCountedAndLeavesNoScore) {
 }
 
 TEST(Score, WhiteNoiseIsKeptByABiasAndLostByANetworkThatEatsIt) {
-  RandomStream stream(3, 0, 0, RandomPurpose::kWhiteNoise);
+  RandomStream stream(3, 0, 0, RandomPurpose{0});
   std::vector<double> noise(3600);
   stream.fill_normal(noise);
   const RecordedRun noisy{

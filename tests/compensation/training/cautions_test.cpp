@@ -72,7 +72,7 @@ TEST(Cautions, GapInTheTemperatures) {
 
 TEST(Cautions, TemperatureTooCoarseForTheSlope) {
   // A slope of 0.01 deg/s/K in steps of 1 K is 2.9e-3 deg/s rms.
-  RandomStream random(3, 0, 0, RandomPurpose::kWhiteNoise);
+  RandomStream random(3, 0, 0, RandomPurpose{0});
   TrainingRows rows = straight(grid(-40.0, 50.0, 0.5));
   ArrayXd noise(rows.size());
   for (double& value : noise) value = random.normal();
@@ -115,7 +115,7 @@ TrainingRows loop(double hysteresis, double noise, int rounds = 1) {
   const Eigen::Index leg = 91;
   ArrayXd T(2 * leg * rounds), b(T.size());
   Eigen::ArrayXi legs(T.size());
-  RandomStream random(5, 0, 0, RandomPurpose::kWhiteNoise);
+  RandomStream random(5, 0, 0, RandomPurpose{0});
   for (Eigen::Index k = 0; k < T.size(); ++k) {
     const Eigen::Index of_leg = k % leg;
     legs(k) = static_cast<int>(k / leg);
@@ -152,7 +152,7 @@ TEST(Cautions, NoiseIsNotTakenForHysteresis) {
 }
 
 TEST(Cautions, ANoisyPlateauHasNoDirection) {
-  RandomStream random(6, 0, 0, RandomPurpose::kWhiteNoise);
+  RandomStream random(6, 0, 0, RandomPurpose{0});
   TrainingRows rows = straight(grid(-40.0, 50.0, 0.5));
   for (double& T : rows.temperature) T = 25.0 + 0.01 * random.normal();
   EXPECT_FALSE(hysteresis(rows, rows.bias).has_value());
@@ -163,7 +163,7 @@ TEST(Cautions, ModelsThatTellDirectionsApartAreSpared) {
   const std::vector<Input> both{parse_input("temperature"),
                                 parse_input("temperature_rate(60)")};
   Eigen::ArrayXXd inputs(rows.size(), 2);
-  RandomStream random(7, 0, 0, RandomPurpose::kWhiteNoise);
+  RandomStream random(7, 0, 0, RandomPurpose{0});
   for (Eigen::Index k = 0; k < rows.size(); ++k)
     inputs.row(k) << rows.temperature(k), random.normal();
   rows.inputs = inputs;

@@ -11,6 +11,7 @@
 
 #include "random/random_stream.h"
 #include "sim/campaign/campaign.h"
+#include "sim/campaign/random_purposes.h"
 #include "sim/dynamics/gyro.h"
 #include "tests/sim/campaign/kolmogorov_smirnov.h"
 #include "tests/sim/device/nominal_device.h"
@@ -123,7 +124,7 @@ TEST_P(Population, DriftsByAFewDegreesPerSecond) {
   EXPECT_NEAR(median(drifts), 5.65, 0.5);
 
   constexpr std::size_t kRepeats = 4000;
-  RandomStream random(1, 0, 0, RandomPurpose::kDeviceDraw);
+  RandomStream random(1, 0, 0, kDeviceDrawStream);
   std::vector<double> medians;
   for (std::size_t i = 0; i < kRepeats; ++i) {
     std::vector<double> forty;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "random/random_stream.h"
+#include "sim/campaign/random_purposes.h"
 
 namespace beamgyro {
 namespace {
@@ -135,7 +136,7 @@ TEST(ScrambledSobol, IntegratesASmoothFunctionBetterThanMonteCarlo) {
     const ScrambledSobol sobol(kDimensions, seed);
     sobol_error +=
         error([&](std::uint32_t i, std::size_t d) { return sobol.at(i, d); });
-    RandomStream random(seed, 0, 0, RandomPurpose::kDeviceDraw);
+    RandomStream random(seed, 0, 0, kDeviceDrawStream);
     random_error +=
         error([&](std::uint32_t, std::size_t) { return random.uniform(); });
   }

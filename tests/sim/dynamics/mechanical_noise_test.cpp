@@ -14,6 +14,7 @@
 
 #include "sim/dynamics/complex_form.h"
 #include "sim/dynamics/loop_noise.h"
+#include "sim/scenario/random_purposes.h"
 #include "sim/signal/linear_noise.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/signal/allan_deviation.h"
@@ -144,8 +145,7 @@ struct Energy {
 
 Energy mean_energy(const Modes& modes, double h, int samples,
                    std::uint32_t run) {
-  LinearNoise noise(modes.envelope(), h,
-                    {5, 0, run, RandomPurpose::kMechanicalNoise});
+  LinearNoise noise(modes.envelope(), h, {5, 0, run, kMechanicalNoiseStream});
   Energy sum{};
   for (int k = 0; k < samples; ++k, noise.advance()) {
     sum.x += noise.state().head<2>().squaredNorm();
@@ -258,7 +258,7 @@ TEST_P(LoopedNoise, SampledHasTheAllanDeviationOfTheStaticOne) {
   constexpr std::size_t kSamples = 500000;
   const Modes modes(kT0, {GetParam()});
   LinearNoise noise(looped(modes, kT0), kInterval,
-                    {3, 0, 0, RandomPurpose::kMechanicalNoise});
+                    {3, 0, 0, kMechanicalNoiseStream});
   std::vector<double> rate(kSamples);
   for (double& r : rate) {
     noise.advance();

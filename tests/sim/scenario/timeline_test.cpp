@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sim/scenario/aligned_borders.h"
+#include "sim/scenario/random_purposes.h"
 #include "sim/scenario/simulation.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
@@ -123,8 +124,7 @@ TEST(Timeline, APowerCycleNoLongerThanRoundingIsRefused) {
 // A stream of whole numbers below a limit.
 class Dice {
  public:
-  explicit Dice(std::uint32_t seed)
-      : stream_(seed, 0, 0, RandomPurpose::kRateProfile) {}
+  explicit Dice(std::uint32_t seed) : stream_(seed, 0, 0, kRateProfileStream) {}
   int below(int limit) { return static_cast<int>(limit * stream_.uniform()); }
 
  private:

@@ -12,6 +12,8 @@
 #include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
 
+#include "sim/scenario/random_purposes.h"
+
 namespace beamgyro {
 namespace {
 
@@ -20,7 +22,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 RandomStream stream(std::uint32_t run = 0) {
-  return {7, 0, run, RandomPurpose::kMechanicalNoise};
+  return {7, 0, run, kMechanicalNoiseStream};
 }
 
 MatrixXd square(const MatrixXd& root) { return root * root.transpose(); }

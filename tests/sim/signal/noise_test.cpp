@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "sim/scenario/random_purposes.h"
 #include "sim/signal/readout.h"
 #include "tests/sim/signal/allan_deviation.h"
 
@@ -52,7 +53,7 @@ TEST(Verification, V40AngleQuantumFallsWithTime) {
   constexpr std::size_t kCount = 300000;
   const double Q = kLsb / std::sqrt(12.0);
   // Steps of many quanta, so that the rounding errors are independent.
-  RandomStream stream(2, 0, 0, RandomPurpose::kRateProfile);
+  RandomStream stream(2, 0, 0, kRateProfileStream);
   std::vector<double> rate(kCount);
   double angle = 0.0, error = 0.0;
   for (double& r : rate) {

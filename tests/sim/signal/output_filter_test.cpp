@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "random/random_stream.h"
+#include "sim/scenario/random_purposes.h"
 
 namespace beamgyro {
 namespace {
@@ -53,7 +54,7 @@ TEST(OutputFilter, FollowsARampTwoTimeConstantsLate) {
 // jumps' own answers.
 TEST(OutputFilter, SuperposesTheAnswersOfManyRandomPoints) {
   const double w = 2.0 * kPi * 3.0, rate = 20.0;
-  RandomStream random(5, 0, 0, RandomPurpose::kRateProfile);
+  RandomStream random(5, 0, 0, kRateProfileStream);
   std::vector<double> time = {0.0}, value = {0.7};
   while (time.size() < 2000) {
     const bool jump = random.uniform() < 0.2 && time.size() % 2 == 1;

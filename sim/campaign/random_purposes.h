@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "random/random_stream.h"
+
+namespace beamgyro {
+
+// The random streams that this room draws from. The numbers are part of the
+// data: never change one, never use one twice (all of them are compared by a
+// test).
+inline constexpr RandomPurpose kDeviceDrawStream{8};
+inline constexpr RandomPurpose kSobolScrambleStream{15};
+
+}  // namespace beamgyro

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/network/random_purposes.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "sim/campaign/random_purposes.h"
+#include "sim/scenario/random_purposes.h"
+#include "sim/signal/random_purposes.h"
+
+namespace beamgyro {
+namespace {
+
+TEST(RandomPurposes, AreAllDifferentAndWhatTheyWere) {
+  const RandomPurpose all[] = {
+      kWhiteNoiseStream,      kFlickerStream,           kRateRandomWalkStream,
+      kTurnOnStream,          kTemperatureSensorStream, kRateProfileStream,
+      kInitialWeightsStream,  kSampleOrderStream,       kDeviceDrawStream,
+      kMechanicalNoiseStream, kCrossRateXStream,        kCrossRateYStream,
+      kAccelerationXStream,   kAccelerationYStream,     kAccelerationZStream,
+      kSobolScrambleStream};
+  std::uint32_t number = 0;
+  for (const RandomPurpose purpose : all)
+    EXPECT_EQ(static_cast<std::uint32_t>(purpose), number++);
+}
+
+}  // namespace
+}  // namespace beamgyro
