@@ -15,7 +15,7 @@ ROOMS = ["cli", "compensation", "config", "dataset", "parallel", "random",
          "report", "sim"]
 
 PAGES = [*ROOT.glob("*.md"), *sorted(ROOT.glob("docs/**/*.md")),
-         ROOT / "bench/experiments.md",
+         *sorted(ROOT.glob("bench/*.md")),
          *[page for room in ROOMS for page in ROOT.glob(f"{room}/**/*.md")]]
 
 
