@@ -14,7 +14,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro {
+namespace beamgyro::fidelities_test {
 namespace {
 
 const std::string kRebalance = "readout.mode=\"force_rebalance\"";
@@ -213,4 +213,4 @@ TEST(Agreement, NoiseOfEnvelopeAndQuasistaticAreOneAtLowFrequencies) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::fidelities_test

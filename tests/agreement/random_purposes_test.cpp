@@ -9,7 +9,7 @@
 #include "sim/scenario/random_purposes.h"
 #include "sim/signal/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::random_purposes_test {
 namespace {
 
 TEST(RandomPurposes, AreAllDifferentAndWhatTheyWere) {
@@ -26,4 +26,4 @@ TEST(RandomPurposes, AreAllDifferentAndWhatTheyWere) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::random_purposes_test

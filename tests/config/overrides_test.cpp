@@ -7,7 +7,7 @@
 #include "config/document.h"
 #include "tests/config/rejection.h"
 
-namespace beamgyro {
+namespace beamgyro::overrides_test {
 namespace {
 
 constexpr const char* kScenario =
@@ -212,4 +212,4 @@ TEST(Overrides, AnAddedValueIsBlamedAtItsPlace) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::overrides_test

@@ -9,7 +9,7 @@
 
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro {
+namespace beamgyro::validation_report_test {
 namespace {
 
 const Recording& table_run() {
@@ -95,4 +95,4 @@ TEST(ValidationReport, RefusesToCompareScoresOfDifferentRuns) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::validation_report_test

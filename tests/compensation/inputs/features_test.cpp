@@ -10,7 +10,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro {
+namespace beamgyro::features_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -219,4 +219,4 @@ TEST(Features, TemperatureRateIsZeroWhereTheTemperatureIsClamped) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::features_test

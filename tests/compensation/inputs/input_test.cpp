@@ -7,7 +7,7 @@
 
 #include "tests/compensation/message_of.h"
 
-namespace beamgyro {
+namespace beamgyro::input_test {
 namespace {
 
 TEST(Input, NameReadsBackToTheSameInput) {
@@ -70,4 +70,4 @@ TEST(Input, FilterNeedsOnePositiveTimeConstant) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::input_test

@@ -9,7 +9,7 @@
 #include "compensation/network/random_purposes.h"
 #include "tests/compensation/bias_curve.h"
 
-namespace beamgyro {
+namespace beamgyro::lbfgs_trainer_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -126,4 +126,4 @@ TEST(Lbfgs, ErrorThatIsNotFiniteIsAFailure) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::lbfgs_trainer_test

@@ -13,7 +13,7 @@
 
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro {
+namespace beamgyro::allan_deviation_test {
 namespace {
 
 const std::vector<double> kNbs14{892, 809, 823, 798, 671, 644, 883, 903, 677};
@@ -171,4 +171,4 @@ TEST(AllanDeviation, JsonHasTheKeysPromised) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::allan_deviation_test

@@ -11,7 +11,7 @@
 
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::noise_coefficients_test {
 namespace {
 
 constexpr double kInterval = 0.01;         // [s]
@@ -361,4 +361,4 @@ TEST(NoiseCoefficients, RefuseACurveOfTooFewPoints) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::noise_coefficients_test

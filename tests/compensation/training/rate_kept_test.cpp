@@ -10,7 +10,7 @@
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/sample_compensators.h"
 
-namespace beamgyro {
+namespace beamgyro::rate_kept_test {
 namespace {
 
 // A ramp at rest, or under rates that the bias has nothing to do with. What the
@@ -84,4 +84,4 @@ TEST(RateKept, TrainingOnRatesKeepsThem) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::rate_kept_test

@@ -8,7 +8,7 @@
 #include "dataset/recording/recording_defect.h"
 #include "tests/dataset/rejection.h"
 
-namespace beamgyro {
+namespace beamgyro::log_import_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -306,4 +306,4 @@ TEST(LogImport, TooFewRowsAreNoRecording) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::log_import_test

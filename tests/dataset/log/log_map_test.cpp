@@ -8,7 +8,7 @@
 
 #include "tests/dataset/rejection.h"
 
-namespace beamgyro {
+namespace beamgyro::log_map_test {
 namespace {
 
 const std::string kMap = R"(powered_s = 5
@@ -245,4 +245,4 @@ TEST(LogMap, RefusesKeysThatMeanNothing) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::log_map_test

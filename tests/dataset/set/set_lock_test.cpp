@@ -23,7 +23,7 @@
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/set/set_directory.h"
 
-namespace beamgyro {
+namespace beamgyro::set_lock_test {
 namespace {
 
 using Lock = SetDirectory;
@@ -241,4 +241,4 @@ TEST_F(Lock, AMissingDirectoryIsNamed) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::set_lock_test

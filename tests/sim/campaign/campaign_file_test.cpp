@@ -12,7 +12,7 @@
 #include "tests/sim/campaign/campaign_folder.h"
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro {
+namespace beamgyro::campaign_file_test {
 namespace {
 
 constexpr const char* kOffset =
@@ -395,4 +395,4 @@ TEST(CampaignFile, TheShippedCampaignsCanBeRead) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::campaign_file_test

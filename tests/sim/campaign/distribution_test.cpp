@@ -10,7 +10,7 @@
 
 #include "sim/campaign/parameter_units.h"
 
-namespace beamgyro {
+namespace beamgyro::distribution_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -113,4 +113,4 @@ TEST(ParameterUnits, AreWhatTheKeyEndsIn) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::distribution_test

@@ -8,7 +8,7 @@
 
 #include "tests/sim/campaign/campaign_folder.h"
 
-namespace beamgyro {
+namespace beamgyro::shard_making_test {
 namespace {
 
 std::string about_x(const std::string& rates) {
@@ -41,4 +41,4 @@ TEST(ShardMaking, RefusesAVariableThatWasNotPlanned) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::shard_making_test

@@ -15,7 +15,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro {
+namespace beamgyro::motion_axes_test {
 namespace {
 
 constexpr double kGravity = 9.80665;  // [m/s2]
@@ -203,4 +203,4 @@ TEST(RandomAxes, LeaveTheRateAboutTheInputAxisAsItIsAlone) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::motion_axes_test

@@ -14,7 +14,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro {
+namespace beamgyro::quasistatic_run_test {
 namespace {
 
 const std::vector<double>& values(const Recording& recording,
@@ -202,4 +202,4 @@ TEST(QuasistaticRun, WhiteNoiseHasTheDensityOfTheDeviceAtAnyOutputRate) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::quasistatic_run_test

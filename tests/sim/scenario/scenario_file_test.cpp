@@ -8,7 +8,7 @@
 
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro {
+namespace beamgyro::scenario_file_test {
 namespace {
 
 constexpr double kZeroCelsius = 273.15;  // [K]
@@ -145,4 +145,4 @@ TEST(ScenarioFile, TheShiftedAmbientStaysInRange) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::scenario_file_test

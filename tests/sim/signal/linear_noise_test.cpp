@@ -14,7 +14,7 @@
 
 #include "sim/scenario/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::linear_noise_test {
 namespace {
 
 using Eigen::Index;
@@ -339,4 +339,4 @@ TEST(LinearNoise, RejectsBadInput) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::linear_noise_test
