@@ -11,7 +11,7 @@ namespace beamgyro {
 
 RunSource runs_of_files(
     const std::vector<std::string>& paths,
-    std::function<Recording(const std::filesystem::path&)> read) {
+    const std::function<Recording(const std::filesystem::path&)>& read) {
   return {paths.size(), [&paths, read](const RunSource::Visitor& visit) {
             for (const std::string& path : paths)
               visit({std::filesystem::path(path).filename().string(),

@@ -14,7 +14,7 @@ namespace beamgyro {
 /// for each file when it is needed. `paths` must outlive the source.
 RunSource runs_of_files(
     const std::vector<std::string>& paths,
-    std::function<Recording(const std::filesystem::path&)> read);
+    const std::function<Recording(const std::filesystem::path&)>& read);
 
 /// Returns whether the paths are a single directory, that of a set. Throws
 /// std::invalid_argument when one of several paths is a directory.

@@ -156,7 +156,7 @@ std::vector<std::string> Directory::files_below() const {
       continue;
     }
     for (const std::string& file : below(name).files_below())
-      files.push_back(name + '/' + file);
+      files.push_back(fmt::format("{}/{}", name, file));
   }
   return files;
 }
