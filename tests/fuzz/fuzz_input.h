@@ -37,8 +37,8 @@ void accept_or_reject(Read&& read) {
 
 }  // namespace beamgyro
 
-/// One target; libFuzzer and the replay of the corpus call it.
-// NOLINTNEXTLINE(readability-identifier-naming): the name that libFuzzer asks
-// for
+/// One target; libFuzzer and the replay of the corpus call it. libFuzzer asks
+/// for the name.
+// NOLINTNEXTLINE(readability-identifier-naming)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size);
