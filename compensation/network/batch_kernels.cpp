@@ -6,8 +6,10 @@
 #include <utility>
 
 // Wider registers where the processor has them. The lanes are in the source,
-// no product is fused with a sum, so every version gives the same bits.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+// no product is fused with a sum, so every version gives the same bits. The
+// choice is made before the thread sanitizer has started, which it must not be.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_THREAD__)
 #define BEAMGYRO_WIDE __attribute__((target_clones("avx2", "default")))
 #else
 #define BEAMGYRO_WIDE

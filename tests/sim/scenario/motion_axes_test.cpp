@@ -46,7 +46,7 @@ AxisCase acceleration_axis(const std::string& name, std::size_t i) {
           1, [i](const RunSamples& s) -> const auto& {return s.acceleration[i];
 }
 };  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::motion_axes_test
 
 std::vector<AxisCase> axes() {
   return {
