@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <numbers>
 #include <span>
@@ -66,20 +67,44 @@ void write_sample(const Electronics& board, const BeamSignal& at_rate,
   samples.locked[k] = at_rate.amplitude_locked;
 }
 
-// The largest rate [rad/s] that the output filter shows of the run.
-double fastest_rate(const Motion& motion, const OutputFilter& filter,
-                    const SampleGrid& grid) {
-  if (motion.rate_is_zero()) return 0;
-  const SampleStream filtered = filter.responses(motion.rate()[2], grid.rate);
-  Samples rate;
-  double fastest = 0;
-  for (std::size_t k = 0; k < grid.count; k += kBlockSamples) {
-    rate.resize(std::min(kBlockSamples, grid.count - k));
-    filtered(rate);
-    for (const double r : rate) fastest = std::max(fastest, std::abs(r));
+// The rate [rad/s] that the output filter shows, sample by sample, and its
+// largest magnitude in the run. That takes a pass over the whole run, which is
+// kept unless the run is long.
+class FilteredRate {
+ public:
+  FilteredRate(const Motion& motion, const OutputFilter& filter,
+               const SampleGrid& grid)
+      : stream_(filter.responses(motion.rate()[2], grid.rate)) {
+    if (motion.rate_is_zero()) return;
+    constexpr std::size_t kLong = std::size_t{1} << 18;  // 2 MB
+    const bool is_kept = grid.count <= kLong;
+    SampleStream first_pass = filter.responses(motion.rate()[2], grid.rate);
+    Samples rate;
+    for (std::size_t k = 0; k < grid.count; k += rate.size()) {
+      rate.resize(is_kept ? grid.count
+                          : std::min(kBlockSamples, grid.count - k));
+      first_pass(rate);
+      for (const double r : rate) fastest_ = std::max(fastest_, std::abs(r));
+    }
+    if (is_kept) kept_ = std::move(rate);
   }
-  return fastest;
-}
+
+  double fastest() const { return fastest_; }
+
+  /// The next samples, as many as `rate` has.
+  void next(Samples& rate) {
+    if (kept_.empty()) return stream_(rate);
+    std::copy_n(kept_.begin() + static_cast<std::ptrdiff_t>(taken_),
+                rate.size(), rate.begin());
+    taken_ += rate.size();
+  }
+
+ private:
+  SampleStream stream_;
+  double fastest_ = 0;
+  Samples kept_;
+  std::size_t taken_ = 0;
+};
 
 // Response to the rate alone, from a table over all temperatures and rates of
 // the run.
@@ -89,14 +114,13 @@ class RateResponse {
                const ThermalTrajectory& temperatures, const SampleGrid& grid)
       : board_(gyro),
         filter_(gyro.device.readout.corner_frequency),
-        filtered_(filter_.responses(motion.rate()[2], grid.rate)),
-        map_(map_of(gyro, temperatures.range(kBeam),
-                    fastest_rate(motion, filter_, grid))) {}
+        filtered_(motion, filter_, grid),
+        map_(map_of(gyro, temperatures.range(kBeam), filtered_.fastest())) {}
 
   void operator()(RunSamples& samples) {
     const Samples& beam = samples.temperature[kBeam];
     rate_.resize(beam.size());
-    filtered_(rate_);
+    filtered_.next(rate_);
     std::array<StaticMap::Signals, 256> signals;
     for (std::size_t k = 0; k < rate_.size(); k += signals.size()) {
       const std::size_t count = std::min(signals.size(), rate_.size() - k);
@@ -118,7 +142,7 @@ class RateResponse {
 
   Board board_;
   OutputFilter filter_;
-  SampleStream filtered_;
+  FilteredRate filtered_;
   StaticMap map_;
   Samples rate_;
 };
