@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <iterator>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
@@ -21,23 +22,29 @@ namespace beamgyro {
 namespace {
 
 struct ImportArguments {
-  std::string log, map, output, axis;
+  std::string log, map, output, axis, join;
 };
 
 int run_import(const ImportArguments& arguments) {
   require_recording_name(arguments.output);
   const LogMap map =
       read_log_map(ConfigDocument::read(arguments.map), arguments.axis);
-  require_output(arguments.output, {arguments.log, arguments.map});
+  std::vector<std::filesystem::path> inputs = {arguments.log, arguments.map};
+  if (!arguments.join.empty()) inputs.emplace_back(arguments.join);
+  require_output(arguments.output, inputs);
   std::optional<Progress> progress("importing " + arguments.log);
+  const std::string second =
+      arguments.join.empty() ? "" : read_text_file(arguments.join);
+  std::optional<SecondLog> joined;
+  if (!arguments.join.empty()) joined = SecondLog{second, arguments.join};
   ImportedLog log =
-      import_log(read_text_file(arguments.log), arguments.log, map);
+      import_log(read_text_file(arguments.log), arguments.log, map, joined);
   Recording& recording = log.recording;
   recording.program_version = kProgramVersion;
   recording.git_revision = kGitRevision;
   if (!arguments.axis.empty())
     recording.overrides_text = fmt::format("axis={}\n", arguments.axis);
-  const std::string text = import_report(log, arguments.log);
+  const std::string text = import_report(log, arguments.log, arguments.join);
   write_recording(recording, arguments.output);
   progress.reset();
   print_result(text);
@@ -63,6 +70,9 @@ void add_import(CLI::App& program, Action& action) {
       ->required();
   command->add_option("--axis", arguments->axis,
                       "x, y or z: which gyro to take if the map has several");
+  command->add_option("--join", arguments->join,
+                      "LOG.csv: a second log, such as the chamber's, for the "
+                      "table [join] of the map");
   command->callback([arguments, &action] {
     action = [arguments] { return run_import(*arguments); };
   });

@@ -22,6 +22,18 @@ std::string rows_text(const LogCounts& counts) {
   return text;
 }
 
+// What a clock that is coarser than the rows looks like.
+std::string clock_text(const LogCounts& counts) {
+  const DroppedRows& equal =
+      counts.dropped[static_cast<std::size_t>(DropReason::kDuplicate)];
+  if (equal.rows <= counts.kept) return {};
+  return "question     is the clock of the log coarser than its rows? [time] "
+         "with rate_Hz and no column counts the rows\n";
+}
+
+// A gyro's loop and its filters are slower than this rate of samples.
+constexpr double kFastestSampling = 50e3;  // [Hz]
+
 std::string sampling_text(const Recording& recording) {
   const Sampling sampling = sampling_of(recording);
   std::string text = fmt::format(
@@ -29,6 +41,12 @@ std::string sampling_text(const Recording& recording) {
       "sampling     median step {:.6g} s ({:.6g} Hz), jitter {:.3g} s rms\n",
       recording.time.front(), recording.time.back(), sampling.median_step,
       1 / sampling.median_step, sampling.jitter);
+  if (sampling.median_step * kFastestSampling < 1) {
+    fmt::format_to(std::back_inserter(text),
+                   "question     is that right? more than {:g} Hz often means "
+                   "a wrong time.unit\n",
+                   kFastestSampling);
+  }
   if (sampling.bursts > 1) {
     fmt::format_to(std::back_inserter(text),
                    "bursts       {}, the longest {:g} s; {} gaps, the longest "
@@ -66,13 +84,22 @@ std::string status_text(const Recording& recording) {
 
 }  // namespace
 
-std::string import_report(const ImportedLog& log, const std::string& path) {
+std::string import_report(const ImportedLog& log, const std::string& path,
+                          const std::string& joined) {
   const Recording& recording = log.recording;
   std::string text = path + ": " + rows_text(log.counts);
+  text += clock_text(log.counts);
+  if (log.joined) text += joined + ": " + rows_text(*log.joined);
   text += sampling_text(recording);
   text += status_text(recording);
   text += range_text(recording, "rate", "deg/s");
-  text += range_text(recording, "temperature", "degC");
+  if (find_column(recording, "temperature") != nullptr) {
+    text += range_text(recording, "temperature", "degC");
+  } else {
+    text +=
+        "temperature  not stated by the map: allan needs none, every other "
+        "command does ([temperature])\n";
+  }
   if (find_column(recording, "true_rate") != nullptr) {
     text += range_text(recording, "true_rate", "deg/s");
   } else {

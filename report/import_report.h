@@ -9,7 +9,8 @@ namespace beamgyro {
 
 /// Returns what an import read and left out: rows and the reasons why some were
 /// dropped, sampling, ranges of the rate and the temperature. `path` is the
-/// name of the log.
-std::string import_report(const ImportedLog& log, const std::string& path);
+/// name of the log, `joined` that of the second one.
+std::string import_report(const ImportedLog& log, const std::string& path,
+                          const std::string& joined = "");
 
 }  // namespace beamgyro

@@ -44,6 +44,7 @@ struct RunFacts {
 RunSource noting(const RunSource& runs, RunFacts& facts) {
   return {runs.count, [&](const RunSource::Visitor& visit) {
             runs.each([&](const TrainingRun& run) {
+              visit(run);  // whose errors name the run
               if (!run.sha256.empty())
                 facts.files.push_back({run.name, run.sha256,
                                        measured_sha256(run.recording),
@@ -51,7 +52,6 @@ RunSource noting(const RunSource& runs, RunFacts& facts) {
               facts.coarsest_resolution =
                   std::max(facts.coarsest_resolution,
                            temperature_resolution(run.recording));
-              visit(run);
             });
           }};
 }

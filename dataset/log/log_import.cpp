@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "dataset/log/log_clock.h"
+#include "dataset/log/log_join.h"
 #include "dataset/log/log_numbers.h"
 #include "dataset/log/log_outliers.h"
 
@@ -18,20 +19,33 @@ namespace beamgyro {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kFastestDrift = 1.0;  // [K/s], over a span of at least
+constexpr double kDriftSpan = 10.0;    // [K]
+
+// The next longer unit of time, for one typed wrongly; empty if there is none.
+std::string longer_unit(const std::string& unit) {
+  if (unit == "ns") return "us";
+  if (unit == "us") return "ms";
+  return unit == "ms" ? "s" : "";
+}
 
 // Converts the rows of a log to a recording.
 class LogReader {
  public:
   LogReader(std::string_view text, const std::filesystem::path& path,
-            const LogMap& map)
-      : log_(text, path, map), map_(map), clock_(log_, map.time) {
+            const LogMap& map, JoinedRows* joined = nullptr)
+      : log_(text, path, map),
+        map_(map),
+        clock_(log_, map.time),
+        joined_(joined) {
     if (map.filter) filter_ = log_.slot(map.filter->column);
     if (map.status) status_ = log_.slot(map.status->column);
     for (const LogQuantity& quantity : map.quantities) {
-      slots_.push_back(log_.slot(quantity.column));
+      slots_.push_back(quantity.joined ? 0 : log_.slot(quantity.column));
       recording_.columns.push_back(column_of(quantity.signal.name, {}));
     }
     values_.resize(slots_.size());
+    if (map.join) joined_values_.resize(map.join->map->quantities.size());
   }
 
   ImportedLog read() {
@@ -40,6 +54,7 @@ class LogReader {
     check_plausible();
     counts_.kept = recording_.time.size();
     check_enough();
+    check_drift();
     if (map_.constant_true_rate) {
       recording_.columns.push_back(column_of(
           "true_rate",
@@ -47,7 +62,7 @@ class LogReader {
     }
     recording_.fidelity = "imported";
     recording_.scenario_text = map_.text;
-    return {std::move(recording_), counts_};
+    return {std::move(recording_), counts_, {}};
   }
 
  private:
@@ -68,10 +83,14 @@ class LogReader {
     if (filter_ && !passes_filter()) return drop(DropReason::kFiltered);
     const std::optional<LogTicks> ticks = clock_.read();
     if (!ticks) return drop(DropReason::kMissing);
+    if (!clock_.is_within(*ticks)) return drop(DropReason::kOutside);
     const double time = clock_.time(lines_.empty() ? *ticks : first_, *ticks);
     if (!follows(time)) return;
     const std::optional<std::uint8_t> status = read_status(time);
-    if (!status || !read_values((*status & kUnpowered) != 0))
+    if (!status) return drop(DropReason::kMissing);
+    if (joined_ != nullptr && !read_joined(*ticks))
+      return drop(DropReason::kNotJoined);
+    if (!read_values((*status & kUnpowered) != 0))
       return drop(DropReason::kMissing);
     if (lines_.empty()) first_ = *ticks;
     lines_.push_back(log_.text().line());
@@ -126,13 +145,23 @@ class LogReader {
     return static_cast<std::uint8_t>(bits);
   }
 
+  bool read_joined(const LogTicks& ticks) {
+    const double time = clock_.common_time(ticks);
+    if (!first_common_) first_common_ = time;
+    last_common_ = time;
+    return joined_->read(time, joined_values_);
+  }
+
   bool read_values(bool unpowered) {
+    std::size_t next_joined = 0;
     for (std::size_t i = 0; i < slots_.size(); ++i) {
       const LogQuantity& quantity = map_.quantities[i];
+      if (quantity.joined) values_[i] = joined_values_[next_joined++];
       if (unpowered && quantity.signal.role == Role::kMeasured) {
         values_[i] = kNan;
         continue;
       }
+      if (quantity.joined) continue;
       const std::optional<double> raw = log_.present(slots_[i]);
       if (!raw) return false;
       if (!quantity.fits(*raw)) {
@@ -152,8 +181,10 @@ class LogReader {
   void drop_outliers() {
     if (!map_.rules.outliers || lines_.empty()) return;
     const auto found = [&](const char* name) {
-      return find_outliers(recording_.time, column_values(recording_, name),
-                           *map_.rules.outliers);
+      const Column* column = find_column(recording_, name);
+      return column == nullptr ? std::vector<bool>(lines_.size(), false)
+                               : find_outliers(recording_.time, column->values,
+                                               *map_.rules.outliers);
     };
     const std::vector<bool> rate = found("rate");
     const std::vector<bool> temperature = found("temperature");
@@ -181,6 +212,7 @@ class LogReader {
   void check_plausible() {
     for (std::size_t i = 0; i < slots_.size(); ++i) {
       const LogQuantity& quantity = map_.quantities[i];
+      if (quantity.joined) continue;  // checked in the log it is from
       const std::vector<double>& values = recording_.columns[i].values;
       const auto wrong =
           std::find_if(values.begin(), values.end(), [&](double value) {
@@ -200,8 +232,42 @@ class LogReader {
     }
   }
 
+  // Throws for a temperature that means a wrong unit of time.
+  void check_drift() const {
+    if (map_.rules.keep_fast_temperature ||
+        find_column(recording_, "temperature") == nullptr)
+      return;
+    const ValueRange range = range_of(recording_, "temperature");
+    const double span = range.high - range.low;
+    const double duration = recording_.time.back() - recording_.time.front();
+    if (span < kDriftSpan || span <= kFastestDrift * duration) return;
+    const std::string longer = longer_unit(map_.time.unit);
+    throw std::invalid_argument(fmt::format(
+        "{}: the temperature spans {:.3g} K in {:.3g} s, is that right? "
+        "expected at most {:g} K/s: look at {}{} (or state "
+        "rules.fast_temperature = \"keep\" in the map)",
+        log_.path(), span, duration, kFastestDrift, map_.time.place,
+        longer.empty() ? ""
+                       : fmt::format(" = \"{}\", \"{}\" makes it {:.6g} s",
+                                     map_.time.unit, longer, 1e3 * duration)));
+  }
+
+  // Throws when the joined log has nothing to say about any row.
+  void check_joined() const {
+    if (joined_ == nullptr || !first_common_ || counts_.kept > 0) return;
+    throw std::invalid_argument(fmt::format(
+        "{}: has times from {:.6f} to {:.6f} s, the log joined by {} from "
+        "{:.6f} to {:.6f} s on the same clock, and no row is between two of "
+        "its rows at most {:g} s apart (join.max_gap_s); expected logs that "
+        "overlap (join.time.zero or join.time.offset_s in the map shifts the "
+        "second)",
+        log_.path(), *first_common_, last_common_, map_.join->place,
+        joined_->begin(), joined_->end(), map_.join->longest_gap));
+  }
+
   void check_enough() const {
     if (counts_.kept >= 2) return;
+    check_joined();
     std::string dropped;
     for (std::size_t i = 0; i < kDropReasons; ++i) {
       const DroppedRows& rows = counts_.dropped[i];
@@ -221,6 +287,10 @@ class LogReader {
   std::optional<std::size_t> filter_, status_;  // slots
   std::vector<std::size_t> slots_;              // of the quantities
   std::vector<double> values_;                  // of one row
+  JoinedRows* joined_;                          // none: null
+  std::vector<double> joined_values_;           // of one row
+  std::optional<double> first_common_;          // time of the first row [s]
+  double last_common_ = 0;                      // [s]
   LogTicks first_;                              // of the first row kept
   Recording recording_;
   std::vector<std::size_t> lines_;  // of the rows kept
@@ -230,8 +300,25 @@ class LogReader {
 }  // namespace
 
 ImportedLog import_log(std::string_view text, const std::filesystem::path& path,
-                       const LogMap& map) {
-  return LogReader(text, path, map).read();
+                       const LogMap& map,
+                       const std::optional<SecondLog>& joined) {
+  if (map.join && !joined) {
+    throw std::invalid_argument(fmt::format(
+        "{}: needs a second log; expected --join LOG.csv", map.join->place));
+  }
+  if (joined && !map.join) {
+    throw std::invalid_argument(
+        fmt::format("--join {}: the map has no table [join]; expected one "
+                    "that states what the second log holds",
+                    joined->path.string()));
+  }
+  if (!joined) return LogReader(text, path, map).read();
+  ImportedLog second =
+      LogReader(joined->text, joined->path, *map.join->map).read();
+  JoinedRows rows(std::move(second.recording), map.join->longest_gap);
+  ImportedLog log = LogReader(text, path, map, &rows).read();
+  log.joined = second.counts;
+  return log;
 }
 
 }  // namespace beamgyro

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "dataset/recording/units.h"
@@ -20,8 +21,12 @@ constexpr long kLongest = std::numeric_limits<std::int32_t>::max();
 LogLayout read_layout(const ConfigTable& root) {
   LogLayout layout;
   const std::string delimiter =
-      root.choice_or("delimiter", "auto", {"auto", ",", "\t", ";", "|"});
+      root.choice_or("delimiter", "auto", {"auto", ",", "\t", ";", "|", " "});
   if (delimiter != "auto") layout.delimiter = delimiter.front();
+  layout.decimal = root.choice_or("decimal", ".", {".", ","}).front();
+  if (layout.decimal == layout.delimiter)
+    root.fail("decimal",
+              "\",\" is the delimiter, too; expected another delimiter");
   layout.header = root.flag_or("header", true);
   if (layout.header) {
     layout.header_line = static_cast<std::size_t>(
@@ -52,28 +57,6 @@ LogFilter read_filter(const ConfigTable& table) {
     filter.text = table.text("value");
   }
   return filter;
-}
-
-LogTime read_time(const ConfigTable& table) {
-  LogTime time;
-  time.offset = table.optional_number("offset_s");
-  if (!table.has("column")) {
-    static_cast<void>(table.has("unit"));
-    static_cast<void>(table.has("wrap_bits"));
-    time.ticks_per_s = table.number("rate_Hz", positive());
-    return time;
-  }
-  time.column = read_log_column(table);
-  time.wrap_bits = static_cast<int>(table.integer_or("wrap_bits", 0, 8, 53));
-  const std::string unit =
-      table.choice("unit", {"s", "ms", "us", "ns", "index"});
-  if (unit == "index") {
-    time.ticks_per_s = table.number("rate_Hz", positive());
-    return time;
-  }
-  static_cast<void>(table.has("rate_Hz"));
-  time.ticks_per_s = std::round(1.0 / unit_conversion(unit, "s").scale);
-  return time;
 }
 
 LogQuantity read_rate(const ConfigTable& table) {
@@ -115,30 +98,115 @@ LogQuantity read_gyro(const ConfigTable& root, const std::string& axis) {
   return rates[static_cast<std::size_t>(found - axes.begin())];
 }
 
-std::vector<LogQuantity> read_quantities(const ConfigTable& root,
-                                         const std::string& axis) {
-  std::vector<LogQuantity> quantities;
+LogRules read_rules(const ConfigTable& table) {
+  LogRules rules;
+  const auto drops = [&](const char* key, const char* word, bool otherwise) {
+    return table.choice_or(key, otherwise ? word : "error", {word, "error"}) ==
+           word;
+  };
+  rules.drop_ragged = drops("ragged", "drop", false);
+  rules.drop_missing = drops("missing", "drop", true);
+  rules.drop_duplicates = drops("duplicates", "drop_later", true);
+  rules.drop_backward = drops("backward", "drop", false);
+  rules.keep_fast_temperature = drops("fast_temperature", "keep", false);
+  if (const auto outliers = table.optional_table("outliers")) {
+    const long window = outliers->integer_or("window", 25, 5, 999);
+    if (window % 2 == 0) {
+      outliers->fail("window", fmt::format("{} is even; expected an odd number "
+                                           "of rows",
+                                           window));
+    }
+    rules.outliers = OutlierRule{static_cast<std::size_t>(window),
+                                 outliers->number_or("k", 20, positive())};
+  }
+  return rules;
+}
+
+struct SignalTable {
+  const char* name;
+  LogQuantity (*read)(const ConfigTable& table, std::string_view signal);
+};
+
+// The tables of signals beside the gyro, in the order of the recording.
+constexpr SignalTable kSignalTables[] = {
+    {"temperature",
+     [](const ConfigTable& table, std::string_view) {
+       return read_log_temperature(table);
+     }},
+    {"drive_frequency", read_log_frequency},
+    {"drive_voltage", read_log_voltage},
+    {"quadrature", read_log_rate},
+    {"true_rate", read_log_rate},
+};
+
+// Reads what the rows of one log hold, apart from its quantities.
+LogMap read_source(const ConfigTable& table) {
+  LogMap map;
+  map.layout = read_layout(table);
+  if (table.has("missing_markers"))
+    map.missing_markers = table.texts("missing_markers");
+  if (const auto filter = table.optional_table("filter"))
+    map.filter = read_filter(*filter);
+  map.time = read_log_time(table.table("time"));
+  map.rules = read_rules(table.table_or_empty("rules"));
+  return map;
+}
+
+// The times of a log that is joined are those of its clock.
+LogJoin read_join(const ConfigTable& root) {
+  const ConfigTable table = root.table("join");
+  LogMap map = read_source(table);
+  if (!map.time.offset) map.time.offset = 0.0;
+  for (const SignalTable& signal : kSignalTables) {
+    if (!table.has(signal.name)) continue;
+    if (root.has(signal.name))
+      table.fail(signal.name, "is in the other log, too; expected it in one");
+    map.quantities.push_back(
+        signal.read(table.table(signal.name), signal.name));
+  }
+  if (map.quantities.empty())
+    root.fail("join",
+              "takes nothing from the second log; expected a table such as "
+              "[join.temperature]");
+  const double gap = table.number("max_gap_s", positive());
+  return {std::make_shared<const LogMap>(std::move(map)), gap,
+          root.place("join")};
+}
+
+bool is_rate_stated(const ConfigTable& root) {
+  return root.has("true_rate") && !root.table("true_rate").has("column");
+}
+
+void read_quantities(const ConfigTable& root, const std::string& axis,
+                     LogMap& map) {
+  std::vector<LogQuantity>& quantities = map.quantities;
   const LogQuantity rate = read_gyro(root, axis);
-  if (rate.unit == "V") {
+  if (rate.unit == "V" || rate.unit == "mV") {
     quantities.push_back({.signal = recorded_signal("output"),
                           .column = rate.column,
                           .unit = rate.unit,
-                          .unit_place = rate.unit_place});
+                          .unit_place = rate.unit_place,
+                          .scale = unit_conversion(rate.unit, "V").scale});
   }
   quantities.push_back(rate);
-  quantities.push_back(read_log_temperature(root.table("temperature")));
-  if (const auto table = root.optional_table("drive_frequency"))
-    quantities.push_back(read_log_frequency(*table, "drive_frequency"));
-  if (const auto table = root.optional_table("drive_voltage"))
-    quantities.push_back(read_log_voltage(*table, "drive_voltage"));
-  if (const auto table = root.optional_table("quadrature"))
-    quantities.push_back(read_log_rate(*table, "quadrature"));
-  return quantities;
+  for (const SignalTable& signal : kSignalTables) {
+    if (const auto table = root.optional_table(signal.name)) {
+      if (signal.name == std::string_view("true_rate") && is_rate_stated(root))
+        continue;
+      quantities.push_back(signal.read(*table, signal.name));
+    } else if (map.join) {
+      for (const LogQuantity& joined : map.join->map->quantities) {
+        if (joined.signal.name != signal.name) continue;
+        quantities.push_back(joined);
+        quantities.back().joined = true;
+      }
+    }
+  }
 }
 
-void read_true_rate(const ConfigTable& table, LogMap& map) {
+void read_stated_rate(const ConfigTable& table, LogMap& map) {
   if (table.has("column")) {
-    map.quantities.push_back(read_log_rate(table, "true_rate"));
+    static_cast<void>(table.has("constant_deg_per_s"));
   } else if (table.has("constant_deg_per_s")) {
     map.constant_true_rate = table.number("constant_deg_per_s");
   } else if (table.flag("at_rest")) {
@@ -188,29 +256,6 @@ std::vector<std::array<double, 2>> read_powered(const ConfigTable& root) {
   return powered;
 }
 
-LogRules read_rules(const ConfigTable& table) {
-  LogRules rules;
-  const auto drops = [&](const char* key, const char* word, bool otherwise) {
-    return table.choice_or(key, otherwise ? word : "error", {word, "error"}) ==
-           word;
-  };
-  rules.drop_ragged = drops("ragged", "drop", false);
-  rules.drop_missing = drops("missing", "drop", true);
-  rules.drop_duplicates = drops("duplicates", "drop_later", true);
-  rules.drop_backward = drops("backward", "drop", false);
-  if (const auto outliers = table.optional_table("outliers")) {
-    const long window = outliers->integer_or("window", 25, 5, 999);
-    if (window % 2 == 0) {
-      outliers->fail("window", fmt::format("{} is even; expected an odd number "
-                                           "of rows",
-                                           window));
-    }
-    rules.outliers = OutlierRule{static_cast<std::size_t>(window),
-                                 outliers->number_or("k", 20, positive())};
-  }
-  return rules;
-}
-
 }  // namespace
 
 std::uint8_t LogStatus::bits(double value) const {
@@ -229,21 +274,15 @@ std::uint8_t LogStatus::bits(double value) const {
 
 LogMap read_log_map(const ConfigDocument& document, const std::string& axis) {
   const ConfigTable& root = document.root();
-  LogMap map;
+  LogMap map = read_source(root);
   map.text = document.text();
-  map.layout = read_layout(root);
-  if (root.has("missing_markers"))
-    map.missing_markers = root.texts("missing_markers");
-  if (const auto table = root.optional_table("filter"))
-    map.filter = read_filter(*table);
-  map.time = read_time(root.table("time"));
-  map.quantities = read_quantities(root, axis);
+  if (root.has("join")) map.join = read_join(root);
+  read_quantities(root, axis, map);
   if (const auto table = root.optional_table("true_rate"))
-    read_true_rate(*table, map);
+    read_stated_rate(*table, map);
   if (const auto table = root.optional_table("status"))
     map.status = read_status(*table);
   map.powered = read_powered(root);
-  map.rules = read_rules(root.table_or_empty("rules"));
   document.reject_unknown_keys();
   return map;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "config/document.h"
 #include "dataset/log/log_quantity.h"
 #include "dataset/log/log_text.h"
+#include "dataset/log/log_time.h"
 
 namespace beamgyro {
 
@@ -20,16 +22,6 @@ struct LogFilter {
   LogColumn column;
   std::string text;
   std::optional<double> number;
-};
-
-/// Defines the times: time = ticks / ticks_per_s + offset. Ticks are the number
-/// in `column`, or the number of the row from 0. Without an offset the first
-/// row is at 0.
-struct LogTime {
-  std::optional<LogColumn> column;
-  double ticks_per_s = 1;        // [1/s]
-  std::optional<double> offset;  // [s]
-  int wrap_bits = 0;             // the column starts over at 2^wrap_bits; 0: no
 };
 
 /// Defines which numbers of a column set which bit of the status.
@@ -57,7 +49,18 @@ struct LogRules {
   bool drop_missing = true;
   bool drop_duplicates = true;  // a time equal to that of the last row kept
   bool drop_backward = false;   // a time before it
+  bool keep_fast_temperature = false;  // else an error, as of a wrong unit
   std::optional<OutlierRule> outliers;
+};
+
+struct LogMap;
+
+/// A second log on the same clock, whose values are interpolated at the times
+/// of the first. `map` has its quantities and no gyro.
+struct LogJoin {
+  std::shared_ptr<const LogMap> map;
+  double longest_gap = 0;  // [s], between two rows that are interpolated
+  std::string place;       // of its table in the map
 };
 
 /// States how a log becomes a recording: the map of docs/reference/log_map.md.
@@ -72,6 +75,7 @@ struct LogMap {
   std::vector<std::array<double, 2>> powered;
   std::optional<double> constant_true_rate;  // [deg/s]
   LogRules rules;
+  std::optional<LogJoin> join;
   std::string text;  // byte for byte as read
 };
 

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -89,7 +90,7 @@ std::optional<double> LogNumbers::number_in(std::size_t slot) const {
   const std::string_view cell = text_.cell(slot);
   if (is_marker(cell)) return std::nullopt;
   double value = 0.0;
-  const std::errc error = parse(cell, value);
+  const std::errc error = parse_number(cell, value);
   if (error == std::errc() && std::isfinite(value)) return value;
   if (cell.empty() || equal_but_for_case(cell, "na") ||
       (error == std::errc() && std::isnan(value)))
@@ -97,19 +98,57 @@ std::optional<double> LogNumbers::number_in(std::size_t slot) const {
   if (error == std::errc()) fail(slot, "is infinite", "a finite number");
   if (error == std::errc::result_out_of_range)
     fail(slot, "is out of range", "a finite number");
-  fail(slot, "is not a number",
-       "one such as -12.5, or the text among missing_markers in the "
-       "map");
+  fail(slot, "is not a number", advice(cell));
+}
+
+// A comma is the decimal mark if the map says so, and then a point is none: it
+// may separate thousands.
+std::errc LogNumbers::parse_number(std::string_view cell,
+                                   double& number) const {
+  if (map_.layout.decimal == '.') return parse(cell, number);
+  std::array<char, 64> point;
+  if (cell.size() > point.size() || cell.find('.') != cell.npos)
+    return std::errc::invalid_argument;
+  std::replace_copy(cell.begin(), cell.end(), point.begin(), ',', '.');
+  return parse({point.data(), cell.size()}, number);
+}
+
+std::string LogNumbers::advice(std::string_view cell) const {
+  const bool has_digit = std::any_of(
+      cell.begin(), cell.end(), [](char c) { return c >= '0' && c <= '9'; });
+  if (!has_digit)
+    return "one such as -12.5, or the text among missing_markers in the map";
+  if (looks_like_date(cell))
+    return "a number (a column of dates or times of the day is read by "
+           "time.format = \"iso\", or a pattern, in the map)";
+  const bool comma = map_.layout.decimal == ',';
+  const char other = comma ? '.' : ',';
+  if (std::count(cell.begin(), cell.end(), other) == 1 &&
+      cell.find(map_.layout.decimal) == cell.npos)
+    return fmt::format("one such as {}, or decimal = \"{}\" in the map",
+                       comma ? "-12,5" : "-12.5", other);
+  return "a number alone, such as -12.5; its unit is stated by the map";
+}
+
+bool LogNumbers::is_absent(std::size_t slot) const {
+  const std::string_view cell = text_.cell(slot);
+  const bool absent = cell.empty() || is_marker(cell) ||
+                      equal_but_for_case(cell, "na") ||
+                      equal_but_for_case(cell, "nan");
+  if (absent && !map_.rules.drop_missing) fail_missing(slot);
+  return absent;
+}
+
+void LogNumbers::fail_missing(std::size_t slot) const {
+  text_.fail(slot, fmt::format("{} is missing; expected a number "
+                               "(rules.missing = \"drop\" in the map drops "
+                               "such rows)",
+                               shown_cell(text_.cell(slot))));
 }
 
 std::optional<double> LogNumbers::present(std::size_t slot) const {
   const std::optional<double> number = number_in(slot);
-  if (!number && !map_.rules.drop_missing) {
-    text_.fail(slot, fmt::format("{} is missing; expected a number "
-                                 "(rules.missing = \"drop\" in the map drops "
-                                 "such rows)",
-                                 shown_cell(text_.cell(slot))));
-  }
+  if (!number && !map_.rules.drop_missing) fail_missing(slot);
   return number;
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "dataset/log/log_map.h"
 #include "dataset/log/log_text.h"
@@ -31,8 +32,12 @@ class LogNumbers {
   /// Returns the number in a cell, or nothing when it is missing. Throws for
   /// text and for a number that is not finite.
   std::optional<double> number_in(std::size_t slot) const;
-  /// The same. Also throws for a missing number when the rules do not drop such
+  /// Returns whether a cell that is no number has no value: it is empty, a
+  /// marker, nan or NA. Throws when it has none and the rules do not drop such
   /// rows.
+  bool is_absent(std::size_t slot) const;
+  /// The same as number_in(). Also throws for a missing number when the rules
+  /// do not drop such rows.
   std::optional<double> present(std::size_t slot) const;
   /// Returns the number in a cell if it is an integer of less than 63 bits.
   std::optional<std::int64_t> whole_in(std::size_t slot) const;
@@ -43,6 +48,9 @@ class LogNumbers {
 
  private:
   bool is_marker(std::string_view cell) const;
+  std::errc parse_number(std::string_view cell, double& number) const;
+  std::string advice(std::string_view cell) const;
+  [[noreturn]] void fail_missing(std::size_t slot) const;
 
   LogText text_;
   const LogMap& map_;

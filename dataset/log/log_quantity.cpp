@@ -56,25 +56,27 @@ double LogQuantity::value(double raw) const {
   return (raw - offset) * scale + shift;
 }
 
-LogColumn read_log_column(const ConfigTable& table) {
+LogColumn read_log_column(const ConfigTable& table, std::string_view key) {
   LogColumn column;
-  column.place = table.place("column");
-  if (table.holds_number("column")) {
+  column.place = table.place(key);
+  if (table.holds_number(key)) {
     column.number =
-        static_cast<std::size_t>(table.integer("column", 1, kMostColumns));
+        static_cast<std::size_t>(table.integer(key, 1, kMostColumns));
   } else {
-    column.name = table.text("column");
+    column.name = table.text(key);
     if (column.name.empty())
-      table.fail("column", "\"\" is no name; expected the name of a column");
+      table.fail(key, "\"\" is no name; expected the name of a column");
   }
   return column;
 }
 
 LogQuantity read_log_rate(const ConfigTable& table, std::string_view signal) {
-  LogQuantity rate = quantity(table, signal, {"deg/s", "rad/s", "V", "counts"});
+  LogQuantity rate =
+      quantity(table, signal,
+               {"deg/s", "deg/h", "rad/s", "mrad/s", "V", "mV", "counts"});
   rate.plausible = between(-kFastestRate, kFastestRate);
   rate.offset = table.number_or("offset", 0.0);
-  if (rate.unit == "V" || rate.unit == "counts") {
+  if (rate.unit == "V" || rate.unit == "mV" || rate.unit == "counts") {
     rate.scale = read_scale(table, "scale_deg_per_s");
   } else {
     static_cast<void>(table.has("scale_deg_per_s"));
@@ -84,10 +86,11 @@ LogQuantity read_log_rate(const ConfigTable& table, std::string_view signal) {
 }
 
 LogQuantity read_log_temperature(const ConfigTable& table) {
-  LogQuantity temperature =
-      quantity(table, "temperature", {"degC", "degF", "K", "counts"});
+  LogQuantity temperature = quantity(
+      table, "temperature", {"degC", "degF", "K", "V", "mV", "counts"});
   temperature.plausible = between(kColdest, kWarmest);
-  if (temperature.unit == "counts") {
+  if (temperature.unit == "V" || temperature.unit == "mV" ||
+      temperature.unit == "counts") {
     temperature.scale = read_scale(table, "scale_K");
     temperature.shift = table.number("offset_degC");
     return temperature;

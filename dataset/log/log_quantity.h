@@ -32,6 +32,7 @@ struct LogQuantity {
   double shift = 0;        // [units]
   int wrap_bits = 0;       // 0: not wrapped
   Range plausible = any();
+  bool joined = false;  // from the log that the map joins
 
   /// Returns whether `raw` is a whole number of `wrap_bits` bits; true if that
   /// is not set.
@@ -39,14 +40,16 @@ struct LogQuantity {
   double value(double raw) const;
 };
 
-/// Reads the key `column` of a table: a text is a name, an integer is a number.
-LogColumn read_log_column(const ConfigTable& table);
+/// Reads the key `column` of a table, or another one: a text is a name, an
+/// integer is a number.
+LogColumn read_log_column(const ConfigTable& table,
+                          std::string_view key = "column");
 
 /// Each function reads the keys `column` and `unit`, and the keys that the unit
-/// requires: of an angular rate in deg/s, rad/s, V or counts; of a temperature
-/// in degC, degF, K or counts; of a number in a multiple of its unit. Each
-/// throws std::invalid_argument that names the key for a unit that is missing
-/// or unknown, and as ConfigTable.
+/// requires: of an angular rate in deg/s, rad/s, V, mV or counts; of a
+/// temperature in degC, degF, K, V, mV or counts; of a number in a multiple of
+/// its unit. Each throws std::invalid_argument that names the key for a unit
+/// that is missing or unknown, and as ConfigTable.
 LogQuantity read_log_rate(const ConfigTable& table, std::string_view signal);
 LogQuantity read_log_temperature(const ConfigTable& table);
 LogQuantity read_log_frequency(const ConfigTable& table,

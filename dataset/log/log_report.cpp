@@ -24,6 +24,10 @@ const char* reason_name(DropReason reason) {
       return "outliers of the rate";
     case DropReason::kTemperatureOutlier:
       return "outliers of the temperature";
+    case DropReason::kOutside:
+      return "outside time.from and time.to";
+    case DropReason::kNotJoined:
+      return "without a value of the joined log";
   }
   return "";
 }

@@ -18,8 +18,10 @@ enum class DropReason : std::uint8_t {
   kBackward,
   kRateOutlier,
   kTemperatureOutlier,
+  kOutside,
+  kNotJoined,
 };
-constexpr std::size_t kDropReasons = 7;
+constexpr std::size_t kDropReasons = 9;
 
 /// Returns the name for reports: "missing values", ...
 const char* reason_name(DropReason reason);

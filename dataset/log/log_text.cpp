@@ -32,11 +32,27 @@ bool is_number(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-char delimiter_of(std::string_view line) {
-  for (const char c : {'\t', ';'})
-    if (line.find(c) != line.npos) return c;
-  return ',';
+char delimiter_of(std::string_view line, char decimal) {
+  for (const char c : {'\t', ';', ','})
+    if (c != decimal && line.find(c) != line.npos) return c;
+  return trimmed(line).find(' ') != line.npos || decimal == ',' ? ' ' : ',';
 }
+
+struct BinaryKind {
+  std::string_view magic;  // its first bytes
+  const char *what, *expected;
+};
+
+constexpr const char* kConverted =
+    "the CSV and the map that scripts/flight_log_to_csv.py makes of it";
+constexpr BinaryKind kBinaryKinds[] = {
+    {"ULog\x01\x12\x35", "a ULog file of PX4", kConverted},
+    {"\xA3\x95", "a DataFlash log of ArduPilot", kConverted},
+    {"\x89HDF\r\n\x1A\n", "an HDF5 file",
+     "text (a recording of this program needs no import)"},
+    {"PK\x03\x04", "a ZIP archive or a spreadsheet", "text, exported as CSV"},
+    {"\x1F\x8B", "compressed by gzip", "text, as gunzip makes it"},
+};
 
 }  // namespace
 
@@ -58,6 +74,11 @@ LogText::LogText(std::string_view text, const std::filesystem::path& path,
     throw std::invalid_argument(
         fmt::format("{}:1:1: the text is UTF-16; expected UTF-8", path_));
   if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
+  for (const BinaryKind& kind : kBinaryKinds) {
+    if (!text_.starts_with(kind.magic)) continue;
+    throw std::invalid_argument(fmt::format("{}: this is {}; expected {}",
+                                            path_, kind.what, kind.expected));
+  }
   if (const std::size_t nul = text_.find('\0'); nul != text_.npos) {
     const std::string_view before = text_.substr(0, nul);
     const std::size_t start = before.rfind('\n') + 1;  // 0 when there is none
@@ -65,6 +86,8 @@ LogText::LogText(std::string_view text, const std::filesystem::path& path,
         "{}:{}:{}: a NUL byte; expected text with one row a line", path_,
         std::count(before.begin(), before.end(), '\n') + 1, nul - start + 1));
   }
+  if (text_.find('\n') == text_.npos && text_.find('\r') != text_.npos)
+    line_end_ = '\r';
   start();
 }
 
@@ -75,7 +98,7 @@ void LogText::start() {
   const std::size_t above =
       layout_.header_line > 0 ? layout_.header_line - 1 : 0;
   while (line_ < above && !rest_.empty()) {
-    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+    const std::size_t end = std::min(rest_.find(line_end_), rest_.size());
     rest_.remove_prefix(std::min(end + 1, rest_.size()));
     ++line_;
   }
@@ -94,7 +117,8 @@ void LogText::start() {
                           std::max(line_, std::size_t{1}),
                           layout_.header ? "a line of names" : "rows"));
   }
-  if (layout_.delimiter == 0) layout_.delimiter = delimiter_of(row_);
+  if (layout_.delimiter == 0)
+    layout_.delimiter = delimiter_of(row_, layout_.decimal);
   if (layout_.header) {
     if (names_.empty()) read_names();
     skip_rows();
@@ -117,7 +141,7 @@ void LogText::read_names() {
 
 bool LogText::next_line() {
   while (!rest_.empty()) {
-    const void* found = std::memchr(rest_.data(), '\n', rest_.size());
+    const void* found = std::memchr(rest_.data(), line_end_, rest_.size());
     const std::size_t size =
         found == nullptr ? rest_.size()
                          : static_cast<std::size_t>(
@@ -147,27 +171,41 @@ const char* LogText::cell_end(const char* begin, const char* end) const {
               "a quote that is not closed on its line; expected a second '\"'");
     begin = static_cast<const char*>(closing);
   }
+  if (layout_.delimiter == ' ') return std::find_if(begin, end, is_blank);
   const void* found = std::memchr(begin, layout_.delimiter,
                                   static_cast<std::size_t>(end - begin));
   return found == nullptr ? end : static_cast<const char*>(found);
 }
 
+const char* LogText::first_cell() const {
+  if (layout_.delimiter != ' ') return row_.data();
+  return std::find_if_not(row_.data(), row_.data() + row_.size(), is_blank);
+}
+
+// The cell after one that ends at `stop`, or null.
+const char* LogText::next_cell(const char* stop, const char* end) const {
+  if (layout_.delimiter == ' ') stop = std::find_if_not(stop, end, is_blank);
+  if (stop == end) return nullptr;
+  return layout_.delimiter == ' ' ? stop : stop + 1;
+}
+
 std::vector<std::string_view> LogText::all_cells() const {
   std::vector<std::string_view> cells;
   const char* const end = row_.data() + row_.size();
-  for (const char* begin = row_.data();; ++begin) {
+  for (const char* begin = first_cell(); begin != nullptr;) {
     const char* const stop = cell_end(begin, end);
     cells.push_back(trimmed({begin, static_cast<std::size_t>(stop - begin)}));
-    begin = stop;
-    if (begin == end) return cells;
+    begin = next_cell(stop, end);
   }
+  return cells;
 }
 
 void LogText::cut() {
   const char* const end = row_.data() + row_.size();
-  const char* begin = row_.data();
   std::size_t next = 0;  // of order_
-  for (cells_ = 0;; ++begin) {
+  bool empty = false;
+  cells_ = 0;
+  for (const char* begin = first_cell(); begin != nullptr; ++cells_) {
     const char* const stop = cell_end(begin, end);
     for (; next < order_.size() && wanted_[order_[next]].index == cells_;
          ++next) {
@@ -180,13 +218,10 @@ void LogText::cut() {
         wanted.column =
             static_cast<std::size_t>(wanted.text.data() - row_.data()) + 1;
     }
-    const bool empty = stop == begin;
-    begin = stop;
-    ++cells_;
-    if (begin != end) continue;
-    if (empty && cells_ == width_ + 1) --cells_;
-    return;
+    empty = stop == begin;
+    begin = next_cell(stop, end);
   }
+  if (empty && cells_ == width_ + 1) --cells_;
 }
 
 std::size_t LogText::want(std::size_t index) {

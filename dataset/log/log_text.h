@@ -11,18 +11,20 @@ namespace beamgyro {
 
 /// Layout of the text of a log.
 struct LogLayout {
-  char delimiter = 0;  // 0: a tab if the first line holds one, else ';', ','
+  char delimiter = 0;  // ' ': blanks; 0: the first of tab, ';', ',' and
+                       // blanks that is in the first line
   bool header = true;  // the first line holds names
   std::size_t header_line = 0;  // from 1: lines above it are left out; 0: none
   std::size_t skip_rows = 0;    // below the names, or at the start
   std::vector<std::string> comment_prefixes;  // lines that start so are none
+  char decimal = '.';  // mark of numbers; ',' is then no delimiter
 };
 
 /// Reads delimiter-separated text row by row and extracts the cells of selected
-/// columns. Accepts a UTF-8 byte-order mark, CRLF, blanks around a cell, cells
-/// in double quotes, empty lines, and one delimiter too many at the end of a
-/// row. Errors are std::invalid_argument "file:line:column: ...". The text must
-/// outlive it.
+/// columns. Accepts a UTF-8 byte-order mark, lines that end in LF, CRLF or CR
+/// alone, blanks around a cell, cells in double quotes, empty lines, and one
+/// delimiter too many at the end of a row. Errors are std::invalid_argument
+/// "file:line:column: ...". The text must outlive it.
 class LogText {
  public:
   /// Reads up to the first row. Throws for an empty or binary text, and for a
@@ -60,6 +62,8 @@ class LogText {
   void start();
   void read_names();
   void cut();
+  const char* first_cell() const;
+  const char* next_cell(const char* stop, const char* end) const;
   const char* cell_end(const char* begin, const char* end) const;
   std::vector<std::string_view> all_cells() const;
   [[noreturn]] void fail_at(std::size_t column,
@@ -68,6 +72,7 @@ class LogText {
   std::string_view text_, rest_, row_;
   std::string path_;
   LogLayout layout_;
+  char line_end_ = '\n';
   std::vector<std::string> names_;
   std::size_t width_ = 0, line_ = 0, cells_ = 0;
   std::vector<Wanted> wanted_;

@@ -27,10 +27,10 @@ namespace {
 /// Returns the memory that the values of a file may take [bytes]. Deflate
 /// compresses signals with noise to a tenth, and constants to a thousandth.
 std::uint64_t room_for_values(hid_t file) {
-  constexpr std::uint64_t kMostInflated = 400, kAlways = 256u << 20;
+  constexpr std::uint64_t kInflated = 400, kAlways = 256u << 20;
   hsize_t size = 0;
   check_hdf5(H5Fget_filesize(file, &size), "size the file");
-  return kAlways + kMostInflated * size;
+  return kAlways + kInflated * size;
 }
 
 std::size_t number_of_samples(hid_t file,

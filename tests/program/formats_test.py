@@ -49,11 +49,21 @@ def scenario_keys():
             yield key
 
 
+# What the second log of a map has, too.
+JOINABLE = {"delimiter", "decimal", "header", "header_line", "skip_rows",
+            "comment_prefixes", "missing_markers", "filter", "time", "rules",
+            "temperature", "drive_frequency", "drive_voltage", "quadrature",
+            "true_rate"}
+STATED_RATE = {"true_rate.at_rest", "true_rate.constant_deg_per_s"}
+
+
 def map_keys():
     """Keys of the page, with those of AXIS spelt out for each axis."""
     for key in rows(page("log_map")):
         yield from (key.replace("AXIS", axis) for axis in
                     ("xyz" if "AXIS" in key else "-"))
+        if key.split(".")[0] in JOINABLE and key not in STATED_RATE:
+            yield f"join.{key}"
 
 
 def documented_keys(name):
@@ -172,16 +182,26 @@ class Formats(ProgramTest):
                 "gyro.column": '"w"', "gyro.unit": '"deg/s"',
                 "temperature.column": '"T"', "temperature.unit": '"degC"'}
         self.write("log.csv", "t,w,T\n0,1,25\n1,1,25\n")
-        for key in map_keys():
+        second = {"join.max_gap_s": "1", "join.time.column": '"t"',
+                  "join.time.unit": '"s"', "join.drive_voltage.column": '"w"',
+                  "join.drive_voltage.unit": '"V"'}
+        for whole_key in map_keys():
+            key = whole_key.removeprefix("join.")
+            joined = "join." if key != whole_key else ""
+            if whole_key == "join.max_gap_s":
+                key, joined = whole_key, ""
             table = key.rpartition(".")[0]
             text = dict(base)
             if table.startswith("gyro."):  # an axis in place of the one gyro
                 text = {k: v for k, v in text.items() if "gyro" not in k}
-            if table and "." not in table.removeprefix("gyro.") \
+            if table and table != "join" and "." not in table.removeprefix("gyro.") \
                     and table != "rules":
                 text.setdefault(f"{table}.column", '"w"')
             if key == "time.rate_Hz":
                 text["time.unit"] = '"index"'
+            if key in ("time.format", "time.date_column"):
+                del text["time.unit"]
+                text["time.format"] = '"iso"'
             if key in ("true_rate.at_rest", "true_rate.constant_deg_per_s"):
                 del text["true_rate.column"]
             if table in ("gyro", "gyro.x", "gyro.y", "gyro.z", "temperature",
@@ -191,11 +211,19 @@ class Formats(ProgramTest):
                     text[f"{table}.scale_K"] = "1"
                 text.setdefault(f"{table}.unit", '"deg/s"')
             text[key] = "{}"
+            if joined:
+                text = {**{k: v for k, v in base.items() if "temp" not in k},
+                        **second, **{joined + k: v for k, v in text.items()
+                                     if not k.startswith("gyro")}}
+            elif table == "join":
+                text = {**text, **{k: v for k, v in second.items()
+                                   if k not in text}}
             self.write("m.toml", "".join(f"{name} = {value}\n"
                                          for name, value in text.items()))
-            with self.subTest(key):
+            with self.subTest(whole_key):
                 message = self.rejected("import", "log.csv", "--map", "m.toml",
-                                        "-o", "r.h5", says=f": {key}: ")
+                                        "--join", "log.csv", "-o", "r.h5",
+                                        says=f": {whole_key}: ")
                 self.assertNotIn("unknown key", message)
                 self.assertNotIn("not used together", message)
 
@@ -203,7 +231,9 @@ class Formats(ProgramTest):
         example = dict(shipped("maps/example.toml"))
         table, = example.values()
         documented = {key.split(".")[0] for key in map_keys()}
-        self.assertEqual(set(table), documented)
+        self.assertEqual(set(table) | {"join"}, documented)
+        two, = dict(shipped("maps/two_logs.toml")).values()
+        self.assertIn("join", two)
 
     def test_the_recording_holds_what_the_page_lists(self):
         self.run_scenario("run", text=ramp())

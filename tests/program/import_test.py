@@ -2,6 +2,7 @@
 """`beamgyro import`: logs as gyros and flight controllers write them."""
 
 import math
+import resource
 import unittest
 
 import h5py
@@ -220,6 +221,132 @@ at_rest = true
                                       25 - 300 * 0.0078125)
         np.testing.assert_allclose(values["drive_voltage"], 0.812)
 
+    def test_the_map_of_two_logs_reads_the_logs_it_describes(self):
+        lines = (MAPS / "two_logs.toml").read_text().splitlines()
+        pairs = [line.removeprefix("#").split() for line in lines[1:4]]
+        self.write("gyro.csv", "\n".join(pair[0] for pair in pairs) + "\n")
+        self.write("chamber.csv", "\n".join(" ".join(pair[1:])
+                                            for pair in pairs) + "\n")
+        said = self.ok("import", "gyro.csv", "--join", "chamber.csv", "--map",
+                       MAPS / "two_logs.toml", "-o", "r.h5")
+        self.assertIn("chamber.csv: 2 rows read, 2 kept", said)
+        values, _, _ = self.read("r.h5")
+        np.testing.assert_allclose(values["rate"], [1, 1.04], rtol=1e-12)
+        np.testing.assert_allclose(values["temperature"], [24.5, 24.5005],
+                                   rtol=1e-12)
+
+    def test_gyro_and_chamber_in_two_logs(self):
+        """200 Hz against 1 Hz with a gap of 9 s: linear in between, rows in the
+        gap and beyond the ends of the chamber's log dropped."""
+        k = np.arange(12000)
+        self.write("gyro.csv", table("t,w", zip(5 * k, k % 7)))
+        seconds = [s for s in range(2, 51) if not 20 < s < 29]
+        self.write("chamber.csv", table(
+            "at,T", ((f"2026-03-05 14:00:{s:02d}", 20 + 0.25 * (s % 3))
+                     for s in seconds)))
+        self.write("map.toml", BENCH.split("[temperature]")[0] + """\
+[true_rate]
+at_rest = true
+[join]
+max_gap_s = 5
+[join.time]
+column = "at"
+format = "iso"
+zero = "2026-03-05 14:00:00"
+[join.temperature]
+column = "T"
+unit = "degC"
+""")
+        said = self.ok("import", "gyro.csv", "--join", "chamber.csv", "--map",
+                       "map.toml", "-o", "r.h5")
+        values, _, _ = self.read("r.h5")
+        time = 0.005 * k
+        kept = (time >= 2) & (time <= 50) & ~((time > 20) & (time < 29))
+        self.assertIn(f"12000 rows read, {kept.sum()} kept", said)
+        self.assertIn(f"{(~kept).sum()} without a value of the joined log",
+                      said)
+        np.testing.assert_allclose(values["time"], time[kept] - 2, atol=1e-12)
+        np.testing.assert_allclose(
+            values["temperature"],
+            np.interp(time[kept], seconds,
+                      [20 + 0.25 * (s % 3) for s in seconds]), atol=1e-12)
+        train = ["import", "gyro.csv", "--map", "map.toml", "-o", "q.h5"]
+        self.rejected(*train, says=["map.toml:11:1: join", "--join LOG.csv"])
+        text = (self.dir / "map.toml").read_text()
+        self.write("map.toml", text.replace("14:00:00", "15:00:00"))
+        self.rejected(*train, "--join", "chamber.csv",
+                      says=["from 0.000000 to 59.995000 s", "join.time.zero",
+                            "from -3598.000000 to -3550.000000 s"])
+        self.write("map.toml", BENCH)
+        self.rejected(*train, "--join", "chamber.csv",
+                      says=["--join chamber.csv", "no table [join]"])
+
+    def test_a_log_without_temperature_is_for_allan(self):
+        self.write("map.toml", BENCH.replace(
+            '[temperature]\ncolumn = "T"\nunit = "degC"\n', ""))
+        self.write("log.csv", table("t,w", (row[:2] for row in bench_rows())))
+        said = self.ok("import", "log.csv", "--map", "map.toml", "-o", "r.h5")
+        self.assertIn("temperature  not stated by the map: allan needs none",
+                      said)
+        self.assertIn("oadev deg/s", self.ok("allan", "r.h5"))
+        self.ok("info", "r.h5")
+        self.write("cubic.toml", CUBIC)
+        says = 'r.h5: input "temperature" needs the measured column'
+        self.rejected("train", "r.h5", "--model", "cubic.toml", "-o", "c.json",
+                      says=says)
+        self.bench()
+        self.ok("train", "run.h5", "--model", "cubic.toml", "-o", "c.json")
+        for arguments in [("validate", "c.json", "r.h5"),
+                          ("compensate", "c.json", "r.h5", "-o", "out.h5")]:
+            with self.subTest(arguments):
+                self.rejected(*arguments, says=says)
+
+    def test_questions_about_the_clock(self):
+        self.write("map.toml", BENCH.replace('"ms"', '"us"'))
+        self.write("log.csv", table("t,w,T", ((k, 0.1, 25) for k in range(9))))
+        self.assertIn("question     is that right? more than 50000 Hz",
+                      self.ok("import", "log.csv", "--map", "map.toml", "-o",
+                              "r.h5"))
+        self.write("log.csv", table("t,w,T", ((k // 5, 0.1, 25)
+                                              for k in range(50))))
+        self.assertIn("is the clock of the log coarser than its rows?",
+                      self.ok("import", "log.csv", "--map", "map.toml", "-o",
+                              "r.h5"))
+
+    def test_a_million_rows_with_dates_and_decimal_commas(self):
+        """Within one second of processor time."""
+        count = 10**6
+        block = "".join(f"05.03.2026 {{}}:{k // 10:02d},{k % 10};0,01;-0,0"
+                        f"{k % 9};{25 + k / 1e3:.3f}\n".replace(
+                            f"{25 + k / 1e3:.3f}",
+                            f"{25 + k / 1e3:.3f}".replace(".", ","))
+                        for k in range(600))
+        self.write("log.csv", "when;x;w;T\n" + "".join(
+            block.replace("{}", f"{n // 60 % 24:02d}:{n % 60:02d}").replace(
+                "05.03.", f"{5 + n // 1440:02d}.03.")
+            for n in range(-(-count // 600))))
+        self.write("map.toml", """\
+decimal = ","
+[time]
+column = "when"
+format = "%d.%m.%Y %H:%M:%S"
+[gyro]
+column = "w"
+unit = "deg/s"
+[temperature]
+column = "T"
+unit = "degC"
+""")
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        text = self.ok("import", "log.csv", "--map", "map.toml", "-o", "r.h5")
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        rows = 600 * -(-count // 600)
+        self.assertIn(f"{rows} rows read, {rows} kept", text)
+        values, _, _ = self.read("r.h5")
+        np.testing.assert_array_equal(values["time"], np.arange(rows) / 10)
+        self.assertLessEqual(after.ru_utime + after.ru_stime -
+                             before.ru_utime - before.ru_stime, 1.0)
+
     def test_a_million_rows(self):
         count = 10**6
         block = "".join(f"{{}}{k:03d},0,0.01,-0.0{k % 9},0.5,0,0,{25 + k / 1e3}"
@@ -245,7 +372,11 @@ class BadLogs(ProgramTest):
         for log, says in [("", "log.csv:1:1"), ("\n\n", "log.csv:2:1"),
                           ("t,w,T\n", "0 of 0 rows"),
                           ("t,w,T\n0,1,25\n", "1 of 1 rows"),
-                          (b"ULog\x01\x12\x35\0\0", "log.csv:1:8: a NUL"),
+                          (b"ULog\x01\x12\x35\0\0", "a ULog file of PX4"),
+                          (b"t,w,T\n0,\0", "log.csv:2:3: a NUL"),
+                          (b"\x89HDF\r\n\x1a\n\0", "needs no import"),
+                          (b"PK\x03\x04\0", "exported as CSV"),
+                          (b"\x1f\x8b\x08\0", "gzip"),
                           ("t,w,T\n0,1,25\n".encode("utf-16"), "UTF-16"),
                           ("0,1,25\n1,1,25\n", "header = false")]:
             with self.subTest(log):
@@ -264,6 +395,39 @@ class BadLogs(ProgramTest):
                            ("10,\"1,25\n", "log.csv:3:4: a quote")]:
             with self.subTest(rows):
                 self.refused(head + rows, says)
+
+    def test_the_advice_fits_the_cell(self):
+        head = "t,w,T\n0,1,25\n"
+        for row, says in [
+                ("2026-03-05T14:00:00,1,25\n", "time.format = \"iso\""),
+                ("14:00:00,1,25\n", "time.format = \"iso\""),
+                ("05.03.2026,1,25\n", "time.format = \"iso\""),
+                ('10,"0,5",25\n', 'decimal = "," in the map'),
+                ("10,1,25degC\n", "its unit is stated by the map"),
+                ("10,--,25\n", "missing_markers")]:
+            with self.subTest(row):
+                message = self.refused(head + row, [says, "log.csv:3:"])
+                self.assertEqual("missing_markers" in message,
+                                 says == "missing_markers")
+        comma = BENCH.replace("[time]", 'decimal = ","\ndelimiter = ";"\n'
+                                        "[time]")
+        self.refused("t;w;T\n0;1.5;25\n", 'decimal = "." in the map', comma)
+        self.refused("t;w;T\n0;1.000,5;25\n", "is not a number", comma)
+
+    def test_a_temperature_that_changes_too_fast_is_asked_about(self):
+        """91 K in 4 s: ns typed for us."""
+        log = table("t,w,T", ((10**6 * k, 0.1, -40 + 91 * k / 4000)
+                              for k in range(4001)))
+        said = self.refused(
+            log, ["log.csv: the temperature spans 91 K in 4 s, is that right?",
+                  'map.toml:3:8: time.unit = "ns", "us" makes it 4000 s'],
+            BENCH.replace('"ms"', '"ns"'))
+        self.assertIn('rules.fast_temperature = "keep"', said)
+        self.write("map.toml", BENCH.replace('"ms"', '"ns"') +
+                   '[rules]\nfast_temperature = "keep"\n')
+        self.ok("import", "log.csv", "--map", "map.toml", "-o", "r.h5")
+        self.write("map.toml", BENCH.replace('"ms"', '"us"'))
+        self.ok("import", "log.csv", "--map", "map.toml", "-o", "r.h5")
 
     def test_maps_that_do_not_fit(self):
         log = "t,w,T\n0,1,25\n10,1,25\n"

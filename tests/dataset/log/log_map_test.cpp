@@ -239,7 +239,13 @@ TEST(LogMap, RefusesKeysThatMeanNothing) {
   refused(kMap + "[rules.outliers]\nwindow = 10\n", "10 is even");
   refused(kMap + "[status]\ncolumn = 4\n", "status.valid: missing");
   refused("comment_prefixes = [\"\"]\n" + kMap, "comment_prefixes: \"\"");
-  refused("delimiter = \" \"\n" + kMap, "delimiter: \" \" is not known");
+  refused("delimiter = \"#\"\n" + kMap, "delimiter: \"#\" is not known");
+  refused(changed("\"ms\"", "\"ms\"\nformat = \"iso\""),
+          "time.unit: not used together");
+  refused(changed("unit = \"ms\"", "format = \"%d.%m\""),
+          "time.format: \"%d.%m\": is no form of a date or time");
+  refused(changed("\"ms\"", "\"ms\"\ndate_column = \"d\""),
+          "time.date_column: not used together");
   refused("header = false\nheader_line = 2\n" + kMap,
           "header_line: not used together");
 }

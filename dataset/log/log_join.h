@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "dataset/recording/recording.h"
+
+namespace beamgyro {
+
+/// Interpolates the columns of a recording between its samples k and k + 1:
+///   x = x_k + (x_{k+1} - x_k) (t - t_k) / (t_{k+1} - t_k).
+class JoinedRows {
+ public:
+  /// `longest_gap` [s] is the longest t_{k+1} - t_k that is interpolated.
+  JoinedRows(Recording recording, double longest_gap);
+
+  /// Sets one value for each column at `time` [s], which must not be before
+  /// that of the call before. Returns false, and sets nothing, before the first
+  /// and after the last sample and within a longer gap.
+  bool read(double time, std::vector<double>& values);
+
+  double begin() const { return recording_.time.front(); }  // [s]
+  double end() const { return recording_.time.back(); }     // [s]
+
+ private:
+  Recording recording_;
+  double longest_gap_;
+  std::size_t next_ = 0;  // the first sample that is not before the time
+};
+
+}  // namespace beamgyro

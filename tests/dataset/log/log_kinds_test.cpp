@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+// Logs as instruments other than ours write them.
+#include <gtest/gtest.h>
+
+#include "dataset/log/log_import.h"
+#include "dataset/recording/recording_defect.h"
+#include "tests/dataset/rejection.h"
+
+namespace beamgyro {
+namespace {
+
+using Numbers = std::vector<double>;
+
+const std::string kRest = R"(
+[gyro]
+column = "w"
+unit = "deg/s"
+[temperature]
+column = "T"
+unit = "degC"
+)";
+
+ImportedLog log_by(const std::string& map, const std::string& text,
+                   const std::string& second = "") {
+  std::optional<SecondLog> joined;
+  if (!second.empty()) joined = SecondLog{second, "second.csv"};
+  ImportedLog log = import_log(
+      text, "log.csv", read_log_map(ConfigDocument::parse(map, "map.toml"), ""),
+      joined);
+  EXPECT_EQ(recording_defect(log.recording), "");
+  return log;
+}
+
+std::string rejection_by(const std::string& map, const std::string& text,
+                         const std::string& second = "") {
+  return rejection([&] { log_by(map, text, second); });
+}
+
+void expect_says(const std::string& message, const std::string& part) {
+  EXPECT_NE(message.find(part), std::string::npos) << message;
+}
+
+std::string time_map(const std::string& keys) {
+  return "[time]\ncolumn = \"t\"\n" + keys + kRest;
+}
+
+const std::string kIso = "format = \"iso\"\n";
+
+TEST(LogKinds, DatesBecomeSeconds) {
+  const ImportedLog log = log_by(
+      time_map(kIso),
+      "t,w,T\n2026-02-28T23:59:59.75Z,1,25\n2026-03-01T00:00:00.5Z,2,25\n,3,25"
+      "\n2026-03-01T01:00:02+01:00,4,25\n");
+  EXPECT_EQ(log.recording.time, (Numbers{0, 0.75, 2.25}));
+  EXPECT_EQ(
+      log.counts.dropped[static_cast<std::size_t>(DropReason::kMissing)].rows,
+      1u);
+}
+
+TEST(LogKinds, ATimeOfTheDayGoesOnAfterMidnight) {
+  const std::string map = time_map("format = \"%H:%M:%S\"\n");
+  EXPECT_EQ(
+      log_by(map, "t,w,T\n23:59:59,1,25\n00:00:01.5,2,25\n").recording.time,
+      (Numbers{0, 2.5}));
+  expect_says(rejection_by(map, "t,w,T\n10:00:02,1,25\n10:00:01,2,25\n"),
+              "goes back by 1 s");
+}
+
+TEST(LogKinds, DateAndTimeInTwoColumns) {
+  const ImportedLog log =
+      log_by("delimiter = \" \"\n" +
+                 time_map("date_column = \"d\"\nformat = \"iso\"\n"),
+             "  d t    w T\n2026-03-05 14:00:00  1 25\n2026-03-05\t14:00:01 "
+             "2   25 \n");
+  EXPECT_EQ(log.recording.time, (Numbers{0, 1}));
+  EXPECT_EQ(column_values(log.recording, "rate"), (Numbers{1, 2}));
+}
+
+TEST(LogKinds, ACellThatIsNoDateIsNamedWithItsForm) {
+  EXPECT_EQ(rejection_by(time_map("format = \"%d.%m.%Y %H:%M\"\n"),
+                         "t,w,T\n2026-03-05,1,25\n"),
+            "log.csv:2:1: '2026-03-05' is no time of the form \"%d.%m.%Y "
+            "%H:%M\" or does not exist; expected one such as 05.03.2026 14:07 "
+            "(or another map.toml:3:10: time.format)");
+}
+
+TEST(LogKinds, DecimalCommas) {
+  const std::string map = "decimal = \",\"\n" + time_map("unit = \"s\"\n");
+  const ImportedLog log = log_by(map, "t;w;T\n0,5;-1,25;25\n1;1,5e-1;+25,5\n");
+  EXPECT_EQ(log.recording.time, (Numbers{0, 0.5}));
+  EXPECT_EQ(column_values(log.recording, "rate"), (Numbers{-1.25, 0.15}));
+  EXPECT_EQ(column_values(log.recording, "temperature"), (Numbers{25, 25.5}));
+  expect_says(rejection_by(map, "t;w;T\n0;1.5;25\n"),
+              "log.csv:2:3: '1.5' is not a number; expected one such as -12,5, "
+              "or decimal = \".\" in the map");
+  expect_says(rejection_by("delimiter = \",\"\n" + map, "t,w,T\n0,1,25\n"),
+              "decimal: \",\" is the delimiter");
+  // Without a semicolon the blanks are the delimiter, never the comma.
+  EXPECT_EQ(log_by(map, "t w T\n0,5 1 25\n1 2 25\n").recording.time,
+            (Numbers{0, 0.5}));
+}
+
+TEST(LogKinds, LinesThatEndInACarriageReturn) {
+  const std::string map = time_map("unit = \"s\"\n");
+  EXPECT_EQ(log_by(map, "t,w,T\r0,1,25\r1,2,25\r").recording.time,
+            (Numbers{0, 1}));
+  expect_says(rejection_by(map, "t,w,T\r0,1,25\r1,x,25\r"), "log.csv:3:3: ");
+}
+
+TEST(LogKinds, MillivoltsOfGyroAndThermometer) {
+  const ImportedLog log = log_by(R"([time]
+rate_Hz = 10
+[gyro]
+column = "w"
+unit = "mV"
+offset = 2500
+scale_deg_per_s = 0.08
+[temperature]
+column = "T"
+unit = "mV"
+scale_K = 0.1
+offset_degC = -50
+)",
+                                 "w,T\n2500,750\n2512.5,760\n");
+  EXPECT_EQ(column_values(log.recording, "output"), (Numbers{2.5, 2.5125}));
+  EXPECT_EQ(column_values(log.recording, "rate"), (Numbers{0, 1}));
+  EXPECT_EQ(column_values(log.recording, "temperature"), (Numbers{25, 26}));
+}
+
+TEST(LogKinds, APartOfTheLog) {
+  const std::string rows = "t,w,T\n10,1,25\n11,2,25\n12.5,3,25\n13,4,25\n";
+  const ImportedLog log =
+      log_by(time_map("unit = \"s\"\nfrom = 11\nto = 13\n"), rows);
+  EXPECT_EQ(log.recording.time, (Numbers{0, 1.5}));
+  EXPECT_EQ(
+      log.counts.dropped[static_cast<std::size_t>(DropReason::kOutside)].rows,
+      2u);
+  EXPECT_EQ(log_by(time_map("unit = \"s\"\nfrom = 11.0\nzero = 10.5\n"), rows)
+                .recording.time,
+            (Numbers{0.5, 2, 2.5}));
+  EXPECT_EQ(log_by("[time]\nrate_Hz = 2\nfrom = 1\nto = 3" + kRest, rows)
+                .recording.time,
+            (Numbers{0, 0.5}));
+  const std::string dates =
+      "t,w,T\n2026-03-05T10:00,1,25\n2026-03-05T11:00,2,25\n"
+      "2026-03-05T12:00,3,25\n";
+  EXPECT_EQ(log_by(time_map(kIso + "from = \"2026-03-05 10:30\"\n"), dates)
+                .recording.time,
+            (Numbers{0, 3600}));
+  expect_says(rejection_by(time_map(kIso + "from = \"5.3.2026\"\n"), dates),
+              "time.from: \"5.3.2026\" is no time of the form \"iso\"");
+  expect_says(
+      rejection_by(time_map("unit = \"s\"\nfrom = 13\nto = 11\n"), rows),
+      "time.to: is not after from");
+  expect_says(rejection_by(time_map("unit = \"s\"\nfrom = 20\n"), rows),
+              "4 outside time.from and time.to, the first in line 2");
+}
+
+const std::string kJoin = R"([time]
+column = "t"
+unit = "ms"
+[gyro]
+column = "w"
+unit = "deg/s"
+[join]
+max_gap_s = 2
+[join.time]
+column = "s"
+unit = "s"
+[join.temperature]
+column = "T"
+unit = "degC"
+[join.true_rate]
+column = "r"
+unit = "deg/s"
+)";
+
+TEST(LogKinds, TheSlowLogIsInterpolated) {
+  const ImportedLog log =
+      log_by(kJoin, "t,w\n900,1\n1000,2\n1500,3\n2000,4\n2500,5\n6000,6\n",
+             "s,T,r\n1,20,0\n2,22,-4\n5,28,0\n6,29,1\n");
+  EXPECT_EQ(log.recording.time, (Numbers{0, 0.5, 1, 5}));
+  EXPECT_EQ(column_values(log.recording, "rate"), (Numbers{2, 3, 4, 6}));
+  EXPECT_EQ(column_values(log.recording, "temperature"),
+            (Numbers{20, 21, 22, 29}));
+  EXPECT_EQ(column_values(log.recording, "true_rate"), (Numbers{0, -2, -4, 1}));
+  EXPECT_EQ(
+      log.counts.dropped[static_cast<std::size_t>(DropReason::kNotJoined)].rows,
+      2u);
+  ASSERT_TRUE(log.joined);
+  EXPECT_EQ(log.joined->kept, 4u);
+}
+
+TEST(LogKinds, JoinsThatCannotBe) {
+  const std::string rows = "t,w\n900,1\n1000,2\n",
+                    slow = "s,T,r\n0,20,0\n1,21,0\n";
+  expect_says(rejection_by(kJoin, rows), "map.toml:7:1: join: needs a second");
+  expect_says(rejection_by(kJoin.substr(0, kJoin.find("[join]")), rows, slow),
+              "--join second.csv: the map has no table [join]");
+  expect_says(rejection_by(kJoin, rows, "s,T,r\n50,20,0\n51,21,0\n"),
+              "from 0.900000 to 1.000000 s");
+  expect_says(rejection_by(kJoin, rows, "s,T,r\n0,20,0\n1,x,0\n"),
+              "second.csv:3:3: 'x' is not a number");
+  expect_says(rejection_by(kJoin, rows, "s,T,r\n0,20,0\n1,300,0\n"),
+              "second.csv:3:3: '300' is 300 degC");
+  expect_says(rejection_by(kJoin + "[temperature]\ncolumn = \"w\"\nunit = "
+                                   "\"degC\"\n",
+                           rows, slow),
+              "join.temperature: is in the other log, too");
+  expect_says(
+      rejection_by(kJoin.substr(0, kJoin.find("[join.temp")), rows, slow),
+      "join: takes nothing from the second log");
+}
+
+}  // namespace
+}  // namespace beamgyro
