@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: MIT
+"""scripts/flight_log_to_csv.py, on ULog and DataFlash logs that this test
+writes as their public specifications state."""
+
+import struct
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+from program import ROOT, ProgramTest
+
+SCRIPT = ROOT / "scripts/flight_log_to_csv.py"
+GYRO = ("uint64_t timestamp;uint64_t timestamp_sample;uint32_t device_id;"
+        "float x;float y;float z;float temperature;uint32_t error_count;"
+        "uint8_t[3] clip_counter;uint8_t[5] _padding0;")
+SAMPLE = struct.Struct("<QQIffffI3B")  # the last padding is not written
+
+
+def ulog_message(kind, body):
+    return struct.pack("<Hc", len(body), kind) + body
+
+
+def ulog(samples, instances=(0, 1)):
+    """A log with flags, formats, an unrelated nested topic, a sync message, a
+    dropout, and the samples of every instance in turn."""
+    data = b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 112233)
+    data += ulog_message(b"B", bytes(40))
+    data += ulog_message(b"F", b"inner:float[2] p;")
+    data += ulog_message(b"F", b"other:uint64_t timestamp;inner[2] parts;")
+    data += ulog_message(b"F", b"sensor_gyro:" + GYRO.encode())
+    data += ulog_message(b"I", b"\x0bchar[3] sys" + b"PX4")
+    data += ulog_message(b"A", struct.pack("<BH", 0, 9) + b"other")
+    for instance in instances:
+        data += ulog_message(b"A", struct.pack("<BH", instance, 20 + instance)
+                             + b"sensor_gyro")
+    data += ulog_message(b"S", bytes.fromhex("2f73132025") + b"\xbb" * 3)
+    for k in range(samples):
+        data += ulog_message(b"D", struct.pack("<HQ4f", 9, k, 1, 2, 3, 4))
+        for instance in instances:
+            at = 5000000 + 4000 * k
+            data += ulog_message(b"D", struct.pack("<H", 20 + instance) +
+                                 SAMPLE.pack(at + 150, at, 2490378,
+                                             0.01 * k + instance, -0.02, 0.03,
+                                             40 + 0.01 * k, 0, 0, 0, 0))
+    data += ulog_message(b"O", struct.pack("<H", 12))
+    return data
+
+
+def fmt(number, name, letters, labels):
+    size = 3 + struct.calcsize("<" + letters.replace("c", "h").replace(
+        "Z", "64s").replace("M", "B").replace("n", "4s").replace("N", "16s"))
+    return b"\xa3\x95\x80" + struct.pack(
+        "<BB4s16s64s", number, size, name.encode(), letters.encode(),
+        labels.encode())
+
+
+IMU = "QBffffffIIfBBHH"
+IMU_LABELS = "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,EG,EA,T,GH,AH,GHz,AHz"
+
+
+def dataflash(samples, instances=(0, 1)):
+    data = fmt(128, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns")
+    data += fmt(41, "IMU", IMU, IMU_LABELS)
+    data += fmt(42, "BARO", "Qfc", "TimeUS,Alt,Temp")
+    for k in range(samples):
+        at = 1000000 + 2500 * k
+        data += b"\xa3\x95\x2a" + struct.pack("<Qfh", at, 12.5, 3125)
+        for i in instances:
+            data += b"\xa3\x95\x29" + struct.pack(
+                "<" + IMU, at, i, 0.1, 0.2 + i, -0.01 * k, 0, 0, -9.81, 0, 0,
+                31.5 + i, 1, 1, 1000, 1000)
+    return data
+
+
+class FlightLogs(ProgramTest):
+    def converted(self, log, *arguments):
+        answer = subprocess.run([sys.executable, SCRIPT, log, *arguments],
+                                cwd=self.dir, capture_output=True, text=True,
+                                check=False, timeout=60)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        return answer.stdout
+
+    def refused(self, data, says, *arguments):
+        self.write("bad.bin", data)
+        answer = subprocess.run([sys.executable, SCRIPT, "bad.bin", *arguments],
+                                cwd=self.dir, capture_output=True, text=True,
+                                check=False, timeout=60)
+        self.assertEqual(answer.returncode, 1)
+        self.assertEqual(len(answer.stderr.splitlines()), 1, answer.stderr)
+        self.assertIn(says, answer.stderr)
+        self.assertFalse((self.dir / "bad.csv").exists())
+
+    def imported(self, name, axis):
+        self.ok("import", f"{name}.csv", "--map", f"{name}.toml", "--axis",
+                axis, "-o", f"{name}.h5")
+        with h5py.File(self.dir / f"{name}.h5") as file:
+            return {key: file[key][()] for key in file if key != "meta"}
+
+    def test_a_ulog_file(self):
+        self.write("flight.ulg", ulog(50))
+        self.assertIn("50 rows of sensor_gyro, instance 0; 1 dropouts",
+                      self.converted("flight.ulg"))
+        k = np.arange(50)
+        values = self.imported("flight", "x")
+        np.testing.assert_array_equal(values["time"], k * 4000 / 1e6)
+        # The log holds floats, which nine digits tell apart.
+        np.testing.assert_allclose(
+            values["rate"], np.degrees((0.01 * k).astype("f4").astype("f8")),
+            rtol=5e-9)
+        np.testing.assert_array_equal(values["temperature"].astype("f4"),
+                                      (40 + 0.01 * k).astype("f4"))
+        self.converted("flight.ulg", "--instance", "1", "-o", "second")
+        np.testing.assert_allclose(self.imported("second", "x")["rate"],
+                                   np.degrees(1 + 0.01 * k), rtol=1e-6)
+
+    def test_a_dataflash_log(self):
+        self.write("flight.bin", dataflash(50))
+        self.assertIn("50 rows of IMU, instance 0\n",
+                      self.converted("flight.bin"))
+        values = self.imported("flight", "z")
+        np.testing.assert_array_equal(values["time"],
+                                      np.arange(50) * 2500 / 1e6)
+        np.testing.assert_allclose(values["rate"],
+                                   np.degrees(-0.01 * np.arange(50)), rtol=1e-6)
+        np.testing.assert_array_equal(values["temperature"], 31.5)
+        self.converted("flight.bin", "--instance", "1", "-o", "second")
+        values = self.imported("second", "y")
+        np.testing.assert_array_equal(values["temperature"], 32.5)
+        np.testing.assert_allclose(values["rate"], np.degrees(1.2), rtol=1e-6)
+
+    def test_an_old_dataflash_log_with_a_message_for_each_imu(self):
+        data = fmt(128, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns")
+        for number, name in [(41, "IMU"), (43, "IMU2")]:
+            data += fmt(number, name, "Qffff", "TimeUS,GyrX,GyrY,GyrZ,T")
+        for k in range(10):
+            data += b"\xa3\x95\x29" + struct.pack("<Qffff", 1000 * k, 1, 2, 3,
+                                                  25)
+            data += b"\xa3\x95\x2b" + struct.pack("<Qffff", 1000 * k, 4, 5, 6,
+                                                  26)
+        self.write("old.bin", data)
+        self.converted("old.bin", "--instance", "1")
+        np.testing.assert_array_equal(
+            self.imported("old", "x")["temperature"], 26)
+
+    def test_damaged_bytes_are_skipped_and_a_cut_log_ends_early(self):
+        head = dataflash(0)
+        rows = dataflash(50)[len(head):]
+        size = len(rows) // 50
+        self.write("cut.bin", head + rows[:10 * size] + b"\x00\xa3\xa3\x95\x07"
+                   + rows[10 * size:-1])
+        said = self.converted("cut.bin")
+        self.assertIn("50 rows of IMU, instance 0; 5 bytes that are no message",
+                      said)
+        self.converted("cut.bin", "--instance", "1", "-o", "second")
+        self.assertEqual(len(self.imported("second", "x")["time"]), 49)
+        self.write("cut.ulg", ulog(50)[:-9])
+        self.assertIn("50 rows", self.converted("cut.ulg"))
+
+    def test_a_gyro_without_a_temperature(self):
+        data = fmt(128, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns")
+        data += fmt(44, "GYR", "QBfff", "TimeUS,I,GyrX,GyrY,GyrZ")
+        for k in range(10):
+            data += b"\xa3\x95\x2c" + struct.pack("<QBfff", 1000 * k, 0, 1, 2,
+                                                  3)
+        self.write("fast.bin", data)
+        self.converted("fast.bin", "--topic", "GYR")
+        self.assertEqual(set(self.imported("fast", "x")),
+                         {"time", "rate", "status"})
+
+    def test_logs_that_cannot_be_converted(self):
+        self.refused(b"t,w,T\n0,1,2\n", "neither a ULog file nor a DataFlash")
+        self.refused(ulog(5), "it has other 0, sensor_gyro 0, sensor_gyro 1",
+                     "--instance", "2")
+        self.refused(ulog(0), "no samples of sensor_gyro")
+        self.refused(dataflash(5), "it has BARO, IMU", "--topic", "GYR")
+        self.refused(dataflash(5), "no column for x, y, z", "--topic", "BARO")
+        flags = bytearray(ulog(5))
+        flags[16 + 3 + 8] = 2
+        self.refused(bytes(flags), "flags of a newer version")
+
+    def test_import_names_the_script_for_a_binary_log(self):
+        self.write("map.toml", '[time]\nrate_Hz = 1\n[gyro]\ncolumn = 1\n'
+                               'unit = "deg/s"\n')
+        for data, kind in [(ulog(5), "a ULog file of PX4"),
+                           (dataflash(5), "a DataFlash log of ArduPilot")]:
+            self.write("flight.bin", data)
+            self.rejected("import", "flight.bin", "--map", "map.toml", "-o",
+                          "r.h5", says=[kind, "scripts/flight_log_to_csv.py"])
