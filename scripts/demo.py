@@ -159,7 +159,14 @@ class Demo:
         self.all(answer, [("cubic", "soak_sweep_test"),
                           ("bp", "soak_sweep_test"),
                           ("recommended", "rest"),
-                          ("output_and_temperature", "rest")])
+                          ("output_and_temperature", "rest"),
+                          *(("recommended", name + suffix)
+                            for name in ["ramp_0.75", "warm_up_25"]
+                            for suffix in ["", "_noise"]),
+                          *((method, name)
+                            for name in ["rate_table_22", "small_rates_12"]
+                            for method in ["recommended",
+                                           "output_and_temperature"])])
 
     def allan(self):
         def deviation(item):
@@ -280,7 +287,8 @@ def main():
     note("done")
     print(table(rows))
     print("\nPictures (and the same as .svg):")
-    for picture in sorted(demo.out.glob("*.png")):
+    for picture in [*sorted(demo.out.glob("*.png")),
+                    *sorted(demo.out.glob("more/*.png"))]:
         print(f"  {picture}")
 
 

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Draws the figures of the demo, PNG and SVG: figures.py DIR
 
-DIR is what scripts/demo.py filled; its runs/ and allan/ are read.
+DIR is what scripts/demo.py filled; its runs/ and allan/ are read. The paper's
+figures and the Allan plot go to DIR, what goes beyond the paper to DIR/more.
 """
 
 import json
@@ -14,10 +15,13 @@ import matplotlib
 import numpy as np
 
 matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402  (the backend comes first)
+from matplotlib import pyplot, ticker  # noqa: E402  (the backend comes first)
 
-BLUE, ORANGE, GREEN, GREY = "#2868a8", "#cc6a1a", "#3f8f4f", "#8c8c8c"
+# Different in grey, too: dark, middle, light.
+BLUE, ORANGE, GREY = "#174a7c", "#d9822b", "#a8a8a8"
+PALE, WORDS = "#c3d3e4", "#505050"
 BLOCK = 60.0  # [s], what scores are averaged over, too
+FLOOR = np.sqrt(2 * np.log(2) / np.pi)  # of the Allan deviation, over B
 
 STYLE = {
     "figure.figsize": (7.2, 4.6),
@@ -50,6 +54,13 @@ def block_means(file, *names):
             [whole] for name in names]
 
 
+def titled(axes, title, about):
+    """A title, and in smaller letters what was run and whether with noise."""
+    axes.set_title(title, pad=19)
+    axes.text(0, 1.02, about, transform=axes.transAxes, fontsize=8.5,
+              color=WORDS, va="bottom")
+
+
 def save(figure, folder, name):
     for suffix, metadata in [("png", {"Software": None}), ("svg", {"Date": None})]:
         figure.savefig(folder / f"{name}.{suffix}", metadata=metadata)
@@ -69,8 +80,9 @@ def rest_output(folder):
     figure, axes = pyplot.subplots()
     axes.plot(soaks, 1e3 * (np.array(output) - 2.5), ".-", ms=9, lw=1,
               color=BLUE)
-    axes.set(title="Virtual gyro at rest: output at the end of each soak",
-             xlabel="chamber temperature [°C]",
+    titled(axes, "Virtual gyro at rest: output at the end of each soak",
+           "soaks from −40 to 50 °C, run with noise; means of 60 s")
+    axes.set(xlabel="chamber temperature [°C]",
              ylabel="output − 2.5 V [mV]", xlim=(-42, 52))
     second = axes.secondary_yaxis("right", functions=(lambda v: v / 12.5,
                                                       lambda r: r * 12.5))
@@ -87,31 +99,44 @@ def warm_up(folder):
         bias = file["true_bias"][()]
         warmth = {node: file[f"true_{node}_temperature"][()]
                   for node in ["board", "sensor", "beam"]}
-        mean_time, mean_rate = block_means(file, "time", "rate")
+        mean_time, mean_rate, mean_bias = block_means(file, "time", "rate",
+                                                      "true_bias")
     figure, (top, bottom) = pyplot.subplots(
-        2, 1, sharex=True, figsize=(7.2, 5.8), height_ratios=[3, 2])
+        2, 1, sharex=True, figsize=(7.2, 6.0), height_ratios=[3, 2])
     offset = mean_rate[-10:].mean() - bias[-600:].mean()
     final = bias[-1]
     outside = np.abs(bias - final) > 0.05 * abs(bias[0] - final)
     settled = minutes[np.flatnonzero(outside)[-1]]
-    top.plot(minutes, rate, ",", color="#b9cde3", rasterized=True)
-    top.plot([], [], ".", color="#b9cde3", label="10 Hz samples")
+    top.plot(minutes, rate, ",", color=PALE, rasterized=True)
+    top.plot([], [], ".", color=PALE, label="10 Hz samples")
     top.plot(mean_time / 60, mean_rate, ".", color=BLUE, label="60 s means")
-    top.plot(minutes, bias + offset, color=ORANGE,
-             label="true drift, shifted by the turn-on offset")
+    top.plot(minutes, bias + offset, color=ORANGE, lw=2,
+             label="true drift, plus the mean distance of the last 10 min")
     low, high = np.percentile(rate, [0.02, 99.98])
-    top.set(title="Virtual gyro after power-on, still air at 25 °C",
-            ylabel="rate shown at rest [°/s]",
-            ylim=(low, high + 0.35 * (high - low)))
-    top.legend(loc="upper right")
+    titled(top, "Virtual gyro after power-on, still air at 25 °C",
+           "run with noise; the true drift is what the same gyro shows "
+           "without noise")
+    top.set(ylabel="rate shown at rest [°/s]",
+            ylim=(low - 0.2 * (high - low), high + 0.45 * (high - low)))
+    left = mean_rate - mean_bias - offset
+    far = np.argmax(np.abs(left))
+    top.annotate("the means leave the true drift by the slow noise of this "
+                 f"run:\nflicker and random walk, up to "
+                 f"{abs(left[far]):.3f} °/s here; no temperature tells it",
+                 (mean_time[far] / 60, mean_rate[far]), xytext=(13, low
+                 - 0.12 * (high - low)), fontsize=8.5, color=WORDS,
+                 arrowprops={"arrowstyle": "-", "color": WORDS, "lw": 0.8,
+                             "relpos": (0, 0.9)})
+    top.legend(loc="upper right", fontsize=9)
     bottom.axvline(settled, color=GREY, lw=1, ls="--")
     bottom.annotate(f"drift within 5 % of its change after {settled:.1f} min",
                     (settled, 0.04), xytext=(6, 0), textcoords="offset points",
-                    fontsize=9, xycoords=("data", "axes fraction"), color="#555555")
-    for (node, values), colour in zip(warmth.items(), [GREEN, GREY, ORANGE]):
-        bottom.plot(minutes, values, color=colour)
+                    fontsize=9, xycoords=("data", "axes fraction"), color=WORDS)
+    for (node, values), (colour, style) in zip(
+            warmth.items(), [(BLUE, "-"), (GREY, "--"), (ORANGE, "-.")]):
+        bottom.plot(minutes, values, style, color=colour)
         bottom.annotate(node, (minutes[-1], values[-1]), xytext=(4, 0),
-                        textcoords="offset points", va="center", color=colour)
+                        textcoords="offset points", va="center", color=WORDS)
     bottom.set(xlabel="time since power-on [min]", ylabel="temperature [°C]",
                xlim=(0, 60))
     save(figure, folder, "figure_3_warm_up")
@@ -126,70 +151,182 @@ def held_out_sweep(folder, method):
     return temperature[order], rate[order], compensated[order]
 
 
-def fit(folder, method, short, title, name, beside=None):
+def fit(folder, method, title, name):
     """The paper's figures 6 and 7: a fit to the drift and what it leaves."""
     temperature, rate, residual = held_out_sweep(folder, method)
-    figure, (top, bottom) = pyplot.subplots(
-        2, 1, sharex=True, figsize=(7.2, 5.8), height_ratios=[3, 2])
-    top.plot(temperature, rate, ".", ms=4, color=GREY,
+    figure, ((top, corner), (bottom, side)) = pyplot.subplots(
+        2, 2, figsize=(7.2, 5.8), height_ratios=[3, 2], width_ratios=[4, 1],
+        gridspec_kw={"wspace": 0.06})
+    corner.axis("off")
+    top.plot(temperature, rate, ".", ms=5, color=GREY,
              label="held-out soaks, 60 s means")
-    top.plot(temperature, rate - residual, color=ORANGE, label=title)
-    top.set(title=f"Virtual gyro at rest: {title}", ylabel="rate at rest [°/s]")
+    top.plot(temperature, rate - residual, color=BLUE, lw=1.3, label=title)
+    titled(top, f"Virtual gyro at rest: {title}",
+           "held-out day of soaks, run without noise; the fit knows other days, "
+           "with noise")
+    top.set(ylabel="rate at rest [°/s]", xticklabels=[])
     top.legend(loc="best")
-    bottom.axhline(0, color="#555555", lw=0.8)
-    if beside:
-        other, _, left = held_out_sweep(folder, beside)
-        bottom.plot(other, left, color="#c4c4c4",
-                    label=f"cubic: variance {left.var():.2g} (°/s)²")
-    bottom.plot(temperature, residual, color=BLUE,
-                label=f"{short}: variance {residual.var():.2g} (°/s)²")
+    mean, sigma = residual.mean(), residual.std()
+    bottom.axhspan(mean - sigma, mean + sigma, color=PALE, lw=0,
+                   label=f"mean {mean:+.3f} ± 1σ {sigma:.3f} °/s")
+    bottom.axhline(mean, color=WORDS, lw=0.8, ls="--")
+    bottom.plot(temperature, residual, ".", ms=3, color=BLUE)
     low, high = bottom.get_ylim()
     bottom.set(xlabel="temperature the sensor shows [°C]",
-               ylabel="residual [°/s]",
-               ylim=(low, high + (0.32 if beside else 0.2) * (high - low)))
-    bottom.legend(loc="upper right", ncols=2)
+               ylabel="residual [°/s]", xlim=top.get_xlim(),
+               ylim=(low, high + 0.22 * (high - low)))
+    bottom.legend(loc="upper right", fontsize=9)
+    side.axhspan(mean - sigma, mean + sigma, color=PALE, lw=0)
+    side.hist(residual, 30, orientation="horizontal", color=BLUE)
+    side.set(ylim=bottom.get_ylim(), yticklabels=[], xlabel="blocks")
     save(figure, folder, name)
+
+
+def deviations(folder, name):
+    found = json.loads((folder / f"allan/{name}.json").read_text())
+    points = [point for point in found["oadev"] if point["clusters"] >= 4]
+    tau, deviation, clusters = (
+        np.array([point[key] for point in points])
+        for key in ["tau_s", "deviation", "clusters"])
+    noise = found["noise"] or {}
+    return tau, deviation, deviation / np.sqrt(2 * (clusters - 1)), {
+        symbol: noise[symbol]["per_second"]["value"] for symbol in "NBK"
+        if noise.get(symbol) and noise[symbol].get("per_second")}
+
+
+def mark_terms(axes, tau, terms):
+    """The asymptotes of the noise terms that the curve shows."""
+    about = {  # law, words, where the words stand
+        "N": (lambda t, n: n / np.sqrt(t), "slope −½: N = {:.3g} °/√s", 8.0),
+        "B": (lambda t, b: FLOOR * b + 0 * t,
+              "slope 0: B = {:.3g} °/s", 0.1),
+        "K": (lambda t, k: k * np.sqrt(t / 3),
+              "slope +½: K = {:.3g} °/s/√s", 300.0)}
+    low, high = axes.get_ylim()
+    for symbol, (law, words, place) in about.items():
+        if symbol not in terms:
+            axes.text(0.02, 0.04, f"{symbol}: not seen within six hours",
+                      transform=axes.transAxes, fontsize=8.5, color=WORDS)
+            continue
+        line = law(tau, terms[symbol])
+        seen = (line > low) & (line < high)
+        axes.plot(tau[seen], line[seen], ":", color=WORDS, lw=1.4)
+        at = min(max(place, tau[seen][0]), tau[seen][-1])
+        # Under a line that falls or is level, and beyond its slope.
+        axes.annotate(words.format(terms[symbol]), (at, law(at, terms[symbol])),
+                      xytext=(8 if symbol == "N" else 2, -3),
+                      textcoords="offset points", fontsize=8.5, color=WORDS,
+                      va="bottom" if symbol == "N" else "top")
 
 
 def allan(folder):
     """Overlapping Allan deviation at rest, before and after compensation."""
-    figure, axes = pyplot.subplots()
-    for name, label, colour, style in [
-            # Drawn wide: the recommended network's curve lies on it.
-            ("raw", "no compensation", GREY, "-"),
-            ("recommended", "recommended network", BLUE, "-"),
-            ("output_and_temperature",
-             "network on (output, T): cancels the rate, noise included",
-             ORANGE, "--")]:
-        points = json.loads((folder / f"allan/{name}.json").read_text())["oadev"]
-        points = [point for point in points if point["clusters"] >= 4]
-        tau = np.array([point["tau_s"] for point in points])
-        deviation = np.array([point["deviation"] for point in points])
-        wide = {"lw": 5, "alpha": 0.6} if name == "raw" else {}
-        axes.plot(tau, deviation, style, color=colour, label=label, **wide)
-        if name == "recommended":
-            spread = 1 / np.sqrt(2 * np.array(
-                [point["clusters"] - 1 for point in points]))
-            axes.fill_between(tau, deviation * (1 - spread),
-                              deviation * (1 + spread), color=colour,
-                              alpha=0.15, lw=0)
-    axes.set(xscale="log", yscale="log",
-             title="Virtual gyro at rest, 25 °C, six hours after the warm-up",
-             xlabel="averaging time τ [s]",
+    figure, (axes, cheat) = pyplot.subplots(
+        2, 1, sharex=True, figsize=(7.2, 6.4), height_ratios=[3, 1])
+    tau, raw, _, terms = deviations(folder, "raw")
+    _, kept, spread, _ = deviations(folder, "recommended")
+    axes.plot(tau, raw, color=GREY, lw=5, label="no compensation")
+    axes.plot(tau, kept, "o-", ms=3.5, lw=1.2, color=BLUE,
+              label="recommended network, ±1σ")
+    axes.fill_between(tau, kept - spread, kept + spread, color=PALE, lw=0)
+    axes.set(xscale="log", yscale="log", ylim=(raw.min() / 4, raw.max() * 1.4),
              ylabel="overlapping Allan deviation [°/s]")
-    axes.grid(which="minor", color="#f1f1f1")
-    axes.legend(loc="best")
+    mark_terms(axes, tau, terms)
+    axes.yaxis.set_major_locator(ticker.LogLocator(subs=[1, 2, 5]))
+    axes.yaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+    axes.yaxis.set_minor_formatter(ticker.NullFormatter())
+    titled(axes, "Virtual gyro at rest, 25 °C, six hours after the warm-up",
+           "run with noise; dotted: the terms that are fitted to the curve "
+           "without compensation")
+    axes.legend(loc="upper right")
+    tau, cancelled, _, _ = deviations(folder, "output_and_temperature")
+    cheat.plot(tau, cancelled, "--", color=ORANGE, lw=2,
+               label="network on (output, T): it cancels the rate, and the "
+                     "noise with it")
+    cheat.set(xlabel="averaging time τ [s]", yscale="log", ylabel="[°/s]",
+              ylim=(cancelled.min() / 3, cancelled.max() * 30))
+    cheat.legend(loc="upper right", fontsize=9)
+    for each in (axes, cheat):
+        each.grid(which="minor", color="#f1f1f1")
     save(figure, folder, "allan_deviation")
 
 
+def recommended(folder):
+    """What the recommended network makes of motions that it never saw."""
+    figure, panels = pyplot.subplots(2, 2, figsize=(9.2, 5.6), sharex="col",
+                                     gridspec_kw={"wspace": 0.24})
+    for (top, bottom), name, title, scale, unit in zip(
+            panels.T, ["ramp_0.75", "warm_up_25"],
+            ["chamber ramp, 0.75 K/min", "warm-up in still air at 25 °C"],
+            [3600, 60], ["h", "min"]):
+        residuals = []
+        for suffix, style in [("_noise", {"marker": ".", "ls": "", "ms": 4,
+                                          "color": GREY,
+                                          "label": "with noise, 60 s means"}),
+                              ("", {"color": BLUE, "label": "without noise"})]:
+            path = folder / f"runs/{name}{suffix}_recommended.h5"
+            with h5py.File(path) as file:
+                time, rate, after = block_means(file, "time", "rate",
+                                                "compensated_rate")
+            top.plot(time / scale, rate, **style)
+            bottom.plot(time / scale, after, **style)
+            residuals.append(after)
+        mean, sigma = residuals[1].mean(), residuals[1].std()
+        bottom.axhline(0, color=WORDS, lw=0.8)
+        titled(top, f"Before: {title}", "held-out run at rest")
+        titled(bottom, "After the recommended network",
+               f"1σ {sigma:.4f} °/s without noise (band), "
+               f"{residuals[0].std():.4f} °/s with it")
+        reach = 1.5 * max(np.abs(part).max() for part in residuals)
+        bottom.set(xlabel=f"time [{unit}]", ylim=(-reach, reach))
+        bottom.axhspan(mean - sigma, mean + sigma, color=PALE, lw=0)
+    panels[0, 0].set_ylabel("rate at rest [°/s]")
+    panels[1, 0].set_ylabel("compensated [°/s]")
+    panels[1, 0].legend(loc="upper left", fontsize=8.5, ncols=2)
+    figure.subplots_adjust(hspace=0.42)
+    save(figure, folder / "more", "recommended_network")
+
+
+def trap(folder):
+    """A network that sees the output cancels the rate."""
+    figure, panels = pyplot.subplots(1, 2, figsize=(9.2, 4.4),
+                                     gridspec_kw={"wspace": 0.24})
+    for axes, run, limit, title in zip(
+            panels, ["rate_table_22", "small_rates_12"], [128, 2.2],
+            ["rate table at 22 °C", "small rates at 12 °C"]):
+        axes.plot([-limit, limit], [-limit, limit], color=GREY, lw=1,
+                  label="a rate that is kept")
+        for method, style in [
+                ("recommended", {"marker": "o", "ms": 5, "color": BLUE,
+                                 "label": "recommended network"}),
+                ("output_and_temperature",
+                 {"marker": "x", "ms": 5, "color": ORANGE, "mew": 1.6,
+                  "label": "network on (output, T)"})]:
+            with h5py.File(folder / f"runs/{run}_{method}.h5") as file:
+                truth, answer = file["true_rate"][()], file["compensated_rate"][()]
+                ready = (file["status"][()] & 3) == 0
+            rates = np.unique(truth[ready].round(6))
+            means = [answer[ready & (truth.round(6) == rate)].mean()
+                     for rate in rates]
+            axes.plot(rates, means, ls="", **style)
+        titled(axes, title, "held-out run without noise, mean of each rate")
+        axes.set(xlabel="true rate [°/s]", xlim=(-limit, limit),
+                 ylim=(-limit, limit))
+    panels[0].set_ylabel("compensated rate [°/s]")
+    panels[1].legend(loc="upper left", fontsize=9)
+    save(figure, folder / "more", "trap")
+
+
 def main(folder):
+    (folder / "more").mkdir(exist_ok=True)
     with pyplot.rc_context(STYLE):
         rest_output(folder)
         warm_up(folder)
-        fit(folder, "cubic", "cubic", "least-squares cubic", "figure_6_cubic")
-        fit(folder, "bp", "BP network", "BP network on the temperature",
-            "figure_7_bp", beside="cubic")
+        fit(folder, "cubic", "least-squares cubic", "figure_6_cubic")
+        fit(folder, "bp", "BP network on the temperature", "figure_7_bp")
         allan(folder)
+        recommended(folder)
+        trap(folder)
 
 
 if __name__ == "__main__":

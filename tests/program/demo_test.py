@@ -41,9 +41,12 @@ class Demo(unittest.TestCase):
         for suffix, start in [("png", b"\x89PNG"), ("svg", b"<?xml")]:
             pictures = list(self.out.glob(f"*.{suffix}"))
             self.assertEqual(len(pictures), 5)
-            for picture in pictures:
+            more = list(self.out.glob(f"more/*.{suffix}"))
+            self.assertEqual({picture.stem for picture in more},
+                             {"recommended_network", "trap"})
+            for picture in pictures + more:
                 self.assertTrue(picture.read_bytes().startswith(start))
-        for picture in self.out.glob("*.png"):
+        for picture in self.out.rglob("*.png"):
             self.assertIn(str(picture), self.answer.stdout)
         self.assertEqual(set(self.quiet), METHODS)
         self.assertEqual(set(self.noisy), METHODS)
