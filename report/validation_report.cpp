@@ -142,34 +142,60 @@ std::string padded(const std::string& text, std::size_t width) {
   return text + std::string(width - std::min(width, display_width(text)), ' ');
 }
 
-std::string run_row(const ResidualScores& residual,
-                    const std::string& figures) {
-  return fmt::format("{} {:>9.4f} {:>9.4g} {:>9.4g}{}\n",
-                     residual_cells(residual), residual.mean, residual.rms,
-                     residual.largest, figures);
+/// The name of a run in its column, or on a line of its own above the figures
+/// when it is longer than that.
+std::string row_name(const std::string& name, std::size_t width) {
+  return display_width(name) <= width ? padded(name, width)
+                                      : name + '\n' + std::string(width, ' ');
 }
 
-std::string run_figures(const Score& score) {
-  const auto nonlinearity = score.linearity
-                                ? std::optional(score.linearity->nonlinearity)
-                                : std::nullopt;
-  return fmt::format(" {:>9} {:>11} {:>11} {:>11} {:>9}",
-                     cell(score.percent_of_cubic, "{:.4g}"),
+std::string residual_row(const ResidualScores& residual,
+                         const std::optional<double>& percent) {
+  return fmt::format("{} {:>9.4f} {:>9.4g} {:>9.4g} {:>9}\n",
+                     residual_cells(residual), residual.mean, residual.rms,
+                     residual.largest, cell(percent, "{:.4g}"));
+}
+
+std::optional<double> nonlinearity(const std::optional<Linearity>& found) {
+  return found ? std::optional(found->nonlinearity) : std::nullopt;
+}
+
+std::string rate_row(const Score& score) {
+  return fmt::format(" {:>11} {:>11} {:>11} {:>9}\n",
                      cell(retained(score.small_rates), "{:.6f}"),
                      cell(retained(score.every_rate), "{:.6f}"),
                      cell(slope(score.every_rate), "{:.6f}"),
-                     cell(nonlinearity, "{:.4g}"));
+                     cell(nonlinearity(score.linearity), "{:.4g}"));
 }
 
-std::string raw_figures(const Score& score) {
+std::string raw_rate_row(const Score& score) {
   const auto raw_slope = score.every_rate
                              ? std::optional(score.every_rate->raw_slope)
                              : std::nullopt;
-  const auto nonlinearity =
-      score.raw_linearity ? std::optional(score.raw_linearity->nonlinearity)
-                          : std::nullopt;
-  return fmt::format(" {:>9} {:>11} {:>11} {:>11} {:>9}", "-", "-", "-",
-                     cell(raw_slope, "{:.6f}"), cell(nonlinearity, "{:.4g}"));
+  return fmt::format(" {:>11} {:>11} {:>11} {:>9}\n", "-", "-",
+                     cell(raw_slope, "{:.6f}"),
+                     cell(nonlinearity(score.raw_linearity), "{:.4g}"));
+}
+
+bool has_rates(const Score& score) {
+  return score.small_rates || score.every_rate || score.linearity;
+}
+
+/// What the figures of recorded rates are, where there are any.
+std::string rate_table(const Validation& validation, std::size_t width) {
+  const Score& overall = validation.overall;
+  if (!has_rates(overall) && std::ranges::none_of(validation.runs, has_rates))
+    return {};
+  std::string text = fmt::format(
+      "scale factor of recorded rates\n{} {:>11} {:>11} {:>11} {:>9}\n",
+      padded("run", width), "kept 2", "kept all", "slope", "NL ppm");
+  for (const Score& score : validation.runs)
+    if (has_rates(score)) text += row_name(score.run, width) + rate_row(score);
+  return text + padded("overall", width) + rate_row(overall) +
+         padded("raw", width) + raw_rate_row(overall) +
+         "kept 2, kept all: scale factor retained within 2 deg/s and at every "
+         "rate; slope: of the answer\nover the true rate; NL ppm: largest "
+         "departure from a straight line, of the largest rate\n";
 }
 
 std::string replay_note(const ReplayedScaleFactor& replayed) {
@@ -196,8 +222,9 @@ std::string notes(const Validation& validation) {
     text += replay_note(*overall.replayed);
   }
   if (overall.baseline) {
-    text += fmt::format("% cubic: percent of the variance of the cubic {}\n",
-                        kClaimed);
+    text += fmt::format(
+        "% cubic: percent of the variance that the cubic leaves, as {}\n",
+        kClaimed);
   }
   if (overall.white_noise) {
     text += fmt::format("white noise at 1 s: {:.3g} of the raw rate's\n",
@@ -250,25 +277,29 @@ nlohmann::ordered_json to_json(const Validation& validation) {
 }
 
 std::string table(const Validation& validation) {
+  constexpr std::size_t kWidest = 27;  // leaves 100 columns for the table
   std::size_t width = display_width("overall");
   for (const Score& score : validation.runs) {
-    width = std::max(width, display_width(score.run));
+    const std::size_t needed = display_width(score.run);
+    if (needed <= kWidest) width = std::max(width, needed);
   }
   std::string text = fmt::format(
       "{}: residual in 60 s blocks [deg/s]\n{} {:>11} {:>9} {:>9} {:>9} {:>9} "
-      "{:>9} {:>9} {:>11} {:>11} {:>11} {:>9}\n",
+      "{:>9} {:>9}\n",
       validation.method, padded("run", width), "variance", "1-sigma", "p-p",
-      "mean", "rms", "max", "% cubic", "SF kept 2", "SF kept all", "slope",
-      "NL ppm");
+      "mean", "rms", "max", "% cubic");
   for (const Score& score : validation.runs) {
-    text +=
-        padded(score.run, width) + run_row(score.residual, run_figures(score));
+    text += row_name(score.run, width) +
+            residual_row(score.residual, score.percent_of_cubic);
   }
   const Score& overall = validation.overall;
   text += padded("overall", width) +
-          run_row(overall.residual, run_figures(overall));
-  text += padded("raw", width) + run_row(overall.raw, raw_figures(overall));
-  return text + notes(validation);
+          residual_row(overall.residual, overall.percent_of_cubic);
+  text += padded("raw", width) + residual_row(overall.raw, {});
+  text +=
+      "variance [(deg/s)^2] and 1-sigma are about the mean, rms and max about "
+      "zero; p-p: peak to peak;\nraw: without a compensator\n";
+  return text + rate_table(validation, width) + notes(validation);
 }
 
 std::string table(const std::vector<Validation>& methods) {

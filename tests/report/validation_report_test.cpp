@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 
 #include "tests/compensation/recorded_run.h"
@@ -75,6 +76,19 @@ TEST(ValidationReport, TableHasARowForEachRunAndSaysWhatFailed) {
   EXPECT_EQ(lines_with(text, "\nraw"), 1U);
   EXPECT_EQ(lines_with(text, "FAILED finite: 1320 of 1320"), 1U);
   EXPECT_EQ(lines_with(text, "verdict: not finite"), 1U);
+}
+
+TEST(ValidationReport, TablesFitAHundredColumnsWhateverARunIsCalled) {
+  const std::string name = std::string(90, 'x') + ".h5";
+  const std::string text = table(validated("half", 0.5, name));
+  const std::string tables = text.substr(0, text.find("scale factor replayed"));
+  std::istringstream lines(tables.substr(0, tables.find("passed ")));
+  std::size_t rows = 0;
+  for (std::string line; std::getline(lines, line); ++rows)
+    EXPECT_LE(line.size(), 100U) << line;
+  EXPECT_GE(rows, 12U) << text;
+  EXPECT_EQ(lines_with(text, "\n" + name + "\n        "), 2U) << text;
+  EXPECT_EQ(lines_with(text, "scale factor of recorded rates"), 1U) << text;
 }
 
 TEST(ValidationReport, ComparisonHasARowForEachMethodAfterTheRawRate) {
