@@ -1,0 +1,24 @@
+# cmake --install DIR --prefix PREFIX: the program, its scenarios, and the libraries as a CMake package.
+include(CMakePackageConfigHelpers)
+set(PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/beamgyro)
+
+install(TARGETS beamgyro RUNTIME)
+install(DIRECTORY scenarios DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro)
+install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# Everything at once. The name of the program is taken within this build.
+add_library(beamgyro_everything INTERFACE)
+set_target_properties(beamgyro_everything PROPERTIES EXPORT_NAME beamgyro)
+target_link_libraries(beamgyro_everything INTERFACE
+  beamgyro_report beamgyro_compensation beamgyro_campaign beamgyro_set)
+install(TARGETS beamgyro_everything EXPORT beamgyroTargets)
+
+foreach(room parallel random config dataset sim compensation report)
+  install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/beamgyro FILES_MATCHING PATTERN *.h)
+endforeach()
+install(EXPORT beamgyroTargets NAMESPACE beamgyro:: DESTINATION ${PACKAGE_DIR})
+configure_package_config_file(cmake/beamgyroConfig.cmake.in ${PROJECT_BINARY_DIR}/beamgyroConfig.cmake
+  INSTALL_DESTINATION ${PACKAGE_DIR})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/beamgyroConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/beamgyroConfig.cmake ${PROJECT_BINARY_DIR}/beamgyroConfigVersion.cmake
+  DESTINATION ${PACKAGE_DIR})

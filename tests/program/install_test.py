@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: MIT
+"""`cmake --install` of the build that the program comes from."""
+
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+from program import PROGRAM
+
+BUILD = PROGRAM.parent
+
+USER = """\
+#include <cstdio>
+
+#include "sim/scenario/simulation.h"
+#include "sim/scenario/simulation_input.h"
+
+int main(int, char** argv) {
+  const auto input = beamgyro::load_scenario(argv[1], {});
+  const auto run = beamgyro::simulated(input.scenario, input.device);
+  std::printf("%zu samples\\n", run.time.size());
+}
+"""
+USER_CMAKE = """\
+cmake_minimum_required(VERSION 3.25)
+project(user LANGUAGES C CXX)
+find_package(beamgyro 0.1 REQUIRED)
+add_executable(user user.cpp)
+target_link_libraries(user PRIVATE beamgyro::beamgyro)
+"""
+
+
+@unittest.skipUnless((BUILD / "cmake_install.cmake").exists(),
+                     "the program does not stand in its build")
+class Install(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="a prefix ")
+        cls.addClassCleanup(folder.cleanup)
+        cls.dir = pathlib.Path(folder.name)
+        cls.prefix = cls.dir / "usr"
+        cls.call("cmake", "--install", BUILD, "--prefix", cls.prefix)
+
+    @classmethod
+    def call(cls, *command):
+        answer = subprocess.run([str(part) for part in command], cwd=cls.dir,
+                                capture_output=True, text=True, check=False)
+        if answer.returncode != 0:
+            raise AssertionError(answer.stdout + answer.stderr)
+        return answer.stdout
+
+    def scenario(self, name):
+        return self.prefix / "share/beamgyro/scenarios" / name
+
+    def test_the_program_runs_an_installed_scenario_from_elsewhere(self):
+        program = self.prefix / "bin/beamgyro"
+        self.call(program, "run", self.scenario("ten_minutes.toml"), "-o",
+                  "run.h5")
+        self.assertIn("recording", self.call(program, "info", "run.h5"))
+
+    def test_another_project_finds_and_links_the_libraries(self):
+        (self.dir / "user.cpp").write_text(USER)
+        (self.dir / "CMakeLists.txt").write_text(USER_CMAKE)
+        self.call("cmake", "-G", "Ninja", "-B", "build",
+                  f"-DCMAKE_PREFIX_PATH={self.prefix}")
+        self.call("cmake", "--build", "build")
+        said = self.call("build/user", self.scenario("ten_minutes.toml"))
+        self.assertRegex(said, r"^\d+ samples$")
+
+
+if __name__ == "__main__":
+    unittest.main()
