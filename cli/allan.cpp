@@ -11,6 +11,8 @@
 #include <numbers>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
@@ -18,7 +20,9 @@
 #include "compensation/scoring/allan_deviation.h"
 #include "compensation/scoring/noise_coefficients.h"
 #include "dataset/files/atomic_file.h"
+#include "dataset/files/text_file.h"
 #include "dataset/log/csv_file.h"
+#include "dataset/log/recording_csv.h"
 #include "report/allan_report.h"
 
 namespace beamgyro {
@@ -95,10 +99,21 @@ void convert(std::string& unit, std::vector<double>& values) {
   }
 }
 
-Signal csv_signal(const AllanArguments& arguments) {
-  const CsvTable csv = read_csv(arguments.file);
+/// Takes the units in brackets out of the names of the columns.
+std::vector<std::string> take_units(CsvTable& csv) {
+  std::vector<std::string> units;
+  for (std::string& cell : csv.names) {
+    ColumnName about = column_name(cell);
+    cell = std::move(about.name);
+    units.push_back(std::move(about.unit));
+  }
+  return units;
+}
+
+Signal csv_signal(const AllanArguments& arguments, std::string_view text) {
+  CsvTable csv = parse_csv(text, arguments.file);
+  const std::vector<std::string> units = take_units(csv);
   Signal signal;
-  signal.unit = arguments.unit.value_or(kRateUnit);
   std::vector<double> values;
   if (csv.columns.size() == 1 && !arguments.dataset) {
     signal.column = "rate";
@@ -107,21 +122,29 @@ Signal csv_signal(const AllanArguments& arguments) {
     signal.column = csv_column(arguments, csv);
     values = csv.column(signal.column);
   }
+  const auto named = std::ranges::find(csv.names, signal.column);
+  if (named != csv.names.end())
+    signal.unit = units[static_cast<std::size_t>(named - csv.names.begin())];
+  const bool is_stated = arguments.unit || !signal.unit.empty();
+  if (arguments.unit || !is_stated)
+    signal.unit = arguments.unit.value_or(kRateUnit);
+  if (signal.unit == "degree/s") signal.unit = kRateUnit;
   convert(signal.unit, values);
   signal.recording.time = csv_time(arguments, csv);
   signal.recording.status.assign(values.size(), 0);
   signal.recording.columns.push_back(
       {signal.column, signal.unit, "", Role::kMeasured, std::move(values)});
-  if (!arguments.unit)
+  if (!is_stated)
     signal.warnings.push_back(fmt::format(
         "{}: a CSV states no unit; taken as {}; --unit names another",
         arguments.file, kRateUnit));
   return signal;
 }
 
-Signal signal_of_recording(const AllanArguments& arguments) {
+Signal signal_of_recording(const AllanArguments& arguments,
+                           Recording recording) {
   Signal signal;
-  signal.recording = load_recording(arguments.file);
+  signal.recording = std::move(recording);
   signal.column = arguments.dataset.value_or("rate");
   const Column* column = find_column(signal.recording, signal.column);
   if (column != nullptr)
@@ -131,6 +154,17 @@ Signal signal_of_recording(const AllanArguments& arguments) {
         fmt::format("--unit {}: is for a CSV only; {} states its unit, {}",
                     *arguments.unit, arguments.file, signal.unit));
   return signal;
+}
+
+/// A recording, or else a series in a CSV.
+Signal signal_of(const AllanArguments& arguments) {
+  if (std::filesystem::path(arguments.file).extension() != ".csv")
+    return signal_of_recording(arguments, load_recording(arguments.file));
+  const std::string text = read_text_file(arguments.file);
+  if (is_recording_csv(text))
+    return signal_of_recording(arguments,
+                               parse_recording_csv(text, arguments.file));
+  return csv_signal(arguments, text);
 }
 
 void check_options(const AllanArguments& arguments) {
@@ -167,8 +201,7 @@ nlohmann::ordered_json series_json(const EvenSeries& series,
 int allan(const AllanArguments& arguments) {
   check_options(arguments);
   if (!arguments.json.empty()) require_output(arguments.json, {arguments.file});
-  const bool csv = std::filesystem::path(arguments.file).extension() == ".csv";
-  Signal signal = csv ? csv_signal(arguments) : signal_of_recording(arguments);
+  Signal signal = signal_of(arguments);
   const EvenSeries series =
       even_series(signal.recording, signal.column, arguments.window);
   check_rate(arguments, series);

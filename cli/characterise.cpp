@@ -10,10 +10,10 @@
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
-#include "config/units.h"
 #include "dataset/files/atomic_file.h"
 #include "sim/dynamics/characteristic.h"
 #include "sim/scenario/simulation_input.h"
+#include "sim/thermal/material_range.h"
 
 namespace beamgyro {
 namespace {
@@ -42,8 +42,11 @@ std::vector<double> temperature_grid(const std::string& text) {
     const auto [stop, error] = std::from_chars(at, end, value);
     if (error != std::errc() || !std::isfinite(value))
       fail_temperatures(text, "not a number");
-    if (value <= -kZeroCelsius || value > 1000)
-      fail_temperatures(text, fmt::format("{} degC is out of range", value));
+    if (!kMaterialTemperatures.contains(value))
+      fail_temperatures(
+          text, fmt::format("{} degC is beyond {:g} to {:g} degC, {}", value,
+                            kMaterialTemperatures.low,
+                            kMaterialTemperatures.high, kMaterialReason));
     parts.push_back(value);
     if (stop == end) break;
     if (*stop != ':') fail_temperatures(text, "not a number");
@@ -66,6 +69,7 @@ int characterise(const CharacteriseArguments& arguments) {
   const std::vector<double> grid = temperature_grid(arguments.temperatures);
   const LoadedDevice input = load_device(arguments.device, arguments.overrides);
   require_output(arguments.output, {arguments.device});
+  require_ending(arguments.output, {".csv"});
 
   const Gyro gyro = make_gyro(input.device);
   write_text_file(arguments.output, characteristic_csv(gyro, grid));

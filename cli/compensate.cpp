@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -8,8 +9,10 @@
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/terminal.h"
+#include "cli/version.h"
 #include "compensation/compensator/compensator_file.h"
 #include "dataset/files/atomic_file.h"
+#include "dataset/files/sha256.h"
 #include "dataset/netcdf/recording_file.h"
 #include "dataset/recording/signals.h"
 
@@ -34,6 +37,7 @@ int compensate(const CompensateArguments& arguments) {
   const Compensator compensator = read_compensator(arguments.compensator);
   Recording recording = load_recording(arguments.run);
   require_output(arguments.output, {arguments.compensator, arguments.run});
+  require_recording_name(arguments.output);
   if (find_column(recording, kColumn)) {
     throw std::invalid_argument(fmt::format(
         "{}: holds a {} already; expected a recording that was not compensated",
@@ -49,6 +53,11 @@ int compensate(const CompensateArguments& arguments) {
         compensator.temperature_range.highest));
   }
   recording.columns.push_back(column_of(kColumn, std::move(rate)));
+  recording.compensator =
+      std::filesystem::path(arguments.compensator).filename().string();
+  recording.compensator_sha256 = sha256_of_file(arguments.compensator);
+  if (!recording.history.empty()) recording.history += '\n';
+  recording.history += history_line("compensate with " + recording.compensator);
   write_recording(recording, arguments.output);
   return 0;
 }

@@ -185,6 +185,7 @@ int run_export(const ExportArguments& arguments) {
   require_outputs(
       arguments.output, texts,
       {arguments.compensators.begin(), arguments.compensators.end()});
+  require_directory_name(arguments.output);
   write_texts(arguments.output, texts);
   if (arguments.format == "px4" && arguments.device_id.value_or(0) == 0)
     print_warning(

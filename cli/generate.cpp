@@ -13,6 +13,7 @@
 #include "cli/terminal.h"
 #include "cli/version.h"
 #include "dataset/set/set_writer.h"
+#include "report/set_report.h"
 
 namespace beamgyro {
 namespace {
@@ -65,14 +66,17 @@ std::string outcome(const SetState& state, std::uint64_t made) {
       fmt::format("{} of {} files, {} made now; {} device runs, {} failed\n",
                   state.entries.size(), state.planned, made,
                   state.device_runs(), state.failures());
-  text += state.is_merged ? "the set is whole\n"
-                          : fmt::format("{} files are missing\n",
-                                        state.planned - state.entries.size());
+  if (!state.is_merged)
+    text += fmt::format("{} files are missing\n",
+                        state.planned - state.entries.size());
+  else if (!every_device_failed(state))
+    text += "the set is whole\n";
   return text;
 }
 
 int generate(const GenerateArguments& arguments) {
   const SetTask task = task_of(arguments.shard);
+  require_directory_name(arguments.output);
   const Campaign campaign =
       Campaign::read(arguments.campaign, arguments.devices);
   const ShardPlan plan(campaign, {kProgramVersion, kGitRevision});
@@ -101,6 +105,9 @@ int generate(const GenerateArguments& arguments) {
   const SetState state = set.finish();
   print_result(outcome(state, files.size()));
   require_nothing_lost(arguments.output, task, plan.manifest_head(), state);
+  if (state.is_merged && every_device_failed(state))
+    throw std::runtime_error(fmt::format("{}: {}", arguments.output,
+                                         every_device_failed_text(state)));
   return arguments.strict && state.failures() > 0 ? kSomeDevicesFailed : 0;
 }
 

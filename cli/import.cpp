@@ -42,6 +42,8 @@ int run_import(const ImportArguments& arguments) {
   Recording& recording = log.recording;
   recording.program_version = kProgramVersion;
   recording.git_revision = kGitRevision;
+  recording.title = "imported log of a gyro";
+  recording.history = history_line("import");
   if (!arguments.axis.empty())
     recording.overrides_text = fmt::format("axis={}\n", arguments.axis);
   const std::string text = import_report(log, arguments.log, arguments.join);

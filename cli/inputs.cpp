@@ -2,6 +2,7 @@
 #include "cli/inputs.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -14,11 +15,14 @@
 #include <utility>
 
 #include "cli/terminal.h"
+#include "cli/version.h"
 #include "config/document.h"
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/directory.h"
 #include "dataset/files/sha256.h"
+#include "dataset/files/text_file.h"
+#include "dataset/log/recording_csv.h"
 #include "dataset/netcdf/recording_reader.h"
 #include "sim/device/device_file.h"
 #include "sim/scenario/scenario_file.h"
@@ -67,6 +71,12 @@ bool is_below(const fs::path& directory, const FileIdentity& identity) {
 }  // namespace
 
 Recording load_recording(const std::filesystem::path& path) {
+  if (path.extension() == ".csv") {
+    Recording read = parse_recording_csv(read_text_file(path), path);
+    read.program_version = kProgramVersion;
+    read.git_revision = kGitRevision;
+    return read;
+  }
   bool has_checksum = false;
   Recording recording = read_recording(path, &has_checksum);
   if (!has_checksum) {
@@ -78,13 +88,28 @@ Recording load_recording(const std::filesystem::path& path) {
   return recording;
 }
 
-void require_recording_name(const std::filesystem::path& path) {
+void require_ending(const fs::path& path,
+                    const std::vector<std::string>& endings) {
   const std::string extension = path.extension().string();
-  if (extension != ".h5" && extension != ".csv") {
-    throw std::invalid_argument(
-        fmt::format("-o {}: unknown kind of file \"{}\"; expected a name that "
-                    "ends in .h5 or .csv",
-                    path.string(), extension));
+  if (std::ranges::count(endings, extension) > 0) return;
+  throw std::invalid_argument(fmt::format(
+      "-o {}: unknown kind of file \"{}\"; expected a name that ends in {}",
+      path.string(), extension, fmt::join(endings, " or ")));
+}
+
+void require_recording_name(const fs::path& path) {
+  require_ending(path, {".h5", ".csv"});
+}
+
+void require_directory_name(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  for (const char* ending :
+       {".h5", ".nc", ".csv", ".json", ".toml", ".c", ".h"}) {
+    if (extension == ending)
+      throw std::invalid_argument(
+          fmt::format("-o {}: is the name of a file; expected that of a "
+                      "directory",
+                      path.string()));
   }
 }
 

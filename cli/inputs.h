@@ -13,12 +13,17 @@
 
 namespace beamgyro {
 
-/// Reads a recording. For a file without a checksum it keeps a warning, which
-/// is printed when the command succeeds.
+/// Reads a recording, as CSV when the name ends in .csv. For an HDF5 file
+/// without a checksum it keeps a warning, which is printed when the command
+/// succeeds.
 Recording load_recording(const std::filesystem::path& path);
 
-/// Throws std::invalid_argument unless `path` ends in .h5 or .csv.
+/// Throws std::invalid_argument unless `path`, the argument of -o, has one of
+/// these endings, those of a recording, or none of a file.
+void require_ending(const std::filesystem::path& path,
+                    const std::vector<std::string>& endings);
 void require_recording_name(const std::filesystem::path& path);
+void require_directory_name(const std::filesystem::path& path);
 
 /// Throws what writing to `output` would throw at its start. Throws
 /// std::invalid_argument when `output` is one of the files that the command

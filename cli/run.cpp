@@ -8,10 +8,12 @@
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/progress.h"
+#include "cli/terminal.h"
 #include "cli/version.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/netcdf/recording_file.h"
 #include "sim/scenario/carrier_run.h"
+#include "sim/scenario/run_warnings.h"
 #include "sim/scenario/simulation.h"
 #include "sim/scenario/simulation_input.h"
 
@@ -54,22 +56,28 @@ int run(const RunArguments& arguments) {
   std::size_t done = 0;
   Progress progress("simulating " + arguments.scenario);
   std::optional<RecordingFile> file;
+  RunWarnings warnings(input.scenario, input.device);
   const Gyro gyro = make_gyro(input.device);
   simulate(input.scenario, gyro, {}, [&](Recording&& block) {
     if (!file) {
       block.program_version = kProgramVersion;
       block.git_revision = kGitRevision;
+      block.title = title_of(input.scenario);
+      block.history = history_line("run");
       block.scenario_text = input.scenario_text;
       block.device_text = input.device_text;
       block.overrides_text = input.overrides_text;
       file.emplace(block, samples, arguments.output);
     }
     file->append(block);
+    warnings.add(block);
     done += block.time.size();
     progress.set_share(static_cast<double>(done) /
                        static_cast<double>(samples));
   });
   file->finish();
+  for (const std::string& warning : warnings.texts())
+    keep_warning(fmt::format("{}: {}", arguments.scenario, warning));
   return 0;
 }
 

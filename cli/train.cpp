@@ -72,6 +72,7 @@ int run_training(const TrainArguments& arguments) {
   inputs.insert(inputs.end(), arguments.held_out.begin(),
                 arguments.held_out.end());
   require_output(arguments.output, inputs);
+  require_ending(arguments.output, {".json"});
   const Sources sources = sources_of(arguments);
   std::optional<Progress> progress("training " + arguments.output);
   const TrainResult result = train(spec, sources.training, sources.held_out,

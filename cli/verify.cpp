@@ -13,6 +13,7 @@
 #include "cli/version.h"
 #include "dataset/set/set_check.h"
 #include "dataset/set/view_check.h"
+#include "report/set_report.h"
 #include "sim/campaign/set_repair.h"
 
 namespace beamgyro {
@@ -87,6 +88,13 @@ int verify(const VerifyArguments& arguments) {
   if (!defects.empty()) {
     print_error(
         fmt::format("{}: {} defects", arguments.directory, defects.size()));
+    return kDamaged;
+  }
+  const SetState state = set_contents(directory).state;
+  if (every_device_failed(state)) {
+    print_error(fmt::format("{}: {} files as the manifest says, but {}",
+                            arguments.directory, manifest.entries.size(),
+                            every_device_failed_text(state)));
     return kDamaged;
   }
   print_result(fmt::format("{}: whole, {} files, {} devices\n",

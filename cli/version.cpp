@@ -24,4 +24,9 @@ std::string version_text() {
   );
 }
 
+std::string history_line(const std::string& command) {
+  return fmt::format("beamgyro {} ({}): {}", kProgramVersion, kGitRevision,
+                     command);
+}
+
 }  // namespace beamgyro

@@ -11,4 +11,7 @@ extern const char* const kProgramVersion;
 /// Returns program, revision and libraries for --version.
 std::string version_text();
 
+/// Returns the line of a file's history that says what this program did.
+std::string history_line(const std::string& command);
+
 }  // namespace beamgyro

@@ -59,6 +59,9 @@ std::string recording_report(const std::string& path,
   fmt::format_to(out, "\nfidelity {}, seed {}, made by beamgyro {} ({})\n",
                  recording.fidelity, recording.seed, recording.program_version,
                  recording.git_revision);
+  if (!recording.compensator.empty())
+    fmt::format_to(out, "compensated by {} (SHA-256 {})\n",
+                   recording.compensator, recording.compensator_sha256);
   fmt::format_to(out, "samples {}\n", status_line(recording));
   if (!recording.overrides_text.empty())
     fmt::format_to(out, "overrides\n{}", recording.overrides_text);

@@ -84,6 +84,17 @@ std::string failures_of(const SetState& state) {
 
 }  // namespace
 
+bool every_device_failed(const SetState& state) {
+  return state.device_runs() > 0 && state.failures() == state.device_runs();
+}
+
+std::string every_device_failed_text(const SetState& state) {
+  const ManifestEntry& first = state.entries.begin()->second;
+  return fmt::format("every one of its {} device runs failed; device {}: {}",
+                     state.device_runs(), first.failures.front().device,
+                     first.failures.front().reason);
+}
+
 std::string info_on_shard(const fs::path& path,
                           std::vector<std::string>& warnings) {
   const fs::path directory =
@@ -125,10 +136,12 @@ std::string info_on_set(const fs::path& path) {
       "{}: set of {} devices, {}, campaign {}\n{} of {} files, {:.4g} MB, {} "
       "device runs, {} failed\nseed {}, made by beamgyro {} ({})\n{}",
       path.string(), set.head.devices,
-      state.is_merged ? "whole" : "not whole or not merged", set.head.campaign,
-      state.entries.size(), state.planned, bytes / 1e6, state.device_runs(),
-      state.failures(), set.head.seed, set.head.program_version,
-      set.head.git_revision, failures_of(state));
+      !state.is_merged             ? "not whole or not merged"
+      : every_device_failed(state) ? "without values"
+                                   : "whole",
+      set.head.campaign, state.entries.size(), state.planned, bytes / 1e6,
+      state.device_runs(), state.failures(), set.head.seed,
+      set.head.program_version, set.head.git_revision, failures_of(state));
   std::string parameters;
   const std::size_t runs = set.head.runs.size();
   for (std::size_t run = 0; run < runs; ++run) {

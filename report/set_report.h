@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "dataset/set/set_writer.h"
+
 namespace beamgyro {
 
 /// Describes the contents of a file of a set, or of the directory of a set.
@@ -14,6 +16,11 @@ namespace beamgyro {
 std::string info_on_shard(const std::filesystem::path& path,
                           std::vector<std::string>& warnings);
 std::string info_on_set(const std::filesystem::path& path);
+
+/// Returns whether no device of a set has values in any run, and one line that
+/// says so with the first reason.
+bool every_device_failed(const SetState& state);
+std::string every_device_failed_text(const SetState& state);
 
 /// Returns the KEY=VALUE lines that turn the base device into device number
 /// `device`, and the scenarios into its runs. They are computed from the copy

@@ -56,8 +56,9 @@ std::string shown(std::string_view cell) {
 
 class CsvReader {
  public:
-  CsvReader(std::string_view text, const std::filesystem::path& path)
-      : text_(text) {
+  CsvReader(std::string_view text, const std::filesystem::path& path,
+            bool allow_nan = false)
+      : text_(text), allow_nan_(allow_nan) {
     table_.path = path;
     if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
     while (!text_.empty() && (text_.back() == '\n' || text_.back() == '\r' ||
@@ -66,6 +67,23 @@ class CsvReader {
   }
 
   CsvTable read() {
+    take_first_line();
+    while (!text_.empty()) {
+      next_line();
+      take_row();
+    }
+    if (table_.columns.front().empty())
+      fail(1, "only a line of names; expected rows of numbers below it");
+    return std::move(table_);
+  }
+
+  std::vector<std::string> names() {
+    take_first_line();
+    return std::move(table_.names);
+  }
+
+ private:
+  void take_first_line() {
     if (text_.empty()) fail(1, "the file is empty; expected rows of numbers");
     next_line();
     table_.columns.resize(cells_.size());
@@ -76,16 +94,8 @@ class CsvReader {
     } else {
       take_names();
     }
-    while (!text_.empty()) {
-      next_line();
-      take_row();
-    }
-    if (table_.columns.front().empty())
-      fail(1, "only a line of names; expected rows of numbers below it");
-    return std::move(table_);
   }
 
- private:
   void next_line() {
     ++line_;
     const std::size_t end = std::min(text_.find('\n'), text_.size());
@@ -124,7 +134,7 @@ class CsvReader {
                                            "such as -12.5",
                                            shown(cells_[i].text)));
       }
-      if (!std::isfinite(*value)) {
+      if (!std::isfinite(*value) && !(allow_nan_ && std::isnan(*value))) {
         fail(cells_[i].column,
              fmt::format("{} is nan, infinite or out of range; expected a "
                          "finite number",
@@ -140,7 +150,8 @@ class CsvReader {
                     std::max(line_, std::size_t{1}), column, message));
   }
 
-  std::string_view text_;    // what is not read yet
+  std::string_view text_;  // what is not read yet
+  bool allow_nan_;
   std::size_t line_ = 0;     // of the last line read, from 1
   std::vector<Cell> cells_;  // of that line
   CsvTable table_;
@@ -163,8 +174,14 @@ std::string CsvTable::place(std::size_t row) const {
   return fmt::format("{}:{}", path.string(), row + (names.empty() ? 1 : 2));
 }
 
-CsvTable parse_csv(std::string_view text, const std::filesystem::path& path) {
-  return CsvReader(text, path).read();
+CsvTable parse_csv(std::string_view text, const std::filesystem::path& path,
+                   bool allow_nan) {
+  return CsvReader(text, path, allow_nan).read();
+}
+
+std::vector<std::string> csv_names(std::string_view text,
+                                   const std::filesystem::path& path) {
+  return CsvReader(text.substr(0, text.find('\n')), path).names();
 }
 
 CsvTable read_csv(const std::filesystem::path& path) {

@@ -30,7 +30,14 @@ struct CsvTable {
 /// std::invalid_argument "file:line:column: ..." for anything else.
 CsvTable read_csv(const std::filesystem::path& path);
 
-/// The same for a text in memory, called `path` in messages.
-CsvTable parse_csv(std::string_view text, const std::filesystem::path& path);
+/// The same for a text in memory, called `path` in messages. With `allow_nan` a
+/// cell may be nan.
+CsvTable parse_csv(std::string_view text, const std::filesystem::path& path,
+                   bool allow_nan = false);
+
+/// Returns the names in the first line of a text, none when it holds a number.
+/// Throws as parse_csv().
+std::vector<std::string> csv_names(std::string_view text,
+                                   const std::filesystem::path& path);
 
 }  // namespace beamgyro

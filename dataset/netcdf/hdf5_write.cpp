@@ -8,6 +8,8 @@
 #include <array>
 #include <cstdint>
 
+#include "dataset/recording/signals.h"
+
 namespace beamgyro {
 namespace {
 
@@ -20,6 +22,19 @@ H5Id text_type(std::size_t size, H5T_str_t padding) {
 }
 
 }  // namespace
+
+std::string source_text(std::string_view fidelity,
+                        std::string_view program_version,
+                        std::string_view git_revision) {
+  const std::string what =
+      fidelity == "imported" ? "log of a gyro, imported"
+      : fidelity == "csv"
+          ? "signals of a gyro, read from CSV"
+          : fmt::format("{} simulation of a virtual gyro", fidelity);
+  return program_version.empty() ? what
+                                 : fmt::format("{} by beamgyro {} ({})", what,
+                                               program_version, git_revision);
+}
 
 H5Id scalar_space() {
   return {H5Screate(H5S_SCALAR), H5Sclose, "create a scalar"};
@@ -88,6 +103,11 @@ H5Id make_variable(hid_t file, const VariableAbout& about, hid_t type,
   write_text(variable, "units", about.units);
   write_text(variable, "long_name", about.long_name);
   write_text(variable, "role", role_name(about.role));
+  const std::string_view standard_name = standard_name_of(about.name);
+  if (!standard_name.empty())
+    write_text(variable, "standard_name", standard_name);
+  if (axes.empty() && standard_name == "time")
+    write_text(variable, "axis", "T");
   return variable;
 }
 

@@ -25,6 +25,11 @@ void write_attribute(hid_t object, const char* name, hid_t type, hid_t space,
                      const void* value);
 void write_text(hid_t object, const char* name, std::string_view text);
 
+/// Returns the CF attribute `source`: how the data were made, and by what.
+std::string source_text(std::string_view fidelity,
+                        std::string_view program_version,
+                        std::string_view git_revision);
+
 /// Writes the root attributes that a Recording and a ShardHead share.
 template <class Head>
 void write_origin(hid_t file, const char* filetype, std::int32_t version,
@@ -37,6 +42,9 @@ void write_origin(hid_t file, const char* filetype, std::int32_t version,
   write_text(file, "git_revision", head.git_revision);
   write_attribute(file, "seed", H5T_STD_U64LE, scalar_space(), &head.seed);
   write_text(file, "fidelity", head.fidelity);
+  write_text(
+      file, "source",
+      source_text(head.fidelity, head.program_version, head.git_revision));
 }
 
 /// Writes `attribute` (flag_values or flag_masks) and flag_meanings of a

@@ -84,6 +84,13 @@ Hdf5Layout make_file(const Recording& head, std::size_t samples,
                      OpenFile& bytes) {
   H5Id file = create_hdf5_file(bytes);
   write_origin(file, kRecordingFiletype, kRecordingFormatVersion, head);
+  const std::array<NamedText, 4> about = {
+      {{"title", head.title},
+       {"history", head.history},
+       {"compensator", head.compensator},
+       {"compensator_sha256", head.compensator_sha256}}};
+  for (const NamedText& text : about)
+    if (!text.text.empty()) write_text(file, text.name, text.text);
   Hdf5Layout layout = make_variables(file, head, samples);
   const std::array<NamedText, 3> texts = {{{"scenario", head.scenario_text},
                                            {"device", head.device_text},

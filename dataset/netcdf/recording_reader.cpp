@@ -97,6 +97,15 @@ Recording read_file(OpenFile& bytes) {
       text_attribute(file, "the file", "beamgyro_version");
   recording.git_revision = text_attribute(file, "the file", "git_revision");
   recording.fidelity = text_attribute(file, "the file", "fidelity");
+  const auto text_if_there = [&](const char* name) {
+    return has_attribute(file, "the file", name)
+               ? text_attribute(file, "the file", name)
+               : std::string();
+  };
+  recording.title = text_if_there("title");
+  recording.history = text_if_there("history");
+  recording.compensator = text_if_there("compensator");
+  recording.compensator_sha256 = text_if_there("compensator_sha256");
   recording.seed = integer_attribute(file, "seed");
   recording.scenario_text = meta_text(file, "scenario");
   recording.device_text = meta_text(file, "device");

@@ -42,6 +42,9 @@ struct Recording {
 
   std::string fidelity;  // "quasistatic", ...
   std::uint64_t seed = 0;
+  std::string title;    // of the scenario; empty in old files
+  std::string history;  // a line for each command that made it
+  std::string compensator, compensator_sha256;  // of compensated_rate
   std::string program_version;  // of the program that made the recording
   std::string git_revision;
   std::string scenario_text;  // both files byte for byte as read

@@ -57,9 +57,11 @@ std::string defect_of_texts(const Recording& recording) {
       return fmt::format("{}: a NUL in units or long_name", column.name);
   }
   for (const std::string* text :
-       {&recording.fidelity, &recording.program_version,
-        &recording.git_revision, &recording.scenario_text,
-        &recording.device_text, &recording.overrides_text}) {
+       {&recording.title, &recording.history, &recording.compensator,
+        &recording.compensator_sha256, &recording.fidelity,
+        &recording.program_version, &recording.git_revision,
+        &recording.scenario_text, &recording.device_text,
+        &recording.overrides_text}) {
     if (holds_nul(*text)) return "a NUL in the texts of the recording";
   }
   return {};

@@ -35,7 +35,7 @@ constexpr RecordedSignal kSignals[] = {
     {"true_board_temperature", "degC", "temperature of the board", kTruth},
     {"true_sensor_temperature", "degC", "temperature of the sensor", kTruth},
     {"true_ambient_temperature", "degC", "temperature of air and fixture",
-     kTruth},
+     kTruth, "air_temperature"},
     {"compensated_rate", "degree/s", "rate after compensation",
      Role::kCompensated},
 };
@@ -67,6 +67,12 @@ std::string_view unit_of_variable(std::string_view name) {
   if (name == "status") return "1";
   const RecordedSignal* known = find_recorded_signal(name);
   return known == nullptr ? std::string_view{} : known->units;
+}
+
+std::string_view standard_name_of(std::string_view name) {
+  if (name == "time" || name == "truth_time") return "time";
+  const RecordedSignal* known = find_recorded_signal(name);
+  return known == nullptr ? std::string_view{} : known->standard_name;
 }
 
 }  // namespace beamgyro

@@ -13,6 +13,7 @@ namespace beamgyro {
 struct RecordedSignal {
   std::string_view name, units, long_name;
   Role role = Role::kMeasured;
+  std::string_view standard_name = {};  // of the CF conventions
 };
 
 /// Every signal that this program records, imports or computes, in the order of
@@ -31,5 +32,8 @@ Column column_of(std::string_view name, std::vector<double> values);
 /// Returns the unit of the variable of this name in recordings: of a signal, of
 /// `time` or of `status`. Empty for another name.
 std::string_view unit_of_variable(std::string_view name);
+
+/// Returns the CF standard name of a variable, empty where there is none.
+std::string_view standard_name_of(std::string_view name);
 
 }  // namespace beamgyro

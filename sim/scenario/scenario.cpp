@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sim/scenario/scenario.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace beamgyro {
@@ -15,6 +16,15 @@ std::string_view fidelity_name(Fidelity fidelity) {
       return "carrier";
   }
   return "";
+}
+
+std::string title_of(const Scenario& scenario) {
+  constexpr std::size_t kLongest = 1000;  // characters
+  std::string title = scenario.name;
+  if (!scenario.description.empty() && scenario.description.size() <= kLongest)
+    title += ": " + scenario.description;
+  title.resize(std::min(title.find('\0'), title.size()));
+  return title;
 }
 
 std::size_t sample_count(const Scenario& scenario) {

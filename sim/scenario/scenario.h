@@ -32,6 +32,7 @@ struct Scenario {
   std::uint64_t seed = 0;
   std::vector<PowerInterval> powered;
   PiecewiseLinear ambient = PiecewiseLinear::constant(298.15);  // [K]
+  std::vector<double> soak_ends;  // [s], of an ambient that is made of soaks
   bool stirred = false;
   RateProfile rate = PiecewiseLinear::constant(0);  // input axis [rad/s]
   std::array<RateProfile, 2> cross_rate = {         // about x, y [rad/s]
@@ -44,6 +45,10 @@ struct Scenario {
 
 /// Returns the name used in files: "quasistatic", "envelope", "carrier".
 std::string_view fidelity_name(Fidelity fidelity);
+
+/// Returns name and description, for a title; without a description that is
+/// longer than a title.
+std::string title_of(const Scenario& scenario);
 
 /// Returns the number of samples, floor(duration x output_rate).
 std::size_t sample_count(const Scenario& scenario);

@@ -14,6 +14,7 @@
 #include "config/config_node.h"
 #include "config/units.h"
 #include "sim/scenario/profile_keys.h"
+#include "sim/thermal/material_range.h"
 
 namespace beamgyro {
 namespace {
@@ -21,7 +22,7 @@ namespace {
 constexpr double kLargestRecording = 5e7;  // samples, 12 GB at work
 
 const ProfileUnit kAmbient{"temperature_degC", 1, kZeroCelsius,
-                           between(-150, 300)};
+                           kMaterialTemperatures};
 
 // Higher frequencies of a motion are outside of the validity of the models.
 constexpr Range kMotionFrequency{0, 1e3, true, false};  // [Hz]
@@ -82,7 +83,8 @@ std::vector<PowerInterval> read_power(const ConfigTable& power) {
 }
 
 // Hold at each temperature, ramp to the next at a constant rate.
-PiecewiseLinear read_soaks(const ConfigTable& soaks, const ProfileUnit& unit) {
+PiecewiseLinear read_soaks(const ConfigTable& soaks, const ProfileUnit& unit,
+                           std::vector<double>& ends) {
   const std::vector<double> levels =
       soaks.numbers("temperatures_degC", unit.range);
   if (levels.empty()) {
@@ -105,12 +107,14 @@ PiecewiseLinear read_soaks(const ConfigTable& soaks, const ProfileUnit& unit) {
       value.push_back(levels[i] + unit.offset);
     }
     t += hold;
+    ends.push_back(t);
   }
   return {std::move(time), std::move(value)};
 }
 
 PiecewiseLinear read_ambient(const ConfigTable& ambient,
-                             const ProfileFolder& folder) {
+                             const ProfileFolder& folder,
+                             std::vector<double>& soak_ends) {
   const std::string form =
       only_form(ambient, {"constant_degC", "points", "soaks", "file"});
   const double offset = ambient.number_or("offset_K", 0, between(-100, 100));
@@ -118,7 +122,8 @@ PiecewiseLinear read_ambient(const ConfigTable& ambient,
       kAmbient.csv_column, kAmbient.factor, kAmbient.offset + offset,
       between(kAmbient.range.low - offset, kAmbient.range.high - offset)};
   if (form == "points") return read_points(ambient, unit);
-  if (form == "soaks") return read_soaks(ambient.table("soaks"), unit);
+  if (form == "soaks")
+    return read_soaks(ambient.table("soaks"), unit, soak_ends);
   if (form == "file") return read_profile_file(ambient, unit, folder);
   return PiecewiseLinear::constant(ambient.number(form, unit.range) +
                                    unit.offset);
@@ -205,7 +210,8 @@ Scenario read_scenario(const ConfigDocument& document,
   scenario.seed = static_cast<std::uint64_t>(
       root.integer("seed", 0, std::numeric_limits<long>::max()));
   scenario.powered = read_power(root.table_or_empty("power"));
-  scenario.ambient = read_ambient(root.table("ambient"), folder);
+  scenario.ambient =
+      read_ambient(root.table("ambient"), folder, scenario.soak_ends);
   scenario.stirred = root.table_or_empty("chamber").flag_or("stirred", false);
   scenario.rate = read_motion(root.optional_table("rate"), kRate, folder,
                               scenario.duration);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "config/units.h"
+#include "sim/thermal/material_range.h"
 
 namespace beamgyro {
 namespace {
@@ -16,7 +17,6 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr Range kPositive{0, kNoLimit, true};
 constexpr Range kNonNegative{0, kNoLimit};
 constexpr Range kFraction{0, 1};
-constexpr Range kAboveAbsoluteZero{-kZeroCelsius, kNoLimit, true};  // [degC]
 
 using P = ThermalParameters;
 constexpr ThermalField<P> kThermalFields[] = {
@@ -51,7 +51,7 @@ constexpr ThermalField<P> kThermalFields[] = {
 };
 
 constexpr ThermalField<ThermalOven> kOvenFields[] = {
-    {"set_point_degC", &ThermalOven::set_point, kAboveAbsoluteZero,
+    {"set_point_degC", &ThermalOven::set_point, kMaterialTemperatures,
      kZeroCelsius},
     {"max_power_W", &ThermalOven::max_power, kPositive},
     {"proportional_W_per_K", &ThermalOven::proportional_gain, kPositive},

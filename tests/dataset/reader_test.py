@@ -45,6 +45,12 @@ ROOT = {
     "git_revision": "0123abc",
     "seed": 2**64 - 1,
     "fidelity": "quasistatic",
+    "source": "quasistatic simulation of a virtual gyro by beamgyro 1.2.3 "
+              "(0123abc)",
+    "title": "a sample",
+    "history": "made\ncompensated",
+    "compensator": "c.json",
+    "compensator_sha256": "0123",
 }
 META = {
     "scenario": "name = \"Gr\u00fc\u00dfe\"\r\n\tx = 1",

@@ -59,6 +59,10 @@ Recording sample_recording(std::size_t samples) {
   }
   recording.fidelity = "quasistatic";
   recording.seed = 18446744073709551615u;  // the largest there is
+  recording.title = "a sample";
+  recording.history = "made\ncompensated";
+  recording.compensator = "c.json";
+  recording.compensator_sha256 = "0123";
   recording.program_version = "1.2.3";
   recording.git_revision = "0123abc";
   recording.scenario_text =

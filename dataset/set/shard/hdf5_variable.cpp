@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "dataset/set/shard/hdf5_variable.h"
 
+#include <fmt/format.h>
+
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "dataset/netcdf/hdf5_write.h"
@@ -66,6 +69,16 @@ void write_device_status_flags(hid_t device_status) {
 void write_root_attributes(hid_t file, const ShardHead& head) {
   write_origin(file, kSetFiletype, kSetFormatVersion, head);
   write_text(file, "run", head.run);
+  write_text(file, "title",
+             fmt::format("run {} of a set of virtual gyros", head.run));
+  write_text(file, "history",
+             fmt::format("beamgyro {} ({}): generate", head.program_version,
+                         head.git_revision));
+  // Readers make coordinates of the variables that are named here.
+  std::string coordinates = "part device_status";
+  for (const DeviceVariable& parameter : head.parameters)
+    coordinates += ' ' + parameter.name;
+  write_text(file, "coordinates", coordinates);
 }
 
 void write_all(hid_t variable, const std::string& name, hid_t memory_type,

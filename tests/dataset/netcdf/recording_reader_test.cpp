@@ -62,6 +62,10 @@ void expect_same(const Recording& a, const Recording& b) {
   }
   EXPECT_EQ(a.fidelity, b.fidelity);
   EXPECT_EQ(a.seed, b.seed);
+  EXPECT_EQ(a.title, b.title);
+  EXPECT_EQ(a.history, b.history);
+  EXPECT_EQ(a.compensator, b.compensator);
+  EXPECT_EQ(a.compensator_sha256, b.compensator_sha256);
   EXPECT_EQ(a.program_version, b.program_version);
   EXPECT_EQ(a.git_revision, b.git_revision);
   EXPECT_EQ(a.scenario_text, b.scenario_text);
@@ -84,6 +88,10 @@ TEST_F(Hdf5File, ReadsBackEmptyTexts) {
   recording.fidelity.clear();
   recording.scenario_text.clear();
   recording.device_text.clear();
+  recording.title.clear();
+  recording.history.clear();
+  recording.compensator.clear();
+  recording.compensator_sha256.clear();
   recording.columns[0].name = "of_no_unit_that_is_known";
   recording.columns[0].units.clear();
   write_recording(recording, file);

@@ -137,7 +137,7 @@ TEST(ScenarioFile, AnAmbientOffsetShiftsEveryForm) {
 
 TEST(ScenarioFile, TheShiftedAmbientStaysInRange) {
   EXPECT_THROW(
-      scenario_from("", "[ambient]\nconstant_degC = 290\noffset_K = 11\n"),
+      scenario_from("", "[ambient]\nconstant_degC = 140\noffset_K = 11\n"),
       std::invalid_argument);
   EXPECT_THROW(
       scenario_from("", "[ambient]\nconstant_degC = 25\noffset_K = 101\n"),

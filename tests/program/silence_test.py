@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: MIT
+"""What `run`, `generate` and `verify` say about work that is of no use."""
+
+import unittest
+
+from program import SCENARIO, SCENARIOS, ProgramTest
+from sets import CAMPAIGN, Set
+
+
+class Run(ProgramTest):
+    def warnings(self, *arguments, text=SCENARIO):
+        """The lines that a run prints besides its recording."""
+        scenario = self.write("s.toml", text)
+        answer = self.beamgyro("run", scenario, "-o", "s.h5", *arguments)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertEqual(answer.stdout, "")
+        return answer.stderr.splitlines()
+
+    def warning(self, *arguments, text=SCENARIO):
+        lines = self.warnings(*arguments, text=text)
+        self.assertEqual(len(lines), 1, lines)
+        self.assertTrue(lines[0].startswith("beamgyro: warning: s.toml: "))
+        return lines[0]
+
+    def test_a_board_that_nothing_stands_is_named_with_its_cause(self):
+        lines = self.warnings("--set", "thermal.electronics_power_W=600")
+        (line,) = [line for line in lines if "board" in line]
+        self.assertRegex(line, r"board.* at up to \d{4} degC in \d+ of 1200 "
+                               r"samples")
+        for part in ["-100 to 150 degC", "ceramic", "electronics_power_W = 600"]:
+            self.assertIn(part, line)
+
+    def test_a_run_without_power(self):
+        line = self.warning("--set", "power.on_s=[700]")
+        self.assertIn("all 1200 samples are unpowered", line)
+        self.assertIn("power.on_s = 700", line)
+        self.assertIn("duration_s = 600", line)
+
+    def test_a_run_that_is_saturated(self):
+        line = self.warning("--set", "rate.constant_deg_per_s=400")
+        self.assertIn("all 1200 powered samples are saturated", line)
+        self.assertIn("readout.full_scale_deg_per_s = 150", line)
+
+    def test_a_run_that_is_not_locked(self):
+        line = self.warning("--set", "drive.voltage_limit_V=0.5")
+        self.assertIn("in all 1200 powered samples the loops are not locked",
+                      line)
+        self.assertIn("drive.voltage_limit_V = 0.5", line)
+
+    def test_a_sine_faster_than_half_the_output_rate(self):
+        sine = "rate.sine={{amplitude_deg_per_s=10, frequency_Hz={}}}"
+        line = self.warning("--set", sine.format(900.25),
+                            text=SCENARIO.replace("output_rate_Hz = 2",
+                                                  "output_rate_Hz = 1"))
+        for part in ["rate.sine.frequency_Hz = 900.25", "output_rate_Hz = 1:",
+                     "600 samples", "0.25 Hz"]:
+            self.assertIn(part, line)
+        self.assertEqual(self.warnings("--set", sine.format(0.9)), [])
+
+    def test_a_profile_faster_than_half_the_output_rate(self):
+        def square(half):
+            steps = [[k * half, 5 * (k % 2)] for k in range(11)]
+            return self.warnings("--set", f"rate.steps={steps}")
+        (line,) = square(0.25)
+        self.assertIn("rate: 8 of 8 swings", line)
+        self.assertIn("0.5 s between samples", line)
+        self.assertEqual(square(0.5), [])
+
+    def test_a_random_rate_faster_than_half_the_output_rate(self):
+        line = self.warning(
+            "--set", "cross_rate.x.random={rms_deg_per_s=1, bandwidth_Hz=20}")
+        self.assertIn("cross_rate.x.random.bandwidth_Hz = 20", line)
+
+    def test_soaks_that_the_duration_cuts(self):
+        text = SCENARIO.replace(
+            "constant_degC = 25",
+            "soaks = { temperatures_degC = [20, 30, 40], hold_s = 200, "
+            "ramp_K_per_min = 10 }")
+        line = self.warning(text=text)  # ends at 200, 460 and 720 s
+        self.assertIn("duration_s = 600 cuts 1 of 3 soaks", line)
+        self.assertIn("ends at 720 s", line)
+        self.assertEqual(self.warnings("--set", "duration_s=720", text=text),
+                         [])
+
+    def test_quiet_is_silent(self):
+        self.assertEqual(self.warnings("--quiet", "--set", "power.on_s=[700]"),
+                         [])
+
+    def test_no_shipped_scenario_is_warned_about(self):
+        for path in sorted(SCENARIOS.glob("*.toml")):
+            with self.subTest(path.name):
+                answer = self.beamgyro("run", path, "-o", "out.h5")
+                self.assertEqual(answer.stderr, "")
+
+    def test_temperatures_that_the_materials_do_not_stand(self):
+        scenario = self.write("s.toml", SCENARIO)
+        for key, value in [
+                ("ambient.constant_degC", 151), ("ambient.constant_degC", -101),
+                ("thermal.oven", "{ set_point_degC = 200, max_power_W = 3, "
+                 "proportional_W_per_K = 1, integral_time_s = 60 }")]:
+            with self.subTest(key):
+                self.rejected("run", scenario, "-o", "s.h5", "--set",
+                              f"{key}={value}", says=[key, "[-100, 150]"])
+        self.write("hot.toml", SCENARIO.replace("= 25", "= 170"))
+        self.rejected("run", "hot.toml", "-o", "s.h5",
+                      says=["hot.toml:10:17: ambient.constant_degC", "170"])
+        self.rejected("characterise", "device.toml", "-o", "c.csv",
+                      "--beam-temperature", "20:200:10",
+                      says=["200 degC", "-100 to 150 degC"])
+
+
+class EveryDeviceFails(Set):
+    def setUp(self):
+        super().setUp()
+        # Beyond the range of the key but for one draw in a thousand.
+        self.write("campaign.toml", CAMPAIGN.replace(
+            "[tolerances]", '[tolerances]\n"beam.side_difference" = { normal '
+            '= { mean = 0, sigma = 600 } }'))
+
+    def test_generate_and_verify_call_such_a_set_a_failure(self):
+        answer = self.beamgyro("generate", "campaign.toml", "-o", "set")
+        self.assertEqual(answer.returncode, 1, answer.stdout)
+        self.assertNotIn("whole", answer.stdout)
+        for part in ["set: every one of its 14 device runs failed",
+                     "side_difference"]:
+            self.assertIn(part, answer.stderr)
+        answer = self.beamgyro("verify", "set")
+        self.assertEqual(answer.returncode, 1, answer.stdout)
+        self.assertNotIn("whole", answer.stdout)
+        self.assertIn("every one of its 14 device runs failed", answer.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
