@@ -199,7 +199,7 @@ def mark_terms(axes, tau, terms):
     about = {  # law, words, where the words stand
         "N": (lambda t, n: n / np.sqrt(t), "slope −½: N = {:.3g} °/√s", 8.0),
         "B": (lambda t, b: FLOOR * b + 0 * t,
-              "slope 0: B = {:.3g} °/s", 0.1),
+              "slope 0: 0.664 B\nB = {:.3g} °/s", 0.1),
         "K": (lambda t, k: k * np.sqrt(t / 3),
               "slope +½: K = {:.3g} °/s/√s", 300.0)}
     low, high = axes.get_ylim()
