@@ -6,9 +6,40 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
 
 namespace beamgyro {
 namespace {
+
+// Units that are typed for those in the names of keys.
+struct TypedUnit {
+  std::string_view key_end, typed, unit;
+  double factor;
+};
+constexpr TypedUnit kTypedUnits[] = {
+    {"_m", "mm", "m", 1e-3},
+    {"_m", "um", "m", 1e-6},
+    {"_Pa", "GPa", "Pa", 1e9},
+    {"_Pa", "MPa", "Pa", 1e6},
+    {"_kg_per_m3", "g/cm3", "kg/m3", 1e3},
+    {"_J_per_mol", "kJ/mol", "J/mol", 1e3},
+    {"_F", "pF", "F", 1e-12},
+    {"_C_per_N", "pC/N", "C/N", 1e-12},
+};
+
+/// Returns "; 40 mm is 0.04 m" for a number that would be in range in another
+/// unit, or an empty text.
+std::string other_unit(std::string_view path, double number,
+                       const Range& range) {
+  const std::string_view key = path.substr(0, path.find('['));
+  for (const TypedUnit& unit : kTypedUnits) {
+    const double meant = number * unit.factor;
+    if (key.ends_with(unit.key_end) && range.contains(meant))
+      return fmt::format("; {:g} {} is {:g} {}", number, unit.typed, meant,
+                         unit.unit);
+  }
+  return "";
+}
 
 [[noreturn]] void wrong_type(const ConfigValue& value,
                              const std::string& expected) {
@@ -40,8 +71,9 @@ double read_number(const ConfigValue& value, const Range& range) {
         fmt::format("{} is not finite; expected {}", number, text_of(range)));
   }
   if (!range.contains(number)) {
-    value.fail(fmt::format("{} is out of range; expected {}", text_of(node),
-                           text_of(range)));
+    value.fail(fmt::format("{} is out of range; expected {}{}", text_of(node),
+                           text_of(range),
+                           other_unit(value.path, number, range)));
   }
   return number;
 }

@@ -17,6 +17,20 @@ namespace {
 constexpr Range kCelsius{-kZeroCelsius, 1000, true, false};
 constexpr Range kExponent{0, 1, true, false};
 
+// What no material or part of a gyro goes beyond: mm, GPa or g/cm3 typed for SI
+// do. docs/reference/device_file.md lists them.
+constexpr Range kBeamLength{1e-4, 0.5};         // [m]
+constexpr Range kBeamSide{1e-5, 0.1};           // [m]
+constexpr Range kModulus{1e7, 1.5e12};          // [Pa], rubber .. diamond
+constexpr Range kShearModulus{1e4, 1e12};       // [Pa], gel .. diamond
+constexpr Range kDensity{100, 25e3};            // [kg/m3], foam .. osmium
+constexpr Range kConductivity{1e-3, 1e4};       // [W/mK]
+constexpr Range kSpecificHeat{10, 2e4};         // [J/kgK]
+constexpr Range kPermittivity{1, 1e6};          // [-]
+constexpr Range kActivation{1e3, 1e7};          // [J/mol]
+constexpr Range kCapacitance{1e-15, 1e-3};      // [F]
+constexpr Range kVoltage{0, 1e4, true, false};  // [V]
+
 double kelvin(const ConfigTable& table, std::string_view key) {
   return table.number(key, kCelsius) + kZeroCelsius;
 }
@@ -31,11 +45,11 @@ PerPatch<double> per_patch(const ConfigTable& table, std::string_view key,
 
 BeamParameters read_beam(const ConfigTable& beam) {
   return {
-      .length = beam.number("length_m", positive()),
-      .side = beam.number("side_m", positive()),
+      .length = beam.number("length_m", kBeamLength),
+      .side = beam.number("side_m", kBeamSide),
       .side_difference = beam.number("side_difference", between(-0.5, 0.5)),
-      .youngs_modulus = beam.number("youngs_modulus_Pa", positive()),
-      .density = beam.number("density_kg_per_m3", positive()),
+      .youngs_modulus = beam.number("youngs_modulus_Pa", kModulus),
+      .density = beam.number("density_kg_per_m3", kDensity),
       .poisson_ratio = beam.number("poisson_ratio", {-1, 0.5, true, false}),
       .modulus_tc1 = beam.number("modulus_tc1_per_K", between(-0.01, 0.01)),
       .modulus_tc2 = beam.number("modulus_tc2_per_K2", between(-1e-4, 1e-4)),
@@ -43,8 +57,8 @@ BeamParameters read_beam(const ConfigTable& beam) {
           beam.number("thermal_expansion_per_K", between(-1e-3, 1e-3)),
       .loss_factor = beam.number("loss_factor", {0, 1, false, true}),
       .thermal_conductivity =
-          beam.number("thermal_conductivity_W_per_mK", positive()),
-      .specific_heat = beam.number("specific_heat_J_per_kgK", positive()),
+          beam.number("thermal_conductivity_W_per_mK", kConductivity),
+      .specific_heat = beam.number("specific_heat_J_per_kgK", kSpecificHeat),
       .angular_gain = beam.optional_number("angular_gain", {0, 1, true, false}),
   };
 }
@@ -56,11 +70,11 @@ PatchParameters read_patches(const ConfigTable& patches,
       .length = patches.number("length_m", {0, beam.length, true, true}),
       .width = patches.number("width_m", {0, beam.side, true, false}),
       .thickness = patches.number("thickness_m", {0, beam.side, true, false}),
-      .youngs_modulus = patches.number("youngs_modulus_Pa", positive()),
-      .density = patches.number("density_kg_per_m3", positive()),
+      .youngs_modulus = patches.number("youngs_modulus_Pa", kModulus),
+      .density = patches.number("density_kg_per_m3", kDensity),
       .d31 = patches.number("d31_C_per_N", {-1e-8, 0, false, true}),
       .relative_permittivity =
-          patches.number("relative_permittivity", positive()),
+          patches.number("relative_permittivity", kPermittivity),
       .loss_tangent = patches.number("loss_tangent", {0, 1, false, true}),
       .mechanical_loss_factor =
           patches.number("mechanical_loss_factor", {0, 1, false, true}),
@@ -75,20 +89,20 @@ PatchParameters read_patches(const ConfigTable& patches,
 }
 
 BondParameters read_bond(const ConfigTable& bond) {
-  const double G = bond.number("shear_modulus_Pa", positive());
+  const double G = bond.number("shear_modulus_Pa", kShearModulus);
   const double beta = bond.number("beta_step_Pa", {0, G, false, true});
   return {
       .thickness = per_patch(bond, "thickness_m", {0, 1e-3, true, false}),
       .shear_modulus = G,
       .beta_step = beta,
       .beta_exponent = bond.number("beta_exponent", kExponent),
-      .beta_activation = bond.number("beta_activation_J_per_mol", positive()),
+      .beta_activation = bond.number("beta_activation_J_per_mol", kActivation),
       .beta_temperature = kelvin(bond, "beta_1Hz_degC"),
       .alpha_step = bond.number("alpha_step_Pa", {0, G - beta, false, true}),
       .alpha_exponent = bond.number("alpha_exponent", kExponent),
       .glass_transition = kelvin(bond, "glass_transition_degC"),
       .alpha_low_activation =
-          bond.number("alpha_low_activation_J_per_mol", positive()),
+          bond.number("alpha_low_activation_J_per_mol", kActivation),
   };
 }
 
@@ -115,7 +129,7 @@ MountParameters read_mount(const ConfigTable& mount) {
       .anisotropy = mount.number("anisotropy", between(0, 10)),
       .axis_angle =
           mount.number("axis_angle_deg", between(-180, 180)) * kDegree,
-      .low_activation = mount.number("low_activation_J_per_mol", positive()),
+      .low_activation = mount.number("low_activation_J_per_mol", kActivation),
       .pin_stiffness = mount.number("pin_stiffness_N_per_m", non_negative()),
       .g_sensitivity = read_g_sensitivity(mount),
       .rectification = mount.number_or("rectification_deg_per_s_per_g2", 0.002,
@@ -132,7 +146,7 @@ DriveParameters read_drive(const ConfigTable& drive) {
   return {
       .amplitude = drive.number("amplitude_m", {0, 1e-4, true, false}),
       .pll_phase = drive.number("pll_phase_rad", between(-1, 1)),
-      .voltage_limit = drive.number("voltage_limit_V", positive()),
+      .voltage_limit = drive.number("voltage_limit_V", kVoltage),
       .demodulator_corner = corner("demodulator_corner_Hz", 300),
       .pll_bandwidth = corner("pll_bandwidth_Hz", 30),
       .pll_integral_corner = corner("pll_integral_corner_Hz", 10),
@@ -154,7 +168,7 @@ ReadoutParameters read_readout(const ConfigTable& readout) {
   return {
       .mode = rebalance ? ReadoutMode::kForceRebalance : ReadoutMode::kOpenLoop,
       .feedback_capacitance =
-          readout.number("feedback_capacitance_F", positive()),
+          readout.number("feedback_capacitance_F", kCapacitance),
       .feedthrough = readout.number("feedthrough_F", between(-1e-9, 1e-9)),
       .rebalance_bandwidth = 2 * std::numbers::pi *
                              readout.number_or("rebalance_bandwidth_Hz", 20,

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "sim/scenario/simulation_input.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "config/document.h"
+#include "config/file_error.h"
 #include "sim/device/device_file.h"
 #include "sim/scenario/scenario_file.h"
 
@@ -25,6 +28,11 @@ LoadedScenario load_scenario(const std::filesystem::path& path,
   const ConfigDocument document = ConfigDocument::read(path, set);
   const Scenario scenario = read_scenario(document);
   document.reject_unknown_keys();
+  if (!std::filesystem::exists(status_of(scenario.device_file)))
+    document.root().fail("device",
+                         fmt::format("there is no file {}; expected one, named "
+                                     "relative to the scenario",
+                                     scenario.device_file.string()));
   const ConfigDocument unit = ConfigDocument::read(scenario.device_file, set);
   const Device device = read_device(unit);
   unit.reject_unknown_keys();

@@ -17,43 +17,44 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr Range kPositive{0, kNoLimit, true};
 constexpr Range kNonNegative{0, kNoLimit};
 constexpr Range kFraction{0, 1};
+constexpr Range kHeat{1e-6, 1e6};     // [J/K]
+constexpr Range kJoin{0, 1e4};        // [W/K]
+constexpr Range kPower{0, 1e3};       // [W]
+constexpr Range kArea{1e-8, 10};      // [m2]
+constexpr Range kHeight{1e-4, 10};    // [m]
+constexpr Range kConvection{0, 1e5};  // [W/m2K], boiling water
 
 using P = ThermalParameters;
 constexpr ThermalField<P> kThermalFields[] = {
-    {"beam_heat_capacity_J_per_K", &P::beam_heat_capacity, kPositive},
-    {"pzt_heat_capacity_J_per_K", &P::pzt_heat_capacity, kPositive},
-    {"mount_heat_capacity_J_per_K", &P::mount_heat_capacity, kPositive},
-    {"housing_heat_capacity_J_per_K", &P::housing_heat_capacity, kPositive},
-    {"board_heat_capacity_J_per_K", &P::board_heat_capacity, kPositive},
-    {"sensor_heat_capacity_J_per_K", &P::sensor_heat_capacity, kPositive},
-    {"beam_pzt_conductance_W_per_K", &P::beam_pzt_conductance, kNonNegative},
-    {"beam_mount_conductance_W_per_K", &P::beam_mount_conductance,
-     kNonNegative},
-    {"beam_housing_conductance_W_per_K", &P::beam_housing_conductance,
-     kNonNegative},
-    {"mount_housing_conductance_W_per_K", &P::mount_housing_conductance,
-     kNonNegative},
-    {"housing_board_conductance_W_per_K", &P::housing_board_conductance,
-     kNonNegative},
-    {"board_sensor_conductance_W_per_K", &P::board_sensor_conductance,
-     kNonNegative},
+    {"beam_heat_capacity_J_per_K", &P::beam_heat_capacity, kHeat},
+    {"pzt_heat_capacity_J_per_K", &P::pzt_heat_capacity, kHeat},
+    {"mount_heat_capacity_J_per_K", &P::mount_heat_capacity, kHeat},
+    {"housing_heat_capacity_J_per_K", &P::housing_heat_capacity, kHeat},
+    {"board_heat_capacity_J_per_K", &P::board_heat_capacity, kHeat},
+    {"sensor_heat_capacity_J_per_K", &P::sensor_heat_capacity, kHeat},
+    {"beam_pzt_conductance_W_per_K", &P::beam_pzt_conductance, kJoin},
+    {"beam_mount_conductance_W_per_K", &P::beam_mount_conductance, kJoin},
+    {"beam_housing_conductance_W_per_K", &P::beam_housing_conductance, kJoin},
+    {"mount_housing_conductance_W_per_K", &P::mount_housing_conductance, kJoin},
+    {"housing_board_conductance_W_per_K", &P::housing_board_conductance, kJoin},
+    {"board_sensor_conductance_W_per_K", &P::board_sensor_conductance, kJoin},
     {"housing_sensor_conductance_W_per_K", &P::housing_sensor_conductance,
-     kNonNegative},
+     kJoin},
     {"housing_fixture_conductance_W_per_K", &P::housing_fixture_conductance,
-     kNonNegative},
-    {"housing_area_m2", &P::housing_area, kPositive},
-    {"housing_height_m", &P::housing_height, kPositive},
+     kJoin},
+    {"housing_area_m2", &P::housing_area, kArea},
+    {"housing_height_m", &P::housing_height, kHeight},
     {"natural_convection_coefficient", &P::natural_convection_coefficient,
      kNonNegative},
     {"housing_emissivity", &P::housing_emissivity, kFraction},
-    {"stirred_convection_W_per_m2K", &P::stirred_convection, kNonNegative},
-    {"electronics_power_W", &P::electronics_power, kNonNegative},
+    {"stirred_convection_W_per_m2K", &P::stirred_convection, kConvection},
+    {"electronics_power_W", &P::electronics_power, kPower},
 };
 
 constexpr ThermalField<ThermalOven> kOvenFields[] = {
     {"set_point_degC", &ThermalOven::set_point, kMaterialTemperatures,
      kZeroCelsius},
-    {"max_power_W", &ThermalOven::max_power, kPositive},
+    {"max_power_W", &ThermalOven::max_power, {0, 1e3, true}},
     {"proportional_W_per_K", &ThermalOven::proportional_gain, kPositive},
     {"integral_time_s", &ThermalOven::integral_time, kPositive},
 };
