@@ -16,6 +16,7 @@
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
+#include "cli/progress.h"
 #include "cli/terminal.h"
 #include "compensation/scoring/allan_deviation.h"
 #include "compensation/scoring/noise_coefficients.h"
@@ -34,8 +35,7 @@ constexpr double kSameRate = 0.01;  // [-], of two sample rates
 struct AllanArguments {
   std::string file, json;
   std::optional<std::string> dataset, unit;
-  std::optional<double> rate;
-  TimeWindow window;
+  std::optional<double> rate, from, to;
 };
 
 /// The signal whose deviations are computed.
@@ -167,14 +167,19 @@ Signal signal_of(const AllanArguments& arguments) {
   return csv_signal(arguments, text);
 }
 
+TimeWindow window_of(const AllanArguments& arguments) {
+  TimeWindow window;
+  window.from = arguments.from.value_or(window.from);
+  window.to = arguments.to.value_or(window.to);
+  return window;
+}
+
 void check_options(const AllanArguments& arguments) {
-  if (arguments.rate && !(*arguments.rate > 0 && *arguments.rate < 1e9))
-    throw std::invalid_argument(fmt::format(
-        "--rate-Hz {}: out of range; expected a number > 0", *arguments.rate));
-  if (!(arguments.window.from < arguments.window.to))
+  const TimeWindow window = window_of(arguments);
+  if (!(window.from < window.to))
     throw std::invalid_argument(
         fmt::format("--from {} --to {}: empty; expected --from below --to",
-                    arguments.window.from, arguments.window.to));
+                    window.from, window.to));
 }
 
 void check_rate(const AllanArguments& arguments, const EvenSeries& series) {
@@ -201,9 +206,10 @@ nlohmann::ordered_json series_json(const EvenSeries& series,
 int allan(const AllanArguments& arguments) {
   check_options(arguments);
   if (!arguments.json.empty()) require_output(arguments.json, {arguments.file});
+  std::optional<Progress> progress("Allan deviation of " + arguments.file);
   Signal signal = signal_of(arguments);
   const EvenSeries series =
-      even_series(signal.recording, signal.column, arguments.window);
+      even_series(signal.recording, signal.column, window_of(arguments));
   check_rate(arguments, series);
   if (series.missing + series.left_out > 0)
     signal.warnings.push_back(fmt::format(
@@ -222,6 +228,7 @@ int allan(const AllanArguments& arguments) {
     json["noise"] = to_json(found, signal.unit);
   }
   json["warnings"] = signal.warnings;
+  progress.reset();
   for (const std::string& warning : signal.warnings) print_warning(warning);
   if (!arguments.json.empty())
     write_text_file(arguments.json, json.dump(2) + "\n");
@@ -231,31 +238,43 @@ int allan(const AllanArguments& arguments) {
 
 }  // namespace
 
-void add_allan(CLI::App& program, Action& action) {
+void add_allan(CommandLine& program) {
   auto arguments = std::make_shared<AllanArguments>();
-  CLI::App* command = program.add_subcommand(
-      "allan", "Compute the Allan deviation, plain and overlapping, of a rate");
-  command->add_option("file", arguments->file, "RUN.h5 or SERIES.csv")
-      ->required();
-  command->add_option("--dataset", arguments->dataset,
-                      "NAME of the variable or column; the default is rate");
-  command->add_option("--rate-Hz", arguments->rate,
-                      "Sample rate of a CSV that has no column of times");
-  command->add_option("--unit", arguments->unit,
-                      "Unit of a CSV: deg/s, deg/h, rad/s, or any other text, "
-                      "which is printed as it is; the default is deg/s");
-  command->add_option(
-      "--from", arguments->window.from,
-      "First time to use, in seconds; the default is the first sample");
-  command->add_option(
-      "--to", arguments->window.to,
-      "Last time to use, in seconds; the default is the last sample");
-  command->add_option(
-      "--json", arguments->json,
-      "FILE to write the curve, the coefficients and the samples used to");
-  command->callback([arguments, &action] {
-    action = [arguments] { return allan(*arguments); };
-  });
+  Command& command =
+      program.add("allan", kFiles,
+                  "Computes the Allan deviation, plain and overlapping, of a "
+                  "rate");
+  command.argument({"FILE", "", "RUN.h5 or SERIES.csv"}, arguments->file);
+  command.reads({{FileKind::kRecording},
+                 {FileKind::kRecordingTable, FileKind::kCharacteristic,
+                  FileKind::kProfile}});
+  command.text({"--dataset", "NAME", "Variable or column", "rate"},
+               arguments->dataset);
+  command.number(
+      {"--from", "S", "First time to use, in seconds", "the first sample"},
+      arguments->from);
+  command.number(
+      {"--to", "S", "Last time to use, in seconds", "the last sample"},
+      arguments->to);
+  command.text({"--json", "FILE",
+                "Writes the curve, the coefficients and the samples used to "
+                "FILE",
+                "no file"},
+               arguments->json);
+  command.group("What a CSV does not state");
+  command.number(
+      {"--rate-Hz", "F", "Sample rate of a CSV that has no column of times",
+       "that of the times"},
+      arguments->rate, {0, 1e9, true, true});
+  command.text({"--unit", "U",
+                "Unit of a CSV: deg/s, deg/h, rad/s, or any other text, which "
+                "is printed as it is",
+                "deg/s"},
+               arguments->unit);
+  command.example("beamgyro allan rest.h5", "The rate of a recording");
+  command.example("beamgyro allan series.csv --rate-Hz 100 --unit deg/h",
+                  "A column of rates without times");
+  command.action([arguments] { return allan(*arguments); });
 }
 
 }  // namespace beamgyro

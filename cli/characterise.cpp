@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
+#include "cli/progress.h"
 #include "dataset/files/atomic_file.h"
 #include "sim/dynamics/characteristic.h"
 #include "sim/scenario/simulation_input.h"
@@ -71,6 +72,7 @@ int characterise(const CharacteriseArguments& arguments) {
   require_output(arguments.output, {arguments.device});
   require_ending(arguments.output, {".csv"});
 
+  const Progress progress("characterising " + arguments.device);
   const Gyro gyro = make_gyro(input.device);
   write_text_file(arguments.output, characteristic_csv(gyro, grid));
   return 0;
@@ -78,25 +80,31 @@ int characterise(const CharacteriseArguments& arguments) {
 
 }  // namespace
 
-void add_characterise(CLI::App& program, Action& action) {
+void add_characterise(CommandLine& program) {
   auto arguments = std::make_shared<CharacteriseArguments>();
-  CLI::App* command =
-      program.add_subcommand("characterise",
-                             "Tabulate the steady state of a device over the "
-                             "temperature of its beam, without noise");
-  command->add_option("device", arguments->device, "DEVICE.toml")->required();
-  command->add_option("-o,--output", arguments->output, "OUT.csv")->required();
-  command
-      ->add_option("--beam-temperature", arguments->temperatures,
-                   "START:STOP:STEP in degC, both ends included, or one value")
-      ->capture_default_str();
-  command
-      ->add_option("--set", arguments->overrides,
-                   "KEY=VALUE replaces a key of the device; may be repeated")
-      ->allow_extra_args(false);
-  command->callback([arguments, &action] {
-    action = [arguments] { return characterise(*arguments); };
-  });
+  Command& command =
+      program.add("characterise", kSimulation,
+                  "Tabulates the steady state of a device over the temperature "
+                  "of its beam, without noise");
+  command.argument({"DEVICE.toml", "", "Device file"}, arguments->device);
+  command.reads({{FileKind::kDevice}});
+  command.text({"-o,--output", "OUT.csv", "Table to write"}, arguments->output);
+  command.text({"--beam-temperature", "START:STOP:STEP",
+                "Temperatures in degC, both ends included, or one value",
+                arguments->temperatures},
+               arguments->temperatures);
+  command.texts(
+      {"--set", "KEY=VALUE", "Replaces a key of the device; may be repeated",
+       "the file as it is"},
+      arguments->overrides);
+  command.example(
+      "beamgyro characterise scenarios/devices/nominal.toml -o nominal.csv",
+      "The shipped device from -40 to 60 degC");
+  command.example(
+      "beamgyro characterise scenarios/devices/nominal.toml -o hot.csv "
+      "--beam-temperature 20:80:1 --set beam.length_m=0.038",
+      "A shorter beam, in steps of 1 K");
+  command.action([arguments] { return characterise(*arguments); });
 }
 
 }  // namespace beamgyro

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <functional>
+#include "cli/command_line.h"
 
 namespace beamgyro {
 
-/// Carries out a parsed command and returns the exit status.
-using Action = std::function<int()>;
+// Headings of the list of commands.
+constexpr const char* kSimulation = "Simulation";
+constexpr const char* kCompensation = "Compensation";
+constexpr const char* kFiles = "Recordings and sets";
 
-/// Each function adds one subcommand with its options. It sets `action` when
-/// that subcommand is called.
-void add_characterise(CLI::App& program, Action& action);
-void add_run(CLI::App& program, Action& action);
-void add_generate(CLI::App& program, Action& action);
-void add_import(CLI::App& program, Action& action);
-void add_train(CLI::App& program, Action& action);
-void add_compensate(CLI::App& program, Action& action);
-void add_export(CLI::App& program, Action& action);
-void add_validate(CLI::App& program, Action& action);
-void add_allan(CLI::App& program, Action& action);
-void add_verify(CLI::App& program, Action& action);
-void add_info(CLI::App& program, Action& action);
+/// Each function adds one command with its options.
+void add_characterise(CommandLine& program);
+void add_run(CommandLine& program);
+void add_generate(CommandLine& program);
+void add_import(CommandLine& program);
+void add_train(CommandLine& program);
+void add_compensate(CommandLine& program);
+void add_export(CommandLine& program);
+void add_validate(CommandLine& program);
+void add_allan(CommandLine& program);
+void add_verify(CommandLine& program);
+void add_info(CommandLine& program);
 
 }  // namespace beamgyro

@@ -3,11 +3,13 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
+#include "cli/progress.h"
 #include "cli/terminal.h"
 #include "cli/version.h"
 #include "compensation/compensator/compensator_file.h"
@@ -35,6 +37,7 @@ std::vector<double> answers(const Compensator& compensator,
 
 int compensate(const CompensateArguments& arguments) {
   const Compensator compensator = read_compensator(arguments.compensator);
+  std::optional<Progress> progress("compensating " + arguments.run);
   Recording recording = load_recording(arguments.run);
   require_output(arguments.output, {arguments.compensator, arguments.run});
   require_recording_name(arguments.output);
@@ -44,6 +47,7 @@ int compensate(const CompensateArguments& arguments) {
         arguments.run, kColumn));
   }
   std::vector<double> rate = answers(compensator, recording, arguments.run);
+  progress.reset();
   if (const std::size_t clamped = clamped_samples(compensator, recording)) {
     print_warning(fmt::format(
         "{}: {} of {} samples lie outside {:g} to {:g} degC, the temperatures "
@@ -64,17 +68,21 @@ int compensate(const CompensateArguments& arguments) {
 
 }  // namespace
 
-void add_compensate(CLI::App& program, Action& action) {
+void add_compensate(CommandLine& program) {
   auto arguments = std::make_shared<CompensateArguments>();
-  CLI::App* command = program.add_subcommand(
-      "compensate", "Copy a recording and add the compensated rate");
-  command->add_option("compensator", arguments->compensator, "COMPENSATOR.json")
-      ->required();
-  command->add_option("run", arguments->run, "RUN.h5")->required();
-  command->add_option("-o,--output", arguments->output, "OUT.h5")->required();
-  command->callback([arguments, &action] {
-    action = [arguments] { return compensate(*arguments); };
-  });
+  Command& command =
+      program.add("compensate", kCompensation,
+                  "Copies a recording and adds the compensated rate");
+  command.argument({"COMPENSATOR.json", "", "Compensator, as written by train"},
+                   arguments->compensator);
+  command.reads({{FileKind::kCompensator}});
+  command.argument({"RUN.h5", "", "Recording"}, arguments->run);
+  command.reads({{FileKind::kRecording}});
+  command.text({"-o,--output", "OUT.h5", "Recording to write"},
+               arguments->output);
+  command.example("beamgyro compensate cubic.json flight.h5 -o compensated.h5",
+                  "Adds the variable compensated_rate");
+  command.action([arguments] { return compensate(*arguments); });
 }
 
 }  // namespace beamgyro

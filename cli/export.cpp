@@ -27,8 +27,7 @@ namespace fs = std::filesystem;
 struct ExportArguments {
   std::vector<std::string> compensators, axes;
   std::string format, output, name;
-  std::optional<int> instance;
-  std::optional<long> device_id;
+  std::optional<long> instance, device_id;
   bool fit_cubic = false, force = false;
 };
 
@@ -97,8 +96,9 @@ NamedTexts parameter_texts(const ExportArguments& arguments,
                     compensator.temperature_range});
   }
   const bool px4 = arguments.format == "px4";
-  const AutopilotGyro gyro{arguments.instance.value_or(px4 ? 0 : 1),
-                           arguments.device_id.value_or(0)};
+  const AutopilotGyro gyro{
+      static_cast<int>(arguments.instance.value_or(px4 ? 0 : 1)),
+      arguments.device_id.value_or(0)};
   NamedTexts texts = {
       {name + (px4 ? ".params" : ".parm"), of_file(compensators[0].file, [&] {
          return px4 ? px4_parameters(axes, gyro)
@@ -196,53 +196,53 @@ int run_export(const ExportArguments& arguments) {
 
 }  // namespace
 
-void add_export(CLI::App& program, Action& action) {
+void add_export(CommandLine& program) {
   auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = program.add_subcommand(
-      "export", "Write a compensator as C source or autopilot parameters");
-  command
-      ->add_option("compensator", arguments->compensators,
-                   "COMPENSATOR.json; for px4 and ardupilot up to three, one "
-                   "for each axis")
-      ->required()
-      ->expected(1, 3);
-  command
-      ->add_option("--format", arguments->format,
-                   "c writes NAME.h, NAME.c and NAME_selftest.c; px4 writes "
-                   "NAME.params; ardupilot writes NAME.parm")
-      ->required()
-      ->check(CLI::IsMember({"c", "px4", "ardupilot"}));
-  command->add_option("-o,--output", arguments->output, "DIR")->required();
-  command->add_option("--name", arguments->name,
-                      "NAME of the files; the default is the file name of the "
-                      "(first) compensator");
-  command
-      ->add_option(
-          "--axis", arguments->axes,
-          "Axis of the autopilot's gyro for each compensator, as in x,y; the "
-          "default is z for one compensator and x,y,z for three")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::IsMember({"x", "y", "z"}));
-  command
-      ->add_option("--instance", arguments->instance,
+  Command& command =
+      program.add("export", kCompensation,
+                  "Writes a compensator as C source or autopilot parameters");
+  command.arguments({"COMPENSATOR.json...", "",
+                     "One compensator; for px4 and ardupilot up to three, one "
+                     "for each axis"},
+                    arguments->compensators, 3);
+  command.reads({{FileKind::kCompensator}});
+  command.choice({"--format", "c|px4|ardupilot",
+                  "c writes NAME.h, NAME.c and NAME_selftest.c; px4 writes "
+                  "NAME.params; ardupilot writes NAME.parm"},
+                 arguments->format, {"c", "px4", "ardupilot"});
+  command.text({"-o,--output", "DIR", "Directory to write to"},
+               arguments->output);
+  command.text({"--name", "NAME", "Name of the files and of the C functions",
+                "the file name of the (first) compensator"},
+               arguments->name);
+  command.group("C");
+  command.flag({"--force", "",
+                "Exports a compensator that cancels the rate, or that single "
+                "precision changes by more than 1e-4 deg/s; the code carries a "
+                "warning"},
+               arguments->force);
+  command.group("PX4 and ArduPilot");
+  command.choices({"--axis", "x|y|z",
+                   "Axis of the autopilot's gyro for each compensator, as in "
+                   "x,y",
+                   "z for one compensator and x,y,z for three"},
+                  arguments->axes, {"x", "y", "z"});
+  command.integer({"--instance", "N",
                    "Number of the autopilot's gyro, 0 to 3 for px4 and 1 to 3 "
-                   "for ardupilot; the default is the first")
-      ->check(CLI::NonNegativeNumber);
-  command
-      ->add_option("--device-id", arguments->device_id,
-                   "px4: identifier of the sensor")
-      ->check(CLI::Range(0, 2147483647));
-  command->add_flag("--fit-cubic", arguments->fit_cubic,
-                    "px4, ardupilot: exports the cubic fitted to the same rows "
-                    "if the compensator is no cubic");
-  command->add_flag(
-      "--force", arguments->force,
-      "c: exports a compensator that cancels the rate, or that single "
-      "precision changes by more than 1e-4 deg/s; the code carries a warning");
-  command->callback([arguments, &action] {
-    action = [arguments] { return run_export(*arguments); };
-  });
+                   "for ardupilot",
+                   "the first"},
+                  arguments->instance);
+  command.integer({"--device-id", "ID", "px4: identifier of the sensor", "0"},
+                  arguments->device_id, {0, 2147483647});
+  command.flag({"--fit-cubic", "",
+                "Exports the cubic fitted to the same rows if the compensator "
+                "is no cubic"},
+               arguments->fit_cubic);
+  command.example("beamgyro export cubic.json --format c -o firmware",
+                  "C source for the firmware of a gyro");
+  command.example("beamgyro export x.json y.json z.json --format px4 -o params",
+                  "Parameters for three axes");
+  command.action([arguments] { return run_export(*arguments); });
 }
 
 }  // namespace beamgyro

@@ -22,9 +22,7 @@ constexpr int kSomeDevicesFailed = 4;
 
 struct GenerateArguments {
   std::string campaign, output, shard;
-  std::optional<long> devices;
-  std::optional<std::uint32_t> lacking;
-  unsigned jobs = 0;
+  std::optional<long> devices, lacking, jobs;
   bool resume = false, strict = false;
 };
 
@@ -74,6 +72,16 @@ std::string outcome(const SetState& state, std::uint64_t made) {
   return text;
 }
 
+std::string note_for_interruption(const GenerateArguments& arguments) {
+  const std::string kept =
+      fmt::format("{} keeps its finished files; ", arguments.output);
+  return kept + (arguments.shard.empty()
+                     ? fmt::format("go on with: beamgyro generate {} -o {} "
+                                   "--resume",
+                                   arguments.campaign, arguments.output)
+                     : "the same command goes on with the others");
+}
+
 int generate(const GenerateArguments& arguments) {
   const SetTask task = task_of(arguments.shard);
   require_directory_name(arguments.output);
@@ -83,7 +91,7 @@ int generate(const GenerateArguments& arguments) {
   require_moderate_files(arguments.campaign, plan);
   if (arguments.lacking) {
     print_result(lacking_tasks(arguments.output, plan.manifest_head(),
-                               *arguments.lacking) +
+                               static_cast<std::uint32_t>(*arguments.lacking)) +
                  "\n");
     return 0;
   }
@@ -97,8 +105,9 @@ int generate(const GenerateArguments& arguments) {
         "{}: continuing the work of {}, which ended without finishing",
         arguments.output, set.died_before()));
   const std::vector<std::uint32_t> files = set.lacking();
+  set_interrupt_note(note_for_interruption(arguments));
   generate_with_progress("generating " + arguments.output, plan, files,
-                         arguments.jobs,
+                         static_cast<unsigned>(arguments.jobs.value_or(0)),
                          [&](std::uint32_t file, const MadeShard& shard) {
                            set.add(file, shard.bytes, shard.failures);
                          });
@@ -113,36 +122,39 @@ int generate(const GenerateArguments& arguments) {
 
 }  // namespace
 
-void add_generate(CLI::App& program, Action& action) {
+void add_generate(CommandLine& program) {
   auto arguments = std::make_shared<GenerateArguments>();
-  CLI::App* command = program.add_subcommand(
-      "generate",
-      "Simulate every device of a campaign and write the set to a directory");
-  command->add_option("campaign", arguments->campaign, "CAMPAIGN.toml")
-      ->required();
-  command->add_option("-o,--output", arguments->output, "DIR")->required();
-  command->add_option("--devices", arguments->devices,
-                      "Replaces the number of devices of the campaign");
-  command
-      ->add_option("--jobs", arguments->jobs,
-                   "Number of threads; the default is one per core")
-      ->check(CLI::Range(1, 4096));
-  CLI::Option* shard = command->add_option(
-      "--shard", arguments->shard,
-      "I/N makes only the files of task I of N tasks that share the directory");
-  CLI::Option* resume =
-      command->add_flag("--resume", arguments->resume,
-                        "Continues the set that is in the directory");
-  CLI::Option* strict = command->add_flag(
-      "--strict", arguments->strict, "Ends with status 4 when devices failed");
-  command
-      ->add_option("--lacking", arguments->lacking,
-                   "Makes nothing; prints which of N tasks have work left")
-      ->check(CLI::Range(1, 1000000))
-      ->excludes(shard, resume, strict);
-  command->callback([arguments, &action] {
-    action = [arguments] { return generate(*arguments); };
-  });
+  Command& command = program.add(
+      "generate", kSimulation,
+      "Simulates every device of a campaign and writes the set to a directory");
+  command.argument({"CAMPAIGN.toml", "", "Campaign file"}, arguments->campaign);
+  command.reads({{FileKind::kCampaign}});
+  command.text({"-o,--output", "DIR", "Directory of the set"},
+               arguments->output);
+  command.integer(
+      {"--devices", "N", "Number of devices", "that of the campaign"},
+      arguments->devices, {1, 4000000000});
+  command.integer({"--jobs", "N", "Number of threads", "one per core"},
+                  arguments->jobs, {1, 4096});
+  command.flag({"--resume", "", "Continues the set that is in the directory"},
+               arguments->resume);
+  command.flag({"--strict", "", "Ends with status 4 when devices failed"},
+               arguments->strict);
+  command.group("Several tasks that share the directory");
+  command.text(
+      {"--shard", "I/N", "Makes only the files of task I of N", "all files"},
+      arguments->shard);
+  command.integer(
+      {"--lacking", "N",
+       "Makes nothing; prints which of N tasks have work left", "not asked"},
+      arguments->lacking, {1, 1000000});
+  command.exclude("--lacking", {"--shard", "--resume", "--strict"});
+  command.example("beamgyro generate scenarios/campaigns/small.toml -o small",
+                  "A small set");
+  command.example(
+      "beamgyro generate scenarios/campaigns/small.toml -o small --resume",
+      "Goes on after an interruption");
+  command.action([arguments] { return generate(*arguments); });
 }
 
 }  // namespace beamgyro

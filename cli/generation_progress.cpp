@@ -24,10 +24,10 @@ void generate_with_progress(const std::string& activity, const ShardPlan& plan,
     const double elapsed =
         std::chrono::duration<double>(Clock::now() - start).count();
     return Progress::Status{runs / total,
-                            fmt::format("{} of {} device runs, {:.3g} "
-                                        "device-hours/s, {} failed",
-                                        runs, total, runs * hours / elapsed,
-                                        counts.failures.load())};
+                            fmt::format("{} of {} runs, {} failed, {:.3g} "
+                                        "device-h/s",
+                                        runs, total, counts.failures.load(),
+                                        runs * hours / elapsed)};
   };
   const Progress progress(activity, done);
   generate_shards(plan, files, jobs, counts, publish);

@@ -55,29 +55,34 @@ int run_import(const ImportArguments& arguments) {
 
 }  // namespace
 
-void add_import(CLI::App& program, Action& action) {
+void add_import(CommandLine& program) {
   auto arguments = std::make_shared<ImportArguments>();
-  CLI::App* command = program.add_subcommand(
-      "import", "Convert a log of a real gyro into a recording");
-  command
-      ->add_option(
-          "log", arguments->log,
-          "LOG.csv: delimiter-separated text with one sample in each row")
-      ->required();
-  command
-      ->add_option("--map", arguments->map,
-                   "MAP.toml, which states what the columns of the log mean")
-      ->required();
-  command->add_option("-o,--output", arguments->output, "RUN.h5 or RUN.csv")
-      ->required();
-  command->add_option("--axis", arguments->axis,
-                      "x, y or z: which gyro to take if the map has several");
-  command->add_option("--join", arguments->join,
-                      "LOG.csv: a second log, such as the chamber's, for the "
-                      "table [join] of the map");
-  command->callback([arguments, &action] {
-    action = [arguments] { return run_import(*arguments); };
-  });
+  Command& command = program.add(
+      "import", kFiles, "Converts a log of a real gyro into a recording");
+  command.argument(
+      {"LOG.csv", "", "Delimiter-separated text with one sample in each row"},
+      arguments->log);
+  command.reads({{FileKind::kLog},
+                 {FileKind::kRecordingTable, FileKind::kCharacteristic,
+                  FileKind::kProfile}});
+  command.text({"--map", "MAP.toml", "States what the columns of the log mean"},
+               arguments->map);
+  command.reads({{FileKind::kLogMap}});
+  command.text({"-o,--output", "RUN.h5", "Recording to write, .h5 or .csv"},
+               arguments->output);
+  command.text(
+      {"--axis", "AXIS", "x, y or z: which gyro to take if the map has several",
+       "the only one"},
+      arguments->axis);
+  command.text({"--join", "SECOND.csv",
+                "A second log, such as the chamber's, for the table [join] of "
+                "the map",
+                "no second log"},
+               arguments->join);
+  command.example(
+      "beamgyro import log.csv --map scenarios/maps/example.toml -o log.h5",
+      "A log with the columns that the map names");
+  command.action([arguments] { return run_import(*arguments); });
 }
 
 }  // namespace beamgyro

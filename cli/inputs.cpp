@@ -88,6 +88,13 @@ Recording load_recording(const std::filesystem::path& path) {
   return recording;
 }
 
+std::vector<std::uint32_t> device_numbers(const std::vector<long>& numbers) {
+  std::vector<std::uint32_t> devices;
+  for (const long number : numbers)
+    devices.push_back(static_cast<std::uint32_t>(number));
+  return devices;
+}
+
 void require_ending(const fs::path& path,
                     const std::vector<std::string>& endings) {
   const std::string extension = path.extension().string();
@@ -122,6 +129,9 @@ void require_output(const fs::path& output,
     }
   }
   require_writable(output);
+  set_interrupt_note(fmt::format(
+      "{} {}", output.string(),
+      identity_of(output) ? "is as it was before" : "was not written"));
 }
 
 void require_set_output(const fs::path& directory, const ManifestHead& head,

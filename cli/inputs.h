@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -18,6 +19,12 @@ namespace beamgyro {
 /// succeeds.
 Recording load_recording(const std::filesystem::path& path);
 
+/// Largest number of a device of a set.
+constexpr long kLastDevice = 4294967295;
+
+/// Returns numbers from 0 to kLastDevice as a set counts them.
+std::vector<std::uint32_t> device_numbers(const std::vector<long>& numbers);
+
 /// Throws std::invalid_argument unless `path`, the argument of -o, has one of
 /// these endings, those of a recording, or none of a file.
 void require_ending(const std::filesystem::path& path,
@@ -25,7 +32,8 @@ void require_ending(const std::filesystem::path& path,
 void require_recording_name(const std::filesystem::path& path);
 void require_directory_name(const std::filesystem::path& path);
 
-/// Throws what writing to `output` would throw at its start. Throws
+/// Prepares the note for an interruption. Throws what writing to `output` would
+/// throw at its start. Throws
 /// std::invalid_argument when `output` is one of the files that the command
 /// reads, under whatever name. `inputs` has all files that the command reads,
 /// also those that other inputs name; a directory stands for everything below

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -13,11 +15,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr double kPatience = 2, kStep = 0.2, kMinute = 60;  // [s]
+constexpr std::size_t kShortest = 12, kLogWidth = 200;      // [characters]
 
 }  // namespace
 
 Progress::Progress(std::string activity)
-    : Progress(std::move(activity), nullptr) {}
+    : Progress(std::move(activity), [this] {
+        return Status{share_, {}};
+      }) {}
 
 Progress::Progress(std::string activity, std::function<Status()> status)
     : activity_(std::move(activity)),
@@ -26,7 +31,7 @@ Progress::Progress(std::string activity, std::function<Status()> status)
   try {
     if (shows_progress()) {
       thread_ = std::thread([this] { draw(); });
-    } else if (status_) {
+    } else if (!is_quiet()) {
       thread_ = std::thread([this] { log(); });
     }
   } catch (const std::system_error&) {
@@ -50,31 +55,41 @@ bool Progress::over_within(double seconds) {
                          [this] { return over_; });
 }
 
-std::string Progress::line() const {
+// When the line is too long the last details are left out, then the name of the
+// activity is cut off.
+std::string Progress::line(std::size_t width) {
   const double elapsed =
       std::chrono::duration<double>(Clock::now() - start_).count();
-  const Status status = status_ ? status_() : Status{share_, {}};
-  const double share = status.share;
-  std::string text = activity_;
-  if (share > 0) text += fmt::format(", {:.0f} %", 100 * share);
-  text += fmt::format(", {:.0f} s", elapsed);
-  if (share > 0)
-    text += fmt::format(", {:.0f} s left", elapsed * (1 - share) / share);
-  if (!status.detail.empty()) text += ", " + status.detail;
-  return text;
+  const Status status = status_();
+  left_.note(elapsed, status.share);
+  std::string text;
+  if (status.share > 0) text += fmt::format(", {:.0f} %", 100 * status.share);
+  text += ", " + clock_text(elapsed);
+  if (const std::optional<double> left = left_.seconds())
+    text += fmt::format(", {} left", clock_text(*left));
+  std::string detail = status.detail;
+  const std::size_t name = std::min(activity_.size(), kShortest);
+  while (name + text.size() + 2 + detail.size() > width && !detail.empty()) {
+    const std::size_t comma = detail.rfind(", ");
+    detail.resize(comma == detail.npos ? 0 : comma);
+  }
+  if (!detail.empty()) text += ", " + detail;
+  const std::size_t room =
+      width > text.size() + kShortest ? width - text.size() : kShortest;
+  return shortened(activity_, room) + text;
 }
 
 void Progress::draw() {
   double wait = kPatience;
   while (!over_within(wait)) {
-    print_progress(line());
+    print_progress(line(terminal_width() - 1));
     wait = kStep;
   }
   if (wait == kStep) print_progress("");
 }
 
 void Progress::log() {
-  while (!over_within(kMinute)) print_note(line());
+  while (!over_within(kMinute)) print_note(line(kLogWidth));
 }
 
 }  // namespace beamgyro

@@ -9,27 +9,29 @@
 #include <string>
 #include <thread>
 
+#include "cli/time_left.h"
+
 namespace beamgyro {
 
-/// Prints a line of progress on standard error while the object lives,
-/// beginning after two seconds, and removes it at the end. It prints on a
-/// terminal only, and nothing with --quiet.
+/// Shows progress on standard error while the object lives. On a terminal this
+/// is one line, no wider than the terminal, that rewrites itself; it begins
+/// after two seconds and is removed at the end. Elsewhere it is a line a
+/// minute. With --quiet there is none.
 class Progress {
  public:
-  /// Share of the work that is done, 0 .. 1, and further text for the line.
+  /// Share of the work that is done, 0 .. 1, and further text for the line. A
+  /// share of 0 shows neither percents nor the time left.
   struct Status {
-    double share;
-    std::string detail;
+    double share = 0;
+    std::string detail = {};
   };
 
   explicit Progress(std::string activity);
-  /// For long work: another thread calls `status`. Where there is no terminal a
-  /// plain line is printed once a minute.
+  /// Another thread calls `status`.
   Progress(std::string activity, std::function<Status()> status);
   ~Progress();
 
-  /// Sets the share of the work that is done, 0 .. 1. The line shows it with
-  /// the time left.
+  /// Sets the share of the work that is done, 0 .. 1.
   void set_share(double share) { share_ = share; }
 
   Progress(const Progress&) = delete;
@@ -39,12 +41,13 @@ class Progress {
   void draw();
   void log();
   bool over_within(double seconds);
-  std::string line() const;
+  std::string line(std::size_t width);
 
   std::string activity_;
   std::function<Status()> status_;
   std::atomic<double> share_ = 0;
   std::chrono::steady_clock::time_point start_;
+  TimeLeft left_;
   std::mutex mutex_;
   std::condition_variable ended_;
   bool over_ = false;

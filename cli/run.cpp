@@ -21,10 +21,9 @@ namespace beamgyro {
 namespace {
 
 struct RunArguments {
-  std::string scenario, output;
+  std::string scenario, output, fidelity;
   std::vector<std::string> overrides;
-  std::optional<std::int64_t> seed;
-  std::optional<std::string> fidelity;
+  std::optional<long> seed;
   bool yes = false;
 };
 
@@ -46,8 +45,8 @@ int run(const RunArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
   if (arguments.seed)
     overrides.push_back(fmt::format("seed={}", *arguments.seed));
-  if (arguments.fidelity)
-    overrides.push_back(fmt::format("fidelity=\"{}\"", *arguments.fidelity));
+  if (!arguments.fidelity.empty())
+    overrides.push_back(fmt::format("fidelity=\"{}\"", arguments.fidelity));
   const LoadedScenario input = load_scenario(arguments.scenario, overrides);
   require_output(arguments.output, input.files);
   require_consent(input.scenario, arguments.yes);
@@ -83,32 +82,40 @@ int run(const RunArguments& arguments) {
 
 }  // namespace
 
-void add_run(CLI::App& program, Action& action) {
+void add_run(CommandLine& program) {
   auto arguments = std::make_shared<RunArguments>();
-  CLI::App* command =
-      program.add_subcommand("run", "Simulate one gyro in one scenario");
-  command->add_option("scenario", arguments->scenario, "SCENARIO.toml")
-      ->required();
-  command->add_option("-o,--output", arguments->output, "RUN.h5 or RUN.csv")
-      ->required();
-  command
-      ->add_option("--set", arguments->overrides,
-                   "KEY=VALUE replaces a key of the scenario or of its device; "
-                   "may be repeated")
-      ->allow_extra_args(false);
-  command
-      ->add_option("--seed", arguments->seed,
-                   "Replaces the seed of the scenario")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option(
-      "--fidelity", arguments->fidelity,
-      "Replaces the fidelity: quasistatic, envelope or carrier");
-  command->add_flag(
-      "--yes", arguments->yes,
-      "Starts a carrier run even if it will take more than an hour");
-  command->callback([arguments, &action] {
-    action = [arguments] { return run(*arguments); };
-  });
+  Command& command =
+      program.add("run", kSimulation,
+                  "Simulates one gyro in one scenario and writes a recording");
+  command.argument(
+      {"SCENARIO.toml", "", "Scenario file, which names its device"},
+      arguments->scenario);
+  command.reads({{FileKind::kScenario}});
+  command.text({"-o,--output", "RUN.h5", "Recording to write, .h5 or .csv"},
+               arguments->output);
+  command.flag({"--yes", "",
+                "Starts a carrier run even if it will take more than an hour"},
+               arguments->yes);
+  command.group("Changes of the scenario");
+  command.texts({"--set", "KEY=VALUE",
+                 "Replaces a key of the scenario or of its device; may be "
+                 "repeated",
+                 "the files as they are"},
+                arguments->overrides);
+  command.integer(
+      {"--seed", "N", "Seed of everything random", "that of the scenario"},
+      arguments->seed);
+  command.choice(
+      {"--fidelity", "quasistatic|envelope|carrier",
+       "How much of the physics is simulated", "that of the scenario"},
+      arguments->fidelity, {"quasistatic", "envelope", "carrier"});
+  command.example("beamgyro run scenarios/warm_up.toml -o warm_up.h5",
+                  "The first hour after power-on");
+  command.example(
+      "beamgyro run scenarios/rest.toml -o rest.h5 --seed 2 "
+      "--set beam.length_m=0.041",
+      "A longer beam and other noise");
+  command.action([arguments] { return run(*arguments); });
 }
 
 }  // namespace beamgyro

@@ -5,13 +5,22 @@
 
 #include <csignal>
 
+#include "cli/terminal.h"
 #include "dataset/files/atomic_file.h"
 
 namespace beamgyro {
 namespace {
 
+// Dies by the signal, so that a loop of the shell ends, too.
 extern "C" void end_process(int signal) {
   remove_partial_files();
+  print_interrupted();
+  std::signal(signal, SIG_DFL);
+  raise(signal);
+  sigset_t mask;
+  sigemptyset(&mask);
+  sigaddset(&mask, signal);
+  sigprocmask(SIG_UNBLOCK, &mask, nullptr);  // here it ends
   _exit(128 + signal);
 }
 
@@ -23,7 +32,10 @@ void handle_interrupts() {
   sigfillset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGHUP, &action, nullptr);
+  struct sigaction before {};
+  sigaction(SIGHUP, nullptr, &before);
+  if (before.sa_handler != SIG_IGN)  // as nohup makes it
+    sigaction(SIGHUP, &action, nullptr);
   // A closed pipe and a limit on the size of files are reported by the failed
   // write instead.
   std::signal(SIGPIPE, SIG_IGN);

@@ -3,8 +3,9 @@
 
 namespace beamgyro {
 
-/// Makes SIGINT and SIGTERM remove the unfinished files of this process and end
-/// it with status 130 or 143.
+/// Makes SIGINT, SIGTERM and SIGHUP remove the unfinished files of this
+/// process, print what is kept, and end it by the same signal; a shell sees
+/// status 130, 143 or 129.
 void handle_interrupts();
 
 }  // namespace beamgyro

@@ -2,9 +2,12 @@
 #include "cli/terminal.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <set>
@@ -14,8 +17,14 @@
 namespace beamgyro {
 namespace {
 
-bool is_quiet = false;
+bool prints_errors_only = false;
 std::set<std::string> kept_warnings;
+constexpr std::string_view kClear = "\r\033[K";  // the line of the terminal
+std::atomic<bool> progress_shown = false, interrupted = false;
+
+// In storage that a signal handler may read at any moment.
+std::array<char, 500> interrupt_note{};
+std::atomic<std::size_t> interrupt_note_size = 0;
 
 bool colour_wanted() {
   const char* no_colour = std::getenv("NO_COLOR");
@@ -68,16 +77,16 @@ std::string harmless(std::string_view text, std::string_view kept) {
 void print_line(std::string_view label, const char* colour,
                 std::string_view text) {
   const std::string safe = harmless(text, "\t");
-  const std::string line =
-      colour_wanted()
-          ? fmt::format("\033[{}m{}\033[0m{}\n", colour, label, safe)
-          : fmt::format("{}{}\n", label, safe);
+  std::string line = colour_wanted() ? fmt::format("\033[{}m{}\033[0m{}\n",
+                                                   colour, label, safe)
+                                     : fmt::format("{}{}\n", label, safe);
+  if (progress_shown) line.insert(0, kClear);
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
 }  // namespace
 
-void set_quiet(bool quiet) { is_quiet = quiet; }
+void set_quiet(bool quiet) { prints_errors_only = quiet; }
 
 void print_result(std::string_view text) {
   const std::string safe = harmless(text, "\n\t");
@@ -88,11 +97,11 @@ void print_result(std::string_view text) {
 }
 
 void print_note(std::string_view text) {
-  if (!is_quiet) print_line("", "0", text);
+  if (!prints_errors_only) print_line("", "0", text);
 }
 
 void print_warning(std::string_view text) {
-  if (!is_quiet) print_line("beamgyro: warning: ", "33", text);
+  if (!prints_errors_only) print_line("beamgyro: warning: ", "33", text);
 }
 
 void keep_warning(const std::string& text) { kept_warnings.insert(text); }
@@ -106,11 +115,60 @@ void print_error(std::string_view text) {
   print_line("beamgyro: ", "31", text);
 }
 
-bool shows_progress() { return !is_quiet && isatty(STDERR_FILENO) == 1; }
+bool is_quiet() { return prints_errors_only; }
+
+std::string shortened(std::string_view text, std::size_t width) {
+  if (text.size() <= width) return std::string(text);
+  const std::size_t dots = std::min<std::size_t>(width, 3);
+  std::size_t end = width - dots;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80)
+    --end;  // not within a character
+  return std::string(text.substr(0, end)) + std::string(dots, '.');
+}
+
+std::size_t terminal_width() {
+  constexpr std::size_t kUsual = 80, kNarrowest = 20;
+  winsize size{};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
+    return kUsual;
+  return std::max<std::size_t>(size.ws_col, kNarrowest);
+}
+
+bool shows_progress() {
+  return !prints_errors_only && isatty(STDERR_FILENO) == 1;
+}
 
 void print_progress(std::string_view text) {
-  const std::string line = fmt::format("\r\033[K{}", harmless(text, ""));
+  if (interrupted) return;
+  const std::string line = fmt::format(
+      "{}{}", kClear, shortened(harmless(text, ""), terminal_width() - 1));
   std::fwrite(line.data(), 1, line.size(), stderr);
+  progress_shown = !text.empty();
+}
+
+void set_interrupt_note(std::string_view text) {
+  const std::string safe = harmless(text, "").substr(0, interrupt_note.size());
+  interrupt_note_size = 0;
+  safe.copy(interrupt_note.data(), safe.size());
+  interrupt_note_size = safe.size();
+}
+
+void print_interrupted() noexcept {
+  interrupted = true;
+  const auto put = [](std::string_view text) {
+    // What cannot be written on the way out is lost.
+    [[maybe_unused]] const ssize_t ignored =
+        ::write(STDERR_FILENO, text.data(), text.size());
+  };
+  // Also removes the ^C that the terminal shows.
+  if (isatty(STDERR_FILENO) == 1) put(kClear);
+  if (prints_errors_only) return;
+  put("beamgyro: interrupted");
+  if (const std::size_t size = interrupt_note_size; size > 0) {
+    put("; ");
+    put({interrupt_note.data(), size});
+  }
+  put("\n");
 }
 
 }  // namespace beamgyro

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -25,11 +26,29 @@ void print_error(std::string_view text);
 void keep_warning(const std::string& text);
 void print_kept_warnings();
 
+bool is_quiet();
+
+/// Returns `text`, or its start and "..." if it is longer than `width` bytes.
+std::string shortened(std::string_view text, std::size_t width);
+
+/// Returns the width of the terminal that standard error is, or 80.
+std::size_t terminal_width();
+
 /// Returns whether a line of progress may be drawn: standard error is a
 /// terminal.
 bool shows_progress();
 
-/// Replaces the line of progress on standard error. An empty text clears it.
+/// Replaces the line of progress on standard error. A text wider than the
+/// terminal is cut off, an empty one clears the line. Lines that are printed
+/// meanwhile stand above it.
 void print_progress(std::string_view text);
+
+/// What the user reads when he interrupts the command: what is kept and how to
+/// go on. The text is copied, up to 500 bytes.
+void set_interrupt_note(std::string_view text);
+
+/// Removes the line of progress and prints the note of an interruption. May be
+/// called from a signal handler.
+void print_interrupted() noexcept;
 
 }  // namespace beamgyro

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "compensation/training/train.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 
@@ -22,10 +25,31 @@ namespace {
 
 struct TrainArguments {
   std::vector<std::string> runs, held_out;
-  std::vector<std::string> set_runs;       // names, of a set
-  std::vector<std::uint32_t> set_devices;  // of a set
+  std::vector<std::string> set_runs;  // names, of a set
+  std::vector<long> set_devices;      // of a set
   std::string model, output, cross_validation;
-  std::int64_t seed = 0;
+  std::optional<long> seed;
+};
+
+/// The last epoch that a network told of, from whatever thread.
+class LastEpoch {
+ public:
+  void note(const EpochReport& report) {
+    const std::lock_guard lock(mutex_);
+    last_ = report;
+  }
+
+  std::string text() const {
+    const std::lock_guard lock(mutex_);
+    if (last_.epoch == 0) return "";
+    return fmt::format("restart {}/{}, epoch {}/{}, rms {:.3g} deg/s",
+                       last_.restart, last_.restarts, last_.epoch,
+                       last_.max_epochs, last_.rms);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  EpochReport last_;
 };
 
 struct Sources {
@@ -44,8 +68,9 @@ Sources sources_of_set(const TrainArguments& arguments) {
   if (arguments.set_devices.empty())
     return {of_part(SetPartNumber::kTrain),
             of_part(SetPartNumber::kValidation)};
-  return {runs_of_set(arguments.runs[0],
-                      {{}, arguments.set_runs, arguments.set_devices}),
+  return {runs_of_set(
+              arguments.runs[0],
+              {{}, arguments.set_runs, device_numbers(arguments.set_devices)}),
           {}};
 }
 
@@ -66,7 +91,9 @@ std::optional<Grouping> grouping(const std::string& name) {
 }
 
 int run_training(const TrainArguments& arguments) {
-  const ModelSpec spec = read_model(arguments.model);
+  ModelSpec spec = read_model(arguments.model);
+  LastEpoch epoch;
+  observe(spec, [&](const EpochReport& report) { epoch.note(report); });
   std::vector<std::filesystem::path> inputs = spec.files;
   inputs.insert(inputs.end(), arguments.runs.begin(), arguments.runs.end());
   inputs.insert(inputs.end(), arguments.held_out.begin(),
@@ -74,10 +101,13 @@ int run_training(const TrainArguments& arguments) {
   require_output(arguments.output, inputs);
   require_ending(arguments.output, {".json"});
   const Sources sources = sources_of(arguments);
-  std::optional<Progress> progress("training " + arguments.output);
-  const TrainResult result = train(spec, sources.training, sources.held_out,
-                                   static_cast<std::uint64_t>(arguments.seed),
-                                   grouping(arguments.cross_validation));
+  std::optional<Progress> progress(
+      std::in_place, "training " + arguments.output,
+      [&] { return Progress::Status{.share = 0, .detail = epoch.text()}; });
+  const TrainResult result =
+      train(spec, sources.training, sources.held_out,
+            static_cast<std::uint64_t>(arguments.seed.value_or(0)),
+            grouping(arguments.cross_validation));
   write_compensator(result.compensator, arguments.output);
   progress.reset();
   for (const std::string& warning : result.compensator.provenance.warnings)
@@ -88,38 +118,50 @@ int run_training(const TrainArguments& arguments) {
 
 }  // namespace
 
-void add_train(CLI::App& program, Action& action) {
+void add_train(CommandLine& program) {
   auto arguments = std::make_shared<TrainArguments>();
-  CLI::App* command = program.add_subcommand(
-      "train",
-      "Fit a compensator to recordings of one gyro, or to a set of gyros");
-  command
-      ->add_option("runs", arguments->runs,
-                   "RUN.h5..., or the directory of a set")
-      ->required();
-  command->add_option("--model", arguments->model, "MODEL.toml")->required();
-  command->add_option(
-      "--held-out", arguments->held_out,
-      "RUN.h5... are scored but not fitted; a network stops early on them");
-  command
-      ->add_option("--cv", arguments->cross_validation,
-                   "Cross-validates: holds out each recording (run), each "
-                   "power cycle (cycle) or each leg between reversals of the "
-                   "temperature (leg) in turn")
-      ->check(CLI::IsMember({"run", "cycle", "leg"}));
-  command->add_option("--run", arguments->set_runs,
-                      "NAME of a run of the set; the default is all of them");
-  command->add_option("--device", arguments->set_devices,
-                      "NUMBER of the device of a set to fit, in place of the "
-                      "training devices; may be repeated");
-  command->add_option("-o,--output", arguments->output, "COMPENSATOR.json")
-      ->required();
-  command->add_option("--seed", arguments->seed, "Seed of the initial weights")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->callback([arguments, &action] {
-    action = [arguments] { return run_training(*arguments); };
-  });
+  Command& command = program.add(
+      "train", kCompensation,
+      "Fits a compensator to recordings of one gyro, or to a set of gyros");
+  command.arguments({"RUN.h5...", "",
+                     "Recordings to fit, or the directory of a set, whose "
+                     "training devices are fitted"},
+                    arguments->runs);
+  command.reads({{FileKind::kRecording, FileKind::kSet}});
+  command.text({"--model", "MODEL.toml", "Kind of compensator and its options"},
+               arguments->model);
+  command.reads({{FileKind::kModel}});
+  command.text({"-o,--output", "COMPENSATOR.json", "Compensator to write"},
+               arguments->output);
+  command.integer({"--seed", "N", "Seed of the initial weights", "0"},
+                  arguments->seed);
+  command.group("Recordings that are not fitted");
+  command.list(
+      {"--held-out", "RUN.h5...",
+       "Recordings that are scored; a network stops early on them", "none"},
+      arguments->held_out);
+  command.reads({{FileKind::kRecording}});
+  command.choice({"--cv", "run|cycle|leg",
+                  "Cross-validates: holds out each recording, each power cycle "
+                  "or each leg between reversals of the temperature in turn",
+                  "no cross-validation"},
+                 arguments->cross_validation, {"run", "cycle", "leg"});
+  command.group("Part of a set");
+  command.texts({"--run", "NAME", "Run to take; may be repeated", "all runs"},
+                arguments->set_runs);
+  command.integers({"--device", "NUMBER",
+                    "Device to fit; may be repeated. Holds nothing out",
+                    "the training devices"},
+                   arguments->set_devices, {0, kLastDevice});
+  command.example(
+      "beamgyro train ramp.h5 --model scenarios/models/cubic.toml -o "
+      "cubic.json",
+      "A cubic of the temperature");
+  command.example(
+      "beamgyro train ramp.h5 --model scenarios/models/bp.toml --held-out "
+      "soak.h5 -o bp.json",
+      "A network that stops early on another recording");
+  command.action([arguments] { return run_training(*arguments); });
 }
 
 }  // namespace beamgyro

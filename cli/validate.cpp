@@ -29,9 +29,9 @@ constexpr int kSpecificationNotMet = 3;
 struct ValidateArguments {
   std::string compensator, json;
   std::vector<std::string> runs;
-  std::vector<std::string> set_runs;       // names, of a set
-  std::vector<std::uint32_t> set_devices;  // of a set
-  std::optional<double> full_scale;        // [deg/s]
+  std::vector<std::string> set_runs;  // names, of a set
+  std::vector<long> set_devices;      // of a set
+  std::optional<double> full_scale;   // [deg/s]
 };
 
 Specification specification_of(const ValidateArguments& arguments) {
@@ -51,7 +51,8 @@ int validate_on_set(const ValidateArguments& arguments,
                     const Compensator& compensator) {
   if (!arguments.json.empty())
     require_output(arguments.json, inputs_of(arguments));
-  SetSelection selection{{}, arguments.set_runs, arguments.set_devices};
+  SetSelection selection{
+      {}, arguments.set_runs, device_numbers(arguments.set_devices)};
   if (arguments.set_devices.empty()) selection.part = SetPartNumber::kTest;
   const RunSource source = runs_of_set(arguments.runs[0], selection);
   std::optional<Progress> progress("validating " + arguments.compensator);
@@ -108,34 +109,34 @@ int run_validation(const ValidateArguments& arguments) {
 
 }  // namespace
 
-void add_validate(CLI::App& program, Action& action) {
+void add_validate(CommandLine& program) {
   auto arguments = std::make_shared<ValidateArguments>();
-  CLI::App* command =
-      program.add_subcommand("validate",
-                             "Score a compensator against the true rate; the "
-                             "status is 3 when a check fails");
-  command->add_option("compensator", arguments->compensator, "COMPENSATOR.json")
-      ->required();
-  command
-      ->add_option("runs", arguments->runs,
-                   "RUN.h5... that training has not seen, or the directory of "
-                   "a set, whose test devices are scored")
-      ->required();
-  command->add_option("--run", arguments->set_runs,
-                      "NAME of a run of the set; the default is all of them");
-  command->add_option("--device", arguments->set_devices,
-                      "NUMBER of the device of a set to score, in place of the "
-                      "test devices; may be repeated");
-  command
-      ->add_option("--full-scale", arguments->full_scale,
-                   "Largest rate that is replayed, in deg/s; the default is "
-                   "that of the recording's device file, or 150 for a log")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--json", arguments->json,
-                      "FILE to write every score to");
-  command->callback([arguments, &action] {
-    action = [arguments] { return run_validation(*arguments); };
-  });
+  Command& command =
+      program.add("validate", kCompensation,
+                  "Scores a compensator against the true rate; the status is 3 "
+                  "when a check fails");
+  command.argument({"COMPENSATOR.json", "", "Compensator, as written by train"},
+                   arguments->compensator);
+  command.reads({{FileKind::kCompensator}});
+  command.arguments({"RUN.h5...", "",
+                     "Recordings that training has not seen, or the directory "
+                     "of a set, whose test devices are scored"},
+                    arguments->runs);
+  command.reads({{FileKind::kRecording, FileKind::kSet}});
+  command.number({"--full-scale", "DEG_PER_S", "Largest rate that is replayed",
+                  "that of the recording's device file, or 150 for a log"},
+                 arguments->full_scale, positive());
+  command.text({"--json", "FILE", "Writes every score to FILE", "no file"},
+               arguments->json);
+  command.group("Part of a set");
+  command.texts({"--run", "NAME", "Run to score; may be repeated", "all runs"},
+                arguments->set_runs);
+  command.integers({"--device", "NUMBER", "Device to score; may be repeated",
+                    "the test devices"},
+                   arguments->set_devices, {0, kLastDevice});
+  command.example("beamgyro validate cubic.json soak.h5 rates.h5",
+                  "Prints a table and a verdict");
+  command.action([arguments] { return run_validation(*arguments); });
 }
 
 }  // namespace beamgyro

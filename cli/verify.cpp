@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "cli/commands.h"
@@ -26,7 +27,7 @@ const ProgramRevision kProgram{kProgramVersion, kGitRevision};
 
 struct VerifyArguments {
   std::string directory;
-  unsigned jobs = 0;
+  std::optional<long> jobs;
   bool repair = false;
 };
 
@@ -60,6 +61,9 @@ void repair(const fs::path& directory, const Manifest& manifest,
   require_moderate_files(directory.string(), repair.plan());
   repair.begin();
   warn_without_lock(repair.set(), directory);
+  set_interrupt_note(fmt::format(
+      "{} keeps its whole files; the same command goes on with the others",
+      directory.string()));
   generate_with_progress("repairing " + directory.string(), repair.plan(),
                          repair.files(), jobs,
                          [&](std::uint32_t file, const MadeShard& shard) {
@@ -75,7 +79,8 @@ int verify(const VerifyArguments& arguments) {
   print_result(listed(defects));
   if (!defects.empty() && arguments.repair) {
     try {
-      repair(directory, manifest, defects, arguments.jobs);
+      repair(directory, manifest, defects,
+             static_cast<unsigned>(arguments.jobs.value_or(0)));
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(error.what());  // of the set, not of the caller
     }
@@ -105,22 +110,21 @@ int verify(const VerifyArguments& arguments) {
 
 }  // namespace
 
-void add_verify(CLI::App& program, Action& action) {
+void add_verify(CommandLine& program) {
   auto arguments = std::make_shared<VerifyArguments>();
-  CLI::App* command = program.add_subcommand(
-      "verify", "Compare every byte of a set with its manifest");
-  command->add_option("directory", arguments->directory, "DIR")->required();
-  command->add_flag(
-      "--repair", arguments->repair,
-      "Makes damaged and missing files again, with the same bytes");
-  command
-      ->add_option(
-          "--jobs", arguments->jobs,
-          "Number of threads of the repair; the default is one per core")
-      ->check(CLI::Range(1, 4096));
-  command->callback([arguments, &action] {
-    action = [arguments] { return verify(*arguments); };
-  });
+  Command& command = program.add(
+      "verify", kFiles, "Compares every byte of a set with its manifest");
+  command.argument({"DIR", "", "Directory of a set"}, arguments->directory);
+  command.reads({{FileKind::kSet}});
+  command.flag({"--repair", "",
+                "Makes damaged and missing files again, with the same bytes"},
+               arguments->repair);
+  command.integer(
+      {"--jobs", "N", "Number of threads of the repair", "one per core"},
+      arguments->jobs, {1, 4096});
+  command.example("beamgyro verify set --repair",
+                  "Names damaged files and makes them again");
+  command.action([arguments] { return verify(*arguments); });
 }
 
 }  // namespace beamgyro

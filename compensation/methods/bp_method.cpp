@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "compensation/methods/fit.h"
 #include "compensation/methods/input_scales.h"
@@ -53,6 +54,20 @@ ScaledRows scaled_rows(const TrainingRows& rows, const BiasModel& model) {
   if (rows.size() == 0) return {};
   return {scaled(rows.inputs, model.input_scales),
           (rows.bias - model.bias_scale.centre) / model.bias_scale.half_width};
+}
+
+// A network of far more weights than rows learns them by heart, and its normal
+// equations take hours.
+void require_rows(const std::vector<int>& layers, const FitTask& task) {
+  constexpr Eigen::Index kMostPerRow = 8;
+  const Eigen::Index weights = BpNetwork(layers).weights().size();
+  if (weights <= kMostPerRow * std::max<Eigen::Index>(task.rows.size(), 60))
+    return;
+  throw std::invalid_argument(fmt::format(
+      "bp: hidden = [{}] has {} weights for {} training rows; expected at most "
+      "{} a row: fewer neurons, longer recordings, or a shorter rows.seconds",
+      fmt::join(layers.begin() + 1, layers.end() - 1, ", "), weights,
+      task.rows.size(), kMostPerRow));
 }
 
 std::string shown(double decay, const TrainSummary& best, double unit) {
@@ -123,6 +138,7 @@ Fit BpSpec::fit(const FitTask& task) const {
   std::vector<int> sizes{static_cast<int>(task.inputs.size())};
   sizes.insert(sizes.end(), hidden.begin(), hidden.end());
   sizes.push_back(1);
+  require_rows(sizes, task);
   Fit fit = BiasModel{scales_of(task),
                       scale_to_unit(task.rows.bias, "rate - true_rate"),
                       BpNetwork(sizes)};
@@ -130,6 +146,12 @@ Fit BpSpec::fit(const FitTask& task) const {
   TrainOptions options = training;
   options.goal = goal_deg_per_s / unit;
   options.rate_direction = rate_direction(task, fit.model);
+  if (training.observer) {
+    options.observer = [&](EpochReport report) {
+      report.rms *= unit;
+      training.observer(report);
+    };
+  }
   const ScaledRows rows = scaled_rows(task.rows, fit.model);
   const ScaledRows unseen = scaled_rows(task.held_out, fit.model);
   std::vector<Restarts> of_decays;

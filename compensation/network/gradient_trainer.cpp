@@ -62,6 +62,7 @@ TrainSummary train_incremental(const ScaledRows& rows,
     }
     const double rms = rms_error(network, rows);
     check_finite(rms, options.learning_rate);
+    report_epoch(options, summary.epochs, rms);
     const bool stale = best.stale_after(summary.epochs, network);
     if (rms <= options.goal)
       stop = StopReason::kGoalReached;
@@ -106,8 +107,10 @@ TrainSummary train_gradient_adaptive(const ScaledRows& rows,
       network.set_weights(w);
       step.setZero();
     }
+    const double rms = std::sqrt(error / count);
+    report_epoch(options, summary.epochs, rms);
     const bool stale = best.stale_after(summary.epochs, network);
-    if (std::sqrt(error / count) <= options.goal)
+    if (rms <= options.goal)
       stop = StopReason::kGoalReached;
     else if (gradient.lpNorm<Eigen::Infinity>() <= options.min_gradient * count)
       stop = StopReason::kGradientSmall;

@@ -67,6 +67,7 @@ class Watch final : public ceres::IterationCallback {
     const double norm = w_.norm();
     const double rms =
         std::sqrt(2.0 * iteration.cost - options_.weight_decay * norm * norm);
+    report_epoch(options_, summary_.epochs, rms);
     if (options_.goal > 0.0 && rms <= options_.goal)
       stop = StopReason::kGoalReached;
     else if (iteration.gradient_max_norm <= options_.min_gradient)

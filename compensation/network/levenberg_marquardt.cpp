@@ -129,6 +129,7 @@ TrainSummary train_levenberg_marquardt(const ScaledRows& rows,
       mu.step_discarded();
       if (mu.value > options.max_damping) stop = StopReason::kDampingLimit;
     }
+    report_epoch(options, summary.epochs, objective.rms());
   }
   summary.stop_reason = stop.value_or(StopReason::kMaxEpochs);
   best.restore(rows, network, summary);

@@ -40,6 +40,12 @@ std::string sentence(StopReason reason) {
   return "the largest number of epochs was reached";
 }
 
+void report_epoch(const TrainOptions& options, int epoch, double rms) {
+  if (options.observer)
+    options.observer(
+        {.epoch = epoch, .max_epochs = options.max_epochs, .rms = rms});
+}
+
 Eigen::ArrayXd squared_errors(const BpNetwork& network,
                               const ScaledRows& rows) {
   Eigen::ArrayXd squares(rows.size());

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -42,6 +43,16 @@ enum class StopReason {
 
 std::string sentence(StopReason reason);
 
+/// What a training tells after each epoch.
+struct EpochReport {
+  int restart = 1, restarts = 1;  // restart: 1 .. restarts
+  int epoch = 0, max_epochs = 0;
+  double rms = 0.0;  // in-sample
+};
+
+/// Is called by the threads of all restarts. It has no influence on a training.
+using EpochObserver = std::function<void(const EpochReport&)>;
+
 /// Errors are of scaled quantities (order one). F = mean(e^2) / 2 +
 /// weight_decay |w|^2 / 2.
 struct TrainOptions {
@@ -65,6 +76,7 @@ struct TrainOptions {
   double max_damping = 1e10;
   double min_gradient = 1e-10;
   double min_step = 1e-10;
+  EpochObserver observer = {};
 };
 
 /// Outcome of one training from one set of initial weights.
@@ -83,6 +95,9 @@ struct ScaledRows {
 
   Eigen::Index size() const { return target.size(); }
 };
+
+/// Tells the observer, if there is one.
+void report_epoch(const TrainOptions& options, int epoch, double rms);
 
 double rms_error(const BpNetwork& network, const ScaledRows& rows);
 

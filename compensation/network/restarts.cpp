@@ -52,7 +52,15 @@ Restarts train_from_restarts(const std::vector<int>& layer_sizes,
     RandomStream initial(seed, 0, run, kInitialWeightsStream);
     RandomStream order(seed, 0, run, kSampleOrderStream);
     networks[k].randomise(initial);
-    summaries[k] = train_network(rows, held_out, of_one, order, networks[k]);
+    TrainOptions own = of_one;
+    if (options.observer) {
+      own.observer = [&](EpochReport report) {
+        report.restart = static_cast<int>(k) + 1;
+        report.restarts = options.restarts;
+        options.observer(report);
+      };
+    }
+    summaries[k] = train_network(rows, held_out, own, order, networks[k]);
   });
   const std::size_t chosen = best_network(networks, rows, held_out, options);
   return {std::move(summaries), chosen, std::move(networks[chosen])};

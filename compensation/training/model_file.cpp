@@ -185,6 +185,15 @@ std::vector<Candidate> read_candidates(const MethodSource& source) {
 
 }  // namespace
 
+void observe(ModelSpec& spec, const EpochObserver& observer) {
+  const auto tell = [&](FitSpec& kind) {
+    if (auto* network = std::get_if<BpSpec>(&kind))
+      network->training.observer = observer;
+  };
+  tell(spec.kind);
+  for (Candidate& candidate : spec.candidates) tell(candidate.kind);
+}
+
 ModelSpec read_model(const std::filesystem::path& file) {
   return read_model(ConfigDocument::read(file));
 }

@@ -39,4 +39,7 @@ struct ModelSpec {
 ModelSpec read_model(const std::filesystem::path& file);
 ModelSpec read_model(const ConfigDocument& document);
 
+/// Makes every network of `spec` tell `observer` about its epochs.
+void observe(ModelSpec& spec, const EpochObserver& observer);
+
 }  // namespace beamgyro

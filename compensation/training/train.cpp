@@ -160,6 +160,17 @@ std::string why_no_claim(const ModelSpec& spec,
                             selected.weight);
 }
 
+// Too few rows show as temperatures or inputs that do not vary.
+std::string cause_of_few_rows(const TrainingRows& rows,
+                              const RowOptions& options) {
+  constexpr Eigen::Index kFew = 10;
+  if (rows.size() >= kFew || options.seconds == 0.0) return "";
+  return fmt::format(
+      "; the recordings give {} rows, means over {:g} s each: expected longer "
+      "recordings, or a shorter rows.seconds in the model file",
+      rows.size(), options.seconds);
+}
+
 }  // namespace
 
 TrainResult train(const ModelSpec& spec, const RunSource& runs,
@@ -188,8 +199,15 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
   std::vector<Candidate> candidates = spec.candidates;
   if (candidates.empty())
     candidates.push_back({method_name(spec.kind), spec.inputs, spec.kind});
-  Selected selected =
-      select_model(candidates, {spec.inputs, rows, unseen, groups, seed});
+  Selected selected = [&] {
+    try {
+      return select_model(candidates,
+                          {spec.inputs, rows, unseen, groups, seed});
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(error.what() +
+                                  cause_of_few_rows(rows, spec.rows));
+    }
+  }();
 
   c.inputs = selected.candidate.inputs;
   c.bias = std::move(selected.fit.model);

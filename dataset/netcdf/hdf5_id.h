@@ -10,8 +10,6 @@
 
 namespace beamgyro {
 
-inline constexpr const char* kRecordingFiletype = "beamgyro-recording";
-
 /// Thrown when a call of the HDF5 library fails, or when a file cannot be what
 /// it claims to be.
 struct Hdf5Error : std::runtime_error {

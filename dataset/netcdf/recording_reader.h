@@ -7,6 +7,8 @@
 
 namespace beamgyro {
 
+inline constexpr const char* kRecordingFiletype = "beamgyro-recording";
+
 inline constexpr int kRecordingFormatVersion = 2;
 
 /// Reads everything that write_recording() wrote: columns in the order of the

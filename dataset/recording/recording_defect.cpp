@@ -11,6 +11,9 @@
 namespace beamgyro {
 namespace {
 
+// Beyond it sums of squares overflow, and no signal of a gyro comes near.
+constexpr double kLargestValue = 1e12;
+
 bool is_identifier(std::string_view name) {
   const auto is_letter = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
@@ -75,6 +78,9 @@ std::string defect_of_values(const Column& column,
     return fmt::format("{}: {} values for {} times", column.name, values.size(),
                        status.size());
   for (std::size_t k = 0; k < values.size(); ++k) {
+    if (std::abs(values[k]) > kLargestValue && std::isfinite(values[k]))
+      return fmt::format("{}: sample {} is {:g}; expected at most +-{:g}",
+                         column.name, first + k, values[k], kLargestValue);
     if (std::isfinite(values[k])) continue;
     if (column.role == Role::kTruth)
       return fmt::format("{}: sample {} is {}; a truth is always finite",

@@ -14,7 +14,7 @@ namespace beamgyro {
 /// - one status and one value of every column for each time;
 /// - column names that are unique identifiers;
 /// - finite values, except NaN in measured and compensated columns where the
-///   status says unpowered;
+///   status says unpowered; none beyond +-1e12;
 /// - no NUL in any text.
 std::string recording_defect(const Recording& recording);
 

@@ -178,8 +178,16 @@ TEST_F(Hdf5Rejection, TimesThatDoNotIncrease) {
 }
 
 TEST_F(Hdf5Rejection, ValuesThatAreNotFinite) {
-  damage([](hid_t id) { write_values(id, "true_bias", 1e308, 1e308); });
-  EXPECT_EQ(rejected(), "true_bias: sample 1 is inf; a truth is always finite");
+  damage([](hid_t id) { write_values(id, "true_bias", INFINITY, 0.0); });
+  EXPECT_EQ(rejected(), "true_bias: sample 0 is inf; a truth is always finite");
+}
+
+TEST_F(Hdf5Rejection, ValuesWhoseSquaresOverflow) {
+  damage([](hid_t id) { write_values(id, "true_bias", 1e12, 0.0); });
+  EXPECT_NO_THROW(read_recording(file));
+  damage([](hid_t id) { write_values(id, "true_bias", -1e300, 0.0); });
+  EXPECT_EQ(rejected(),
+            "true_bias: sample 0 is -1e+300; expected at most +-1e+12");
 }
 
 TEST_F(Hdf5Rejection, VariablesOfAnotherLengthOrType) {

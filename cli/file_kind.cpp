@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "cli/file_kind.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "config/document.h"
+#include "dataset/files/open_file.h"
+#include "dataset/netcdf/recording_reader.h"
+#include "dataset/set/manifest.h"
+#include "dataset/set/shard/shard.h"
+
+namespace beamgyro {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct KnownKind {
+  FileKind kind;
+  const char *name, *taken_by;
+};
+constexpr KnownKind kKnownKinds[] = {
+    {FileKind::kDevice, "a device file", "beamgyro characterise"},
+    {FileKind::kScenario, "a scenario", "beamgyro run"},
+    {FileKind::kCampaign, "a campaign", "beamgyro generate"},
+    {FileKind::kModel, "a model file", "beamgyro train --model"},
+    {FileKind::kLogMap, "a log map", "beamgyro import --map"},
+    {FileKind::kRecording, "a recording",
+     "beamgyro info, allan, train, compensate or validate"},
+    {FileKind::kSetFile, "a file of a set", "beamgyro info"},
+    {FileKind::kSet, "the directory of a set",
+     "beamgyro info, verify, train or validate"},
+    {FileKind::kCompensator, "a compensator",
+     "beamgyro compensate, validate or export"},
+    {FileKind::kRecordingTable, "a recording as CSV", "beamgyro allan"},
+    {FileKind::kCharacteristic, "a table that characterise wrote", ""},
+    {FileKind::kProfile, "a profile over time",
+     "the key \"file\" of a scenario"},
+    {FileKind::kLog, "a log", "beamgyro import"},
+};
+
+const KnownKind& known(FileKind kind) {
+  return *std::ranges::find(kKnownKinds, kind, &KnownKind::kind);
+}
+
+/// Returns the first bytes of a file, enough to tell its kind.
+std::string head_of(const fs::path& path) {
+  std::array<std::byte, 65536> bytes{};
+  const std::size_t count = OpenFile(path, O_RDONLY).read(bytes);
+  return {reinterpret_cast<const char*>(bytes.data()), count};
+}
+
+/// Returns the kinds that a TOML file may be, by the keys that only they have.
+std::vector<FileKind> kinds_of_toml(const fs::path& path) {
+  const ConfigDocument document = ConfigDocument::read(path);
+  const auto has = [&](std::initializer_list<std::string_view> keys) {
+    return std::ranges::any_of(keys, [&](std::string_view key) {
+      return document.value(key) != nullptr;
+    });
+  };
+  std::vector<FileKind> kinds;
+  if (has({"beam", "patches", "bond"})) kinds.push_back(FileKind::kDevice);
+  if (has({"devices", "tolerances", "run"}))
+    kinds.push_back(FileKind::kCampaign);
+  if (has({"duration_s", "fidelity", "ambient"}))
+    kinds.push_back(FileKind::kScenario);
+  if (has({"kind"})) kinds.push_back(FileKind::kModel);
+  if (has({"time", "gyro"})) kinds.push_back(FileKind::kLogMap);
+  return kinds;
+}
+
+std::vector<FileKind> kinds_of_text(const fs::path& path,
+                                    std::string_view head) {
+  const std::string_view line = head.substr(0, head.find_first_of("\r\n"));
+  if (line.starts_with("temperature_degC,bias_deg_per_s"))
+    return {FileKind::kCharacteristic};
+  if (line.starts_with("time_s,")) return {FileKind::kProfile};
+  if (line.starts_with("time,output,")) return {FileKind::kRecordingTable};
+  if (head.starts_with('{')) {
+    if (head.find("beamgyro-compensator") == head.npos) return {};
+    return {FileKind::kCompensator};
+  }
+  try {
+    return kinds_of_toml(path);
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+}
+
+std::vector<FileKind> kinds_of(const fs::path& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored))
+    return fs::exists(path / kManifestName, ignored)
+               ? std::vector{FileKind::kSet}
+               : std::vector<FileKind>{};
+  if (!fs::is_regular_file(path, ignored)) return {};
+  const std::string head = head_of(path);
+  if (!head.starts_with("\x89HDF")) return kinds_of_text(path, head);
+  if (head.find(kRecordingFiletype) != head.npos) return {FileKind::kRecording};
+  if (head.find(kSetFiletype) != head.npos) return {FileKind::kSetFile};
+  return {};
+}
+
+}  // namespace
+
+void require_kind(const fs::path& path, const ExpectedKinds& expected) {
+  std::vector<FileKind> kinds;
+  try {
+    kinds = kinds_of(path);
+  } catch (const std::system_error&) {
+    return;  // whoever reads it says why it cannot
+  }
+  const auto is_among = [&](const std::vector<FileKind>& taken) {
+    return std::ranges::find_first_of(kinds, taken) != kinds.end();
+  };
+  if (kinds.empty() || is_among(expected.kinds) || is_among(expected.also))
+    return;
+  const KnownKind& found = known(kinds.front());
+  std::vector<std::string_view> names;
+  for (const FileKind kind : expected.kinds) names.push_back(known(kind).name);
+  std::string message = fmt::format("{}: is {}; expected {}", path.string(),
+                                    found.name, fmt::join(names, " or "));
+  if (*found.taken_by != '\0')
+    message += fmt::format("; {} is for {}", found.taken_by, found.name);
+  throw std::invalid_argument(message);
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: MIT
+"""The help of the program and of its commands."""
+
+import re
+import shlex
+import unittest
+
+from program import ROOT, ProgramTest
+
+WIDTH = 80
+
+
+def entries(text):
+    """(left, right) of each argument and option of a help text, unwrapped."""
+    found = []
+    for line in text.splitlines():
+        if line.startswith("Examples:"):
+            break
+        if match := re.match(r"  ([-\w]\S*(?: \S+)*?)(?:  +(.*))?$", line):
+            found.append([match[1], match[2] or ""])
+        elif line.startswith(" " * 20) and found:
+            found[-1][1] += " " + line.strip()
+    return found
+
+
+class Help(ProgramTest):
+    def commands(self):
+        return re.findall(r"^  (\w+)  ", self.ok("--help"), re.MULTILINE)
+
+    def texts(self):
+        yield "", self.ok("--help")
+        for command in self.commands():
+            yield command, self.ok(command, "--help")
+
+    def test_no_line_is_wider_than_80_columns(self):
+        for command, text in self.texts():
+            with self.subTest(command):
+                self.assertLessEqual(max(map(len, text.splitlines())), WIDTH)
+
+    def test_help_as_a_word_is_the_same(self):
+        self.assertEqual(self.ok("help"), self.ok("--help"))
+        for command in self.commands():
+            with self.subTest(command):
+                self.assertEqual(self.ok("help", command),
+                                 self.ok(command, "-h"))
+        self.rejected("help", "rnu", says=['"rnu"', '"run"'])
+
+    def test_every_option_states_a_default_or_is_required(self):
+        for command in self.commands():
+            for left, right in entries(self.ok(command, "--help")):
+                if re.match(r"(-\w, )?--[\w-]+ \S", left):  # takes a value
+                    with self.subTest(f"{command} {left}"):
+                        self.assertRegex(right, r"Default: .+\.$|Required\.$")
+
+    def test_options_stand_in_groups(self):
+        for command in self.commands():
+            with self.subTest(command):
+                groups = re.findall(r"^(\S.*):$", self.ok(command, "--help"),
+                                    re.MULTILINE)
+                self.assertEqual(groups[0], "Arguments")
+                self.assertEqual(groups[-1], "Examples")
+
+    def test_the_defaults_of_the_help_are_those_of_the_program(self):
+        self.ok("characterise", "device.toml", "-o", "default.csv")
+        stated = dict(entries(self.ok("characterise", "--help")))[
+            "--beam-temperature START:STOP:STEP"]
+        grid = re.search(r"Default: (\S+)\.$", stated)[1]
+        self.ok("characterise", "device.toml", "-o", "stated.csv",
+                "--beam-temperature", grid)
+        self.assertEqual((self.dir / "default.csv").read_bytes(),
+                         (self.dir / "stated.csv").read_bytes())
+
+    def test_every_command_has_an_example_that_its_options_allow(self):
+        for command in self.commands():
+            text = self.ok(command, "--help").split("Examples:\n")[1]
+            examples = re.findall(r"^  (beamgyro .*)$",
+                                  text.replace("\\\n      ", ""), re.MULTILINE)
+            with self.subTest(command):
+                self.assertGreater(len(examples), 0)
+            for example in examples:
+                words = shlex.split(example)[1:]
+                with self.subTest(example):
+                    self.assertEqual(words[0], command)
+                    for word in words:
+                        if word.startswith("scenarios/"):
+                            self.assertTrue((ROOT / word).exists())
+                    # Here are none of its files, and that is all it says.
+                    self.assertRegex(self.rejected(*words),
+                                     "No such file|is no directory|is not there")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,328 @@
+# SPDX-License-Identifier: MIT
+"""What the program shows on a terminal of 80 columns, in a pipe, and when it is
+interrupted."""
+
+import fcntl
+import os
+import pty
+import re
+import select
+import signal
+import struct
+import subprocess
+import termios
+import time
+import unittest
+
+from program import NETWORK, PROGRAM, SCENARIO, ProgramTest, ramp
+from sets import CAMPAIGN
+from sets import SCENARIO as REST
+
+LONG = SCENARIO.replace("= 600", "= 200000").replace("= 2\n", "= 200\n")
+PATIENT = NETWORK.replace("[2]", "[12]").replace("restarts = 1",
+                                                "restarts = 3") \
+    .replace("max_epochs = 30", "max_epochs = 1000000\npatience = 1000000"
+             "\ngoal_deg_per_s = 0").replace("levenberg_marquardt",
+                                             "incremental")
+CLOCK = r"\d+:\d\d:\d\d"
+
+
+class Screen:
+    """A terminal with a process in the foreground, and what it shows."""
+
+    def __init__(self, command, folder, columns=80):
+        self.sent = b""
+        self.process, self.main = pty.fork()
+        if self.process == 0:
+            os.chdir(folder)
+            fcntl.ioctl(0, termios.TIOCSWINSZ,
+                        struct.pack("HHHH", 24, columns, 0, 0))
+            os.execv(command[0], command)
+
+    def read_for(self, seconds, until=None):
+        """Reads until something is shown, all is over or the time is up."""
+        end = time.monotonic() + seconds
+        while (left := end - time.monotonic()) > 0:
+            if until and re.search(until, self.sent.decode()):
+                return True
+            if not select.select([self.main], [], [], left)[0]:
+                break
+            try:
+                part = os.read(self.main, 4096)
+            except OSError:  # the other end is closed
+                break
+            if not part:
+                break
+            self.sent += part
+        return bool(until and re.search(until, self.sent.decode()))
+
+    def type(self, text):
+        os.write(self.main, text)
+
+    def end(self):
+        """Wait status of the process."""
+        status = os.waitpid(self.process, 0)[1]
+        os.close(self.main)
+        return status
+
+    def frames(self):
+        """Each text that the line of progress showed."""
+        return [frame.split("\n")[0] for frame in
+                self.sent.decode().split("\r\x1b[K")[1:] if frame]
+
+    def lines(self, columns=80):
+        """The lines that are left on the screen."""
+        lines, at = [""], 0
+        text = re.sub(r"\x1b\[\d+m", "", self.sent.decode())
+        while text:
+            if text.startswith("\x1b[K"):
+                lines[-1] = lines[-1][:at]
+                text = text[3:]
+                continue
+            c, text = text[0], text[1:]
+            if c == "\r":
+                at = 0
+            elif c == "\n":
+                lines.append("")
+                at = 0
+            else:
+                if at == columns:  # it wraps
+                    lines.append("")
+                    at = 0
+                lines[-1] = lines[-1][:at].ljust(at) + c + lines[-1][at + 1:]
+                at += 1
+        return lines
+
+
+class Terminal(ProgramTest):
+    def screen(self, *words, columns=80):
+        screen = Screen([str(PROGRAM), *map(str, words)], self.dir, columns)
+        self.addCleanup(self.end, screen)
+        return screen
+
+    def end(self, screen):
+        try:
+            os.kill(screen.process, signal.SIGKILL)
+            os.waitpid(screen.process, 0)
+        except (ProcessLookupError, ChildProcessError):
+            pass
+
+
+class Line(Terminal):
+    def watched(self, screen, frames=6):
+        """Frames of the line, after which exactly one line stands there."""
+        self.assertTrue(screen.read_for(
+            60, rf"(\r\x1b\[K[^\r]+){{{frames},}}\r"), screen.sent)
+        self.assertEqual(len(screen.lines()), 1, screen.lines())
+        return screen.frames()
+
+    def test_a_run_shows_one_line_that_fits_and_rewrites_itself(self):
+        name = "a_scenario_with_a_name_that_is_longer_than_the_terminal_is_wide" \
+            + "_" * 60 + ".toml"
+        self.write(name, LONG)
+        for columns in [80, 44]:
+            with self.subTest(columns):
+                screen = self.screen("run", name, "-o", f"{columns}.h5",
+                                     columns=columns)
+                for frame in self.watched(screen):
+                    self.assertLess(len(frame), columns)
+                self.assertRegex(screen.frames()[-1],
+                                 rf"\.\.\., \d+ %, {CLOCK}, {CLOCK} left")
+                self.end(screen)
+
+    def test_the_line_is_gone_at_the_end(self):
+        self.write("s.toml", LONG.replace("200000", "60000"))
+        screen = self.screen("run", "s.toml", "-o", "a.h5")
+        screen.read_for(60)
+        self.assertEqual(screen.end(), 0)
+        self.assertEqual(screen.lines(), [""])
+
+    def test_the_time_left_converges(self):
+        self.write("s.toml", LONG.replace("200000", "150000"))
+        screen = self.screen("run", "s.toml", "-o", "a.h5")
+        screen.read_for(90)
+        self.assertEqual(screen.end(), 0)
+        ends = []
+        for frame in screen.frames():
+            if match := re.search(rf"({CLOCK}), ({CLOCK}) left", frame):
+                spent, left = (sum(int(part) * unit for part, unit in zip(
+                    text.split(":"), [3600, 60, 1])) for text in match.groups())
+                ends.append((spent, spent + left))
+        last = ends[-1][0]
+        self.assertGreater(len(ends), 5)
+        # In the last third the speed of the half before it is known. Another
+        # process may halve it; the estimate may be off by that much of the rest.
+        for spent, end in ends:
+            if spent > 2 * last / 3:
+                self.assertLess(abs(end - last), 2 + last / 3)
+
+    def test_training_shows_restart_epoch_and_error(self):
+        self.run_scenario("run", text=ramp())
+        self.run_scenario("held_out", text=ramp(seed=9))
+        for trainer in ["incremental", "gradient_adaptive",
+                        "levenberg_marquardt", "lbfgs"]:
+            self.write("m.toml", PATIENT.replace("incremental", trainer)
+                       .replace("[12]", "[40]" if "l" in trainer[:2] else
+                                "[12]") + "[rows]\nseconds = 4\n")
+            with self.subTest(trainer):
+                screen = self.screen("train", "run.h5", "--model", "m.toml",
+                                     "--held-out", "held_out.h5", "-o",
+                                     "c.json")
+                self.assertTrue(screen.read_for(
+                    20, rf"training c.json, {CLOCK}, restart [123]/3, epoch "
+                    r"\d+/1000000, rms [\d.e-]+ deg/s"), screen.sent)
+                self.assertEqual(len(screen.lines()), 1)
+                self.end(screen)
+
+    def test_a_set_shows_one_line(self):
+        self.write("rest.toml", REST.format(name="rest",
+                                            ambient="constant_degC = 25"))
+        self.write("ramp.toml", REST.format(
+            name="ramp", ambient="points = [[0, 0], [60, 10]]"))
+        self.write("campaign.toml", CAMPAIGN.replace("= 7", "= 40000"))
+        screen = self.screen("generate", "campaign.toml", "-o", "set")
+        for frame in self.watched(screen):
+            self.assertLess(len(frame), 80)
+            self.assertRegex(frame, rf"generating set, .*{CLOCK}.*\d+ of 80000")
+
+
+class Interrupt(Terminal):
+    def test_the_prompt_has_its_own_line_below_what_is_kept(self):
+        self.write("s.toml", LONG)
+        screen = self.screen("run", "s.toml", "-o", "a.h5")
+        self.assertTrue(screen.read_for(20, CLOCK))
+        screen.type(b"\x03")
+        screen.read_for(20)
+        status = screen.end()
+        self.assertTrue(os.WIFSIGNALED(status))
+        self.assertEqual(os.WTERMSIG(status), signal.SIGINT)
+        self.assertEqual(screen.lines(), [
+            "beamgyro: interrupted; a.h5 was not written", ""])
+        self.assertEqual(sorted(self.files()), sorted(
+            path.relative_to(self.dir) for path in
+            [self.dir / "s.toml", self.dir / "device.toml"]))
+
+    def test_it_ends_a_loop_of_the_shell(self):
+        self.write("s.toml", LONG)
+        loop = f"for i in 1 2 3; do {PROGRAM} run s.toml -o $i.h5; " \
+               "echo went on; done; echo to the end"
+        screen = Screen(["/bin/bash", "-c", loop], self.dir)
+        self.addCleanup(self.end, screen)
+        self.assertTrue(screen.read_for(20, CLOCK))
+        screen.type(b"\x03")
+        screen.read_for(20)
+        screen.end()
+        self.assertNotIn("went on", screen.sent.decode())
+        self.assertNotIn("to the end", screen.sent.decode())
+
+    def test_a_set_says_how_to_go_on_and_does(self):
+        for name in ["rest", "ramp"]:
+            self.write(f"{name}.toml", REST.format(
+                name=name, ambient="constant_degC = 25"))
+        self.write("campaign.toml", CAMPAIGN.replace("= 7", "= 1000"))
+        command = [str(PROGRAM), "generate", "campaign.toml", "-o", "set"]
+        process = subprocess.Popen(command, cwd=self.dir, text=True,
+                                   stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE)
+        while not list(self.dir.glob("set/*.h5")):
+            self.assertIsNone(process.poll())
+            time.sleep(0.01)
+        process.send_signal(signal.SIGTERM)
+        said = process.communicate(timeout=30)[1]
+        self.assertEqual(process.returncode, -signal.SIGTERM)
+        self.assertIn("interrupted; set keeps its finished files; go on with: ",
+                      said)
+        kept = {path: path.stat().st_mtime_ns
+                for path in self.dir.glob("set/*.h5")}
+        advice = said.split("go on with: beamgyro ")[1].split()
+        self.assertIn("the set is whole", self.ok(*advice))
+        for path, when in kept.items():
+            self.assertEqual(path.stat().st_mtime_ns, when)
+
+    def test_quiet_says_nothing(self):
+        self.write("s.toml", LONG)
+        process = subprocess.Popen(
+            [str(PROGRAM), "run", "s.toml", "-o", "a.h5", "-q"], cwd=self.dir,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        while not list(self.dir.glob("*partial*")):
+            self.assertIsNone(process.poll())
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.communicate(timeout=30), (b"", b""))
+        self.assertEqual(process.returncode, -signal.SIGINT)
+
+    def test_nohup_is_respected(self):
+        self.write("s.toml", LONG.replace("200000", "20000"))
+        process = subprocess.Popen(
+            [str(PROGRAM), "run", "s.toml", "-o", "a.h5"], cwd=self.dir,
+            preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        while not list(self.dir.glob("*partial*")):
+            self.assertIsNone(process.poll())
+            time.sleep(0.01)
+        process.send_signal(signal.SIGHUP)
+        self.assertEqual(process.wait(60), 0)
+
+
+class Pipe(ProgramTest):
+    """Waits a minute for all commands together, while they are stopped."""
+
+    def start(self, *words):
+        process = subprocess.Popen([str(PROGRAM), *map(str, words)],
+                                   cwd=self.dir, text=True,
+                                   stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE)
+        status = f"/proc/{process.pid}/status"
+        while True:  # until the thread of the progress waits
+            self.assertIsNone(process.poll(), f"{words}: too short")
+            with open(status, encoding="utf-8") as file:
+                if int(re.search(r"Threads:\s+(\d+)", file.read())[1]) > 1:
+                    break
+        process.send_signal(signal.SIGSTOP)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def test_every_long_command_writes_a_line_a_minute(self):
+        self.write("s.toml", LONG)
+        self.run_scenario("run", text=ramp(seconds=20000, rate_Hz=20))
+        self.run_scenario("held_out", text=ramp(seed=9))
+        self.write("cubic.toml", 'kind = "polynomial"\n'
+                   'inputs = ["temperature"]\n[polynomial]\ndegree = 3\n')
+        self.ok("train", "held_out.h5", "--model", "cubic.toml", "-o",
+                "cubic.json")
+        self.write("m.toml", PATIENT)
+        self.write("map.toml", '[time]\ncolumn = "t"\nunit = "s"\n[gyro]\n'
+                   'column = "w"\nunit = "deg/s"\n[temperature]\ncolumn = "T"\n'
+                   'unit = "degC"\n')
+        self.write("log.csv", "t,w,T\n" + "".join(
+            f"{k},1.5,25\n" for k in range(600000)))
+        for name in ["rest", "ramp"]:
+            self.write(f"{name}.toml", REST.format(
+                name=name, ambient="constant_degC = 25"))
+        self.write("campaign.toml", CAMPAIGN.replace("= 7", "= 4000"))
+        commands = [
+            ["run", "s.toml", "-o", "a.h5"],
+            ["characterise", "device.toml", "-o", "c.csv",
+             "--beam-temperature", "-40:60:0.001"],
+            ["train", "run.h5", "--model", "m.toml", "--held-out",
+             "held_out.h5", "-o", "c.json"],
+            ["validate", "cubic.json", "run.h5"],
+            ["compensate", "cubic.json", "run.h5", "-o", "o.h5"],
+            ["allan", "run.h5"],
+            ["import", "log.csv", "--map", "map.toml", "-o", "log.h5"],
+            ["generate", "campaign.toml", "-o", "set"]]
+        processes = [self.start(*command) for command in commands]
+        time.sleep(60.5)
+        for command, process in zip(commands, processes):
+            with self.subTest(command[0]):
+                process.send_signal(signal.SIGCONT)
+                line = process.stderr.readline()
+                self.assertRegex(line, rf", {CLOCK}")
+                self.assertNotIn("\r", line)
+                process.kill()
+
+
+if __name__ == "__main__":
+    unittest.main()
