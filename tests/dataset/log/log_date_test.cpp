@@ -5,7 +5,7 @@
 
 #include "tests/dataset/rejection.h"
 
-namespace beamgyro {
+namespace beamgyro::log_date_test {
 namespace {
 
 constexpr std::int64_t kSecond = kNanosecondsPerSecond;
@@ -93,4 +93,4 @@ TEST(LooksLikeDate, TellsDatesFromNumbers) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::log_date_test

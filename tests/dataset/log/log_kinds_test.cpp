@@ -6,7 +6,7 @@
 #include "dataset/recording/recording_defect.h"
 #include "tests/dataset/rejection.h"
 
-namespace beamgyro {
+namespace beamgyro::log_kinds_test {
 namespace {
 
 using Numbers = std::vector<double>;
@@ -213,4 +213,4 @@ TEST(LogKinds, JoinsThatCannotBe) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::log_kinds_test
