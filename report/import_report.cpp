@@ -23,7 +23,7 @@ std::string rows_text(const LogCounts& counts) {
 }
 
 // What a clock that is coarser than the rows looks like.
-std::string clock_text(const LogCounts& counts) {
+std::string counts_text(const LogCounts& counts) {
   const DroppedRows& equal =
       counts.dropped[static_cast<std::size_t>(DropReason::kDuplicate)];
   if (equal.rows <= counts.kept) return {};
@@ -88,7 +88,7 @@ std::string import_report(const ImportedLog& log, const std::string& path,
                           const std::string& joined) {
   const Recording& recording = log.recording;
   std::string text = path + ": " + rows_text(log.counts);
-  text += clock_text(log.counts);
+  text += counts_text(log.counts);
   if (log.joined) text += joined + ": " + rows_text(*log.joined);
   text += sampling_text(recording);
   text += status_text(recording);
