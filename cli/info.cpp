@@ -30,7 +30,7 @@ int info(const std::string& path, std::optional<long> device) {
     throw std::invalid_argument(
         fmt::format("--device {}: {} is no directory; expected that of a set",
                     *device, path));
-  if (is_shard_file(path)) {
+  if (is_listed_in_set(path) || is_shard_file(path)) {
     std::vector<std::string> warnings;
     print_result(info_on_shard(path, warnings));
     for (const std::string& warning : warnings) print_warning(warning);

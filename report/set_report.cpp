@@ -58,13 +58,17 @@ std::string drawn(const ShardHead& head) {
   return text;
 }
 
-/// What the manifest in `directory` says of a file, if there is one.
-std::optional<ManifestEntry> entry_of(const fs::path& directory,
-                                      const std::string& file) {
-  const std::optional<SetContents> set = find_set(directory);
+fs::path directory_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+/// Returns the entry of a file in the manifest of its directory, if there is
+/// one.
+std::optional<ManifestEntry> entry_of(const fs::path& path) {
+  const std::optional<SetContents> set = find_set(directory_of(path));
   if (!set) return {};
   for (const auto& [index, entry] : set->state.entries)
-    if (entry.file == file) return entry;
+    if (entry.file == path.filename().string()) return entry;
   return {};
 }
 
@@ -95,19 +99,21 @@ std::string every_device_failed_text(const SetState& state) {
                      first.failures.front().reason);
 }
 
+bool is_listed_in_set(const fs::path& path) {
+  return entry_of(path).has_value();
+}
+
 std::string info_on_shard(const fs::path& path,
                           std::vector<std::string>& warnings) {
-  const fs::path directory =
-      path.has_parent_path() ? path.parent_path() : fs::path(".");
-  const std::optional<ManifestEntry> entry =
-      entry_of(directory, path.filename().string());
+  const std::optional<ManifestEntry> entry = entry_of(path);
   if (!entry)
     warnings.push_back(fmt::format(
         "{}: is in no set whose manifest tells its bytes: damage in it would "
         "not be noticed",
         path.string()));
   const ShardFile file =
-      entry ? ShardFile(path, open_listed(directory, *entry)) : ShardFile(path);
+      entry ? ShardFile(path, open_listed(directory_of(path), *entry))
+            : ShardFile(path);
   const ShardHead& head = file.head();
   std::string text =
       fmt::format("{}: file of a set, devices {} to {}\n", path.string(),

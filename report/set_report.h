@@ -10,6 +10,9 @@
 
 namespace beamgyro {
 
+/// Returns whether the manifest in the directory of a file lists it.
+bool is_listed_in_set(const std::filesystem::path& path);
+
 /// Describes the contents of a file of a set, or of the directory of a set.
 /// Adds a warning to `warnings` for a file that no manifest knows. Throws
 /// std::invalid_argument for anything else.
