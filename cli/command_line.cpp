@@ -103,7 +103,7 @@ void Command::integer(const OptionText& text, std::optional<long>& value,
 
 void Command::integers(const OptionText& text, std::vector<long>& values,
                        const IntegerRange& range) {
-  Option& option = add(text, Count::kRepeated, {});
+  Option& option = add(text, Count::kList, {});
   option.take = [&values, range, &option](const auto& words) {
     for (const std::string& word : words)
       values.push_back(

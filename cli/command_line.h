@@ -55,6 +55,7 @@ class Command {
               const Range& range = any());
   void integer(const OptionText& text, std::optional<long>& value,
                const IntegerRange& range = {});
+  /// An option that takes all numbers up to the next option.
   void integers(const OptionText& text, std::vector<long>& values,
                 const IntegerRange& range = {});
   /// One of the words `allowed`; choices() reads several between commas.

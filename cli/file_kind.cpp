@@ -16,6 +16,7 @@
 
 #include "config/document.h"
 #include "dataset/files/open_file.h"
+#include "dataset/log/recording_csv.h"
 #include "dataset/netcdf/recording_reader.h"
 #include "dataset/set/manifest.h"
 #include "dataset/set/shard/shard.h"
@@ -42,7 +43,8 @@ constexpr KnownKind kKnownKinds[] = {
      "beamgyro info, verify, train or validate"},
     {FileKind::kCompensator, "a compensator",
      "beamgyro compensate, validate or export"},
-    {FileKind::kRecordingTable, "a recording as CSV", "beamgyro allan"},
+    {FileKind::kRecordingTable, "a recording as CSV",
+     "beamgyro info, allan, train, compensate or validate"},
     {FileKind::kCharacteristic, "a table that characterise wrote", ""},
     {FileKind::kProfile, "a profile over time",
      "the key \"file\" of a scenario"},
@@ -85,7 +87,8 @@ std::vector<FileKind> kinds_of_text(const fs::path& path,
   if (line.starts_with("temperature_degC,bias_deg_per_s"))
     return {FileKind::kCharacteristic};
   if (line.starts_with("time_s,")) return {FileKind::kProfile};
-  if (line.starts_with("time,output,")) return {FileKind::kRecordingTable};
+  if (is_recording_csv(line))
+    return {FileKind::kRecordingTable, FileKind::kRecording};
   if (head.starts_with('{')) {
     if (head.find("beamgyro-compensator") == head.npos) return {};
     return {FileKind::kCompensator};

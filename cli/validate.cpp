@@ -129,7 +129,7 @@ void add_validate(CommandLine& program) {
   command.text({"--json", "FILE", "Writes every score to FILE", "no file"},
                arguments->json);
   command.group("Part of a set");
-  command.texts({"--run", "NAME", "Run to score; may be repeated", "all runs"},
+  command.list({"--run", "NAME", "Run to score; may be repeated", "all runs"},
                 arguments->set_runs);
   command.integers({"--device", "NUMBER", "Device to score; may be repeated",
                     "the test devices"},

@@ -269,7 +269,9 @@ class Refused(TrainSet):
     def test_runs_devices_and_options_it_does_not_have(self):
         self.refused("--run", "ramp", says=["ramp", "sweep, check"])
         self.refused("--device", 24, says=["24", "0 to 23"])
-        self.refused("--held-out", "set/check_00000.h5", says="--held-out")
+        self.refused("--held-out", "set/check_00000.h5",
+                     says="is a file of a set; expected a recording")
+        self.refused("--held-out", "elsewhere.h5", says="--held-out and --cv")
         self.refused("--cv", "run", says="--cv")
         self.rejected("train", "nowhere", "--model", "cubic.toml", "-o",
                       "cubic.json", says="nowhere")

@@ -51,7 +51,7 @@ class Kinds(ProgramTest):
                  "model.toml": ("a model file", "beamgyro train --model"),
                  "map.toml": ("a log map", "beamgyro import --map"),
                  "run.h5": ("a recording", "beamgyro info"),
-                 "run.csv": ("a recording as CSV", "beamgyro allan"),
+                 "run.csv": ("a recording as CSV", "beamgyro info"),
                  "set": ("the directory of a set", "beamgyro info"),
                  "set/rest_00000.h5": ("a file of a set", "beamgyro info"),
                  "c.json": ("a compensator", "beamgyro compensate"),
@@ -60,10 +60,11 @@ class Kinds(ProgramTest):
                  "generate": {"campaign.toml"}, "model": {"model.toml"},
                  "log": {"run.csv", "table.csv"}, "allan": {
                      "run.h5", "run.csv", "table.csv"},
-                 "map": {"map.toml"}, "train": {"run.h5", "set"},
+                 "map": {"map.toml"}, "train": {"run.h5", "run.csv", "set"},
                  "compensator": {"c.json"}, "export": {"c.json"},
-                 "compensate": {"run.h5"}, "validate": {"run.h5", "set"},
-                 "info": {"run.h5", "set", "set/rest_00000.h5"},
+                 "compensate": {"run.h5", "run.csv"},
+                 "validate": {"run.h5", "run.csv", "set"},
+                 "info": {"run.h5", "run.csv", "set", "set/rest_00000.h5"},
                  "verify": {"set"}}
         self.assertTrue((self.dir / "set/rest_00000.h5").exists(),
                         sorted(self.files()))
