@@ -21,9 +21,9 @@ import numpy as np
 from matplotlib.ticker import ScalarFormatter
 
 from demo import NOISE_OFF, ROOT, SCENARIOS, Demo
-from figures import BLUE, GREEN, GREY, ORANGE, STYLE, pyplot, save
+from figures import BLUE, GREY, ORANGE, STYLE, pyplot, save
 
-DEVICES = {"nominal": BLUE, "rebalance": ORANGE, "matched": GREEN}
+DEVICES = {"nominal": BLUE, "rebalance": ORANGE, "matched": GREY}
 LABELS = {"nominal": "nominal, open loop", "rebalance": "force rebalance",
           "matched": "matched modes, open loop"}
 # [Hz], whole numbers: the last second of a run holds whole cycles of each.
@@ -136,7 +136,7 @@ def start_up(work):
     figure, panels = pyplot.subplots(4, 1, sharex=True, figsize=(7.2, 8))
     for panel, values, colour in zip(
             panels, [voltage, frequency, rate, np.abs(rate - final)],
-            [BLUE, GREEN, ORANGE, ORANGE]):
+            [BLUE, BLUE, ORANGE, ORANGE]):
         panel.plot(milliseconds, values, color=colour)
         panel.axvline(locked, color=GREY, lw=1, ls="--")
     panels[0].annotate(f"locked after {locked:.0f} ms", (locked, 0.9),
