@@ -158,7 +158,7 @@ TEST(Draws, FailuresNameFilesWithoutTheirFolder) {
                "name = \"rest\"\ndevice = \"nominal.toml\"\nfidelity = "
                "\"quasistatic\"\nduration_s = 10\noutput_rate_Hz = 10\nseed = "
                "7\n[ambient]\nfile = \"hot.csv\"\n");
-  folder.write("hot.csv", "time_s,temperature_degC\n0,290\n");
+  folder.write("hot.csv", "time_s,temperature_degC\n0,140\n");
   const Campaign c = folder.campaign(campaign_text(
       "[tolerances]\n\"beam.side_m\" = { discrete = { values = [0.003, 0.0035, "
       "0.0021] } }\n\"patches.width_m\" = { discrete = { values = [0.002, "
@@ -173,7 +173,7 @@ TEST(Draws, FailuresNameFilesWithoutTheirFolder) {
     EXPECT_EQ(run.find(folder.path().string()), std::string::npos) << run;
     if (!run.empty()) {
       EXPECT_EQ(run,
-                "hot.csv:2: temperature_degC 290 is out of range; expected " +
+                "hot.csv:2: temperature_degC 140 is out of range; expected " +
                     run.substr(run.find("a number in")));
     }
   }
