@@ -64,7 +64,6 @@ ONE_HOME = [
     (r"openssl/", ("dataset/files/sha256.cpp",)),
     (r"toml\+\+/|toml\.hpp", ("config/",)),
     (r"CLI/", ("cli/",)),
-    (r"ceres/", ("compensation/network/lbfgs_trainer.cpp",)),
     (r"boost/random/", ("sim/campaign/scrambled_sobol.cpp",)),
     (r"Random123/", ("random/", "tests/")),
 ]

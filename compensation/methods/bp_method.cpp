@@ -20,10 +20,9 @@ const std::vector<double> kWeightDecays = {0.0, 1e-8, 1e-6};
 Trainer read_trainer(const ConfigTable& table) {
   const std::string name = table.choice_or(
       "trainer", "levenberg_marquardt",
-      {"levenberg_marquardt", "lbfgs", "gradient_adaptive", "incremental"});
+      {"levenberg_marquardt", "gradient_adaptive", "incremental"});
   if (name == "incremental") return Trainer::kIncremental;
   if (name == "gradient_adaptive") return Trainer::kGradientAdaptive;
-  if (name == "lbfgs") return Trainer::kLbfgs;
   return Trainer::kLevenbergMarquardt;
 }
 
@@ -85,16 +84,10 @@ BpSpec BpSpec::read_options(const MethodSource& source) {
   BpSpec spec;
   TrainOptions& training = spec.training;
   training.trainer = read_trainer(table);
-  const bool lbfgs = training.trainer == Trainer::kLbfgs;
-  if (lbfgs || training.trainer == Trainer::kLevenbergMarquardt) {
-    if (lbfgs) {
-      training.max_epochs = kLbfgsMaxEpochs;
-      training.patience = kLbfgsPatience;
-    }
+  if (training.trainer == Trainer::kLevenbergMarquardt) {
     spec.weight_decays = read_weight_decays(table);
-    if (!lbfgs)
-      training.rate_penalty = table.number_or(
-          "rate_penalty", training.rate_penalty, non_negative());
+    training.rate_penalty =
+        table.number_or("rate_penalty", training.rate_penalty, non_negative());
   } else {
     training.max_epochs = kGradientMaxEpochs;
     training.patience = kGradientPatience;

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "compensation/network/gradient_trainer.h"
-#include "compensation/network/lbfgs_trainer.h"
 #include "compensation/network/levenberg_marquardt.h"
 
 namespace beamgyro {
@@ -30,8 +29,6 @@ std::string sentence(StopReason reason) {
       return "no step lowers the error any more: damping at its limit";
     case StopReason::kRateSmall:
       return "no step lowers the error any more: learning rate at its limit";
-    case StopReason::kLineSearchFailed:
-      return "no step lowers the error any more: line search at its limit";
     case StopReason::kHeldOutRising:
       return "the held-out error no longer falls: stopped early";
     case StopReason::kMaxEpochs:
@@ -112,8 +109,6 @@ TrainSummary train_network(const ScaledRows& rows, const ScaledRows& held_out,
       return train_incremental(rows, held_out, options, order, network);
     case Trainer::kGradientAdaptive:
       return train_gradient_adaptive(rows, held_out, options, network);
-    case Trainer::kLbfgs:
-      return train_lbfgs(rows, held_out, options, network);
     case Trainer::kLevenbergMarquardt:
       break;
   }

@@ -13,20 +13,11 @@
 
 namespace beamgyro {
 
-enum class Trainer {
-  kIncremental,
-  kGradientAdaptive,
-  kLbfgs,
-  kLevenbergMarquardt
-};
+enum class Trainer { kIncremental, kGradientAdaptive, kLevenbergMarquardt };
 
 /// Default of the two gradient trainers, which need many cheap epochs.
 constexpr int kGradientMaxEpochs = 20000;
 constexpr int kGradientPatience = 2000;
-
-/// Default of L-BFGS, which needs more epochs than Levenberg-Marquardt.
-constexpr int kLbfgsMaxEpochs = 5000;
-constexpr int kLbfgsPatience = 500;
 
 /// Reason why a training ended. sentence() returns it in words.
 enum class StopReason {
@@ -36,9 +27,8 @@ enum class StopReason {
   kStepSmall,      // |step| <= min_step (|w| + min_step)
   kDampingLimit,   // damping > max_damping: no step lowers the error
   kRateSmall,  // learning rate < min_learning_rate: no step lowers the error
-  kLineSearchFailed,  // no step along the L-BFGS direction lowers the error
-  kHeldOutRising,     // no new lowest held-out error for `patience` epochs
-  kMaxEpochs,         // epochs = max_epochs
+  kHeldOutRising,  // no new lowest held-out error for `patience` epochs
+  kMaxEpochs,      // epochs = max_epochs
 };
 
 std::string sentence(StopReason reason);
@@ -63,7 +53,7 @@ struct TrainOptions {
   int threads = 1;       // >= 1; of one training; the gradient rules use one
   int cores = 0;         // of all restarts together; 0 = those there are
   double goal = 0.0;     // rms, >= 0
-  double weight_decay = 0.0;  // >= 0; kLevenbergMarquardt, kLbfgs
+  double weight_decay = 0.0;  // >= 0; kLevenbergMarquardt
   // Adds rate_penalty mean(g^2) / 2 to F, where g is the share of a rate along
   // rate_direction that is mistaken for drift (RatePenalty). For
   // kLevenbergMarquardt only.

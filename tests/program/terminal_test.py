@@ -160,7 +160,7 @@ class Line(Terminal):
         self.run_scenario("run", text=ramp())
         self.run_scenario("held_out", text=ramp(seed=9))
         for trainer in ["incremental", "gradient_adaptive",
-                        "levenberg_marquardt", "lbfgs"]:
+                        "levenberg_marquardt"]:
             self.write("m.toml", PATIENT.replace("incremental", trainer)
                        .replace("[12]", "[40]" if "l" in trainer[:2] else
                                 "[12]") + "[rows]\nseconds = 4\n")

@@ -63,18 +63,6 @@ momentum = 0.25
   EXPECT_EQ(bp.training.momentum, 0.25);
 }
 
-TEST(ModelFile, LbfgsTakesWeightDecayAndMoreEpochs) {
-  const std::string text =
-      "kind = \"bp\"\ninputs = [\"temperature\"]\n"
-      "[bp]\nhidden = [6]\ntrainer = \"lbfgs\"\nweight_decay = 1e-6\n";
-  const TrainOptions training = std::get<BpSpec>(parse(text).kind).training;
-  EXPECT_EQ(training.trainer, Trainer::kLbfgs);
-  EXPECT_EQ(std::get<BpSpec>(parse(text).kind).weight_decays,
-            (std::vector<double>{1e-6}));
-  EXPECT_EQ(training.max_epochs, kLbfgsMaxEpochs);
-  EXPECT_EQ(training.patience, kLbfgsPatience);
-}
-
 TEST(ModelFile, SplineReadsItsSpacingAndEnds) {
   const ModelSpec spec = parse(
       "kind = \"spline\"\ninputs = [\"temperature\"]\n"
@@ -127,10 +115,8 @@ TEST(ModelFile, WrongFilesAreAnsweredWithPlaceAndCure) {
            Wrong{"hidden = [6]\nlearning_rate = 0.1\n", "learning_rate"},
            Wrong{"hidden = [6]\ntrainer = \"incremental\"\nmomentum = 1\n",
                  "momentum"},
-           Wrong{"hidden = [6]\ntrainer = \"lbfgs\"\nmomentum = 0.5\n",
-                 "momentum"},
-           Wrong{"hidden = [6]\ntrainer = \"lbfgs\"\nweight_decay = -1\n",
-                 "weight_decay"},
+           Wrong{"hidden = [6]\nmomentum = 0.5\n", "momentum"},
+           Wrong{"hidden = [6]\nweight_decay = -1\n", "weight_decay"},
            Wrong{"hidden = [6]\ntrainer = \"adam\"\n", "incremental"},
        }) {
     const std::string message = error_of(bp + wrong.text);
@@ -313,7 +299,7 @@ TEST(ModelFile, WhatAKindCannotTakeIsRefused) {
                  "[bp]\nhidden = [6]\nrate_penalty = 1\n",
                  "do not feel the rate"},
            Wrong{"kind = \"bp\"\ninputs = [\"output\"]\n"
-                 "[bp]\nhidden = [6]\ntrainer = \"lbfgs\"\nrate_penalty = 1\n",
+                 "[bp]\nhidden = [6]\ntrainer = \"incremental\"\nrate_penalty = 1\n",
                  "rate_penalty"},
            Wrong{"kind = \"bp\"\ninputs = [\"output\"]\n"
                  "[bp]\nhidden = [6]\nweight_decays = []\n",
