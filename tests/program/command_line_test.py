@@ -72,7 +72,7 @@ class CommandLine(ProgramTest):
     def test_results_hold_no_control_character_of_a_file(self):
         name = "\x1b[31ms.toml"
         self.write(name, SCENARIO.replace("600", "60"))
-        self.write("campaign\x1b[2J.toml", f"""\
+        self.write("campaign\x1b[2J.toml", """\
 name = "x"
 device = "device.toml"
 devices = 1

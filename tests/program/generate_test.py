@@ -214,34 +214,33 @@ class Generate(Set):
             return list(zip(file[parameter][()], rows.min(axis=1),
                             rows.max(axis=1)))
 
-    def test_an_axis_is_kept_whatever_the_first_device_draws(self):
-        firsts = set()
+    def assert_axis_is_kept(self, varied, name, parameter, firsts, unit=1):
+        """The truth of every device is what it drew, and the first devices of
+        several sets drew each of `firsts`."""
+        found = set()
         for seed in range(6):
-            said = self.vary(seed, '"cross_rate.x.constant_deg_per_s" = '
-                             "{ discrete = { values = [0, 5] } }")
-            self.assertIn("0 failed", said)
-            rows = self.axis_of(seed, "true_cross_rate_x",
-                                "cross_rate_x_constant_deg_per_s")
-            firsts.add(rows[0][0])
-            for drawn, lowest, highest in rows:
-                self.assertEqual((lowest, highest), (drawn, drawn))
-        self.assertEqual(firsts, {0.0, 5.0})
-
-    def test_an_axis_that_only_some_choices_have_is_kept(self):
-        firsts = set()
-        for seed in range(6):
-            said = self.vary(seed, '"acceleration" = { discrete = { values = '
-                             "[{}, { z = { constant_g = 1 } }] } }")
-            self.assertIn("0 failed", said)
-            rows = self.axis_of(seed, "true_acceleration_z",
-                                "acceleration_choice")
-            firsts.add(rows[0][0])
+            self.assertIn("0 failed", self.vary(seed, varied))
+            rows = self.axis_of(seed, name, parameter)
+            found.add(rows[0][0])
             for drawn, lowest, highest in rows:
                 self.assertEqual(lowest, highest)
-                self.assertAlmostEqual(highest, 9.80665 * drawn, places=5)
+                self.assertAlmostEqual(highest, unit * drawn, places=5)
+        self.assertEqual(found, firsts)
+
+    def test_an_axis_is_kept_whatever_the_first_device_draws(self):
+        self.assert_axis_is_kept(
+            '"cross_rate.x.constant_deg_per_s" = '
+            "{ discrete = { values = [0, 5] } }", "true_cross_rate_x",
+            "cross_rate_x_constant_deg_per_s", {0.0, 5.0})
+
+    def test_an_axis_that_only_some_choices_have_is_kept(self):
+        self.assert_axis_is_kept(
+            '"acceleration" = { discrete = { values = '
+            "[{}, { z = { constant_g = 1 } }] } }", "true_acceleration_z",
+            "acceleration_choice", {0.0, 1.0}, unit=9.80665)
+        for seed in range(6):
             with h5py.File(self.dir / f"set{seed}/ramp.nc") as file:
                 self.assertNotIn("true_acceleration_x", file)
-        self.assertEqual(firsts, {0.0, 1.0})
 
     def test_an_axis_that_no_choice_moves_is_left_out(self):
         self.vary(0, '"cross_rate.x.constant_deg_per_s" = '
