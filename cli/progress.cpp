@@ -88,8 +88,16 @@ void Progress::draw() {
   if (wait == kStep) print_progress("");
 }
 
+// A work that ends while this thread wakes up has its line as well.
 void Progress::log() {
-  while (!over_within(kMinute)) print_note(line(kLogWidth));
+  const std::chrono::duration<double> minute(kMinute);
+  Clock::time_point last = start_;
+  for (bool is_over = false; !is_over;) {
+    is_over = over_within(kMinute);
+    if (Clock::now() - last < minute) continue;
+    print_note(line(kLogWidth));
+    last = Clock::now();
+  }
 }
 
 }  // namespace beamgyro
