@@ -53,10 +53,10 @@ void find_first_unknown(const ConfigNode& table, const std::string& path,
 /// Returns a suggestion in place of the unknown `key` of the table `path`.
 std::string advice(const DocumentState& document, const std::string& path,
                    const std::string& key) {
-  const std::vector<std::string> here = document.keys_asked_in(path);
+  const std::vector<std::string> here = document.known_keys_in(path);
   const std::string near = suggestion(key, here);
   if (!near.empty()) return fmt::format("did you mean '{}'?", near);
-  for (const std::string& other : document.asked) {
+  for (const std::string& other : document.known_keys) {
     if (other.ends_with('.' + key))
       return fmt::format("did you mean '{}'?", other);
   }
@@ -71,9 +71,9 @@ std::string joined(const std::string& table, std::string_view key) {
   return table.empty() ? std::string(key) : fmt::format("{}.{}", table, key);
 }
 
-void DocumentState::ask(const std::string& key_path) {
-  asked.insert(key_path);
-  overrides->asked.insert(key_path);
+void DocumentState::note_known(const std::string& key_path) {
+  known_keys.insert(key_path);
+  overrides->known_keys.insert(key_path);
 }
 
 void DocumentState::mark_read(const ConfigNode& node) const {
@@ -90,11 +90,11 @@ std::string DocumentState::place(const ConfigNode& node,
   return fmt::format("{}:{}:{}", name, position.line, position.column);
 }
 
-std::vector<std::string> DocumentState::keys_asked_in(
+std::vector<std::string> DocumentState::known_keys_in(
     const std::string& table) const {
   const std::string start = table.empty() ? "" : table + '.';
   std::vector<std::string> keys;
-  for (const std::string& key_path : asked) {
+  for (const std::string& key_path : known_keys) {
     if (!key_path.starts_with(start)) continue;
     std::string key = key_path.substr(start.size());
     if (key.find('.') == std::string::npos) keys.push_back(std::move(key));
@@ -109,7 +109,7 @@ void DocumentState::reject_unknown_keys() const {
   const ConfigNode& node = *first.node;
   const std::string key_path = joined(first.table, node.key);
   const std::string at = place(node, node.key_position);
-  if (asked.contains(key_path)) {
+  if (known_keys.contains(key_path)) {
     throw std::invalid_argument(
         fmt::format("{}: {}: not used together with the other keys given here; "
                     "remove it",

@@ -20,18 +20,18 @@ struct DocumentState {
   std::string text;  // byte for byte as read
   ConfigNode root;
   std::shared_ptr<const ConfigNode> file_root;  // before the overrides
-  std::set<std::string> asked;  // dotted keys somebody asked for
+  std::set<std::string> known_keys;  // dotted keys somebody asked for
   std::shared_ptr<OverrideSet> overrides;
 
   /// Records that the key `path` was asked for.
-  void ask(const std::string& path);
+  void note_known(const std::string& path);
   /// Records that `node` was read.
   void mark_read(const ConfigNode& node) const;
   /// Returns "file:line:column", or "--set KEY=VALUE" for a value that came
   /// from an override.
   std::string place(const ConfigNode& node, FilePosition position) const;
   /// Returns the keys asked for in the table `path`, without the path.
-  std::vector<std::string> keys_asked_in(const std::string& path) const;
+  std::vector<std::string> known_keys_in(const std::string& path) const;
   /// Throws std::invalid_argument for the first key in file order that was not
   /// read.
   void reject_unknown_keys() const;

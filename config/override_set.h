@@ -20,7 +20,7 @@ struct Override {
 
 struct OverrideSet {
   std::vector<Override> overrides;
-  std::set<std::string> asked;  // dotted keys some document asked for
+  std::set<std::string> known_keys;  // dotted keys some document asked for
 };
 
 /// Puts the value of `set` into the tree below `root`. It replaces or creates

@@ -195,22 +195,22 @@ bool Overrides::all_used() const {
                      [](const Override& set) { return set.used; });
 }
 
-std::vector<std::string> Overrides::keys_asked() const {
-  return {state_->asked.begin(), state_->asked.end()};
+std::vector<std::string> Overrides::known_keys() const {
+  return {state_->known_keys.begin(), state_->known_keys.end()};
 }
 
 void Overrides::check_all_used() const {
-  const std::vector<std::string> asked = keys_asked();
+  const std::vector<std::string> known = known_keys();
   for (const Override& set : state_->overrides) {
     if (set.used) continue;
     const std::string key = fmt::format("{}", fmt::join(set.path, "."));
-    if (state_->asked.contains(key)) {
+    if (state_->known_keys.contains(key)) {
       reject(set.argument, fmt::format("'{}' is not used together with the "
                                        "other keys given",
                                        key));
     }
-    std::string near = suggestion(key, asked);
-    for (const std::string& path : asked) {  // right name, wrong table
+    std::string near = suggestion(key, known);
+    for (const std::string& path : known) {  // right name, wrong table
       if (last_part(path) == set.path.back()) near = path;
     }
     reject(set.argument,

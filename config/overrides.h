@@ -37,7 +37,7 @@ class Overrides {
   bool all_used() const;
 
   /// Returns the dotted keys that documents asked for, sorted.
-  std::vector<std::string> keys_asked() const;
+  std::vector<std::string> known_keys() const;
 
   std::string text() const;  // one KEY=VALUE per line, in the order given
 

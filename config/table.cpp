@@ -64,7 +64,7 @@ const ConfigNode* ConfigTable::peek(std::string_view key) const {
 }
 
 std::optional<ConfigValue> ConfigTable::find(std::string_view key) const {
-  document_->ask(path_of(key));
+  document_->note_known(path_of(key));
   const ConfigNode* node = peek(key);
   if (node == nullptr) return std::nullopt;
   document_->mark_read(*node);
@@ -95,7 +95,7 @@ ConfigValue ConfigTable::require(std::string_view key,
 }
 
 bool ConfigTable::has(std::string_view key) const {
-  document_->ask(path_of(key));
+  document_->note_known(path_of(key));
   return peek(key) != nullptr;
 }
 

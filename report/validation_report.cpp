@@ -58,7 +58,7 @@ Json worst_json(const WorstBlocks& worst) {
 
 /// Whether a replay moves every input that a rate may move.
 bool moves_all(const std::optional<ReplayedScaleFactor>& replayed) {
-  return replayed && replayed->not_moved.empty() && replayed->worst.worse();
+  return replayed && replayed->fixed_inputs.empty() && replayed->worst.worse();
 }
 
 Json replayed_json(const ReplayedScaleFactor& replayed) {
@@ -106,7 +106,7 @@ Json score_json(const Score& score) {
       {"replayed_at_rest",
        moved ? Json(replayed.worst.worse()->retained) : Json()},
       {"replayed", moved ? replayed_json(replayed) : Json()},
-      {"not_moved_by_replay", replayed.not_moved},
+      {"not_moved_by_replay", replayed.fixed_inputs},
       {"not_tested", replayed.untested}};
   json["linearity"] = linearity_json(score.linearity);
   json["raw_linearity"] = linearity_json(score.raw_linearity);
@@ -199,10 +199,10 @@ std::string rate_table(const Validation& validation, std::size_t width) {
 }
 
 std::string replay_note(const ReplayedScaleFactor& replayed) {
-  if (!replayed.not_moved.empty()) {
+  if (!replayed.fixed_inputs.empty()) {
     return fmt::format(
         "scale factor replayed: not tested, no replay moves {}\n",
-        fmt::join(replayed.not_moved, ", "));
+        fmt::join(replayed.fixed_inputs, ", "));
   }
   const std::optional<ReplayedBlock> worse = replayed.worst.worse();
   if (!worse) {

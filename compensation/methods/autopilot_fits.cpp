@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "compensation/models/array_view.h"
+
 namespace beamgyro {
 namespace {
 
@@ -94,11 +96,6 @@ void add_points(const TrainingRows& samples, Index begin, Index end,
   }
 }
 
-ArrayXd to_array(const std::vector<double>& values) {
-  return Eigen::Map<const ArrayXd>(values.data(),
-                                   static_cast<Index>(values.size()));
-}
-
 }  // namespace
 
 BiasModel fit_as_px4(const TrainingRows& samples) {
@@ -123,8 +120,8 @@ BiasModel fit_as_px4(const TrainingRows& samples) {
       points.temperature.push_back(T(bin) / count(bin));
       points.bias.push_back(b(bin) / count(bin));
     }
-  return cubic_about(0.5 * (low + high), to_array(points.temperature),
-                     to_array(points.bias));
+  return cubic_about(0.5 * (low + high), array_view(points.temperature),
+                     array_view(points.bias));
 }
 
 BiasModel fit_as_ardupilot(const TrainingRows& samples, int least_samples) {
@@ -144,8 +141,8 @@ BiasModel fit_as_ardupilot(const TrainingRows& samples, int least_samples) {
         "the temperature rises by {} K over {} samples {} times in training; "
         "ArduPilot's calibration learns while heating and needs {} such rises",
         kTemperatureStep, least_samples, points.bias.size(), kCubicDegree + 1));
-  return cubic_about(kArduPilotReference, to_array(points.temperature),
-                     to_array(points.bias));
+  return cubic_about(kArduPilotReference, array_view(points.temperature),
+                     array_view(points.bias));
 }
 
 }  // namespace beamgyro

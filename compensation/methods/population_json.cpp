@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "compensation/models/array_view.h"
 #include "compensation/models/parameter_json.h"
 
 namespace beamgyro {
@@ -21,7 +22,7 @@ VectorXd read_vector(const JsonNode& node, Index size) {
         fmt::format("{} numbers, must be {}, one for each curve and "
                     "temperature",
                     numbers.size(), size));
-  return Eigen::Map<const VectorXd>(numbers.data(), size);
+  return array_view(numbers);
 }
 
 }  // namespace
@@ -51,7 +52,7 @@ Population read_population(const JsonNode& node) {
   }
   const std::vector<double> T = node.at("temperatures_degC").numbers();
   const auto grid = static_cast<Index>(T.size());
-  population.temperatures = Eigen::Map<const Eigen::ArrayXd>(T.data(), grid);
+  population.temperatures = array_view(T);
   const Eigen::ArrayXd& grid_T = population.temperatures;
   if (grid < 4 || !(grid_T.tail(grid - 1) > grid_T.head(grid - 1)).all())
     node.at("temperatures_degC").fail("must be 4 or more that increase");

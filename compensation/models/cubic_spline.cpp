@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compensation/firmware/runtime.h"
+#include "compensation/models/array_view.h"
 #include "compensation/models/parameter_json.h"
 
 namespace beamgyro {
@@ -129,8 +130,7 @@ ArrayXd spline_knots(const Eigen::Ref<const ArrayXd>& x, double spacing) {
     }
     first = last + 1;
   }
-  return Eigen::Map<const ArrayXd>(knots.data(),
-                                   static_cast<Index>(knots.size()));
+  return array_view(knots);
 }
 
 nlohmann::ordered_json CubicSpline::parameters() const {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "compensation/models/array_view.h"
+
 namespace beamgyro {
 
 nlohmann::ordered_json finite_json(double value) {
@@ -17,8 +19,7 @@ nlohmann::ordered_json finite_json(double value) {
 
 Eigen::ArrayXd read_array(const JsonNode& node) {
   const std::vector<double> numbers = node.numbers();
-  return Eigen::Map<const Eigen::ArrayXd>(
-      numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+  return array_view(numbers);
 }
 
 double read_positive(const JsonNode& node) {

@@ -45,7 +45,7 @@ struct RunSource {
   std::size_t count = 0;  // of runs
   /// Calls the visitor with each run, in the same order every time. An
   /// exception for a run that cannot be read names the file.
-  std::function<void(const Visitor&)> each;
+  std::function<void(const Visitor&)> for_each;
   std::optional<SetPart> set = {};  // nothing for runs in files of their own
 };
 

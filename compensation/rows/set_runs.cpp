@@ -109,7 +109,8 @@ RunSource runs_of_set(const std::filesystem::path& directory,
               manifest.head->seed,
               selection.runs.empty() ? runs : selection.runs,
               {devices.begin(), devices.end()}};
-  source.each = [files = std::move(files)](const RunSource::Visitor& visit) {
+  source.for_each = [files =
+                         std::move(files)](const RunSource::Visitor& visit) {
     for (const FileMembers& members : files) visit_file(members, visit);
   };
   return source;

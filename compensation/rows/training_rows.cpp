@@ -8,6 +8,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "compensation/models/array_view.h"
+
 namespace beamgyro {
 namespace {
 
@@ -115,11 +117,6 @@ class LegCounter {
   std::optional<bool> rising_;
 };
 
-Eigen::ArrayXi array_of(const std::vector<int>& values) {
-  return Eigen::Map<const Eigen::ArrayXi>(values.data(),
-                                          static_cast<Index>(values.size()));
-}
-
 // Rows of one run, one column per row: inputs, time, temperature, bias.
 class RowCollector {
  public:
@@ -139,9 +136,7 @@ class RowCollector {
       throw std::invalid_argument(
           "no sample is powered, locked and not saturated");
     const auto column = [&](const char* name) {
-      const std::vector<double>& values = column_values(recording, name);
-      return Eigen::Map<const ArrayXd>(values.data(),
-                                       static_cast<Index>(values.size()));
+      return array_view(column_values(recording, name));
     };
     const ArrayXd temperature = column("temperature");
     ArrayXd truth = column("true_rate");
@@ -149,8 +144,7 @@ class RowCollector {
       truth *= scale_factor_->predict(
           temperature.max(clamp_.lowest).min(clamp_.highest));
     const ArrayXd bias = column("rate") - truth;
-    const ArrayXd time = Eigen::Map<const ArrayXd>(
-        recording.time.data(), static_cast<Index>(recording.time.size()));
+    const ArrayXd time = array_view(recording.time);
     note_output(recording);
     int cycle = -1;
     ++run_count_;
@@ -197,13 +191,13 @@ class RowCollector {
             all.row(inputs_ + 2).transpose(),
             range_,
             all.row(inputs_).transpose(),
-            array_of(runs_),
-            array_of(cycles_),
-            array_of(legs_.legs()),
+            array_view(runs_),
+            array_view(cycles_),
+            array_view(legs_.legs()),
             output_per_rate_,
             count > 0 ? fastest_ - slowest_ : 0.0,
-            array_of(outside_).cast<bool>(),
-            array_of(devices_)};
+            array_view(outside_).cast<bool>(),
+            array_view(devices_)};
   }
 
  private:
@@ -266,7 +260,7 @@ TrainingRows training_rows(const RunSource& runs,
                            const TemperatureRange& range,
                            const LookupTable* scale_factor) {
   RowCollector collector(options, range, scale_factor, inputs.size());
-  runs.each([&](const TrainingRun& run) {
+  runs.for_each([&](const TrainingRun& run) {
     try {
       collector.add(run, inputs);
     } catch (const std::invalid_argument& error) {
@@ -309,7 +303,7 @@ TrainingRows selected(const TrainingRows& rows,
           rows.leg(which),
           rows.output_per_rate,
           rows.true_rate_span,
-          rows.outside(which),
+          rows.beyond_range(which),
           rows.device(which)};
 }
 

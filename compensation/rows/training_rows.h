@@ -29,7 +29,7 @@ struct TrainingRows {
   double true_rate_span = 0.0;   // [deg/s], of the samples that were averaged
   // Whether the mean measured temperature lies beyond the value that it was
   // clamped to.
-  Eigen::Array<bool, Eigen::Dynamic, 1> outside;
+  Eigen::Array<bool, Eigen::Dynamic, 1> beyond_range;
   Eigen::ArrayXi device;  // whose run it was
 
   Eigen::Index size() const { return bias.size(); }

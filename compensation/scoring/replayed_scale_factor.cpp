@@ -31,7 +31,7 @@ bool is_borne_out(const RecordedRates& rates, double temperature, double s) {
 
 /// Returns the inputs that a rate may move in the gyro and does not move in a
 /// replay. The temperature does not depend on the rate.
-std::vector<std::string> inputs_not_moved(const std::vector<Input>& inputs) {
+std::vector<std::string> inputs_without_rate(const std::vector<Input>& inputs) {
   std::vector<std::string> names;
   for (const Input& input : inputs)
     if (!sees_the_rate(input) && !input.column.empty() &&
@@ -95,7 +95,7 @@ std::optional<double> worst_plateau(const RecordedRates& rates) {
 
 bool needs_recorded_rates(const Compensator& compensator) {
   return compensator.scale_factor.has_value() ||
-         !inputs_not_moved(compensator.inputs).empty();
+         !inputs_without_rate(compensator.inputs).empty();
 }
 
 void add_recorded_rates(const Recording& recording,
@@ -126,7 +126,7 @@ void ReplayedScaleFactor::add(const ReplayedScaleFactor& other) {
   temperatures.highest =
       std::max(temperatures.highest, other.temperatures.highest);
   worst.add(other.worst);
-  not_moved = other.not_moved;
+  fixed_inputs = other.fixed_inputs;
   for (const std::string& name : other.untested)
     note_untested(name, other.untested_temperature, *this);
   worst_plateau = other.worst_plateau;
@@ -143,16 +143,17 @@ std::optional<ReplayedScaleFactor> replayed_scale_factor(
       },
       recording, answers, full_scale);
   if (!blocks) return std::nullopt;
-  ReplayedScaleFactor found{.full_scale = full_scale,
-                            .not_moved = inputs_not_moved(compensator.inputs)};
-  if (!found.not_moved.empty()) {
+  ReplayedScaleFactor found{
+      .full_scale = full_scale,
+      .fixed_inputs = inputs_without_rate(compensator.inputs)};
+  if (!found.fixed_inputs.empty()) {
     found.worst_plateau = worst_plateau(rates);
     const auto uncovered =
         std::ranges::find_if(*blocks, [&rates](const ReplayedBlock& block) {
           return !is_covered(rates, block.temperature);
         });
     if (uncovered != blocks->end())
-      for (const std::string& name : found.not_moved)
+      for (const std::string& name : found.fixed_inputs)
         note_untested(name, uncovered->temperature, found);
   }
   const BlockJudge judge(compensator, rates, tolerance);

@@ -39,7 +39,7 @@ struct ReplayedScaleFactor {
   // retains is multiplied by the value of the table.
   WorstBlocks worst = {};
   // Inputs that the replayed rate does not move, although a real rate might.
-  std::vector<std::string> not_moved = {};
+  std::vector<std::string> fixed_inputs = {};
   // Those of these inputs, and "scale_factor" for the table, that no recorded
   // rate tests.
   std::vector<std::string> untested = {};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compensation/inputs/sample_ranges.h"
+#include "compensation/models/array_view.h"
 #include "compensation/scoring/rate_departure.h"
 
 namespace beamgyro {
@@ -27,9 +28,7 @@ struct Plateau {
 };
 
 Eigen::VectorXd centred(const std::vector<double>& values) {
-  const Eigen::Map<const Eigen::VectorXd> all(
-      values.data(), static_cast<Eigen::Index>(values.size()));
-  return all.array() - all.mean();
+  return array_view(values) - array_view(values).mean();
 }
 
 SlopeSums sums_of(const Plateau& plateau) {
@@ -133,11 +132,8 @@ std::vector<PlateauSlope> plateau_slopes(const Recording& recording,
          plateaus_of(recording, compensated, kEveryRate, largest_step)) {
       const SlopeSums sums = sums_of(plateau);
       if (sums.largest_departure >= least_departure) {
-        const Eigen::Map<const Eigen::ArrayXd> T(
-            plateau.temperature.data(),
-            static_cast<Eigen::Index>(plateau.temperature.size()));
-        slopes.push_back({T.mean(), sums.raw_without_drift,
-                          sums.truth_without_drift,
+        slopes.push_back({array_view(plateau.temperature).mean(),
+                          sums.raw_without_drift, sums.truth_without_drift,
                           sums.compensated_without_drift});
       }
     }

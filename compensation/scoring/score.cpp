@@ -11,6 +11,7 @@
 
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/methods/fit.h"
+#include "compensation/models/array_view.h"
 #include "compensation/scoring/allan_deviation.h"
 
 namespace beamgyro {
@@ -63,10 +64,6 @@ void count_samples(const AnsweredRun& run, Score& score) {
   }
 }
 
-Eigen::Map<const Eigen::ArrayXd> array_from(const std::vector<double>& values) {
-  return {values.data(), static_cast<Eigen::Index>(values.size())};
-}
-
 ResidualScores scores_of(const Eigen::ArrayXd& residuals) {
   return residual_scores(
       {residuals.data(), static_cast<std::size_t>(residuals.size())});
@@ -84,10 +81,10 @@ Eigen::ArrayXd without_cubic(const Eigen::ArrayXd& raw,
 void fill_from_sums(const RunSums& sums, Score& score) {
   score.residual = residual_scores(sums.residual);
   score.raw = residual_scores(sums.raw);
-  const Eigen::ArrayXd raw = array_from(sums.raw);
+  const Eigen::ArrayXd raw = array_view(sums.raw);
   score.constant = scores_of(raw - raw.mean());
   if (!sums.temperature.empty()) {
-    score.cubic = scores_of(without_cubic(raw, array_from(sums.temperature)));
+    score.cubic = scores_of(without_cubic(raw, array_view(sums.temperature)));
   }
   if (!sums.baseline.empty()) {
     score.baseline = residual_scores(sums.baseline);

@@ -57,7 +57,7 @@ std::vector<DeviceScore> score_devices(const Compensator& compensator,
   if (runs.count == 0)
     throw std::invalid_argument("no run of the set to score");
   std::vector<DeviceScore> scores;
-  runs.each([&](const TrainingRun& run) {
+  runs.for_each([&](const TrainingRun& run) {
     const Validation validation =
         validate(compensator, run.name,
                  {{run.name, &run.recording, run.sha256}}, specification);

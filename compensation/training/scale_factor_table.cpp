@@ -16,7 +16,7 @@ LookupTable fit_scale_factor(const RunSource& runs, double bin_width) {
     double temperature = 0.0, raw = 0.0, truth = 0.0;
   };
   std::map<double, Bin> bins;
-  runs.each([&](const TrainingRun& run) {
+  runs.for_each([&](const TrainingRun& run) {
     for (const PlateauSlope& slope :
          plateau_slopes(run.recording, kTableRate)) {
       Bin& bin = bins[std::floor(slope.temperature / bin_width)];

@@ -43,7 +43,7 @@ struct RunFacts {
 // Returns the same runs and notes facts about each as it passes.
 RunSource noting(const RunSource& runs, RunFacts& facts) {
   return {runs.count, [&](const RunSource::Visitor& visit) {
-            runs.each([&](const TrainingRun& run) {
+            runs.for_each([&](const TrainingRun& run) {
               visit(run);  // whose errors name the run
               if (!run.sha256.empty())
                 facts.files.push_back({run.name, run.sha256,

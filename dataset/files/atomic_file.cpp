@@ -179,7 +179,7 @@ AtomicFile::AtomicFile(const fs::path& path)
 
 AtomicFile::AtomicFile(const Directory& directory, const std::string& name,
                        const fs::path& path)
-    : path_(path), directory_(directory.below({})), name_(name) {
+    : path_(path), directory_(directory.subdirectory({})), name_(name) {
   const std::optional<FileFacts> there = directory.find(name);
   if (there && !there->is_regular && !there->is_link)
     reject(path, "it is no ordinary file; expected one, or none");

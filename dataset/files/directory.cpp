@@ -108,14 +108,14 @@ std::optional<FileFacts> Directory::find(const fs::path& name) const {
   }
 }
 
-Directory Directory::below(const fs::path& name) const {
+Directory Directory::subdirectory(const fs::path& name) const {
   if (name.empty())
     return Directory(OpenFile(fcntl(descriptor(), F_DUPFD_CLOEXEC, 0)));
   return Directory(open(name, kFolder));
 }
 
-Directory Directory::make_below(const fs::path& name) const {
-  Directory last = below({});
+Directory Directory::make_subdirectory(const fs::path& name) const {
+  Directory last = subdirectory({});
   std::vector<Directory> made;
   for (const fs::path& part : name) {
     require_below(part);
@@ -123,7 +123,7 @@ Directory Directory::make_below(const fs::path& name) const {
     const int answer = uninterrupted(
         [&] { return mkdirat(parent.descriptor(), part.c_str(), 0777); });
     if (answer != 0 && errno != EEXIST) fail_directory(errno);
-    made.push_back(parent.below(part));
+    made.push_back(parent.subdirectory(part));
   }
   return made.empty() ? std::move(last) : std::move(made.back());
 }
@@ -155,7 +155,7 @@ std::vector<std::string> Directory::files_below() const {
       files.push_back(name);
       continue;
     }
-    for (const std::string& file : below(name).files_below())
+    for (const std::string& file : subdirectory(name).files_below())
       files.push_back(fmt::format("{}/{}", name, file));
   }
   return files;

@@ -36,10 +36,10 @@ class Directory {
   /// Returns the facts about a file, or nothing when there is no such file.
   std::optional<FileFacts> find(const std::filesystem::path& name) const;
 
-  /// Opens a directory below this one. make_below() makes it, and those above
-  /// it, unless it is there. An empty name means this directory.
-  Directory below(const std::filesystem::path& name) const;
-  Directory make_below(const std::filesystem::path& name) const;
+  /// Opens a directory below this one. make_subdirectory() makes it, and those
+  /// above it, unless it is there. An empty name means this directory.
+  Directory subdirectory(const std::filesystem::path& name) const;
+  Directory make_subdirectory(const std::filesystem::path& name) const;
 
   /// Returns the names of all entries, sorted.
   std::vector<std::string> names() const;

@@ -23,7 +23,7 @@ std::string line_of(const std::string& digits) {
 
 /// SHA-256 of the first `size` bytes.
 std::string digits_of(OpenFile& file, std::uint64_t size) {
-  file.go_to(0);
+  file.seek(0);
   Sha256 hash;
   file.read_pieces([&](std::span<const std::byte> piece) {
     const auto count =

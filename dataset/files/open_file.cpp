@@ -100,7 +100,7 @@ void OpenFile::read_pieces(
   }
 }
 
-void OpenFile::go_to(std::uint64_t place) {
+void OpenFile::seek(std::uint64_t place) {
   if (lseek(descriptor_, static_cast<off_t>(place), SEEK_SET) < 0)
     fail_opening();
 }

@@ -44,7 +44,7 @@ class OpenFile {
   void read_pieces(const std::function<void(std::span<const std::byte>)>& take);
 
   /// Sets the position, counted from the start of the file.
-  void go_to(std::uint64_t place);
+  void seek(std::uint64_t place);
 
   std::uint64_t size();
 

@@ -60,7 +60,7 @@ void require_same(const fs::path& path, OpenFile& file,
 
 Directory made_directory(const fs::path& directory, const fs::path& name) {
   try {
-    return Directory(directory).make_below(name.parent_path());
+    return Directory(directory).make_subdirectory(name.parent_path());
   } catch (const std::system_error& error) {
     throw_file_error((directory / name).parent_path(), "cannot write",
                      error.code(),
@@ -77,7 +77,7 @@ void publish_file(const fs::path& directory, const fs::path& name,
   try {
     AtomicFile target(parent, name.filename().string(), path);
     target.file().write(bytes);
-    target.file().go_to(0);
+    target.file().seek(0);
     require_same(path, target.file(), bytes);
     target.publish();
   } catch (const FileError& error) {

@@ -33,7 +33,7 @@ void remove_below(const Directory& directory, bool of_any_host) {
   for (const std::string& name : directory.names()) {
     const std::optional<FileFacts> facts = directory.find(name);
     if (facts && facts->is_directory)
-      remove_below(directory.below(name), of_any_host);
+      remove_below(directory.subdirectory(name), of_any_host);
   }
 }
 
@@ -102,7 +102,7 @@ void remove_unfinished_files(const fs::path& directory, bool of_any_host) {
   remove_dead_partial_files(set, of_any_host);
   const std::optional<FileFacts> source = set.find("source");
   if (source && source->is_directory)
-    remove_below(set.below("source"), of_any_host);
+    remove_below(set.subdirectory("source"), of_any_host);
 }
 
 }  // namespace beamgyro

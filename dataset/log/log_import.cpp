@@ -219,7 +219,7 @@ class LogReader {
             return !std::isnan(value) && !quantity.plausible.contains(value);
           });
       if (wrong == values.end()) continue;
-      log_.text().go_to(
+      log_.text().return_to(
           lines_[static_cast<std::size_t>(wrong - values.begin())]);
       log_.fail(slots_[i],
                 fmt::format("is {:g} {} when read as {}: \"{}\"", *wrong,

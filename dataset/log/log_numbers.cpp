@@ -83,7 +83,7 @@ LogNumbers::LogNumbers(std::string_view text, const std::filesystem::path& path,
     : text_(text, path, map.layout), map_(map), path_(path.string()) {}
 
 std::size_t LogNumbers::slot(const LogColumn& column) {
-  return text_.want(index_of(column, text_, path_));
+  return text_.select(index_of(column, text_, path_));
 }
 
 std::optional<double> LogNumbers::number_in(std::size_t slot) const {

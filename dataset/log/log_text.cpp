@@ -207,16 +207,16 @@ void LogText::cut() {
   cells_ = 0;
   for (const char* begin = first_cell(); begin != nullptr; ++cells_) {
     const char* const stop = cell_end(begin, end);
-    for (; next < order_.size() && wanted_[order_[next]].index == cells_;
+    for (; next < order_.size() && selected_[order_[next]].index == cells_;
          ++next) {
-      Wanted& wanted = wanted_[order_[next]];
+      SelectedColumn& column = selected_[order_[next]];
       const std::string_view cell{begin,
                                   static_cast<std::size_t>(stop - begin)};
-      wanted.text = unquoted(trimmed(cell));
-      wanted.column = static_cast<std::size_t>(begin - row_.data()) + 1;
-      if (!wanted.text.empty())
-        wanted.column =
-            static_cast<std::size_t>(wanted.text.data() - row_.data()) + 1;
+      column.text = unquoted(trimmed(cell));
+      column.column = static_cast<std::size_t>(begin - row_.data()) + 1;
+      if (!column.text.empty())
+        column.column =
+            static_cast<std::size_t>(column.text.data() - row_.data()) + 1;
     }
     empty = stop == begin;
     begin = next_cell(stop, end);
@@ -224,14 +224,14 @@ void LogText::cut() {
   if (empty && cells_ == width_ + 1) --cells_;
 }
 
-std::size_t LogText::want(std::size_t index) {
-  wanted_.push_back({index, {}, 1});
-  order_.push_back(wanted_.size() - 1);
+std::size_t LogText::select(std::size_t index) {
+  selected_.push_back({index, {}, 1});
+  order_.push_back(selected_.size() - 1);
   std::stable_sort(order_.begin(), order_.end(),
                    [this](std::size_t a, std::size_t b) {
-                     return wanted_[a].index < wanted_[b].index;
+                     return selected_[a].index < selected_[b].index;
                    });
-  return wanted_.size() - 1;
+  return selected_.size() - 1;
 }
 
 bool LogText::next() {
@@ -240,7 +240,7 @@ bool LogText::next() {
   return true;
 }
 
-void LogText::go_to(std::size_t line) {
+void LogText::return_to(std::size_t line) {
   start();
   while (line_ < line && next()) continue;
 }
@@ -251,7 +251,7 @@ void LogText::fail_at(std::size_t column, const std::string& message) const {
 }
 
 void LogText::fail(std::size_t slot, const std::string& message) const {
-  fail_at(wanted_[slot].column, message);
+  fail_at(selected_[slot].column, message);
 }
 
 void LogText::fail_row(const std::string& message) const {

@@ -37,22 +37,22 @@ class LogText {
 
   /// Selects the column `index` (from 0) for the rows to come. Returns the slot
   /// of its cells.
-  std::size_t want(std::size_t index);
+  std::size_t select(std::size_t index);
 
-  bool next();                   // to the next row; false after the last
-  void go_to(std::size_t line);  // to a row that was met before
+  bool next();                       // to the next row; false after the last
+  void return_to(std::size_t line);  // to a row that was met before
 
   std::size_t line() const { return line_; }    // of the row, from 1
   std::size_t cells() const { return cells_; }  // of the row
   bool is_whole() const { return cells_ == width_; }
-  std::string_view cell(std::size_t slot) const { return wanted_[slot].text; }
+  std::string_view cell(std::size_t slot) const { return selected_[slot].text; }
 
   /// Throws "file:line:column: message" at a cell of the row, or at its end.
   [[noreturn]] void fail(std::size_t slot, const std::string& message) const;
   [[noreturn]] void fail_row(const std::string& message) const;
 
  private:
-  struct Wanted {
+  struct SelectedColumn {
     std::size_t index;
     std::string_view text;
     std::size_t column;  // of the text in its line, from 1
@@ -75,7 +75,7 @@ class LogText {
   char line_end_ = '\n';
   std::vector<std::string> names_;
   std::size_t width_ = 0, line_ = 0, cells_ = 0;
-  std::vector<Wanted> wanted_;
+  std::vector<SelectedColumn> selected_;
   std::vector<std::size_t> order_;  // slots by index
 };
 

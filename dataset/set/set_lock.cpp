@@ -129,7 +129,7 @@ SetLock::Held SetLock::acquire(const std::string& name, int operation) {
       if (operation == LOCK_EX) respect_the_living(file);
     }
     if (!is_current(name, file)) continue;
-    if (operation == LOCK_EX) stale_ = holder(file);
+    if (operation == LOCK_EX) dead_holder_ = holder(file);
     const std::string who = fmt::format("{}{}", on_this_host(), getpid());
     if (ftruncate(file.descriptor(), 0) != 0 ||
         pwrite(file.descriptor(), who.data(), who.size(), 0) < 0) {

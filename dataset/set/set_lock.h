@@ -30,7 +30,7 @@ class SetLock {
 
   /// Returns the process that died while it held this lock, as "host, process
   /// n", or an empty text.
-  const std::string& stale() const { return stale_; }
+  const std::string& dead_holder() const { return dead_holder_; }
 
   /// Returns whether the kernel holds the lock.
   bool is_held_by_kernel() const { return whole_->by_kernel; }
@@ -53,7 +53,7 @@ class SetLock {
 
   std::filesystem::path path_;
   Directory directory_;
-  std::string stale_;
+  std::string dead_holder_;
   std::optional<Held> whole_, task_;
 };
 

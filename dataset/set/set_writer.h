@@ -70,7 +70,7 @@ class SetWriter {
   ~SetWriter();
 
   /// Returns the process that died while working on this, or an empty text.
-  const std::string& died_before() const { return lock_->stale(); }
+  const std::string& died_before() const { return lock_->dead_holder(); }
 
   /// Returns whether the lock also excludes other hosts (SetLock).
   bool is_locked() const { return lock_->is_held_by_kernel(); }

@@ -49,7 +49,7 @@ void check_value(const Draw& draw, const ConfigNode& value,
   if (overrides.all_used()) return;
   const std::string key = key_of(draw);
   const std::string name = file.document.path().string();
-  const std::vector<std::string> known = overrides.keys_asked();
+  const std::vector<std::string> known = overrides.known_keys();
   if (std::find(known.begin(), known.end(), key) != known.end()) {
     reject(draw.place, fmt::format("{}: not used together with the other keys "
                                    "of {}",

@@ -28,15 +28,16 @@ VectorXd error_weights(Index size) {
 }
 
 // States that a sample needs.
-constexpr std::array<Index, 12> kShown = {
+constexpr std::array<Index, 12> kStoredStates = {
     kFeedback2,         kFeedback2 + 1,     kPllIntegral,
     kAgcIntegral,       kOutput2,           kOutput2 + 1,
     kEnvelopeNodes + 0, kEnvelopeNodes + 1, kEnvelopeNodes + 2,
     kEnvelopeNodes + 3, kEnvelopeNodes + 4, kEnvelopeNodes + 5};
 constexpr std::size_t kFirstNode = 6;
 
-RunSamples shown(const std::array<std::vector<double>, kShown.size()>& c,
-                 const LoopElectronics& loops, const Gyro& gyro) {
+RunSamples samples_of_states(
+    const std::array<std::vector<double>, kStoredStates.size()>& c,
+    const LoopElectronics& loops, const Gyro& gyro) {
   const std::size_t count = c[0].size();
   RunSamples s;
   s.output.resize(count);
@@ -92,8 +93,8 @@ class EnvelopeTrajectory::Sampler {
     const auto begin = times_.begin() + static_cast<std::ptrdiff_t>(next_);
     const auto count = static_cast<std::size_t>(
         std::lower_bound(begin, times_.end(), step.end) - begin);
-    for (std::size_t i = 0; i < kShown.size() && count > 0; ++i) {
-      step.sample(kShown[i], times_.subspan(next_, count),
+    for (std::size_t i = 0; i < kStoredStates.size() && count > 0; ++i) {
+      step.sample(kStoredStates[i], times_.subspan(next_, count),
                   std::span(columns_[i]).subspan(next_, count));
     }
     next_ += count;
@@ -101,18 +102,18 @@ class EnvelopeTrajectory::Sampler {
 
   void take_until(double t, const VectorXd& y) {
     for (; next_ < times_.size() && times_[next_] <= t; ++next_) {
-      for (std::size_t i = 0; i < kShown.size(); ++i)
-        columns_[i][next_] = y(kShown[i]);
+      for (std::size_t i = 0; i < kStoredStates.size(); ++i)
+        columns_[i][next_] = y(kStoredStates[i]);
     }
   }
 
-  const std::array<std::vector<double>, kShown.size()>& columns() const {
+  const std::array<std::vector<double>, kStoredStates.size()>& columns() const {
     return columns_;
   }
 
  private:
   std::span<const double> times_;
-  std::array<std::vector<double>, kShown.size()> columns_;
+  std::array<std::vector<double>, kStoredStates.size()> columns_;
   std::size_t next_ = 0;
 };
 
@@ -227,7 +228,8 @@ RunSamples EnvelopeTrajectory::advance(std::span<const double> times) {
     }
     sampler.take_until(time(), state());
   }
-  RunSamples samples = shown(sampler.columns(), ode_.loops(), gyro_);
+  RunSamples samples =
+      samples_of_states(sampler.columns(), ode_.loops(), gyro_);
   samples.time.assign(times.begin(), times.end());
   return samples;
 }

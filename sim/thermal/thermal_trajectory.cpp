@@ -23,8 +23,9 @@ ThermalTrajectory::ThermalTrajectory(const ThermalNetwork& network,
   };
   integrate_temperatures(
       network, load, grid.time(grid.count - 1), options,
-      {.on_state = [&](double t, const auto& y) { keep(first_after(t), y); },
-       .on_step = [&](const OdeStep& s) { keep(grid_.first_from(s.end), s); }});
+      {.on_state = [&](double t, const auto& y) { store(first_after(t), y); },
+       .on_step =
+           [&](const OdeStep& s) { store(grid_.first_from(s.end), s); }});
 }
 
 void ThermalTrajectory::begin_values() {
@@ -32,14 +33,14 @@ void ThermalTrajectory::begin_values() {
     stretches_.push_back({kept_, data_.size(), 0, 1, kValues});
 }
 
-void ThermalTrajectory::keep(std::size_t last, const Eigen::VectorXd& y) {
+void ThermalTrajectory::store(std::size_t last, const Eigen::VectorXd& y) {
   if (last <= kept_) return;
   begin_values();
   for (; kept_ < last; ++kept_)
     data_.insert(data_.end(), y.begin(), y.begin() + kThermalNodeCount);
 }
 
-void ThermalTrajectory::keep(std::size_t last, const OdeStep& step) {
+void ThermalTrajectory::store(std::size_t last, const OdeStep& step) {
   if (last <= kept_) return;
   const auto terms = static_cast<std::size_t>(step.order) + 1;
   if (last - kept_ > terms) {

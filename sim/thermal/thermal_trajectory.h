@@ -44,8 +44,8 @@ class ThermalTrajectory {
   };
   static constexpr int kValues = -1;
 
-  void keep(std::size_t last, const OdeStep& step);
-  void keep(std::size_t last, const Eigen::VectorXd& y);
+  void store(std::size_t last, const OdeStep& step);
+  void store(std::size_t last, const Eigen::VectorXd& y);
   void begin_values();
 
   SampleGrid grid_;

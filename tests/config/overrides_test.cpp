@@ -208,7 +208,7 @@ TEST(Overrides, AnAddedValueIsBlamedAtItsPlace) {
       rejection([&] { document.root().table("beam").number("x", positive()); }),
       "c.toml:3:4: beam.x: -1 is out of range; expected a number > 0");
   EXPECT_TRUE(set.all_used());
-  EXPECT_EQ(set.keys_asked(), (std::vector<std::string>{"beam", "beam.x"}));
+  EXPECT_EQ(set.known_keys(), (std::vector<std::string>{"beam", "beam.x"}));
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ class SetRuns : public testing::Test {
   std::vector<double> biases(const SetSelection& selection) const {
     const RunSource source = runs_of_set(folder_, selection);
     std::vector<double> found;
-    source.each([&](const TrainingRun& run) {
+    source.for_each([&](const TrainingRun& run) {
       found.push_back(column_values(run.recording, "rate")[0]);
       EXPECT_TRUE(run.sha256.empty());
     });

@@ -130,7 +130,7 @@ TEST(TrainingRows, KnowTheirTimeRunAndPowerCycle) {
   EXPECT_EQ(numbers(rows.run), (std::vector<int>{0, 0, 0, 0, 0, 0, 1, 1}));
   EXPECT_EQ(numbers(rows.cycle), (std::vector<int>{0, 0, 1, 1, 1, 1, 2, 2}));
   EXPECT_EQ(numbers(rows.leg), (std::vector<int>{0, 0, 1, 1, 1, 1, 2, 2}));
-  EXPECT_FALSE(rows.outside.any());
+  EXPECT_FALSE(rows.beyond_range.any());
 }
 
 /// Rows of 60 samples at the temperatures given, one after the other.
@@ -223,8 +223,8 @@ TEST(TrainingRows, WithAScaleFactorTheLabelIsWhatItLeaves) {
                                              {}, {20.0, 22.0}, &table);
   EXPECT_NEAR(clamped.bias(9), 0.5 + 1e-3 * clamped.time(9), 1e-12);
   EXPECT_EQ(clamped.temperature(9), 22.0);
-  EXPECT_TRUE(clamped.outside(9));
-  EXPECT_FALSE(clamped.outside(0));
+  EXPECT_TRUE(clamped.beyond_range(9));
+  EXPECT_FALSE(clamped.beyond_range(0));
 }
 
 TEST(TrainingRows, SelectedRowsKeepAllThatBelongsToThem) {
@@ -245,7 +245,7 @@ TEST(TrainingRows, SelectedRowsKeepAllThatBelongsToThem) {
     EXPECT_EQ(some.time(k), rows.time(first + k));
     EXPECT_EQ(some.cycle(k), rows.cycle(first + k));
     EXPECT_EQ(some.leg(k), rows.leg(first + k));
-    EXPECT_EQ(some.outside(k), rows.outside(first + k));
+    EXPECT_EQ(some.beyond_range(k), rows.beyond_range(first + k));
   }
   EXPECT_EQ(some.range, rows.range);
 }

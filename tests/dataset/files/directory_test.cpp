@@ -112,10 +112,10 @@ TEST_P(DirectoryTest, ALinkIsFoundAsOne) {
 
 TEST_P(DirectoryTest, DirectoriesAreMadeBelowOnly) {
   EXPECT_TRUE(holds([](const Directory& directory) {
-    directory.make_below("a/b/c");
-    directory.make_below("a/b/c");
+    directory.make_subdirectory("a/b/c");
+    directory.make_subdirectory("a/b/c");
     try {
-      directory.make_below("way/a");
+      directory.make_subdirectory("way/a");
       return false;
     } catch (const std::system_error&) {
       return true;

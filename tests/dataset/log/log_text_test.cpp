@@ -13,8 +13,8 @@ using Cells = std::vector<std::string>;
 // Every cell of two columns, row by row.
 Cells cells_of(std::string_view text, const LogLayout& layout = {}) {
   LogText log(text, "log.csv", layout);
-  const std::size_t last = log.want(log.width() - 1);
-  const std::size_t first = log.want(0);
+  const std::size_t last = log.select(log.width() - 1);
+  const std::size_t first = log.select(0);
   Cells cells;
   while (log.next()) {
     EXPECT_TRUE(log.is_whole()) << log.line();
@@ -68,7 +68,7 @@ TEST(LogText, ReadsNamesWithoutQuotes) {
 
 TEST(LogText, TellsRowsOfAnotherWidth) {
   LogText log("a,b,c\n1,2\n1,2,3,4\n1,2,3\n1,2,3,,\n", "log.csv", {});
-  log.want(2);
+  log.select(2);
   for (const std::size_t cells : {2u, 4u, 3u, 5u}) {
     ASSERT_TRUE(log.next());
     EXPECT_EQ(log.cells(), cells);
@@ -79,9 +79,9 @@ TEST(LogText, TellsRowsOfAnotherWidth) {
 
 TEST(LogText, GoesBackToARow) {
   LogText log("a,b\n1,2\n\n3,44\n5,6\n", "log.csv", {});
-  const std::size_t b = log.want(1);
+  const std::size_t b = log.select(1);
   while (log.next()) continue;
-  log.go_to(4);
+  log.return_to(4);
   EXPECT_EQ(log.cell(b), "44");
   EXPECT_EQ(rejection([&] { log.fail(b, "no"); }), "log.csv:4:3: no");
   EXPECT_EQ(rejection([&] { log.fail_row("no"); }), "log.csv:4:5: no");

@@ -31,7 +31,7 @@ using Lock = SetDirectory;
 TEST_F(Lock, ASecondStartIsToldWhoIsThere) {
   {
     const SetLock lock(directory, "");
-    EXPECT_EQ(lock.stale(), "");
+    EXPECT_EQ(lock.dead_holder(), "");
     const std::string message =
         rejection<std::runtime_error>([&] { SetLock(directory, ""); });
     EXPECT_EQ(message, directory.string() + ": in use by host " + host_name() +
@@ -80,7 +80,7 @@ TEST_F(Lock, TheLockOfADeadProcessIsTakenOver) {
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
     const SetLock lock(directory, task);
-    EXPECT_EQ(lock.stale(),
+    EXPECT_EQ(lock.dead_holder(),
               "host " + host_name() + ", process " + std::to_string(child));
   }
   EXPECT_TRUE(names().empty());
@@ -211,7 +211,8 @@ TEST_F(Lock, WithoutFlockTheLivingOfThisHostAreRespected) {
       if (!forbid_flock()) _exit(2);
       try {
         const SetLock lock(directory, task);
-        const bool is_right = !lock.is_held_by_kernel() && lock.stale() == who;
+        const bool is_right =
+            !lock.is_held_by_kernel() && lock.dead_holder() == who;
         _exit(is_right ? 0 : 3);
       } catch (const std::runtime_error&) {
         _exit(1);
