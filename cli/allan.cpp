@@ -205,7 +205,10 @@ nlohmann::ordered_json series_json(const EvenSeries& series,
 
 int allan(const AllanArguments& arguments) {
   check_options(arguments);
-  if (!arguments.json.empty()) require_output(arguments.json, {arguments.file});
+  if (!arguments.json.empty()) {
+    require_output(arguments.json, {arguments.file});
+    require_json_name(arguments.json);
+  }
   std::optional<Progress> progress("Allan deviation of " + arguments.file);
   Signal signal = signal_of(arguments);
   const EvenSeries series =

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -179,6 +180,7 @@ int Command::carry_out() const {
 struct CommandLine::Words {
   const Command* command = nullptr;
   std::vector<std::string> plain;  // neither options nor their values
+  std::set<const Command::Option*> given_once;  // of those with one value
   bool asks_help = false, asks_version = false;
 };
 
@@ -239,24 +241,45 @@ void CommandLine::fail_option(const std::string& name,
                     : fmt::format("did you mean \"--{}\"?", meant)));
 }
 
+const Command::Option* CommandLine::find_option(std::string_view name,
+                                                const Command* command) const {
+  const Command::Option* option = command ? command->find(name) : nullptr;
+  return option ? option : common_->find(name);
+}
+
 // Returns the index of the last word that belongs to the option at `at`.
 std::size_t CommandLine::look_at_option(const std::vector<std::string>& words,
                                         std::size_t at, Words& found) const {
   const std::string& word = words[at];
   const bool is_long = word.starts_with("--");
-  const std::string name =
-      is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
-  const Command::Option* option =
-      found.command ? found.command->find(name) : nullptr;
-  if (option == nullptr) option = common_->find(name);
-  if (option == nullptr) fail_option(is_long ? name : word, found.command);
+  const std::string until_equals = word.substr(0, word.find('='));
+  const std::string name = is_long ? until_equals : word.substr(0, 2);
+  const Command::Option* option = find_option(name, found.command);
+  // "-output" would be "-o" with the value "utput".
+  if (option == nullptr ||
+      (!is_long && find_option("-" + until_equals, found.command)))
+    fail_option(is_long ? name : until_equals, found.command);
+  const bool has_equals = word.size() > name.size() && word[name.size()] == '=';
   if (option->count == Command::Count::kNone) {
+    if (has_equals)
+      throw std::invalid_argument(fmt::format("{} takes no value", name));
     found.asks_help |= option->is_called("--help");
     found.asks_version |= option->is_called("--version");
     return at;
   }
-  if (word.size() > name.size()) return at;  // --name=value, -nvalue
-  if (at + 1 == words.size())
+  if (option->count == Command::Count::kOne &&
+      !found.given_once.insert(option).second)
+    throw std::invalid_argument(
+        fmt::format("{} is given twice; expected one value", name));
+  if (!is_long && has_equals)
+    throw std::invalid_argument(
+        fmt::format("\"{}\": a short option takes no \"=\"; expected {} {}",
+                    word, name, word.substr(name.size() + 1)));
+  if (word.size() > name.size() + (has_equals ? 1 : 0))
+    return at;  // --name=value, -nvalue
+  if (has_equals || at + 1 == words.size() ||
+      find_option(words[at + 1].substr(0, words[at + 1].find('=')),
+                  found.command))
     throw std::invalid_argument(fmt::format("{} has no value; expected {} {}",
                                             name, name, option->text.value));
   return at + 1;
@@ -307,6 +330,9 @@ void CommandLine::split(const Command& command,
     throw std::invalid_argument(fmt::format("unexpected \"{}\"; expected {}",
                                             app_->remaining(true).front(),
                                             usage(command.help_)));
+  } catch (const CLI::ArgumentMismatch&) {
+    throw std::invalid_argument(
+        fmt::format("too many words; expected {}", usage(command.help_)));
   } catch (const CLI::ParseError& error) {
     const std::string what = error.what();
     throw std::invalid_argument(what.substr(0, what.find('\n')));

@@ -118,6 +118,8 @@ class CommandLine {
   std::string overview() const;
   Action help(const std::vector<std::string>& words) const;
   Words look_at(const std::vector<std::string>& words) const;
+  const Command::Option* find_option(std::string_view name,
+                                     const Command* command) const;
   std::size_t look_at_option(const std::vector<std::string>& words,
                              std::size_t at, Words& found) const;
   void split(const Command& command, std::vector<std::string> words);

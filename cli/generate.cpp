@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 
 #include "cli/commands.h"
@@ -72,14 +75,32 @@ std::string outcome(const SetState& state, std::uint64_t made) {
   return text;
 }
 
+// Returns a word as a shell takes it.
+std::string quoted(const std::string& word) {
+  const bool is_plain = std::ranges::all_of(word, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c >= 0x80 ||
+           std::string_view("/._-+:,=@%").find(static_cast<char>(c)) !=
+               std::string_view::npos;
+  });
+  if (is_plain && !word.empty()) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+  return text + "'";
+}
+
 std::string note_for_interruption(const GenerateArguments& arguments) {
   const std::string kept =
       fmt::format("{} keeps its finished files; ", arguments.output);
-  return kept + (arguments.shard.empty()
-                     ? fmt::format("go on with: beamgyro generate {} -o {} "
-                                   "--resume",
-                                   arguments.campaign, arguments.output)
-                     : "the same command goes on with the others");
+  if (!arguments.shard.empty())
+    return kept + "the same command goes on with the others";
+  std::string again =
+      fmt::format("go on with: beamgyro generate {} -o {}",
+                  quoted(arguments.campaign), quoted(arguments.output));
+  if (arguments.devices)
+    again += fmt::format(" --devices {}", *arguments.devices);
+  if (arguments.jobs) again += fmt::format(" --jobs {}", *arguments.jobs);
+  if (arguments.strict) again += " --strict";
+  return kept + again + " --resume";
 }
 
 int generate(const GenerateArguments& arguments) {

@@ -108,6 +108,16 @@ void require_recording_name(const fs::path& path) {
   require_ending(path, {".h5", ".csv"});
 }
 
+void require_json_name(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  for (const char* other : {".h5", ".nc", ".csv", ".toml", ".c", ".h"})
+    if (extension == other)
+      throw std::invalid_argument(fmt::format(
+          "--json {}: is the name of a file of another kind (\"{}\"); expected "
+          "one that ends in .json",
+          path.string(), extension));
+}
+
 void require_directory_name(const fs::path& path) {
   const std::string extension = path.extension().string();
   for (const char* ending :

@@ -30,6 +30,9 @@ std::vector<std::uint32_t> device_numbers(const std::vector<long>& numbers);
 void require_ending(const std::filesystem::path& path,
                     const std::vector<std::string>& endings);
 void require_recording_name(const std::filesystem::path& path);
+/// The same for the argument of --json: a file of another kind is not written
+/// over by mistake. Any other name passes.
+void require_json_name(const std::filesystem::path& path);
 void require_directory_name(const std::filesystem::path& path);
 
 /// Prepares the note for an interruption. Throws what writing to `output` would

@@ -148,7 +148,7 @@ void add_train(CommandLine& program) {
                  arguments->cross_validation, {"run", "cycle", "leg"});
   command.group("Part of a set");
   command.list({"--run", "NAME", "Run to take; may be repeated", "all runs"},
-                arguments->set_runs);
+               arguments->set_runs);
   command.integers({"--device", "NUMBER",
                     "Device to fit; may be repeated. Holds nothing out",
                     "the training devices"},

@@ -49,8 +49,10 @@ std::vector<std::filesystem::path> inputs_of(
 // Scores the test devices of a set, or the devices named.
 int validate_on_set(const ValidateArguments& arguments,
                     const Compensator& compensator) {
-  if (!arguments.json.empty())
+  if (!arguments.json.empty()) {
     require_output(arguments.json, inputs_of(arguments));
+    require_json_name(arguments.json);
+  }
   SetSelection selection{
       {}, arguments.set_runs, device_numbers(arguments.set_devices)};
   if (arguments.set_devices.empty()) selection.part = SetPartNumber::kTest;
@@ -92,8 +94,10 @@ int run_validation(const ValidateArguments& arguments) {
     runs.push_back({std::filesystem::path(path).filename().string(),
                     &recordings.back(), sha256_of_file(path)});
   }
-  if (!arguments.json.empty())
+  if (!arguments.json.empty()) {
     require_output(arguments.json, inputs_of(arguments));
+    require_json_name(arguments.json);
+  }
 
   const Validation validation = validate(
       compensator, std::filesystem::path(arguments.compensator).stem().string(),
@@ -130,7 +134,7 @@ void add_validate(CommandLine& program) {
                arguments->json);
   command.group("Part of a set");
   command.list({"--run", "NAME", "Run to score; may be repeated", "all runs"},
-                arguments->set_runs);
+               arguments->set_runs);
   command.integers({"--device", "NUMBER", "Device to score; may be repeated",
                     "the test devices"},
                    arguments->set_devices, {0, kLastDevice});

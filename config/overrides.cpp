@@ -68,7 +68,12 @@ std::string override_advice(std::string_view key, std::string_view value) {
   const bool word = std::all_of(value.begin(), value.end(), [](char c) {
     return is_bare(c) || c == '.' || c == '/' || c == ' ' || c == '+';
   });
-  if (word && value.find_first_not_of("+-.0123456789eE") != value.npos)
+  const std::size_t letter = value.find_first_not_of("+-.0123456789eE");
+  if (word && letter != value.npos && letter > 0)
+    return fmt::format(
+        "expected a number alone, or a text in quotes; the name of a key ends "
+        "in its unit");
+  if (word && letter != value.npos)
     return fmt::format("a text needs quotes: {}=\"{}\"", key, value);
   return "expected a TOML value after '='";
 }

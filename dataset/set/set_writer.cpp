@@ -76,10 +76,14 @@ void require_same(const fs::path& directory, const ManifestHead& met,
         directory.string(), met.program_version, met.git_revision,
         head.program_version, head.git_revision));
   throw std::invalid_argument(fmt::format(
-      "{}: holds a set of another campaign ({}, {} devices); expected the same "
+      "{}: holds a set of another campaign ({}, {} devices{}); expected the "
+      "same "
       "campaign, with the same scenarios, device and number of devices, or "
       "another directory",
-      directory.string(), met.campaign, met.devices));
+      directory.string(), met.campaign, met.devices,
+      met.devices == head.devices
+          ? ""
+          : fmt::format(", here {}: --devices sets them", head.devices)));
 }
 
 bool holds_files_of_a_set(const fs::path& directory) {
@@ -228,8 +232,8 @@ void SetWriter::enter(std::span<const SourceText> sources, bool resume) {
                     : fmt::format("{}-of-{}", task_.number, task_.of));
   if (task_.is_whole() && !resume && holds_files_of_a_set(directory_))
     throw std::invalid_argument(
-        fmt::format("{}: holds a set; expected --resume to go on with it, or "
-                    "another directory",
+        fmt::format("{}: holds a set, or files of one; expected --resume to go "
+                    "on with it, or another directory",
                     directory_.string()));
   const std::optional<SetContents> contents = find_set(directory_);
   if (contents) {

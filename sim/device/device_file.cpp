@@ -88,9 +88,17 @@ PatchParameters read_patches(const ConfigTable& patches,
   };
 }
 
+/// Reads a step of the modulus [Pa], which is 0 or one that softens the bond.
+/// Above 0 only what is typed in another unit is below `kLeastStep`.
+double read_step(const ConfigTable& bond, std::string_view key, double most) {
+  constexpr double kLeastStep = 1e4;  // [Pa]
+  if (bond.holds_number(key) && bond.number(key) == 0) return 0;
+  return bond.number(key, {kLeastStep, most, false, true});
+}
+
 BondParameters read_bond(const ConfigTable& bond) {
   const double G = bond.number("shear_modulus_Pa", kShearModulus);
-  const double beta = bond.number("beta_step_Pa", {0, G, false, true});
+  const double beta = read_step(bond, "beta_step_Pa", G);
   return {
       .thickness = per_patch(bond, "thickness_m", {0, 1e-3, true, false}),
       .shear_modulus = G,
@@ -98,7 +106,7 @@ BondParameters read_bond(const ConfigTable& bond) {
       .beta_exponent = bond.number("beta_exponent", kExponent),
       .beta_activation = bond.number("beta_activation_J_per_mol", kActivation),
       .beta_temperature = kelvin(bond, "beta_1Hz_degC"),
-      .alpha_step = bond.number("alpha_step_Pa", {0, G - beta, false, true}),
+      .alpha_step = read_step(bond, "alpha_step_Pa", G - beta),
       .alpha_exponent = bond.number("alpha_exponent", kExponent),
       .glass_transition = kelvin(bond, "glass_transition_degC"),
       .alpha_low_activation =

@@ -7,6 +7,7 @@ import os
 import pty
 import re
 import select
+import shlex
 import signal
 import struct
 import subprocess
@@ -219,22 +220,23 @@ class Interrupt(Terminal):
         for name in ["rest", "ramp"]:
             self.write(f"{name}.toml", REST.format(
                 name=name, ambient="constant_degC = 25"))
-        self.write("campaign.toml", CAMPAIGN.replace("= 7", "= 1000"))
-        command = [str(PROGRAM), "generate", "campaign.toml", "-o", "set"]
+        self.write("campaign.toml", CAMPAIGN)
+        command = [str(PROGRAM), "generate", "campaign.toml", "-o", "a set",
+                   "--devices", "1000"]
         process = subprocess.Popen(command, cwd=self.dir, text=True,
                                    stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE)
-        while not list(self.dir.glob("set/*.h5")):
+        while not list(self.dir.glob("a set/*.h5")):
             self.assertIsNone(process.poll())
             time.sleep(0.01)
         process.send_signal(signal.SIGTERM)
         said = process.communicate(timeout=30)[1]
         self.assertEqual(process.returncode, -signal.SIGTERM)
-        self.assertIn("interrupted; set keeps its finished files; go on with: ",
+        self.assertIn("interrupted; a set keeps its finished files; go on with: ",
                       said)
         kept = {path: path.stat().st_mtime_ns
-                for path in self.dir.glob("set/*.h5")}
-        advice = said.split("go on with: beamgyro ")[1].split()
+                for path in self.dir.glob("a set/*.h5")}
+        advice = shlex.split(said.split("go on with: beamgyro ")[1])
         self.assertIn("the set is whole", self.ok(*advice))
         for path, when in kept.items():
             self.assertEqual(path.stat().st_mtime_ns, when)

@@ -35,6 +35,13 @@ class Units(ProgramTest):
         self.refused("beam.youngs_modulus_Pa=185", "185 GPa is 1.85e+11 Pa")
         self.refused("patches.youngs_modulus_Pa=61", "61 GPa is 6.1e+10 Pa")
         self.refused("bond.shear_modulus_Pa=1.5", "1.5 GPa is 1.5e+09 Pa")
+        self.refused("bond.beta_step_Pa=0.45", "0.45 GPa is 4.5e+08 Pa")
+        self.refused("bond.alpha_step_Pa=1000", "1000 MPa is 1e+09 Pa")
+
+    def test_a_bond_may_have_no_step(self):
+        self.write("s.toml", SCENARIO)
+        self.ok("run", "s.toml", "-o", "a.h5", "--set", "bond.beta_step_Pa=0",
+                "--set", "bond.alpha_step_Pa=0.0")
 
     def test_grams_a_cubic_centimetre_are_no_kilograms_a_cubic_metre(self):
         self.refused("beam.density_kg_per_m3=8.05", "8.05 g/cm3 is 8050 kg/m3")

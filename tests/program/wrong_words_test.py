@@ -37,6 +37,41 @@ class Options(ProgramTest):
                       says=['"s2.toml"', "expected beamgyro run"])
         self.rejected(says="see beamgyro --help")
 
+    def test_a_long_name_behind_one_dash_is_no_value(self):
+        for word in ["-output=a.h5", "-output"]:
+            self.rejected("run", "s.toml", word, "a.h5",
+                          says=['"-output"', 'did you mean "--output"?'])
+        self.rejected("run", "s.toml", "-o=a.h5", says="expected -o a.h5")
+        self.rejected("run", "s.toml", "-o", "a.h5", "-quiet",
+                      says='did you mean "--quiet"?')
+        self.ok("run", "s.toml", "-oa.h5")
+
+    def test_an_option_without_its_value_is_the_one_that_is_named(self):
+        for words, name in [(["-o", "--seed", "3"], "-o"),
+                            (["-o", "a.h5", "--set", "--seed", "3"], "--set"),
+                            (["-o", "a.h5", "--seed="], "--seed"),
+                            (["--output=", "--seed", "3"], "--output")]:
+            self.rejected("run", "s.toml", *words,
+                          says=f"{name} has no value; expected {name} ")
+        self.rejected("train", "r.h5", "--held-out", "--model", "m.toml", "-o",
+                      "c.json", says="--held-out has no value")
+
+    def test_what_is_given_too_often_is_named(self):
+        self.rejected("run", "s.toml", "-o", "a.h5", "--output", "b.h5",
+                      says="--output is given twice")
+        self.rejected("generate", "s.toml", "-o", "d", "--strict=yes",
+                      says="--strict takes no value")
+        self.rejected("export", "a", "b", "c", "d", "--format", "px4", "-o",
+                      "fw", says="expected beamgyro export")
+
+    def test_json_does_not_replace_a_file_of_another_kind(self):
+        self.ok("run", "s.toml", "-o", "a.h5")
+        before = (self.dir / "a.h5").read_bytes()
+        self.rejected("allan", "a.h5", "--json", "b.h5",
+                      says='--json b.h5: is the name of a file of another kind')
+        self.rejected("allan", "a.h5", "--json", "b.toml", says="--json b.toml")
+        self.assertEqual((self.dir / "a.h5").read_bytes(), before)
+
     def test_a_wrong_number_is_answered_in_plain_words(self):
         for value, wrong in [("abc", "not a whole number"),
                              ("1.5", "not a whole number"),
