@@ -56,6 +56,12 @@ class LogError(Exception):
     """A log that cannot be read; the text says why."""
 
 
+def skipped_text(counts):
+    skipped = counts["skipped"]
+    return f"{skipped} bytes that are no whole message skipped" if skipped \
+        else ""
+
+
 # --- ULog ---------------------------------------------------------------------
 
 ULOG_MAGIC = b"ULog\x01\x12\x35"
@@ -63,18 +69,10 @@ ULOG_HEAD = 16  # bytes: magic, version, start
 ULOG_TYPES = {"int8_t": "b", "uint8_t": "B", "int16_t": "h", "uint16_t": "H",
               "int32_t": "i", "uint32_t": "I", "int64_t": "q", "uint64_t": "Q",
               "float": "f", "double": "d", "bool": "?", "char": "c"}
+ULOG_LEAST = {b"B": 40, b"F": 3, b"I": 2, b"M": 3, b"P": 2, b"Q": 3, b"A": 4,
+              b"R": 2, b"D": 2, b"L": 9, b"C": 11, b"S": 8, b"O": 2}  # bytes
+ULOG_KIND = re.compile(b"[FIMPQARDLCSO]")  # B is the first message only
 DATA_APPENDED = 1  # the one incompatible flag whose files can be read so
-
-
-def ulog_messages(data):
-    """Type and body of each message, up to an incomplete one."""
-    at = ULOG_HEAD
-    while at + 3 <= len(data):
-        size, kind = struct.unpack_from("<Hc", data, at)
-        if at + 3 + size > len(data):
-            return
-        yield kind, data[at + 3:at + 3 + size]
-        at += 3 + size
 
 
 def ulog_fields(name, formats):
@@ -97,11 +95,112 @@ def ulog_fields(name, formats):
                     yield f"{own}.{inner}", letter
 
 
+def ulog_message_end(data, at, sizes):
+    """The end of a whole message of a known kind that begins at a byte and has a
+    size that it may have, else None."""
+    if at + 3 > len(data):
+        return None
+    size, kind = struct.unpack_from("<Hc", data, at)
+    end = at + 3 + size
+    if end > len(data) or size < ULOG_LEAST.get(kind, end):
+        return None
+    if kind == b"D":
+        number = struct.unpack_from("<H", data, at + 3)[0]
+        low, high = sizes.get(number, (2, end))
+        if not low <= size <= high:
+            return None
+    return end
+
+
+def are_ulog_messages(data, at, sizes, count):
+    """Whether so many messages follow each other, or all up to the end."""
+    while count > 0 and at is not None and at < len(data):
+        at = ulog_message_end(data, at, sizes)
+        count -= 1
+    return at is not None
+
+
+def next_ulog_data(data, start, stop, sizes):
+    """Where, in a range, the first of four messages in a row begins that is data
+    of a subscription, else its end."""
+    for match in re.finditer(b"D", data[start + 2:stop + 2]):
+        at = start + match.start()
+        number = int.from_bytes(data[at + 3:at + 5], "little")
+        if number in sizes and are_ulog_messages(data, at, sizes, 4):
+            return at
+    return stop
+
+
+def next_ulog_message(data, start, sizes):
+    """Where the first of four messages in a row begins. Other bytes may look as
+    a message that reaches up to a true one: then data begin within it."""
+    for match in ULOG_KIND.finditer(data, start + 2):
+        at = match.start() - 2
+        if are_ulog_messages(data, at, sizes, 4):
+            end = ulog_message_end(data, at, sizes)
+            within = next_ulog_data(data, at + 1, end, sizes)
+            return at if within == end else within
+    return len(data)
+
+
+def newer_ulog_message_end(data, at, sizes):
+    """The end of a message of a kind that only a newer version has, else None."""
+    kind = data[at + 2:at + 3]
+    if not kind.isalpha() or kind in ULOG_LEAST:
+        return None
+    end = at + 3 + struct.unpack_from("<H", data, at)[0]
+    follows = end <= len(data) and are_ulog_messages(data, end, sizes, 1)
+    return end if follows else None
+
+
+def ulog_messages(data, sizes, counts):
+    """Kind and body of each message. Bytes that begin none are skipped up to the
+    next four in a row, and counted, and so is a message that lacks bytes, within
+    whose size data begin. `sizes` has the least and the greatest size of the
+    data of each subscription so far."""
+    at = ULOG_HEAD
+    while at < len(data):
+        end = (ulog_message_end(data, at, sizes)
+               or newer_ulog_message_end(data, at, sizes))
+        following = end
+        if end is None:
+            following = next_ulog_message(data, at + 1, sizes)
+        elif data[at + 2:at + 3] != b"D" or not are_ulog_messages(
+                data, end, sizes, 1):
+            following = next_ulog_data(data, at + 1, end, sizes)
+        if following == end:
+            yield data[at + 2:at + 3], data[at + 3:end]
+        else:
+            counts["skipped"] += following - at
+        at = following
+
+
+def ulog_sizes(name, formats):
+    """The least and the greatest size of the data of a topic, without and with
+    the padding at its end; any, where its format is lost."""
+    try:
+        fields = list(ulog_fields(name, formats))
+    except LogError:
+        return 2, 65535
+    whole = struct.calcsize("<" + "".join(letter for _, letter in fields))
+    written = struct.calcsize("<" + "".join(
+        letter for _, letter in without_padding(fields)))
+    return 2 + written, 2 + whole
+
+
+def without_padding(fields):
+    """The fields that are written: the padding at the end is not."""
+    while fields and fields[-1][0].startswith("_padding"):
+        fields = fields[:-1]
+    return fields
+
+
 def read_ulog(data, topic, instance):
     """Names of the columns and the rows of one instance of a topic."""
-    formats, ids, seen, dropouts = {}, set(), set(), 0
+    formats, sizes, ids, seen, dropouts = {}, {}, set(), set(), 0
     names, letters, rows, layout = [], "", [], None
-    for kind, body in ulog_messages(data):
+    counts = {"skipped": 0}
+    for kind, body in ulog_messages(data, sizes, counts):
         if kind == b"B" and any(flag & ~(DATA_APPENDED if i == 0 else 0)
                                 for i, flag in enumerate(body[8:16])):
             raise LogError("flags of a newer version of ULog")
@@ -112,24 +211,28 @@ def read_ulog(data, topic, instance):
             multi, number = struct.unpack_from("<BH", body)
             name = body[3:].decode("ascii", "replace")
             seen.add((name, multi))
+            sizes[number] = ulog_sizes(name, formats)
             if (name, multi) == (topic, instance):
                 ids.add(number)
-                fields = list(ulog_fields(topic, formats))
-                while fields and fields[-1][0].startswith("_padding"):
-                    fields.pop()  # is not written
+                fields = without_padding(list(ulog_fields(topic, formats)))
                 names = [label for label, _ in fields]
                 letters = "".join(letter for _, letter in fields)
                 layout = struct.Struct("<" + letters)
-        elif kind == b"D" and struct.unpack_from("<H", body)[0] in ids:
-            if len(body) >= 2 + layout.size:
+        elif kind == b"D":
+            number = struct.unpack_from("<H", body)[0]
+            if number in ids:
                 rows.append(layout.unpack_from(body, 2))
+            elif number not in sizes:
+                counts["skipped"] += 3 + len(body)
         elif kind == b"O":
             dropouts += 1
     if not ids:
         raise LogError(f"no {topic} of instance {instance}; it has " +
                        (", ".join(f"{name} {multi}" for name, multi
                                   in sorted(seen)) or "no topic"))
-    return names, letters, rows, f"{dropouts} dropouts" if dropouts else ""
+    dropped = f"{dropouts} dropouts" if dropouts else ""
+    return names, letters, rows, "; ".join(
+        note for note in [dropped, skipped_text(counts)] if note)
 
 
 # --- DataFlash ----------------------------------------------------------------
@@ -170,7 +273,7 @@ class DataFlashMessage:
 
 def dataflash_rows(data, counts):
     """Message and values of each record. Bytes that begin none are skipped up
-    to the next one and counted."""
+    to the next one and counted, those of an incomplete one at the end too."""
     kinds, at = {}, 0
     while at + 3 <= len(data):
         number = data[at + 2]
@@ -183,13 +286,14 @@ def dataflash_rows(data, counts):
             at = following
             continue
         if at + size > len(data):
-            return
+            break
         if number == FMT:
             body = data[at + 3:at + size]
             kinds[body[0]] = DataFlashMessage(body)
         elif kinds[number].whole:
             yield kinds[number], kinds[number].row(data, at + 3)
         at += size
+    counts["skipped"] += len(data) - at
 
 
 def read_dataflash(data, topic, instance):
@@ -209,9 +313,7 @@ def read_dataflash(data, topic, instance):
     if message is None:
         raise LogError(f"no {topic} of instance {instance}; it has " +
                        (", ".join(sorted(seen)) or "no message"))
-    skipped = counts["skipped"]
-    return (message.labels, message.letters, rows,
-            f"{skipped} bytes that are no message skipped" if skipped else "")
+    return message.labels, message.letters, rows, skipped_text(counts)
 
 
 # --- Both ---------------------------------------------------------------------

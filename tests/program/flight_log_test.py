@@ -2,6 +2,8 @@
 """scripts/flight_log_to_csv.py, on ULog and DataFlash logs that this test
 writes as their public specifications state."""
 
+import random
+import re
 import struct
 import subprocess
 import sys
@@ -151,12 +153,74 @@ class FlightLogs(ProgramTest):
         self.write("cut.bin", head + rows[:10 * size] + b"\x00\xa3\xa3\x95\x07"
                    + rows[10 * size:-1])
         said = self.converted("cut.bin")
-        self.assertIn("50 rows of IMU, instance 0; 5 bytes that are no message",
-                      said)
+        # The last message of IMU lacks one byte.
+        lost = 5 + 3 + struct.calcsize("<" + IMU) - 1
+        self.assertIn(f"50 rows of IMU, instance 0; {lost} bytes that are no "
+                      "whole message skipped\n", said)
         self.converted("cut.bin", "--instance", "1", "-o", "second")
         self.assertEqual(len(self.imported("second", "x")["time"]), 49)
-        self.write("cut.ulg", ulog(50)[:-9])
-        self.assertIn("50 rows", self.converted("cut.ulg"))
+
+    def test_a_ulog_that_is_cut_in_the_middle_of_a_message(self):
+        whole = ulog(50)
+        self.write("cut.ulg", whole[:-7])  # the dropout of five bytes, and two
+        message = 5 + SAMPLE.size
+        self.assertIn(f"50 rows of sensor_gyro, instance 0; {message - 2} bytes "
+                      "that are no whole message skipped\n",
+                      self.converted("cut.ulg"))
+        self.converted("cut.ulg", "--instance", "1", "-o", "second")
+        self.assertEqual(len(self.imported("second", "x")["time"]), 49)
+        self.write("ends.ulg", whole[:-4])  # one byte of the dropout is left
+        self.assertIn("50 rows of sensor_gyro, instance 0; 1 bytes",
+                      self.converted("ends.ulg"))
+
+    def test_a_damaged_ulog_is_read_on_behind_the_damage(self):
+        head = len(ulog(0)) - 5  # without the dropout at its end
+        data = ulog(50)
+        message = 5 + SAMPLE.size
+        size = (len(data) - 5 - head) // 50  # of all topics
+        second = head + 11 * size - 2 * message  # instance 0 of row 10
+        damaged = {
+            # name: the log, rows of instance 0, bytes skipped
+            "inserted": (data[:second] + b"\xff" * 7 + data[second:], 50, 7),
+            "zeros": (data[:second] + bytes(message) + data[second + message:],
+                      49, message),
+            "removed": (data[:second + 20] + data[second + message - 9:], 49,
+                        29),
+            "size": (data[:second] + b"\xff\x00" + data[second + 2:], 49,
+                     message),
+            "number": (data[:second + 3] + b"\xee\xee" + data[second + 5:], 49,
+                       message)}
+        for name, (log, kept, skipped) in damaged.items():
+            with self.subTest(name):
+                self.write(f"{name}.ulg", log)
+                self.assertIn(
+                    f"{kept} rows of sensor_gyro, instance 0; 1 dropouts; "
+                    f"{skipped} bytes that are no whole message skipped\n",
+                    self.converted(f"{name}.ulg"))
+                rows = (self.dir / f"{name}.csv").read_text().splitlines()
+                times = [int(row.split(",")[0]) for row in rows[1:]]
+                self.assertEqual(times, [5000000 + 4000 * k for k in range(50)
+                                         if kept == 50 or k != 10])
+
+    def test_bytes_that_look_as_messages_do_not_hide_true_ones(self):
+        data, head = bytearray(ulog(2000)), len(ulog(0))
+        noise = random.Random(1)
+        for _ in range(100):
+            at = noise.randrange(head, len(data) - 100)
+            data[at:at + 40] = noise.randbytes(40)
+        self.write("noise.ulg", bytes(data))
+        said = self.converted("noise.ulg")
+        # Forty bytes touch two messages at most, one of them of this gyro.
+        self.assertGreaterEqual(int(re.search(r"(\d+) rows", said)[1]), 1900)
+        self.assertRegex(said, r"; [3-9]\d{3} bytes that are no whole message")
+
+    def test_a_message_of_a_newer_version_of_ulog_is_no_damage(self):
+        data = ulog(50)
+        head = len(ulog(0)) - 5
+        self.write("new.ulg", data[:head] + ulog_message(b"Z", b"new" * 40)
+                   + data[head:])
+        self.assertIn("50 rows of sensor_gyro, instance 0; 1 dropouts\n",
+                      self.converted("new.ulg"))
 
     def test_a_gyro_without_a_temperature(self):
         data = fmt(128, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns")
