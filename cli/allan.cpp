@@ -24,6 +24,7 @@
 #include "dataset/files/text_file.h"
 #include "dataset/log/csv_file.h"
 #include "dataset/log/recording_csv.h"
+#include "dataset/recording/units.h"
 #include "report/allan_report.h"
 
 namespace beamgyro {
@@ -69,14 +70,32 @@ void require_increasing(const CsvTable& csv, const std::vector<double>& time) {
                       csv.place(k), time[k], time[k - 1]));
 }
 
-std::vector<double> csv_time(const AllanArguments& arguments,
-                             const CsvTable& csv) {
-  const auto name = std::ranges::find_if(csv.names, is_time);
-  if (name != csv.names.end()) {
-    std::vector<double> time = csv.column(*name);
-    require_increasing(csv, time);
-    return time;
+/// The column of times, converted to seconds from the unit in its brackets.
+std::vector<double> time_in_seconds(const AllanArguments& arguments,
+                                    const CsvTable& csv,
+                                    const std::string& name,
+                                    const std::string& unit) {
+  std::vector<double> time = csv.column(name);
+  try {
+    const UnitConversion conversion =
+        unit_conversion(unit.empty() ? "s" : unit, "s");
+    for (double& value : time) value = conversion(value);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(
+        fmt::format("{}:1: {}: {}", arguments.file, name, error.what()));
   }
+  require_increasing(csv, time);
+  return time;
+}
+
+std::vector<double> csv_time(const AllanArguments& arguments,
+                             const CsvTable& csv,
+                             const std::vector<std::string>& units) {
+  const auto name = std::ranges::find_if(csv.names, is_time);
+  if (name != csv.names.end())
+    return time_in_seconds(
+        arguments, csv, *name,
+        units[static_cast<std::size_t>(name - csv.names.begin())]);
   if (!arguments.rate)
     throw std::invalid_argument(
         fmt::format("{}: a CSV series without a column \"time\" [s] has no "
@@ -130,7 +149,7 @@ Signal csv_signal(const AllanArguments& arguments, std::string_view text) {
     signal.unit = arguments.unit.value_or(kRateUnit);
   if (signal.unit == "degree/s") signal.unit = kRateUnit;
   convert(signal.unit, values);
-  signal.recording.time = csv_time(arguments, csv);
+  signal.recording.time = csv_time(arguments, csv, units);
   signal.recording.status.assign(values.size(), 0);
   signal.recording.columns.push_back(
       {signal.column, signal.unit, "", Role::kMeasured, std::move(values)});
