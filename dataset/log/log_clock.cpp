@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "config/config_node.h"
 
 namespace beamgyro {
@@ -88,14 +92,25 @@ bool LogClock::is_within(const LogTicks& ticks) const {
 
 double LogClock::time(const LogTicks& first, const LogTicks& ticks) const {
   if (time_.zero) return common_time(ticks);
-  const double since = ticks.since(first), rate = time_.ticks_per_s;
-  return time_.offset ? (first.value + since) / rate + *time_.offset
-                      : since / rate;
+  const double since = ticks.since(first);
+  return time_.offset ? time_.seconds(first.value + since) + *time_.offset
+                      : time_.seconds(since);
 }
 
 double LogClock::common_time(const LogTicks& ticks) const {
-  return ticks.since(time_.zero.value_or(whole_ticks(0))) / time_.ticks_per_s +
+  return time_.seconds(ticks.since(time_.zero.value_or(whole_ticks(0)))) +
          time_.offset.value_or(0);
+}
+
+double LogClock::rounding(const LogTicks& ticks) const {
+  constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
+  const LogTicks zero = time_.zero.value_or(whole_ticks(0));
+  const bool exact = ticks.count && zero.count;
+  const double reading =
+      exact ? std::abs(ticks.since(zero))
+            : std::max(std::abs(ticks.value), std::abs(zero.value));
+  return kRounding *
+         (time_.seconds(reading) + std::abs(time_.offset.value_or(0)));
 }
 
 void LogClock::fail(const std::string& message) const {

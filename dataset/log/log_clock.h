@@ -30,8 +30,12 @@ class LogClock {
   /// Returns the time [s] of `ticks` when the first row is at `first`.
   double time(const LogTicks& first, const LogTicks& ticks) const;
   /// Returns the time [s] on the clock of the log, wherever it begins:
-  ///   (ticks - zero) / ticks_per_s + offset, both 0 when they are not set.
+  ///   seconds(ticks - zero) + offset, both 0 when they are not set.
   double common_time(const LogTicks& ticks) const;
+  /// Returns a bound of the rounding error of common_time() [s]. It grows with
+  /// the readings, not with their difference: two seconds since 1970 that are
+  /// printed with decimals are off by 1e-7 s each.
+  double rounding(const LogTicks& ticks) const;
 
   /// Throws std::invalid_argument that names the cell of the time in the
   /// present row.

@@ -59,6 +59,9 @@ class LogReader {
       recording_.columns.push_back(column_of(
           "true_rate",
           std::vector<double>(counts_.kept, *map_.constant_true_rate)));
+  // A bound of the rounding errors of the times on the clock of the log [s].
+  double rounding() const { return rounding_; }
+
     }
     recording_.fidelity = "imported";
     recording_.scenario_text = map_.text;
@@ -76,6 +79,7 @@ class LogReader {
         return drop(DropReason::kRagged);
       }
       log_.text().fail_row(fmt::format(
+    rounding_ = std::max(rounding_, clock_.rounding(*ticks));
           "{} cells; expected {} as in the first line (or rules.ragged = "
           "\"drop\" in the map)",
           log_.text().cells(), log_.text().width()));
@@ -149,7 +153,7 @@ class LogReader {
     const double time = clock_.common_time(ticks);
     if (!first_common_) first_common_ = time;
     last_common_ = time;
-    return joined_->read(time, joined_values_);
+    return joined_->read(time, clock_.rounding(ticks), joined_values_);
   }
 
   bool read_values(bool unpowered) {
@@ -290,6 +294,7 @@ class LogReader {
   JoinedRows* joined_;                          // none: null
   std::vector<double> joined_values_;           // of one row
   std::optional<double> first_common_;          // time of the first row [s]
+  double rounding_ = 0;                         // [s], of all times read
   double last_common_ = 0;                      // [s]
   LogTicks first_;                              // of the first row kept
   Recording recording_;
@@ -313,9 +318,10 @@ ImportedLog import_log(std::string_view text, const std::filesystem::path& path,
                     joined->path.string()));
   }
   if (!joined) return LogReader(text, path, map).read();
-  ImportedLog second =
-      LogReader(joined->text, joined->path, *map.join->map).read();
-  JoinedRows rows(std::move(second.recording), map.join->longest_gap);
+  LogReader reader(joined->text, joined->path, *map.join->map);
+  ImportedLog second = reader.read();
+  JoinedRows rows(std::move(second.recording), map.join->longest_gap,
+                  reader.rounding());
   ImportedLog log = LogReader(text, path, map, &rows).read();
   log.joined = second.counts;
   return log;

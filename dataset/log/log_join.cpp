@@ -3,18 +3,25 @@
 
 #include <utility>
 
+#include "dataset/log/log_outliers.h"
+
 namespace beamgyro {
 
-JoinedRows::JoinedRows(Recording recording, double longest_gap)
-    : recording_(std::move(recording)), longest_gap_(longest_gap) {}
+JoinedRows::JoinedRows(Recording recording, double longest_gap, double rounding)
+    : recording_(std::move(recording)),
+      longest_gap_(longest_gap),
+      rounding_(rounding) {}
 
-bool JoinedRows::read(double time, std::vector<double>& values) {
+bool JoinedRows::read(double time, double rounding,
+                      std::vector<double>& values) {
   const std::vector<double>& times = recording_.time;
-  while (next_ < times.size() && times[next_] < time) ++next_;
+  const double same = rounding + rounding_;
+  while (next_ < times.size() && time - times[next_] > same) ++next_;
   if (next_ == times.size()) return false;
   const std::size_t k = next_;
-  const bool is_at_sample = times[k] == time;
-  if (!is_at_sample && (k == 0 || times[k] - times[k - 1] > longest_gap_))
+  const bool is_at_sample = times[k] - time <= same;
+  if (!is_at_sample &&
+      (k == 0 || times[k] - times[k - 1] > longest_gap_ + 2 * rounding_))
     return false;
   for (std::size_t i = 0; i < recording_.columns.size(); ++i) {
     const std::vector<double>& x = recording_.columns[i].values;
@@ -25,5 +32,7 @@ bool JoinedRows::read(double time, std::vector<double>& values) {
   }
   return true;
 }
+
+double JoinedRows::period() const { return median_step(recording_.time); }
 
 }  // namespace beamgyro

@@ -25,7 +25,8 @@ struct LogTicks {
 };
 
 /// Defines the times of the rows:
-///   time = (ticks - zero) / ticks_per_s + offset.
+///   time = seconds(ticks - zero) + offset,
+///   seconds(ticks) = ticks / ticks_per_s * tick_s.
 /// Ticks are the number in `column`, the nanoseconds of the date-time in it, or
 /// the number of the row from 0. Without a zero and an offset the first row is
 /// at 0. Rows outside [from, to) are left out.
@@ -33,12 +34,15 @@ struct LogTime {
   std::optional<LogColumn> column;
   std::optional<LogColumn> date_column;  // its cell and a blank come first
   std::optional<DateFormat> format;      // of a column of date-times
-  double ticks_per_s = 1;                // [1/s]
+  double ticks_per_s = 1;                // [1/s], 1 where tick_s is not 1
+  double tick_s = 1;                     // [s], of a unit longer than 1 s
   std::optional<double> offset;          // [s]
   std::optional<LogTicks> zero, from, to;
   int wrap_bits = 0;  // the column starts over at 2^wrap_bits; 0: no
   std::string unit;   // as the map states it; empty: date-times or no column
   std::string place;  // of the unit, the format or the rate in the map
+
+  double seconds(double ticks) const { return ticks / ticks_per_s * tick_s; }
 };
 
 /// Returns a whole number of ticks. `count` is less than 2^62.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Logs as instruments other than ours write them.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <functional>
 
 #include "dataset/log/log_import.h"
 #include "dataset/recording/recording_defect.h"
@@ -189,6 +192,65 @@ TEST(LogKinds, TheSlowLogIsInterpolated) {
       2u);
   ASSERT_TRUE(log.joined);
   EXPECT_EQ(log.joined->kept, 4u);
+// Returns how many of 2001 rows are kept when 101 rows of a second log are
+// joined to them.
+std::size_t kept_with(const std::string& gyro_time, const std::string& time,
+                      const std::string& gap,
+                      const std::function<std::string(int)>& gyro_row,
+                      const std::function<std::string(int)>& chamber_row) {
+  std::string map = "[time]\ncolumn = \"t\"\n" + gyro_time +
+                    "[gyro]\ncolumn = \"w\"\nunit = \"deg/s\"\n[join]\n"
+                    "max_gap_s = " +
+                    gap + "\n[join.time]\ncolumn = \"t\"\n" + time +
+                    "[join.temperature]\ncolumn = \"T\"\nunit = \"degC\"\n";
+  std::string rows = "t,w\n", slow = "t,T\n";
+  for (int k = 0; k <= 2000; ++k) rows += gyro_row(k) + ",0.2\n";
+  for (int k = 0; k <= 100; ++k) slow += chamber_row(k) + ",20\n";
+  return log_by(map, rows, slow).counts.kept;
+}
+
+TEST(LogKinds, APeriodOfMaxGapIsJoinedWhateverItsRounding) {
+  const auto plain = [](int step) {
+    return [step](int k) { return fmt::format("{}", step * k); };
+  };
+  const std::string ms = "unit = \"ms\"\n";
+  EXPECT_EQ(kept_with(ms, ms, "0.1", plain(5), plain(100)), 2001u);
+  EXPECT_EQ(kept_with(ms, ms, "0.2", plain(5), plain(200)), 2001u);
+  EXPECT_EQ(kept_with(ms, ms + "zero = 300\n", "0.1", plain(5),
+                      [](int k) { return fmt::format("{}", 300 + 100 * k); }),
+            2001u);
+  const auto epoch = [](int step) {
+    return [step](int k) {
+      return fmt::format("{}.{:03}", 1772719200 + step * k / 1000,
+                         step * k % 1000);
+    };
+  };
+  const std::string s = "unit = \"s\"\n";
+  EXPECT_EQ(kept_with(s, s, "0.1", epoch(5), epoch(100)), 2001u);
+  const std::string zero = s + "zero = 1772719200\n";
+  EXPECT_EQ(kept_with(zero, zero, "0.1", epoch(5), epoch(100)), 2001u);
+  const auto date = [](int step) {
+    return [step](int k) {
+      return fmt::format("2026-03-05T14:00:{:02}.{:03}", step * k / 1000,
+                         step * k % 1000);
+    };
+  };
+  EXPECT_EQ(kept_with(kIso, kIso, "0.1", date(5), date(100)), 2001u);
+  // Half a percent less than the period is less.
+  EXPECT_EQ(kept_with(ms, ms, "0.0995", plain(5), plain(100)), 101u);
+}
+
+TEST(LogKinds, ARowThatIsLateByRoundingIsAtTheLastOneOfTheSecondLog) {
+  const std::string map =
+      "[time]\ncolumn = \"t\"\nunit = \"s\"\n[gyro]\ncolumn = \"w\"\nunit = "
+      "\"deg/s\"\n[join]\nmax_gap_s = 2\n[join.time]\ncolumn = \"t\"\nunit = "
+      "\"s\"\n[join.temperature]\ncolumn = \"T\"\nunit = \"degC\"\n";
+  const ImportedLog log =
+      log_by(map, "t,w\n0.29999999999999993,1\n0.6000000000000001,2\n0.601,3\n",
+             "t,T\n0.3,21\n0.6,22\n");
+  EXPECT_EQ(column_values(log.recording, "temperature"), (Numbers{21, 22}));
+}
+
 }
 
 TEST(LogKinds, JoinsThatCannotBe) {
