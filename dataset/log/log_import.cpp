@@ -12,6 +12,7 @@
 
 #include "dataset/log/log_clock.h"
 #include "dataset/log/log_join.h"
+#include "dataset/log/log_drift.h"
 #include "dataset/log/log_numbers.h"
 #include "dataset/log/log_outliers.h"
 
@@ -19,16 +20,6 @@ namespace beamgyro {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kFastestDrift = 1.0;  // [K/s], over a span of at least
-constexpr double kDriftSpan = 10.0;    // [K]
-
-// The next longer unit of time, for one typed wrongly; empty if there is none.
-std::string longer_unit(const std::string& unit) {
-  if (unit == "ns") return "us";
-  if (unit == "us") return "ms";
-  return unit == "ms" ? "s" : "";
-}
-
 // Converts the rows of a log to a recording.
 class LogReader {
  public:
@@ -54,7 +45,7 @@ class LogReader {
     check_plausible();
     counts_.kept = recording_.time.size();
     check_enough();
-    check_drift();
+    check_time_unit(recording_, lines_, map_, log_.path());
     if (map_.constant_true_rate) {
       recording_.columns.push_back(column_of(
           "true_rate",
@@ -234,26 +225,6 @@ class LogReader {
                                                      "wrap_bits"
                                                    : ", or another unit"));
     }
-  }
-
-  // Throws for a temperature that means a wrong unit of time.
-  void check_drift() const {
-    if (map_.rules.keep_fast_temperature ||
-        find_column(recording_, "temperature") == nullptr)
-      return;
-    const ValueRange range = range_of(recording_, "temperature");
-    const double span = range.high - range.low;
-    const double duration = recording_.time.back() - recording_.time.front();
-    if (span < kDriftSpan || span <= kFastestDrift * duration) return;
-    const std::string longer = longer_unit(map_.time.unit);
-    throw std::invalid_argument(fmt::format(
-        "{}: the temperature spans {:.3g} K in {:.3g} s, is that right? "
-        "expected at most {:g} K/s: look at {}{} (or state "
-        "rules.fast_temperature = \"keep\" in the map)",
-        log_.path(), span, duration, kFastestDrift, map_.time.place,
-        longer.empty() ? ""
-                       : fmt::format(" = \"{}\", \"{}\" makes it {:.6g} s",
-                                     map_.time.unit, longer, 1e3 * duration)));
   }
 
   // Throws when the joined log has nothing to say about any row.

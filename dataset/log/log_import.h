@@ -31,7 +31,7 @@ struct SecondLog {
 /// "file:line:column: ..." for
 /// - a log that is not as the map states;
 /// - a value that is no number, or not plausible in the stated unit;
-/// - a temperature that changes faster than any gyro's, unless kept by a rule;
+/// - a unit of time that cannot be right (check_time_unit());
 /// - a second log without a join in the map, or the reverse;
 /// - fewer than two usable rows.
 ImportedLog import_log(std::string_view text, const std::filesystem::path& path,

@@ -7,17 +7,6 @@
 namespace beamgyro {
 namespace {
 
-constexpr double kSigmaPerMad = 1.4826;  // of a normal distribution
-
-// Reorders `values`.
-double median_of(std::vector<double>& values) {
-  const auto middle =
-      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return (*std::max_element(values.begin(), middle) + *middle) / 2;
-}
-
 class BurstCheck {
  public:
   BurstCheck(std::span<const double> values, const OutlierRule& rule)
@@ -46,6 +35,14 @@ class BurstCheck {
 };
 
 }  // namespace
+
+double median_of(std::vector<double>& values) {
+  const auto middle =
+      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return (*std::max_element(values.begin(), middle) + *middle) / 2;
+}
 
 double median_step(std::span<const double> time) {
   if (time.size() < 2) return 0.0;

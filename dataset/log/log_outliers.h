@@ -13,6 +13,11 @@ namespace beamgyro {
 /// two gaps are a burst.
 constexpr double kGapSteps = 5.0;
 
+constexpr double kSigmaPerMad = 1.4826;  // of a normal distribution
+
+/// Returns the median of `values`, one or more, and reorders them.
+double median_of(std::vector<double>& values);
+
 /// Returns the median of the steps of `time`, or 0 with fewer than two times.
 double median_step(std::span<const double> time);
 

@@ -2,9 +2,11 @@
 #include "dataset/log/log_time.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "config/config_node.h"
 #include "dataset/recording/units.h"
@@ -53,14 +55,28 @@ void read_format(const ConfigTable& table, LogTime& time) {
 
 void read_unit(const ConfigTable& table, LogTime& time) {
   time.wrap_bits = static_cast<int>(table.integer_or("wrap_bits", 0, 8, 53));
-  time.unit = table.choice("unit", {"s", "ms", "us", "ns", "index"});
+  const std::vector<std::string> units = {"s",   "ms", "us",   "ns",
+                                          "min", "h",  "index"};
+  if (!table.has("unit")) {
+    table.fail("unit",
+               fmt::format("missing; expected one of \"{}\" for a column of "
+                           "numbers, or time.format = \"iso\" or a pattern for "
+                           "one of dates or times of the day",
+                           fmt::join(units, "\", \"")));
+  }
+  time.unit = table.choice("unit", units);
   time.place = table.place("unit");
   if (time.unit == "index") {
     time.ticks_per_s = table.number("rate_Hz", positive());
     return;
   }
   static_cast<void>(table.has("rate_Hz"));
-  time.ticks_per_s = std::round(1.0 / unit_conversion(time.unit, "s").scale);
+  const double scale = unit_conversion(time.unit, "s").scale;
+  if (scale > 1) {
+    time.tick_s = scale;
+  } else {
+    time.ticks_per_s = std::round(1.0 / scale);
+  }
 }
 
 }  // namespace
