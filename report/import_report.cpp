@@ -31,6 +31,16 @@ std::string counts_text(const LogCounts& counts) {
          "with rate_Hz and no column counts the rows\n";
 }
 
+// What a signal that is logged at a lower rate looks like.
+std::string blank_text(const LogCounts& counts, const std::string& path) {
+  if (!counts.is_mostly_blank()) return {};
+  return fmt::format(
+      "question     is the {0} logged at a lower rate? it is missing in {1} "
+      "rows; [join] with its table and --join {2} interpolate it in the same "
+      "log\n",
+      counts.most_blank.signal, counts.most_blank.rows, path);
+}
+
 // A gyro's loop and its filters are slower than this rate of samples.
 constexpr double kFastestSampling = 50e3;  // [Hz]
 
@@ -49,10 +59,10 @@ std::string sampling_text(const Recording& recording) {
   }
   if (sampling.bursts > 1) {
     fmt::format_to(std::back_inserter(text),
-                   "bursts       {}, the longest {:g} s; {} gaps, the longest "
+                   "bursts       {}, the longest {:g} s; {} gap{}, the longest "
                    "{:g} s\n",
                    sampling.bursts, sampling.longest_burst, sampling.bursts - 1,
-                   sampling.longest_gap);
+                   sampling.bursts == 2 ? "" : "s", sampling.longest_gap);
   }
   return text;
 }
@@ -88,7 +98,7 @@ std::string import_report(const ImportedLog& log, const std::string& path,
                           const std::string& joined) {
   const Recording& recording = log.recording;
   std::string text = path + ": " + rows_text(log.counts);
-  text += counts_text(log.counts);
+  text += counts_text(log.counts) + blank_text(log.counts, path);
   if (log.joined) text += joined + ": " + rows_text(*log.joined);
   text += sampling_text(recording);
   text += status_text(recording);

@@ -10,9 +10,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dataset/log/log_advice.h"
 #include "dataset/log/log_clock.h"
-#include "dataset/log/log_join.h"
 #include "dataset/log/log_drift.h"
+#include "dataset/log/log_join.h"
 #include "dataset/log/log_numbers.h"
 #include "dataset/log/log_outliers.h"
 
@@ -36,6 +37,7 @@ class LogReader {
       recording_.columns.push_back(column_of(quantity.signal.name, {}));
     }
     values_.resize(slots_.size());
+    blank_rows_.resize(slots_.size());
     if (map.join) joined_values_.resize(map.join->map->quantities.size());
   }
 
@@ -44,20 +46,21 @@ class LogReader {
     drop_outliers();
     check_plausible();
     counts_.kept = recording_.time.size();
+    find_most_blank();
     check_enough();
     check_time_unit(recording_, lines_, map_, log_.path());
     if (map_.constant_true_rate) {
       recording_.columns.push_back(column_of(
           "true_rate",
           std::vector<double>(counts_.kept, *map_.constant_true_rate)));
-  // A bound of the rounding errors of the times on the clock of the log [s].
-  double rounding() const { return rounding_; }
-
     }
     recording_.fidelity = "imported";
     recording_.scenario_text = map_.text;
     return {std::move(recording_), counts_, {}};
   }
+
+  // A bound of the rounding errors of the times on the clock of the log [s].
+  double rounding() const { return rounding_; }
 
  private:
   void drop(DropReason reason) { counts_.drop(reason, log_.text().line()); }
@@ -69,16 +72,14 @@ class LogReader {
         if (!filter_) clock_.skip_row();
         return drop(DropReason::kRagged);
       }
-      log_.text().fail_row(fmt::format(
-    rounding_ = std::max(rounding_, clock_.rounding(*ticks));
-          "{} cells; expected {} as in the first line (or rules.ragged = "
-          "\"drop\" in the map)",
-          log_.text().cells(), log_.text().width()));
+      log_.text().fail_row(fmt::format("{} cells; {}", log_.text().cells(),
+                                       width_advice(log_.text(), map_.layout)));
     }
     if (filter_ && !passes_filter()) return drop(DropReason::kFiltered);
     const std::optional<LogTicks> ticks = clock_.read();
     if (!ticks) return drop(DropReason::kMissing);
     if (!clock_.is_within(*ticks)) return drop(DropReason::kOutside);
+    rounding_ = std::max(rounding_, clock_.rounding(*ticks));
     const double time = clock_.time(lines_.empty() ? *ticks : first_, *ticks);
     if (!follows(time)) return;
     const std::optional<std::uint8_t> status = read_status(time);
@@ -158,7 +159,10 @@ class LogReader {
       }
       if (quantity.joined) continue;
       const std::optional<double> raw = log_.present(slots_[i]);
-      if (!raw) return false;
+      if (!raw) {
+        ++blank_rows_[i];
+        return false;
+      }
       if (!quantity.fits(*raw)) {
         log_.fail(slots_[i],
                   fmt::format("is no count of {} bits (wrap_bits in the map)",
@@ -171,6 +175,16 @@ class LogReader {
         log_.fail(slots_[i], "is out of range", "a smaller number");
     }
     return true;
+  }
+
+  void find_most_blank() {
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+      const std::string_view signal = map_.quantities[i].signal.name;
+      if (blank_rows_[i] <= counts_.most_blank.rows || signal == "rate" ||
+          signal == "output")
+        continue;
+      counts_.most_blank = {std::string(signal), blank_rows_[i]};
+    }
   }
 
   void drop_outliers() {
@@ -230,14 +244,21 @@ class LogReader {
   // Throws when the joined log has nothing to say about any row.
   void check_joined() const {
     if (joined_ == nullptr || !first_common_ || counts_.kept > 0) return;
+    const bool overlaps =
+        *first_common_ <= joined_->end() && last_common_ >= joined_->begin();
+    const std::string advice =
+        overlaps ? fmt::format(
+                       "the second has a period of {:.6g} s; "
+                       "expected a larger join.max_gap_s",
+                       joined_->period())
+                 : "expected logs that overlap (join.time.zero or "
+                   "join.time.offset_s in the map shifts the second)";
     throw std::invalid_argument(fmt::format(
         "{}: has times from {:.6f} to {:.6f} s, the log joined by {} from "
         "{:.6f} to {:.6f} s on the same clock, and no row is between two of "
-        "its rows at most {:g} s apart (join.max_gap_s); expected logs that "
-        "overlap (join.time.zero or join.time.offset_s in the map shifts the "
-        "second)",
+        "its rows at most {:g} s apart (join.max_gap_s); {}",
         log_.path(), *first_common_, last_common_, map_.join->place,
-        joined_->begin(), joined_->end(), map_.join->longest_gap));
+        joined_->begin(), joined_->end(), map_.join->longest_gap, advice));
   }
 
   void check_enough() const {
@@ -251,6 +272,12 @@ class LogReader {
           fmt::format("; {} {}, the first in line {}", rows.rows,
                       reason_name(static_cast<DropReason>(i)), rows.first_line);
     }
+    if (counts_.is_mostly_blank()) {
+      dropped += fmt::format(
+          "; {} is missing in {} (the log joined with itself interpolates it: "
+          "[join] in the map and --join {})",
+          counts_.most_blank.signal, counts_.most_blank.rows, log_.path());
+    }
     throw std::invalid_argument(
         fmt::format("{}: {} of {} rows are usable; expected at least two{}",
                     log_.path(), counts_.kept, counts_.rows, dropped));
@@ -262,11 +289,12 @@ class LogReader {
   std::optional<std::size_t> filter_, status_;  // slots
   std::vector<std::size_t> slots_;              // of the quantities
   std::vector<double> values_;                  // of one row
+  std::vector<std::size_t> blank_rows_;         // by quantity
   JoinedRows* joined_;                          // none: null
   std::vector<double> joined_values_;           // of one row
   std::optional<double> first_common_;          // time of the first row [s]
-  double rounding_ = 0;                         // [s], of all times read
   double last_common_ = 0;                      // [s]
+  double rounding_ = 0;                         // [s], of all times read
   LogTicks first_;                              // of the first row kept
   Recording recording_;
   std::vector<std::size_t> lines_;  // of the rows kept

@@ -24,9 +24,6 @@ LogLayout read_layout(const ConfigTable& root) {
       root.choice_or("delimiter", "auto", {"auto", ",", "\t", ";", "|", " "});
   if (delimiter != "auto") layout.delimiter = delimiter.front();
   layout.decimal = root.choice_or("decimal", ".", {".", ","}).front();
-  if (layout.decimal == layout.delimiter)
-    root.fail("decimal",
-              "\",\" is the delimiter, too; expected another delimiter");
   layout.header = root.flag_or("header", true);
   if (layout.header) {
     layout.header_line = static_cast<std::size_t>(

@@ -14,6 +14,7 @@
 
 #include "config/config_node.h"
 #include "config/suggestion.h"
+#include "dataset/log/log_advice.h"
 
 namespace beamgyro {
 namespace {
@@ -64,10 +65,10 @@ std::size_t index_of(const LogColumn& column, const LogText& text,
   if (found == names.end()) {
     const std::string near = suggestion(column.name, names);
     reject(fmt::format(
-        "{} has no column \"{}\"; {}it has {}", path, printable(column.name),
+        "{} has no column \"{}\"; {}it has {}{}", path, printable(column.name),
         near.empty() ? ""
                      : fmt::format("did you mean \"{}\"? ", printable(near)),
-        listed(names)));
+        listed(names), name_advice(text, column.name)));
   }
   if (std::find(found + 1, names.end(), column.name) != names.end()) {
     reject(fmt::format("{} has two columns \"{}\"; expected the number of one",
@@ -98,7 +99,8 @@ std::optional<double> LogNumbers::number_in(std::size_t slot) const {
   if (error == std::errc()) fail(slot, "is infinite", "a finite number");
   if (error == std::errc::result_out_of_range)
     fail(slot, "is out of range", "a finite number");
-  fail(slot, "is not a number", advice(cell));
+  fail(slot, "is not a number",
+       number_advice(text_, map_.layout.decimal, cell));
 }
 
 // A comma is the decimal mark if the map says so, and then a point is none: it
@@ -111,23 +113,6 @@ std::errc LogNumbers::parse_number(std::string_view cell,
     return std::errc::invalid_argument;
   std::replace_copy(cell.begin(), cell.end(), point.begin(), ',', '.');
   return parse({point.data(), cell.size()}, number);
-}
-
-std::string LogNumbers::advice(std::string_view cell) const {
-  const bool has_digit = std::any_of(
-      cell.begin(), cell.end(), [](char c) { return c >= '0' && c <= '9'; });
-  if (!has_digit)
-    return "one such as -12.5, or the text among missing_markers in the map";
-  if (looks_like_date(cell))
-    return "a number (a column of dates or times of the day is read by "
-           "time.format = \"iso\", or a pattern, in the map)";
-  const bool comma = map_.layout.decimal == ',';
-  const char other = comma ? '.' : ',';
-  if (std::count(cell.begin(), cell.end(), other) == 1 &&
-      cell.find(map_.layout.decimal) == cell.npos)
-    return fmt::format("one such as {}, or decimal = \"{}\" in the map",
-                       comma ? "-12,5" : "-12.5", other);
-  return "a number alone, such as -12.5; its unit is stated by the map";
 }
 
 bool LogNumbers::is_absent(std::size_t slot) const {

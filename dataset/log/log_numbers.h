@@ -49,7 +49,6 @@ class LogNumbers {
  private:
   bool is_marker(std::string_view cell) const;
   std::errc parse_number(std::string_view cell, double& number) const;
-  std::string advice(std::string_view cell) const;
   [[noreturn]] void fail_missing(std::size_t slot) const;
 
   LogText text_;

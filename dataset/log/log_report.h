@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "dataset/recording/recording.h"
 
@@ -31,12 +32,22 @@ struct DroppedRows {
   std::size_t first_line = 0;  // from 1
 };
 
+/// The signal beside the gyro that is missing in most rows.
+struct BlankSignal {
+  std::string signal;
+  std::size_t rows = 0;  // dropped because it is missing
+};
+
 /// Number of rows that an import read, kept and dropped.
 struct LogCounts {
   std::size_t rows = 0, kept = 0;
   std::array<DroppedRows, kDropReasons> dropped;  // by DropReason
+  BlankSignal most_blank;
 
   void drop(DropReason reason, std::size_t line);
+  /// Returns whether most_blank costs more rows than are kept. The log joined
+  /// with itself keeps them.
+  bool is_mostly_blank() const { return most_blank.rows > kept; }
 };
 
 /// Sampling of a recording. A step longer than kGapSteps median steps is a gap.

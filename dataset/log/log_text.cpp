@@ -123,15 +123,15 @@ void LogText::start() {
     if (names_.empty()) read_names();
     skip_rows();
   } else {
-    width_ = all_cells().size();
+    width_ = quoted_cells().size();
     rest_ = first_row;
     line_ = line_above;
   }
 }
 
 void LogText::read_names() {
-  const std::vector<std::string_view> cells = all_cells();
-  for (const std::string_view cell : cells) names_.emplace_back(unquoted(cell));
+  const std::vector<std::string_view> cells = quoted_cells();
+  names_ = all_cells();
   width_ = names_.size();
   if (std::all_of(cells.begin(), cells.end(), is_number))
     fail_at(1, fmt::format("{} is a number; expected the line of names (or "
@@ -189,7 +189,7 @@ const char* LogText::next_cell(const char* stop, const char* end) const {
   return layout_.delimiter == ' ' ? stop : stop + 1;
 }
 
-std::vector<std::string_view> LogText::all_cells() const {
+std::vector<std::string_view> LogText::quoted_cells() const {
   std::vector<std::string_view> cells;
   const char* const end = row_.data() + row_.size();
   for (const char* begin = first_cell(); begin != nullptr;) {
@@ -197,6 +197,13 @@ std::vector<std::string_view> LogText::all_cells() const {
     cells.push_back(trimmed({begin, static_cast<std::size_t>(stop - begin)}));
     begin = next_cell(stop, end);
   }
+  return cells;
+}
+
+std::vector<std::string> LogText::all_cells() const {
+  std::vector<std::string> cells;
+  for (const std::string_view cell : quoted_cells())
+    cells.emplace_back(unquoted(cell));
   return cells;
 }
 
@@ -236,6 +243,7 @@ std::size_t LogText::select(std::size_t index) {
 
 bool LogText::next() {
   if (!next_line()) return false;
+  if (first_row_ == 0) first_row_ = line_;
   cut();
   return true;
 }

@@ -17,7 +17,7 @@ struct LogLayout {
   std::size_t header_line = 0;  // from 1: lines above it are left out; 0: none
   std::size_t skip_rows = 0;    // below the names, or at the start
   std::vector<std::string> comment_prefixes;  // lines that start so are none
-  char decimal = '.';  // mark of numbers; ',' is then no delimiter
+  char decimal = '.';  // mark of numbers; ',' is then not found as a delimiter
 };
 
 /// Reads delimiter-separated text row by row and extracts the cells of selected
@@ -34,6 +34,8 @@ class LogText {
 
   const std::vector<std::string>& names() const { return names_; }
   std::size_t width() const { return width_; }  // cells of the first line
+  char delimiter() const { return layout_.delimiter; }  // ' ': blanks
+  std::size_t skipped_rows() const { return layout_.skip_rows; }
 
   /// Selects the column `index` (from 0) for the rows to come. Returns the slot
   /// of its cells.
@@ -46,6 +48,9 @@ class LogText {
   std::size_t cells() const { return cells_; }  // of the row
   bool is_whole() const { return cells_ == width_; }
   std::string_view cell(std::size_t slot) const { return selected_[slot].text; }
+  std::string_view row() const { return row_; }
+  bool is_first_row() const { return line_ == first_row_; }
+  std::vector<std::string> all_cells() const;  // of the row
 
   /// Throws "file:line:column: message" at a cell of the row, or at its end.
   [[noreturn]] void fail(std::size_t slot, const std::string& message) const;
@@ -65,7 +70,7 @@ class LogText {
   const char* first_cell() const;
   const char* next_cell(const char* stop, const char* end) const;
   const char* cell_end(const char* begin, const char* end) const;
-  std::vector<std::string_view> all_cells() const;
+  std::vector<std::string_view> quoted_cells() const;
   [[noreturn]] void fail_at(std::size_t column,
                             const std::string& message) const;
 
@@ -75,6 +80,7 @@ class LogText {
   char line_end_ = '\n';
   std::vector<std::string> names_;
   std::size_t width_ = 0, line_ = 0, cells_ = 0;
+  std::size_t first_row_ = 0;  // its line; 0: not met
   std::vector<SelectedColumn> selected_;
   std::vector<std::size_t> order_;  // slots by index
 };

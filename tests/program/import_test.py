@@ -313,6 +313,37 @@ unit = "degC"
                       self.ok("import", "log.csv", "--map", "map.toml", "-o",
                               "r.h5"))
 
+    def test_a_question_about_a_column_that_is_mostly_blank(self):
+        self.write("map.toml", BENCH)
+        self.write("log.csv", table("t,w,T", (
+            (10 * k, 0.1, 25 + 0.001 * k if k % 100 == 0 else "")
+            for k in range(1001))))
+        said = self.ok("import", "log.csv", "--map", "map.toml", "-o", "r.h5")
+        self.assertIn("1001 rows read, 11 kept", said)
+        self.assertIn("question     is the temperature logged at a lower rate? "
+                      "it is missing in 990 rows; [join] with its table and "
+                      "--join log.csv", said)
+        signal = '[temperature]\ncolumn = "T"\nunit = "degC"\n'
+        clock = '[join.time]\ncolumn = "t"\nunit = "ms"\n'
+        self.write("map.toml", BENCH.replace(signal, "") +
+                   "[join]\nmax_gap_s = 1\n" + clock +
+                   signal.replace("[", "[join."))
+        said = self.ok("import", "log.csv", "--join", "log.csv", "--map",
+                       "map.toml", "-o", "r.h5")
+        self.assertIn("1001 rows read, 1001 kept", said)
+        self.assertNotIn("question", said)
+        values, _, _ = self.read("r.h5")
+        np.testing.assert_allclose(values["temperature"],
+                                   25 + 0.001 * np.arange(1001), rtol=1e-12)
+
+    def test_one_gap(self):
+        self.write("map.toml", BENCH)
+        self.write("log.csv", table("t,w,T", (
+            (10 * k + 1000 * (k > 4), 0.1, 25) for k in range(10))))
+        self.assertIn("1 gap, the longest 1.01 s",
+                      self.ok("import", "log.csv", "--map", "map.toml", "-o",
+                              "r.h5"))
+
     def test_a_million_rows_with_dates_and_decimal_commas(self):
         """Within one second of processor time."""
         count = 10**6

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+// What the import advises when a log is not as its map says.
+#include <gtest/gtest.h>
+
+#include "dataset/log/log_import.h"
+#include "tests/dataset/rejection.h"
+
+namespace beamgyro::log_advice_test {
+namespace {
+
+using Readings = std::vector<double>;
+
+const std::string kGyro = R"([gyro]
+column = "w"
+unit = "deg/s"
+[temperature]
+column = "T"
+unit = "degC"
+)";
+const std::string kSeconds = "[time]\ncolumn = \"t\"\nunit = \"s\"\n" + kGyro;
+
+ImportedLog imported(const std::string& map, const std::string& log) {
+  return import_log(log, "log.csv",
+                    read_log_map(ConfigDocument::parse(map, "map.toml"), ""));
+}
+
+std::string refusal(const std::string& map, const std::string& log) {
+  return rejection([&] { imported(map, log); });
+}
+
+void expect_advice(const std::string& message,
+                   const std::vector<std::string>& parts) {
+  for (const std::string& part : parts)
+    EXPECT_NE(message.find(part), std::string::npos)
+        << part << " in: " << message;
+}
+
+void expect_no_advice(const std::string& message, const std::string& part) {
+  EXPECT_EQ(message.find(part), std::string::npos) << message;
+}
+
+TEST(LogAdvice, AColumnOfDatesHasAFormat) {
+  expect_advice(
+      refusal("[time]\ncolumn = \"t\"\n" + kGyro, "t,w,T\n2026-03-05,1,25\n"),
+      {"map.toml:1:1: time.unit: missing", "\"ms\"", "time.format = \"iso\""});
+}
+
+TEST(LogAdvice, ALineOfUnitsIsSkipped) {
+  const std::string log = "t,w,T\ns,deg/s,C\n0,1,25\n1,2,25\n";
+  const std::string message = refusal(kSeconds, log);
+  expect_advice(message, {"log.csv:2:1: 's' is not a number", "skip_rows = 1"});
+  expect_no_advice(message, "missing_markers");
+  EXPECT_EQ(imported("skip_rows = 1\n" + kSeconds, log).counts.kept, 2u);
+  expect_advice(refusal("skip_rows = 2\n" + kSeconds,
+                        "t,w,T\nTime,Rate,Temp\n\n[s],[m/s2],[C]\n-,-,-\n"
+                        "0,1,25\n"),
+                {"log.csv:5:1:", "skip_rows = 3"});
+  // A first row with numbers is none.
+  expect_no_advice(refusal(kSeconds, "t,w,T\n0,--,25\n"), "skip_rows");
+}
+
+TEST(LogAdvice, NamesThatComeAgainAreComments) {
+  const std::string log = "t,w,T\n0,1,25\n1,2,25\nt,w,T\n2,3,25\n";
+  const std::string message = refusal(kSeconds, log);
+  expect_advice(message, {"log.csv:4:1: 't' ", "names again", "header = false",
+                          "comment_prefixes = ['t,w,T']"});
+  expect_no_advice(message, "missing_markers");
+  EXPECT_EQ(imported(R"(header = false
+comment_prefixes = ['t,w,T']
+[time]
+column = 1
+unit = "s"
+[gyro]
+column = 2
+unit = "deg/s"
+)",
+                     log)
+                .counts.kept,
+            3u);
+}
+
+TEST(LogAdvice, AnExponentOfFortranIsNoDate) {
+  const std::string message = refusal(kSeconds, "t,w,T\n0,1.5D-03,25\n");
+  expect_advice(message, {"log.csv:2:3: '1.5D-03' is not a number",
+                          "expected one such as 1.5e-03"});
+  expect_no_advice(message, "time.format");
+  expect_no_advice(refusal(kSeconds, "t,w,T\n0,1.5-3.2/,25\n"), "1.5e");
+}
+
+TEST(LogAdvice, DecimalCommasInQuotesBetweenCommas) {
+  const std::string map = "decimal = \",\"\ndelimiter = \",\"\n" + kSeconds;
+  const ImportedLog log = imported(
+      map, "\"t\",w,\"T\"\n\"0\",\"0,1\",\"25,0\"\n1,\"-0,2\",\"25,5\"\n");
+  EXPECT_EQ(column_values(log.recording, "rate"), (Readings{0.1, -0.2}));
+  EXPECT_EQ(column_values(log.recording, "temperature"), (Readings{25, 25.5}));
+  expect_advice(refusal(map, "t,w,T\n0,0,1,25,0\n"),
+                {"log.csv:2:11: 5 cells; expected 3",
+                 "a number with a decimal comma in quotes"});
+}
+
+TEST(LogAdvice, ALineOfNamesThatIsNotCutSaysItsDelimiter) {
+  const std::string comma = "decimal = \",\"\n" + kSeconds;
+  expect_advice(refusal(comma, "\"t\",\"w\",\"T\"\n\"0\",\"0,1\",\"25,0\"\n"),
+                {"in place of \" \"", "delimiter = \",\" in the map"});
+  expect_advice(refusal("delimiter = \";\"\n" + comma, "t,w,T\n0;0,1;25,0\n"),
+                {"in place of \";\"", "delimiter = \",\"",
+                 "header = false, skip_rows = 1"});
+  expect_advice(refusal(kSeconds, "t,w,T\n0;1;25\n1;2;25\n"),
+                {"log.csv:2:7: 1 cells; expected 3", "in place of \",\"",
+                 "delimiter = \";\" in the map"});
+  expect_advice(refusal(kSeconds, "t,w,T\n0;0,1;25,0\n"),
+                {"log.csv:2:1: '0;0' is not a number", "in place of \",\"",
+                 "delimiter = \";\" in the map"});
+  expect_no_advice(refusal(kSeconds, "t,ww,T\n0,1,25\n"), "delimiter");
+}
+
+TEST(LogAdvice, ALogThatIsNotUtf8) {
+  const std::string map =
+      "[time]\ncolumn = \"t\"\nunit = \"s\"\n[gyro]\ncolumn "
+      "= \"w [°/s]\"\nunit = \"deg/s\"\n";
+  const std::string log = "t;w [\xB0/s]\n0;1\n1;2\n";
+  expect_advice(refusal(map, log),
+                {"map.toml:5:10: gyro.column: log.csv has no column",
+                 "is not UTF-8", "number"});
+  expect_no_advice(refusal(map, "t;w [°/h]\n0;1\n"), "UTF-8");
+  EXPECT_EQ(
+      imported("[time]\ncolumn = \"t\"\nunit = \"s\"\n[gyro]\ncolumn = 2\n"
+               "unit = \"deg/s\"\n",
+               log)
+          .counts.kept,
+      2u);
+}
+
+TEST(LogAdvice, ADateAndATimeBetweenBlanksAreTwoColumns) {
+  const std::string map =
+      "[time]\ncolumn = \"when\"\nformat = \"iso\"\n" + kGyro;
+  const std::string log =
+      "when w T\n2026-03-05 14:00:00 1 25\n2026-03-05 14:00:01 1 25\n";
+  const std::string message = refusal(map, log);
+  expect_advice(message, {"log.csv:2:25: 4 cells; expected 3", "date_column",
+                          "header = false, skip_rows = 1"});
+  expect_no_advice(message, "ragged");
+  const ImportedLog read = imported(R"(header = false
+skip_rows = 1
+[time]
+date_column = 1
+column = 2
+format = "iso"
+[gyro]
+column = 3
+unit = "deg/s"
+[temperature]
+column = 4
+unit = "degC"
+)",
+                                    log);
+  EXPECT_EQ(read.recording.time, (Readings{0, 1}));
+}
+
+TEST(LogAdvice, MinutesAndHours) {
+  const auto times = [](const std::string& unit) {
+    return imported("[time]\ncolumn = \"t\"\nunit = \"" + unit + "\"\n" + kGyro,
+                    "t,w,T\n7,0,25\n7.1,0,25\n14,0,25\n")
+        .recording.time;
+  };
+  EXPECT_EQ(times("min")[2], 420.0);
+  EXPECT_NEAR(times("min")[1], 6.0, 1e-12);  // 14.2 - 14, of 2e-16 each
+  EXPECT_EQ(times("h")[2], 25200.0);
+}
+
+TEST(LogAdvice, AGapLongerThanMaxGapIsNoMissingOverlap) {
+  const std::string map =
+      "[time]\ncolumn = \"t\"\nunit = \"s\"\n[gyro]\ncolumn "
+      "= \"w\"\nunit = \"deg/s\"\n[join]\nmax_gap_s = 0.5\n"
+      "[join.time]\ncolumn = \"t\"\nunit = \"s\"\n"
+      "[join.temperature]\ncolumn = \"T\"\nunit = \"degC\"\n";
+  const auto joined = [&](const std::string& second) {
+    return rejection([&] {
+      import_log("t,w\n0.1,1\n0.2,1\n1.7,1\n", "log.csv",
+                 read_log_map(ConfigDocument::parse(map, "map.toml"), ""),
+                 SecondLog{second, "second.csv"});
+    });
+  };
+  const std::string message = joined("t,T\n0,20\n1,20\n2,20\n");
+  expect_advice(message, {"map.toml:7:1: join", "0.5 s", "period of 1 s",
+                          "a larger join.max_gap_s"});
+  expect_no_advice(message, "overlap");
+  expect_advice(joined("t,T\n10,20\n11,20\n"), {"expected logs that overlap"});
+}
+
+TEST(LogAdvice, AColumnThatIsMostlyBlankIsNamed) {
+  std::string log = "t,w,T\n";
+  for (int k = 0; k < 1000; ++k)
+    log += std::to_string(k) + ",0.1," + (k % 100 == 0 ? "25" : "") + "\n";
+  const LogCounts counts = imported(kSeconds, log).counts;
+  EXPECT_EQ(counts.kept, 10u);
+  EXPECT_EQ(counts.most_blank.rows, 990u);
+  EXPECT_EQ(counts.most_blank.signal, "temperature");
+  const std::string never =
+      refusal(kSeconds, "t,w,T\n0,1,\n1,,25\n2,1,\n3,,25\n");
+  expect_advice(never, {"0 of 4 rows are usable", "temperature is missing in 2",
+                        "--join log.csv"});
+}
+
+}  // namespace
+}  // namespace beamgyro::log_advice_test
