@@ -235,7 +235,7 @@ def allan(folder):
     axes.yaxis.set_major_locator(ticker.LogLocator(subs=[1, 2, 5]))
     axes.yaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
     axes.yaxis.set_minor_formatter(ticker.NullFormatter())
-    titled(axes, "Virtual gyro at rest, 25 °C, six hours after the warm-up",
+    titled(axes, "Virtual gyro at rest, 25 °C, over six hours, after the warm-up",
            "run with noise; dotted: the terms that are fitted to the curve "
            "without compensation")
     axes.legend(loc="upper right")
