@@ -5,94 +5,53 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <string_view>
-#include <variant>
 
 #include "config/units.h"
+#include "sim/scenario/aliasing.h"
 #include "sim/scenario/drive_lock.h"
 #include "sim/thermal/material_range.h"
 
 namespace beamgyro {
 namespace {
 
-/// The apparent frequency of a sine that is sampled at `rate`.
-double alias_of(double frequency, double rate) {
-  return std::abs(frequency - rate * std::round(frequency / rate));
-}
-
-/// The times within [0, duration) at which a motion turns back.
-std::vector<double> turns_of(const PiecewiseLinear& motion, double duration) {
-  std::vector<double> turns;
-  double direction = 0;
-  const std::vector<double>&time = motion.times(), &value = motion.values();
-  for (std::size_t k = 1; k < time.size() && time[k - 1] < duration; ++k) {
-    const double step = value[k] - value[k - 1];
-    if (step == 0) continue;
-    if (direction * step < 0) turns.push_back(time[k - 1]);
-    direction = step;
-  }
-  return turns;
-}
-
-/// A motion of one axis, as files name it.
-struct NamedMotion {
-  std::string key;
-  const RateProfile& profile;
-};
-
-std::vector<NamedMotion> motions_of(const Scenario& scenario) {
-  std::vector<NamedMotion> motions = {{"rate", scenario.rate}};
-  constexpr std::string_view kAxisNames[] = {"x", "y", "z"};
-  for (std::size_t i = 0; i < scenario.cross_rate.size(); ++i)
-    motions.push_back(
-        {fmt::format("cross_rate.{}", kAxisNames[i]), scenario.cross_rate[i]});
-  for (std::size_t i = 0; i < scenario.acceleration.size(); ++i)
-    motions.push_back({fmt::format("acceleration.{}", kAxisNames[i]),
-                       scenario.acceleration[i]});
-  return motions;
-}
-
-std::string aliasing_of(const NamedMotion& motion, const Scenario& scenario) {
-  const double rate = scenario.output_rate;
-  if (!moves(motion.profile)) return {};
-  if (const auto* sine = std::get_if<SineSignal>(&motion.profile)) {
-    if (sine->amplitude == 0 || sine->frequency <= rate / 2) return {};
-    return fmt::format(
-        "{}.sine.frequency_Hz = {:g} is above half of output_rate_Hz = {:g}: "
-        "the {} samples show it as {:.4g} Hz",
-        motion.key, sine->frequency, rate, sample_count(scenario),
-        alias_of(sine->frequency, rate));
-  }
-  if (const auto* random = std::get_if<RandomRate>(&motion.profile)) {
-    if (random->bandwidth <= rate / 2) return {};
-    return fmt::format(
-        "{}.random.bandwidth_Hz = {:g} is above half of output_rate_Hz = {:g}: "
-        "the {} samples show what is faster as slower",
-        motion.key, random->bandwidth, rate, sample_count(scenario));
-  }
-  const std::vector<double> turns =
-      turns_of(std::get<PiecewiseLinear>(motion.profile), scenario.duration);
-  std::size_t fast = 0;
-  for (std::size_t k = 1; k < turns.size(); ++k)
-    if (turns[k] - turns[k - 1] < (1 - 1e-9) / rate) ++fast;
-  if (fast == 0) return {};
-  return fmt::format(
-      "{}: {} of {} swings of the profile are shorter than the {:g} s between "
-      "samples: output_rate_Hz = {:g} shows them as slower ones",
-      motion.key, fast, turns.size() - 1, 1 / rate, rate);
-}
-
 std::string soaks_text(const Scenario& scenario) {
+  constexpr double kRoundoff = 1e-9;  // as for the number of samples
   const std::vector<double>& ends = scenario.soak_ends;
   const auto cut = std::ranges::count_if(ends, [&](double end) {
-    return end > scenario.duration && !is_same_time(end, scenario.duration);
+    return end > scenario.duration * (1 + kRoundoff);
   });
   if (cut == 0) return {};
   return fmt::format(
-      "ambient.soaks: duration_s = {:g} cuts {} of {} soaks; the last ends at "
-      "{:g} s",
+      "ambient.soaks: duration_s = {:.11g} cuts {} of {} soaks; the last ends "
+      "at {:.11g} s",
       scenario.duration, cut, ends.size(), ends.back());
+}
+
+/// Why no sample is powered.
+std::string power_cause(const Scenario& scenario) {
+  const SampleGrid grid = sample_grid(scenario);
+  const double last = grid.time(grid.count - 1);
+  std::string before, after;
+  for (const PowerInterval& powered : scenario.powered) {
+    if (powered.on <= last) {
+      before = powered.off <= 0
+                   ? fmt::format("the power is off since power.off_s = {}",
+                                 powered.off)
+                   : fmt::format(
+                         "the power is on at power.on_s = {} and off again at "
+                         "power.off_s = {}, between samples {:g} s apart",
+                         powered.on, powered.off, 1 / grid.rate);
+      continue;
+    }
+    after =
+        powered.on < scenario.duration
+            ? fmt::format("power.on_s = {} is after the last sample, at {:g} s",
+                          powered.on, last)
+            : fmt::format("power.on_s = {} is not before duration_s = {}",
+                          powered.on, scenario.duration);
+    break;
+  }
+  return before + (before.empty() || after.empty() ? "" : ", and ") + after;
 }
 
 std::string share(std::size_t count, std::size_t all) {
@@ -101,15 +60,6 @@ std::string share(std::size_t count, std::size_t all) {
 }
 
 }  // namespace
-
-std::vector<std::string> aliasing_warnings(const Scenario& scenario) {
-  std::vector<std::string> texts;
-  for (const NamedMotion& motion : motions_of(scenario)) {
-    std::string text = aliasing_of(motion, scenario);
-    if (!text.empty()) texts.push_back(std::move(text));
-  }
-  return texts;
-}
 
 void RunWarnings::add(const Recording& block) {
   samples_ += block.status.size();
@@ -163,10 +113,8 @@ std::string RunWarnings::heat_text() const {
 
 std::string RunWarnings::power_text() const {
   if (powered_ > 0) return {};
-  return fmt::format(
-      "all {} samples are unpowered: power.on_s = {:g} is not before "
-      "duration_s = {:g}",
-      samples_, scenario_.powered.front().on, scenario_.duration);
+  return fmt::format("all {} samples are unpowered: {}", samples_,
+                     power_cause(scenario_));
 }
 
 std::string RunWarnings::saturation_text() const {

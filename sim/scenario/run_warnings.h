@@ -17,7 +17,7 @@ namespace beamgyro {
 /// - a node of the thermal network leaves kMaterialTemperatures;
 /// - no sample is powered;
 /// - half or more of the powered samples are saturated, or not locked;
-/// - a motion is faster than half the output rate;
+/// - the samples do not show a motion (aliasing_warnings());
 /// - soaks end after duration_s.
 class RunWarnings {
  public:
@@ -31,13 +31,15 @@ class RunWarnings {
   /// Returns the warnings about the blocks so far and about the scenario.
   std::vector<std::string> texts() const;
 
+  /// Returns the one about temperatures, or nothing.
+  std::string heat_text() const;
+
  private:
   struct Node {
     std::size_t outside = 0;         // samples
     double lowest = 0, highest = 0;  // of these samples [degC]
   };
 
-  std::string heat_text() const;
   std::string power_text() const;
   std::string saturation_text() const;
   std::string lock_text() const;
@@ -47,9 +49,5 @@ class RunWarnings {
   std::size_t samples_ = 0, powered_ = 0, saturated_ = 0, unlocked_ = 0;
   std::array<Node, kThermalNodeCount> nodes_{};
 };
-
-/// Returns the warnings about motions that are faster than half the output
-/// rate.
-std::vector<std::string> aliasing_warnings(const Scenario& scenario);
 
 }  // namespace beamgyro

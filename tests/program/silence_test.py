@@ -3,6 +3,8 @@
 
 import unittest
 
+import numpy as np
+
 from program import SCENARIO, SCENARIOS, ProgramTest
 from sets import CAMPAIGN, Set
 
@@ -36,6 +38,21 @@ class Run(ProgramTest):
         self.assertIn("power.on_s = 700", line)
         self.assertIn("duration_s = 600", line)
 
+    def test_the_true_cause_of_a_run_without_power(self):
+        for on, off, cause in [
+                ("[0.05]", "[0.15]", "the power is on at power.on_s = 0.05 and "
+                 "off again at power.off_s = 0.15, between samples 0.5 s apart"),
+                ("[599.75]", "[]", "power.on_s = 599.75 is after the last "
+                 "sample, at 599.5 s"),
+                ("[-100]", "[-5]", "the power is off since power.off_s = -5"),
+                ("[-100, 700]", "[-5]", "the power is off since power.off_s = "
+                 "-5, and power.on_s = 700 is not before duration_s = 600")]:
+            with self.subTest(on):
+                line = self.warning("--set", f"power.on_s={on}", "--set",
+                                    f"power.off_s={off}")
+                self.assertTrue(line.endswith(
+                    f"all 1200 samples are unpowered: {cause}"), line)
+
     def test_a_run_that_is_saturated(self):
         line = self.warning("--set", "rate.constant_deg_per_s=400")
         self.assertIn("all 1200 powered samples are saturated", line)
@@ -62,9 +79,60 @@ class Run(ProgramTest):
             steps = [[k * half, 5 * (k % 2)] for k in range(11)]
             return self.warnings("--set", f"rate.steps={steps}")
         (line,) = square(0.25)
-        self.assertIn("rate: 8 of 8 swings", line)
-        self.assertIn("0.5 s between samples", line)
+        self.assertIn("rate: 10 of 10 swings", line)
+        self.assertIn("between samples 0.5 s apart", line)
         self.assertEqual(square(0.5), [])
+
+    def test_a_sine_of_half_the_output_rate(self):
+        def sine(frequency, phase):
+            return self.warning(
+                "--set", "rate.sine={amplitude_deg_per_s=10, frequency_Hz="
+                f"{frequency}, phase_rad={phase}}}")
+        line = sine(1, 0)
+        self.assertIn("rate.sine.frequency_Hz = 1 is half of output_rate_Hz = "
+                      "2: the 1200 samples show 0 % of its amplitude", line)
+        self.assertIn("show 50 % of its amplitude", sine(1, 0.5235987756))
+        # A rounding beside it is the same, and more shows in the number.
+        self.assertIn("= 1 is half of", sine(1.0000000000001, 0))
+        self.assertIn("= 1.00000001 is above half of output_rate_Hz = 2:",
+                      sine(1.00000001, 0))
+
+    def test_a_pulse_between_two_samples(self):
+        def pulse(top):
+            return self.warnings(
+                "--set", "rate.points=[[0,0],[100.1,0],[100.2,50],"
+                f"[{top},50],[{top + 0.1},0],[200,0]]")
+        (line,) = pulse(100.3)
+        self.assertIn("rate: 2 of 2 swings", line)
+        self.assertIn("lost", line)
+        self.assertEqual(pulse(100.5), [])  # a sample is at its top
+
+    def test_a_flight_of_which_the_samples_show_little(self):
+        def flight(rate):
+            answer = self.beamgyro("run", SCENARIOS / "flight.toml", "-o",
+                                   "f.h5", "--set", f"output_rate_Hz={rate}")
+            self.assertEqual(answer.returncode, 0, answer.stderr)
+            return answer.stderr
+        self.assertRegex(flight(0.003), r"rate: \d+ of \d+ swings of the "
+                         r"profile are lost")
+        self.assertEqual(flight(1), "")
+
+    def test_sensor_noise_is_no_manoeuvre(self):
+        noise = np.random.Generator(np.random.Philox(key=[41, 1]))
+        time = np.arange(60000) / 100
+        rate = 10 * np.sin(2 * np.pi * 0.01 * time) + 0.02 * noise.normal(
+            size=time.size)
+        def recorded(values):
+            self.write("rate.csv", "time_s,rate_deg_per_s\n" + "".join(
+                f"{t:.2f},{w:.6f}\n" for t, w in zip(time, values)))
+            return self.warnings("--set", 'rate.file="rate.csv"',
+                                 text=SCENARIO.replace("output_rate_Hz = 2",
+                                                       "output_rate_Hz = 1"))
+        self.assertEqual(recorded(rate), [])
+        # A manoeuvre of 0.4 s on it is one.
+        rate[20020:20060] += 10
+        (line,) = recorded(rate)
+        self.assertIn("rate: 2 of 15 swings", line)
 
     def test_a_random_rate_faster_than_half_the_output_rate(self):
         line = self.warning(
@@ -81,6 +149,15 @@ class Run(ProgramTest):
         self.assertIn("ends at 720 s", line)
         self.assertEqual(self.warnings("--set", "duration_s=720", text=text),
                          [])
+
+    def test_times_a_rounding_apart_are_one(self):
+        def ramp(duration):
+            return self.beamgyro("run", SCENARIOS / "ramp.toml", "-o", "r.h5",
+                                 "--set", f"duration_s={duration}").stderr
+        self.assertEqual(ramp("21599.9999999"), "")
+        self.assertIn("duration_s = 21599.9 cuts 1 of 3 soaks; the last ends "
+                      "at 21600 s", ramp("21599.9"))
+        self.assertIn("duration_s = 21599.99997 cuts", ramp("21599.99997"))
 
     def test_quiet_is_silent(self):
         self.assertEqual(self.warnings("--quiet", "--set", "power.on_s=[700]"),
