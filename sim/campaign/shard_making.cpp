@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sim/numerics/simulation_failure.h"
+#include "sim/scenario/run_warnings.h"
 #include "sim/scenario/simulation.h"
 
 namespace beamgyro {
@@ -92,7 +93,8 @@ Recording ShardMaker::recorded(const PreparedDevice& device,
 }
 
 // Values that are not finite or that their storage cannot hold are a failure of
-// the device, too.
+// the device, too. Where its temperatures left the range of the materials, that
+// is the cause.
 EncodedDevice ShardMaker::encoded(const ShardBuilder& file,
                                   std::uint32_t position,
                                   const PreparedDevice& device,
@@ -103,7 +105,10 @@ EncodedDevice ShardMaker::encoded(const ShardBuilder& file,
     try {
       if (row.failure.empty()) return file.encode(position, row, &recording);
     } catch (const UnstorableSamples& error) {
-      row.failure = first_line(error.what());
+      RunWarnings warnings(*run.scenario, *device.drawn.device);
+      warnings.add(recording);
+      const std::string heat = warnings.heat_text();
+      row.failure = heat.empty() ? first_line(error.what()) : heat;
       row.device_status = kNotFinite;
     }
   }

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What `run`, `generate` and `verify` say about work that is of no use."""
 
+import re
 import unittest
 
 import numpy as np
@@ -184,6 +185,24 @@ class Run(ProgramTest):
         self.rejected("characterise", "device.toml", "-o", "c.csv",
                       "--beam-temperature", "20:200:10",
                       says=["200 degC", "-100 to 150 degC"])
+
+
+class Heat(Set):
+    def test_generate_names_the_heat_that_no_storage_holds(self):
+        device = (self.dir / "device.toml").read_text()
+        hot, replaced = re.subn(r"(?m)^electronics_power_W = .*",
+                                "electronics_power_W = 600", device)
+        self.assertEqual(replaced, 1)
+        self.write("device.toml", hot)
+        rest = (self.dir / "rest.toml").read_text()
+        self.write("rest.toml", rest.replace("duration_s = 60",
+                                             "duration_s = 600"))
+        self.ok("generate", "campaign.toml", "-o", "set")
+        manifest = (self.dir / "set/manifest.jsonl").read_text()
+        self.assertEqual(len(re.findall(
+            r"board[^\"]* at up to \d{4} degC in \d+ of 1200 samples, "
+            r"[^\"]*electronics_power_W = 600", manifest)), 7)
+        self.assertNotIn("whole number", manifest)
 
 
 class EveryDeviceFails(Set):
