@@ -14,7 +14,8 @@
 namespace beamgyro {
 namespace {
 
-constexpr double kLeastTotal = 10.0;   // [K]
+constexpr double kLeastSpan = 10.0;    // [K]
+constexpr double kLeastTotal = 5.0;    // [K]
 constexpr double kLeastShare = 0.25;   // of all changes
 constexpr double kLeastChange = 0.5;   // [K]
 constexpr double kLeastSteps = 3.0;    // of the smallest between two rows
@@ -77,12 +78,16 @@ void check_duration(const Recording& recording,
   std::size_t k = 1;  // the row after the longest step
   for (std::size_t i = 2; i < time.size(); ++i)
     if (time[i] - time[i - 1] > time[k] - time[k - 1]) k = i;
+  const double step = time[k] - time[k - 1];
   throw std::invalid_argument(fmt::format(
-      "{}: lasts {:.3g} years, and line {} comes {:.3g} s after line {}; "
-      "expected at most {:g} years: look at {}, or leave out rows from before "
-      "the clock was set (time.from in the map)",
-      path, duration / kYear, lines[k], time[k] - time[k - 1], lines[k - 1],
-      kLongestLog, other_unit(map.time, duration, false)));
+      "{}: lasts {:.3g} years; expected at most {:g} years: look at {}{}", path,
+      duration / kYear, kLongestLog, other_unit(map.time, duration, false),
+      step < duration / 2
+          ? ""
+          : fmt::format(", or leave out the rows from before the clock was set "
+                        "(time.from in the map): line {} comes {:.3g} s after "
+                        "line {}",
+                        lines[k], step, lines[k - 1])));
 }
 
 }  // namespace
@@ -98,7 +103,7 @@ std::optional<FastDrift> fast_drift(std::span<const double> time,
   }
   if (values.empty()) return std::nullopt;
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  if (*high - *low < kLeastTotal) return std::nullopt;
+  if (*high - *low < kLeastSpan) return std::nullopt;
   const std::vector<double> smooth = smoothed_by_medians(values);
   const double least = least_change(values, smooth);
   FastDrift fast{0, 0, 1, 0};
@@ -128,7 +133,12 @@ void check_time_unit(const Recording& recording,
                      const std::string& path) {
   check_duration(recording, lines, map, path);
   const Column* const temperature = find_column(recording, "temperature");
-  if (map.rules.keep_fast_temperature || temperature == nullptr) return;
+  const bool is_joined = std::any_of(
+      map.quantities.begin(), map.quantities.end(), [](const auto& quantity) {
+        return quantity.joined && quantity.signal.name == "temperature";
+      });
+  if (map.rules.keep_fast_temperature || temperature == nullptr || is_joined)
+    return;
   const std::optional<FastDrift> fast =
       fast_drift(recording.time, temperature->values);
   if (!fast) return;

@@ -272,12 +272,6 @@ class LogReader {
           fmt::format("; {} {}, the first in line {}", rows.rows,
                       reason_name(static_cast<DropReason>(i)), rows.first_line);
     }
-    if (counts_.is_mostly_blank()) {
-      dropped += fmt::format(
-          "; {} is missing in {} (the log joined with itself interpolates it: "
-          "[join] in the map and --join {})",
-          counts_.most_blank.signal, counts_.most_blank.rows, log_.path());
-    }
     throw std::invalid_argument(
         fmt::format("{}: {} of {} rows are usable; expected at least two{}",
                     log_.path(), counts_.kept, counts_.rows, dropped));

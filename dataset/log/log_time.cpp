@@ -2,7 +2,6 @@
 #include "dataset/log/log_time.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 #include <stdexcept>
@@ -53,18 +52,23 @@ void read_format(const ConfigTable& table, LogTime& time) {
     time.date_column = read_log_column(table, "date_column");
 }
 
-void read_unit(const ConfigTable& table, LogTime& time) {
-  time.wrap_bits = static_cast<int>(table.integer_or("wrap_bits", 0, 8, 53));
+std::string read_unit_name(const ConfigTable& table) {
   const std::vector<std::string> units = {"s",   "ms", "us",   "ns",
                                           "min", "h",  "index"};
-  if (!table.has("unit")) {
-    table.fail("unit",
-               fmt::format("missing; expected one of \"{}\" for a column of "
-                           "numbers, or time.format = \"iso\" or a pattern for "
-                           "one of dates or times of the day",
-                           fmt::join(units, "\", \"")));
+  if (table.has("unit")) return table.choice("unit", units);
+  try {
+    return table.choice("unit", units);
+  } catch (const std::invalid_argument& missing) {
+    throw std::invalid_argument(
+        fmt::format("{} (a column of dates or times of the day has time.format "
+                    "= \"iso\", or a pattern, instead)",
+                    missing.what()));
   }
-  time.unit = table.choice("unit", units);
+}
+
+void read_unit(const ConfigTable& table, LogTime& time) {
+  time.wrap_bits = static_cast<int>(table.integer_or("wrap_bits", 0, 8, 53));
+  time.unit = read_unit_name(table);
   time.place = table.place("unit");
   if (time.unit == "index") {
     time.ticks_per_s = table.number("rate_Hz", positive());

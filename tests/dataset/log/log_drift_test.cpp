@@ -64,6 +64,8 @@ TEST(LogDrift, DaysInAUnitTooShortAreAskedAbout) {
               R"(time.unit = "us", "ms" makes it 259.19 s)");
   expect_asks(said("s", 4001, 0.001, [](double t) { return 22.75 * t - 40; }),
               R"(time.unit = "s", "min" makes it 240 s)");
+  expect_asks(said("s", 101, 0.01, [](double t) { return 25 + 10 * t; }),
+              "time.unit = \"s\"");
   EXPECT_EQ(said("s", 13635, 20, soaked), "");
   EXPECT_EQ(said("s", 25920, 10, cycled), "");
   EXPECT_EQ(
