@@ -299,7 +299,8 @@ TEST(ModelFile, WhatAKindCannotTakeIsRefused) {
                  "[bp]\nhidden = [6]\nrate_penalty = 1\n",
                  "do not feel the rate"},
            Wrong{"kind = \"bp\"\ninputs = [\"output\"]\n"
-                 "[bp]\nhidden = [6]\ntrainer = \"incremental\"\nrate_penalty = 1\n",
+                 "[bp]\nhidden = [6]\ntrainer = \"incremental\"\nrate_penalty "
+                 "= 1\n",
                  "rate_penalty"},
            Wrong{"kind = \"bp\"\ninputs = [\"output\"]\n"
                  "[bp]\nhidden = [6]\nweight_decays = []\n",
