@@ -40,14 +40,16 @@ bool has_parts(const fs::path& directory) {
   return std::ranges::any_of(names_in(directory), is_part);
 }
 
-// A part may be merged and removed while it is looked for.
+// Another task may make or remove it while it is looked for.
 std::optional<Manifest> manifest_if_there(const fs::path& directory,
                                           const std::string& name) {
-  try {
-    return read_manifest(directory, name);
-  } catch (const std::invalid_argument&) {
-    if (find_in_set(directory, name)) throw;
-    return {};
+  for (int again = 3;; --again) {
+    try {
+      return read_manifest(directory, name);
+    } catch (const std::invalid_argument&) {
+      if (!find_in_set(directory, name)) return {};
+      if (again == 0) throw;
+    }
   }
 }
 
