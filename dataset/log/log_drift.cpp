@@ -48,6 +48,22 @@ double least_change(const std::vector<double>& values,
                    kLeastNoise * kSigmaPerMad * median_of(rest)});
 }
 
+// Whether the change over the rows begin .. end is one step between rows that
+// do not change: where logs of several soaks were joined.
+bool is_lone_step(const std::vector<double>& smooth, std::size_t begin,
+                  std::size_t end) {
+  constexpr double kWhole = 0.9, kStill = 0.1;  // of the change, of the step
+  const auto step = [&](std::size_t k) {
+    return k == 0 || k == smooth.size() ? 0.0
+                                        : std::abs(smooth[k] - smooth[k - 1]);
+  };
+  std::size_t at = begin + 1;
+  for (std::size_t k = at; k <= end; ++k)
+    if (step(k) > step(at)) at = k;
+  return step(at) >= kWhole * std::abs(smooth[end] - smooth[begin]) &&
+         std::max(step(at - 1), step(at + 1)) < kStill * step(at);
+}
+
 constexpr double kYear = 365.25 * 86400;  // [s]
 constexpr double kLongestLog = 5;         // [years]
 
@@ -106,6 +122,8 @@ std::optional<FastDrift> fast_drift(std::span<const double> time,
   if (*high - *low < kLeastSpan) return std::nullopt;
   const std::vector<double> smooth = smoothed_by_medians(values);
   const double least = least_change(values, smooth);
+  const bool may_be_joined =
+      *high - *low <= kFastestDrift * (time[rows.back()] - time[rows.front()]);
   FastDrift fast{0, 0, 1, 0};
   double all = 0.0, reached = smooth.front();
   std::size_t begin = 0;  // of the stretch that ends at row k
@@ -118,6 +136,10 @@ std::optional<FastDrift> fast_drift(std::span<const double> time,
     while (begin + 1 < k && kFastestDrift * elapsed() >= least) ++begin;
     const double change = std::abs(smooth[k] - smooth[begin]);
     if (change < least || change <= kFastestDrift * elapsed()) continue;
+    if (may_be_joined && is_lone_step(smooth, begin, k)) {
+      begin = k;
+      continue;
+    }
     fast.total += change;
     if (change * fast.elapsed > fast.change * elapsed())
       fast = {rows[k], change, elapsed(), fast.total};

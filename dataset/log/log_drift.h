@@ -28,8 +28,10 @@ struct FastDrift {
 /// it by more than kFastestDrift and by
 ///   D = max(0.5 K, 3 x smallest step of T (1 K at most), 10 x noise)
 /// or more. T is smoothed by medians over five rows, over three at both ends,
-/// so that a bad value is none. The noise comes from the median of what the
-/// smoothing takes off. NaN are left out.
+/// so that a bad value is none. Neither is a step between two rows that is
+/// alone, where logs of several soaks were joined, unless the whole log is too
+/// short for its span. The noise comes from the
+/// median of what the smoothing takes off. NaN are left out.
 std::optional<FastDrift> fast_drift(std::span<const double> time,
                                     std::span<const double> temperature);
 

@@ -83,6 +83,12 @@ TEST(LogDrift, ThermalShockIsTaken) {
   EXPECT_EQ(said("s", 3600, 1, shock), "");
 }
 
+// Soaks of ten minutes, each in a log of its own, put behind each other.
+TEST(LogDrift, JoinedSoaksAreTaken) {
+  const auto joined = [](double t) { return 20 * std::floor(t / 600) - 20; };
+  EXPECT_EQ(said("s", 2400, 1, joined), "");
+}
+
 TEST(LogDrift, ABadCellIsNoDrift) {
   const auto with_bad = [](double bad) {
     return [bad](double t) { return t == bad ? 85.0 : 25.0; };
