@@ -22,7 +22,7 @@ mkdir -p build
 cmake --build --preset dev --target "${rooms[@]/%/_test}" >build/dev.log ||
   { tail -n 40 build/dev.log >&2; exit 1; }
 for room in "${rooms[@]}"; do
-  folder=$(find build/dev/tests -type d -name "$room" | head -n 1)
+  folder=$(find build/dev/tests -name CMakeFiles -prune -o -type d -name "$room" -print | head -n 1)
   ctest --test-dir "$folder" -j "$(nproc)" --timeout 300 --output-on-failure |
     grep -v -E '^ +Start|Passed +[0-9.]+ sec|^$'
 done
