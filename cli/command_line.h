@@ -13,7 +13,7 @@
 #include "cli/help_text.h"
 #include "config/range.h"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): as CLI11 has it
 class App;
 }
 
