@@ -162,9 +162,11 @@ class Line(Terminal):
         self.run_scenario("held_out", text=ramp(seed=9))
         for trainer in ["incremental", "gradient_adaptive",
                         "levenberg_marquardt"]:
+            neurons, seconds = {"levenberg_marquardt": (100, 1)}.get(
+                trainer, (12, 4))
             self.write("m.toml", PATIENT.replace("incremental", trainer)
-                       .replace("[12]", "[40]" if "l" in trainer[:2] else
-                                "[12]") + "[rows]\nseconds = 4\n")
+                       .replace("[12]", f"[{neurons}]") +
+                       f"[rows]\nseconds = {seconds}\n")
             with self.subTest(trainer):
                 screen = self.screen("train", "run.h5", "--model", "m.toml",
                                      "--held-out", "held_out.h5", "-o",
