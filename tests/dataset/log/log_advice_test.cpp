@@ -2,7 +2,7 @@
 // What the import advises when a log is not as its map says.
 #include <gtest/gtest.h>
 
-#include "dataset/log/log_import.h"
+#include "tests/dataset/log/imported_log.h"
 #include "tests/dataset/rejection.h"
 
 namespace beamgyro::log_advice_test {
@@ -10,19 +10,8 @@ namespace {
 
 using Readings = std::vector<double>;
 
-const std::string kGyro = R"([gyro]
-column = "w"
-unit = "deg/s"
-[temperature]
-column = "T"
-unit = "degC"
-)";
-const std::string kSeconds = "[time]\ncolumn = \"t\"\nunit = \"s\"\n" + kGyro;
-
-ImportedLog imported(const std::string& map, const std::string& log) {
-  return import_log(log, "log.csv",
-                    read_log_map(ConfigDocument::parse(map, "map.toml"), ""));
-}
+const std::string kSeconds =
+    "[time]\ncolumn = \"t\"\nunit = \"s\"\n" + kGyroAndTemperature;
 
 std::string refusal(const std::string& map, const std::string& log) {
   return rejection([&] { imported(map, log); });
@@ -41,11 +30,13 @@ void expect_no_advice(const std::string& message, const std::string& part) {
 
 TEST(LogAdvice, AColumnOfDatesHasAFormat) {
   expect_advice(
-      refusal("[time]\ncolumn = \"t\"\n" + kGyro, "t,w,T\n2026-03-05,1,25\n"),
+      refusal("[time]\ncolumn = \"t\"\n" + kGyroAndTemperature,
+              "t,w,T\n2026-03-05,1,25\n"),
       {"map.toml:1:1: time.unit: missing", "\"ms\"", "time.format = \"iso\""});
-  expect_advice(refusal("[time]\ncolumn = \"t\"\nunits = \"s\"\n" + kGyro,
-                        "t,w,T\n0,1,25\n"),
-                {"time.unit: missing", "there is a 'units' in line 3"});
+  expect_advice(
+      refusal("[time]\ncolumn = \"t\"\nunits = \"s\"\n" + kGyroAndTemperature,
+              "t,w,T\n0,1,25\n"),
+      {"time.unit: missing", "there is a 'units' in line 3"});
 }
 
 TEST(LogAdvice, ALineOfUnitsIsSkipped) {
@@ -136,7 +127,7 @@ TEST(LogAdvice, ALogThatIsNotUtf8) {
 
 TEST(LogAdvice, ADateAndATimeBetweenBlanksAreTwoColumns) {
   const std::string map =
-      "[time]\ncolumn = \"when\"\nformat = \"iso\"\n" + kGyro;
+      "[time]\ncolumn = \"when\"\nformat = \"iso\"\n" + kGyroAndTemperature;
   const std::string log =
       "when w T\n2026-03-05 14:00:00 1 25\n2026-03-05 14:00:01 1 25\n";
   const std::string message = refusal(map, log);
@@ -162,7 +153,8 @@ unit = "degC"
 
 TEST(LogAdvice, MinutesAndHours) {
   const auto times = [](const std::string& unit) {
-    return imported("[time]\ncolumn = \"t\"\nunit = \"" + unit + "\"\n" + kGyro,
+    return imported("[time]\ncolumn = \"t\"\nunit = \"" + unit + "\"\n" +
+                        kGyroAndTemperature,
                     "t,w,T\n7,0,25\n7.1,0,25\n14,0,25\n")
         .recording.time;
   };

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "dataset/recording/recording_defect.h"
+#include "tests/dataset/log/imported_log.h"
 #include "tests/dataset/rejection.h"
 
 namespace beamgyro::log_import_test {
@@ -13,22 +13,11 @@ namespace {
 
 using Values = std::vector<double>;
 
-const std::string kMap = R"([time]
-column = "t"
-unit = "ms"
-[gyro]
-column = "w"
-unit = "deg/s"
-[temperature]
-column = "T"
-unit = "degC"
-)";
+const std::string kMap =
+    "[time]\ncolumn = \"t\"\nunit = \"ms\"\n" + kGyroAndTemperature;
 
 ImportedLog log_of(const std::string& text, const std::string& map = kMap) {
-  ImportedLog log =
-      import_log(text, "log.csv",
-                 read_log_map(ConfigDocument::parse(map, "map.toml"), ""));
-  EXPECT_EQ(recording_defect(log.recording), "");
+  ImportedLog log = imported(map, text);
   EXPECT_EQ(log.counts.kept, log.recording.time.size());
   return log;
 }

@@ -5,8 +5,7 @@
 
 #include <functional>
 
-#include "dataset/log/log_import.h"
-#include "dataset/recording/recording_defect.h"
+#include "tests/dataset/log/imported_log.h"
 #include "tests/dataset/rejection.h"
 
 namespace beamgyro::log_kinds_test {
@@ -14,29 +13,11 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-const std::string kRest = R"(
-[gyro]
-column = "w"
-unit = "deg/s"
-[temperature]
-column = "T"
-unit = "degC"
-)";
-
-ImportedLog log_by(const std::string& map, const std::string& text,
-                   const std::string& second = "") {
-  std::optional<SecondLog> joined;
-  if (!second.empty()) joined = SecondLog{second, "second.csv"};
-  ImportedLog log = import_log(
-      text, "log.csv", read_log_map(ConfigDocument::parse(map, "map.toml"), ""),
-      joined);
-  EXPECT_EQ(recording_defect(log.recording), "");
-  return log;
-}
+const std::string kRest = "\n" + kGyroAndTemperature;
 
 std::string rejection_by(const std::string& map, const std::string& text,
                          const std::string& second = "") {
-  return rejection([&] { log_by(map, text, second); });
+  return rejection([&] { imported(map, text, second); });
 }
 
 void expect_says(const std::string& message, const std::string& part) {
@@ -50,7 +31,7 @@ std::string time_map(const std::string& keys) {
 const std::string kIso = "format = \"iso\"\n";
 
 TEST(LogKinds, DatesBecomeSeconds) {
-  const ImportedLog log = log_by(
+  const ImportedLog log = imported(
       time_map(kIso),
       "t,w,T\n2026-02-28T23:59:59.75Z,1,25\n2026-03-01T00:00:00.5Z,2,25\n,3,25"
       "\n2026-03-01T01:00:02+01:00,4,25\n");
@@ -63,7 +44,7 @@ TEST(LogKinds, DatesBecomeSeconds) {
 TEST(LogKinds, ATimeOfTheDayGoesOnAfterMidnight) {
   const std::string map = time_map("format = \"%H:%M:%S\"\n");
   EXPECT_EQ(
-      log_by(map, "t,w,T\n23:59:59,1,25\n00:00:01.5,2,25\n").recording.time,
+      imported(map, "t,w,T\n23:59:59,1,25\n00:00:01.5,2,25\n").recording.time,
       (Numbers{0, 2.5}));
   expect_says(rejection_by(map, "t,w,T\n10:00:02,1,25\n10:00:01,2,25\n"),
               "goes back by 1 s");
@@ -71,10 +52,10 @@ TEST(LogKinds, ATimeOfTheDayGoesOnAfterMidnight) {
 
 TEST(LogKinds, DateAndTimeInTwoColumns) {
   const ImportedLog log =
-      log_by("delimiter = \" \"\n" +
-                 time_map("date_column = \"d\"\nformat = \"iso\"\n"),
-             "  d t    w T\n2026-03-05 14:00:00  1 25\n2026-03-05\t14:00:01 "
-             "2   25 \n");
+      imported("delimiter = \" \"\n" +
+                   time_map("date_column = \"d\"\nformat = \"iso\"\n"),
+               "  d t    w T\n2026-03-05 14:00:00  1 25\n2026-03-05\t14:00:01 "
+               "2   25 \n");
   EXPECT_EQ(log.recording.time, (Numbers{0, 1}));
   EXPECT_EQ(column_values(log.recording, "rate"), (Numbers{1, 2}));
 }
@@ -89,7 +70,8 @@ TEST(LogKinds, ACellThatIsNoDateIsNamedWithItsForm) {
 
 TEST(LogKinds, DecimalCommas) {
   const std::string map = "decimal = \",\"\n" + time_map("unit = \"s\"\n");
-  const ImportedLog log = log_by(map, "t;w;T\n0,5;-1,25;25\n1;1,5e-1;+25,5\n");
+  const ImportedLog log =
+      imported(map, "t;w;T\n0,5;-1,25;25\n1;1,5e-1;+25,5\n");
   EXPECT_EQ(log.recording.time, (Numbers{0, 0.5}));
   EXPECT_EQ(column_values(log.recording, "rate"), (Numbers{-1.25, 0.15}));
   EXPECT_EQ(column_values(log.recording, "temperature"), (Numbers{25, 25.5}));
@@ -97,19 +79,19 @@ TEST(LogKinds, DecimalCommas) {
               "log.csv:2:3: '1.5' is not a number; expected one such as -12,5, "
               "or decimal = \".\" in the map");
   // Without a semicolon the blanks are the delimiter, never the comma.
-  EXPECT_EQ(log_by(map, "t w T\n0,5 1 25\n1 2 25\n").recording.time,
+  EXPECT_EQ(imported(map, "t w T\n0,5 1 25\n1 2 25\n").recording.time,
             (Numbers{0, 0.5}));
 }
 
 TEST(LogKinds, LinesThatEndInACarriageReturn) {
   const std::string map = time_map("unit = \"s\"\n");
-  EXPECT_EQ(log_by(map, "t,w,T\r0,1,25\r1,2,25\r").recording.time,
+  EXPECT_EQ(imported(map, "t,w,T\r0,1,25\r1,2,25\r").recording.time,
             (Numbers{0, 1}));
   expect_says(rejection_by(map, "t,w,T\r0,1,25\r1,x,25\r"), "log.csv:3:3: ");
 }
 
 TEST(LogKinds, MillivoltsOfGyroAndThermometer) {
-  const ImportedLog log = log_by(R"([time]
+  const ImportedLog log = imported(R"([time]
 rate_Hz = 10
 [gyro]
 column = "w"
@@ -122,7 +104,7 @@ unit = "mV"
 scale_K = 0.1
 offset_degC = -50
 )",
-                                 "w,T\n2500,750\n2512.5,760\n");
+                                   "w,T\n2500,750\n2512.5,760\n");
   EXPECT_EQ(column_values(log.recording, "output"), (Numbers{2.5, 2.5125}));
   EXPECT_EQ(column_values(log.recording, "rate"), (Numbers{0, 1}));
   EXPECT_EQ(column_values(log.recording, "temperature"), (Numbers{25, 26}));
@@ -131,21 +113,21 @@ offset_degC = -50
 TEST(LogKinds, APartOfTheLog) {
   const std::string rows = "t,w,T\n10,1,25\n11,2,25\n12.5,3,25\n13,4,25\n";
   const ImportedLog log =
-      log_by(time_map("unit = \"s\"\nfrom = 11\nto = 13\n"), rows);
+      imported(time_map("unit = \"s\"\nfrom = 11\nto = 13\n"), rows);
   EXPECT_EQ(log.recording.time, (Numbers{0, 1.5}));
   EXPECT_EQ(
       log.counts.dropped[static_cast<std::size_t>(DropReason::kOutside)].rows,
       2u);
-  EXPECT_EQ(log_by(time_map("unit = \"s\"\nfrom = 11.0\nzero = 10.5\n"), rows)
+  EXPECT_EQ(imported(time_map("unit = \"s\"\nfrom = 11.0\nzero = 10.5\n"), rows)
                 .recording.time,
             (Numbers{0.5, 2, 2.5}));
-  EXPECT_EQ(log_by("[time]\nrate_Hz = 2\nfrom = 1\nto = 3" + kRest, rows)
+  EXPECT_EQ(imported("[time]\nrate_Hz = 2\nfrom = 1\nto = 3" + kRest, rows)
                 .recording.time,
             (Numbers{0, 0.5}));
   const std::string dates =
       "t,w,T\n2026-03-05T10:00,1,25\n2026-03-05T11:00,2,25\n"
       "2026-03-05T12:00,3,25\n";
-  EXPECT_EQ(log_by(time_map(kIso + "from = \"2026-03-05 10:30\"\n"), dates)
+  EXPECT_EQ(imported(time_map(kIso + "from = \"2026-03-05 10:30\"\n"), dates)
                 .recording.time,
             (Numbers{0, 3600}));
   expect_says(rejection_by(time_map(kIso + "from = \"5.3.2026\"\n"), dates),
@@ -178,8 +160,8 @@ unit = "deg/s"
 
 TEST(LogKinds, TheSlowLogIsInterpolated) {
   const ImportedLog log =
-      log_by(kJoin, "t,w\n900,1\n1000,2\n1500,3\n2000,4\n2500,5\n6000,6\n",
-             "s,T,r\n1,20,0\n2,22,-4\n5,28,0\n6,29,1\n");
+      imported(kJoin, "t,w\n900,1\n1000,2\n1500,3\n2000,4\n2500,5\n6000,6\n",
+               "s,T,r\n1,20,0\n2,22,-4\n5,28,0\n6,29,1\n");
   EXPECT_EQ(log.recording.time, (Numbers{0, 0.5, 1, 5}));
   EXPECT_EQ(column_values(log.recording, "rate"), (Numbers{2, 3, 4, 6}));
   EXPECT_EQ(column_values(log.recording, "temperature"),
@@ -206,7 +188,7 @@ std::size_t kept_with(const std::string& gyro_time, const std::string& time,
   std::string rows = "t,w\n", slow = "t,T\n";
   for (int k = 0; k <= 2000; ++k) rows += gyro_row(k) + ",0.2\n";
   for (int k = 0; k <= 100; ++k) slow += chamber_row(k) + ",20\n";
-  return log_by(map, rows, slow).counts.kept;
+  return imported(map, rows, slow).counts.kept;
 }
 
 TEST(LogKinds, APeriodOfMaxGapIsJoinedWhateverItsRounding) {
@@ -245,9 +227,9 @@ TEST(LogKinds, ARowThatIsLateByRoundingIsAtTheLastOneOfTheSecondLog) {
       "[time]\ncolumn = \"t\"\nunit = \"s\"\n[gyro]\ncolumn = \"w\"\nunit = "
       "\"deg/s\"\n[join]\nmax_gap_s = 2\n[join.time]\ncolumn = \"t\"\nunit = "
       "\"s\"\n[join.temperature]\ncolumn = \"T\"\nunit = \"degC\"\n";
-  const ImportedLog log =
-      log_by(map, "t,w\n0.29999999999999993,1\n0.6000000000000001,2\n0.601,3\n",
-             "t,T\n0.3,21\n0.6,22\n");
+  const ImportedLog log = imported(
+      map, "t,w\n0.29999999999999993,1\n0.6000000000000001,2\n0.601,3\n",
+      "t,T\n0.3,21\n0.6,22\n");
   EXPECT_EQ(column_values(log.recording, "temperature"), (Numbers{21, 22}));
 }
 

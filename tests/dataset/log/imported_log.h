@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+
+#include "dataset/log/log_import.h"
+#include "dataset/recording/recording_defect.h"
+
+namespace beamgyro {
+
+/// The columns of a log whose rate is "w" and whose temperature is "T".
+inline const std::string kGyroAndTemperature = R"([gyro]
+column = "w"
+unit = "deg/s"
+[temperature]
+column = "T"
+unit = "degC"
+)";
+
+/// Imports a log "log.csv" by a map "map.toml", with a second log "second.csv"
+/// unless that is empty. Expects a recording without a defect.
+inline ImportedLog imported(const std::string& map, const std::string& text,
+                            const std::string& second = "") {
+  std::optional<SecondLog> joined;
+  if (!second.empty()) joined = SecondLog{second, "second.csv"};
+  ImportedLog log = import_log(
+      text, "log.csv", read_log_map(ConfigDocument::parse(map, "map.toml"), ""),
+      joined);
+  EXPECT_EQ(recording_defect(log.recording), "");
+  return log;
+}
+
+}  // namespace beamgyro
