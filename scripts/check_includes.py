@@ -19,6 +19,10 @@ COMPENSATION = [f"compensation/{room}" for room in
                 ("inputs", "firmware", "models", "rows", "network",
                  "methods", "compensator", "scoring", "training", "export")]
 
+VALIDATION = [f"validation/{room}" for room in
+              ("external", "evidence", "metrics", "checks", "specification",
+               "qualification", "result", "page", "bundle")]
+
 BASE = ["config", "random", "parallel"]
 
 
@@ -34,9 +38,10 @@ MAY_INCLUDE = {
     **in_order(DATASET, ["config"]),
     **in_order(SIM, [*BASE, *DATASET]),
     **in_order(COMPENSATION, [*BASE, *DATASET]),
-    "report": set(ALL),
-    "cli": {*ALL, "report"},
-    "bench": {*ALL, "report"},
+    **in_order(VALIDATION, ALL),
+    "report": {*ALL, *VALIDATION},
+    "cli": {*ALL, *VALIDATION, "report"},
+    "bench": {*ALL, *VALIDATION, "report"},
     "fuzz": set(ALL),  # of tests/ only
     "agreement": set(ALL),  # of tests/ only
 }

@@ -18,16 +18,16 @@ import sys
 LIBRARIES = ["dataset/set/", "dataset/", "sim/numerics/", "sim/thermal/",
              "sim/signal/", "sim/device/", "sim/dynamics/", "sim/scenario/",
              "sim/campaign/", "compensation/", "config/", "random/",
-             "parallel/", "report/", "cli/"]
+             "parallel/", "validation/", "validation/", "report/", "cli/"]
 
 # A library sees no header of these.
-UNSEEN = {"config/": ["dataset/", "sim/", "compensation/", "report/", "cli/"],
-          "random/": ["dataset/", "sim/", "compensation/", "report/", "cli/"],
+UNSEEN = {"config/": ["dataset/", "sim/", "compensation/", "validation/", "report/", "cli/"],
+          "random/": ["dataset/", "sim/", "compensation/", "validation/", "report/", "cli/"],
           "dataset/": ["dataset/set/", "sim/", "compensation/", "report/",
                        "cli/"],
-          "dataset/set/": ["sim/", "compensation/", "report/", "cli/"],
-          "compensation/": ["sim/", "report/", "cli/"],
-          "sim/": ["compensation/", "report/", "cli/"],
+          "dataset/set/": ["sim/", "compensation/", "validation/", "report/", "cli/"],
+          "compensation/": ["sim/", "validation/", "report/", "cli/"],
+          "sim/": ["compensation/", "validation/", "report/", "cli/"],
           "sim/numerics/": ["sim/"], "sim/thermal/": ["sim/"],
           "sim/signal/": ["sim/device", "sim/dynamics", "sim/scenario",
                           "sim/campaign", "sim/thermal"],

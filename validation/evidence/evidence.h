@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dataset/recording/recording.h"
+
+namespace beamgyro {
+
+/// What a run of a qualification shows.
+enum class RunPurpose {
+  kSoak,        // "soak": plateaus of ambient temperature, upwards or downwards
+  kRamp,        // "ramp": ambient temperature at a constant slope
+  kWarmUp,      // "warm_up": power-on from cold at a constant ambient
+  kPowerCycle,  // "power_cycle": several power-ons with full cool-down between
+  kRateTable,   // "rate_table": steps of constant rate
+  kConstantRate,  // "constant_rate": a rate held for minutes
+  kSineRate,      // "sine_rate"
+  kRateStep,      // "rate_step"
+  kRest,          // "rest": powered long before, constant ambient, no rate
+  kTumble,        // "tumble": gravity along each axis in turn
+  kRandomRate,    // "random_rate"
+};
+
+/// Returns the name used in files, as in the comments above.
+std::string_view purpose_name(RunPurpose purpose);
+
+/// Returns the purpose of that name, or nothing.
+std::optional<RunPurpose> purpose_of(std::string_view name);
+
+/// A run and the rate that is judged by it: the recorded rate (before) or that
+/// of a compensator (after).
+struct EvidenceRun {
+  std::string name;
+  RunPurpose purpose = RunPurpose::kSoak;
+  const Recording* recording = nullptr;  // not owned; with its true_rate
+  std::vector<double> rate;              // [deg/s], one per time; NaN: none
+};
+
+/// What metrics are evaluated on. Metrics see truth; compensators never do.
+struct Evidence {
+  std::vector<EvidenceRun> runs;
+  double full_scale = 150.0;  // [deg/s]
+};
+
+/// Returns the runs with one of these purposes.
+std::vector<const EvidenceRun*> runs_for(
+    const Evidence& evidence, const std::vector<RunPurpose>& purposes);
+
+}  // namespace beamgyro

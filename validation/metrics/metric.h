@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "validation/evidence/evidence.h"
+
+namespace beamgyro {
+
+/// The 95 % interval of a value.
+struct Interval {
+  double low, high;
+};
+
+/// The value of a metric, with its 95 % interval where the metric has one.
+struct Estimate {
+  double value;
+  std::optional<Interval> interval = {};
+};
+
+/// A metric of the validator: what it is called, what it means and how it is
+/// evaluated.
+struct Metric {
+  std::string_view name;          // as in specifications and JSON
+  std::string_view unit;          // deg/s, s, ppm, ...
+  std::string_view clause;        // of IEEE 1431, or empty
+  std::string_view definition;    // one sentence with its formula
+  std::vector<RunPurpose> reads;  // the purposes of runs it is evaluated on
+  /// Returns nothing when no run shows the metric. Thread-safe.
+  std::optional<Estimate> (*evaluate)(const Evidence& evidence);
+};
+
+/// Returns every metric, in the order of reports.
+std::span<const Metric> metrics();
+
+/// Returns the metric of that name, or nullptr.
+const Metric* find_metric(std::string_view name);
+
+}  // namespace beamgyro
