@@ -191,11 +191,11 @@ Curve curve_of(const std::vector<AllanPoint>& used) {
   return curve;
 }
 
-std::optional<Estimate> estimate(const TermFit& fit, Term term) {
+std::optional<CoefficientEstimate> estimate(const TermFit& fit, Term term) {
   const double square = fit.squares(term);
   if (!(square > 0.0)) return std::nullopt;
   const double value = std::sqrt(square);
-  return Estimate{value, fit.uncertainties(term) / (2.0 * value)};
+  return CoefficientEstimate{value, fit.uncertainties(term) / (2.0 * value)};
 }
 
 nlohmann::ordered_json report_json(const CoefficientReport& report) {

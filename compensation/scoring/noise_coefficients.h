@@ -11,7 +11,7 @@
 
 namespace beamgyro {
 
-struct Estimate {
+struct CoefficientEstimate {
   double value;
   double uncertainty;  // 1-sigma
 };
@@ -26,11 +26,11 @@ struct LeftOutTau {
 /// Noise coefficients of an Allan curve of rates in the unit u (deg/s or any
 /// other). A term that the curve does not show is missing.
 struct NoiseCoefficients {
-  std::optional<Estimate> angle_quantisation;  // Q [u s]
-  std::optional<Estimate> angle_random_walk;   // N [u sqrt(s)]
-  std::optional<Estimate> bias_instability;    // B [u]
-  std::optional<Estimate> rate_random_walk;    // K [u/sqrt(s)]
-  std::optional<Estimate> rate_ramp;           // R [u/s]
+  std::optional<CoefficientEstimate> angle_quantisation;  // Q [u s]
+  std::optional<CoefficientEstimate> angle_random_walk;   // N [u sqrt(s)]
+  std::optional<CoefficientEstimate> bias_instability;    // B [u]
+  std::optional<CoefficientEstimate> rate_random_walk;    // K [u/sqrt(s)]
+  std::optional<CoefficientEstimate> rate_ramp;           // R [u/s]
   // Time constant [s] of the one pole that would limit the band of N as the
   // curve does.
   std::optional<double> band_limit;
@@ -78,7 +78,7 @@ bool has_noise_coefficients(const std::vector<AllanPoint>& points);
 struct CoefficientReport {
   char symbol;       // Q, N, B, K or R
   const char* name;  // "angle random walk"
-  std::optional<Estimate> per_second;
+  std::optional<CoefficientEstimate> per_second;
   double hours_per_second_unit;  // value in hours over that in seconds
   std::string unit_per_second, unit_per_hour;
 };

@@ -153,8 +153,8 @@ std::vector<AllanPoint> exact_curve(double q, double n, double b, double k,
 }
 
 /// Within three of its own standard errors, or `least` of the value.
-void expect_estimate(const std::optional<Estimate>& estimate, double value,
-                     double least) {
+void expect_estimate(const std::optional<CoefficientEstimate>& estimate,
+                     double value, double least) {
   ASSERT_TRUE(estimate.has_value());
   EXPECT_NEAR(estimate->value, value,
               std::max(3.0 * estimate->uncertainty, least * value));
