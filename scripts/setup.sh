@@ -7,6 +7,7 @@ set -euo pipefail
 build=(g++ cmake ninja-build libeigen3-dev libsundials-dev libhdf5-dev
        libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev
        librandom123-dev libboost-dev libdeflate-dev libssl-dev
+       libjs-chart.js
        python3 python3-matplotlib python3-h5py)
 tests=(libgtest-dev libbenchmark-dev clang-format clang-tidy netcdf-bin
        python3-pytest python3-pytest-xdist
