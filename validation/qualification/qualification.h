@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim/scenario/scenario.h"
+#include "validation/evidence/evidence.h"
+
+namespace beamgyro {
+
+/// A scenario that every qualified device goes through.
+struct QualificationRun {
+  std::string name;                        // [a-z][a-z0-9_]*
+  RunPurpose purpose = RunPurpose::kSoak;  // not used of training runs
+  Scenario scenario;                       // its device is not used
+  std::string scenario_text;               // byte for byte as read
+  std::string overrides_text;              // one KEY=VALUE per line
+};
+
+/// The contents of a qualification file: the runs that evidence is taken from,
+/// and those that the baselines and a model are trained on.
+struct Qualification {
+  std::string name, description;
+  std::vector<QualificationRun> runs;
+  std::vector<QualificationRun> training;  // fitted
+  std::vector<QualificationRun> held_out;  // a network stops early on them
+  // Names of the runs that a metric reads, by its name; a metric that is not
+  // here reads every run of its purposes.
+  std::map<std::string, std::vector<std::string>, std::less<>> metric_runs;
+  std::string text;                          // byte for byte as read
+  std::vector<std::filesystem::path> files;  // all that were read
+};
+
+}  // namespace beamgyro

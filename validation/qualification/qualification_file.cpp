@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include "validation/qualification/qualification_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "config/config_node.h"
+#include "config/document.h"
+#include "config/file_error.h"
+#include "config/suggestion.h"
+#include "dataset/set/manifest.h"
+#include "sim/scenario/scenario_file.h"
+#include "validation/metrics/metric.h"
+
+namespace beamgyro {
+namespace {
+
+std::vector<std::string> dotted_parts(const std::string& key) {
+  std::vector<std::string> parts(1);
+  for (const char c : key) {
+    if (c == '.') {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+// Returns ", did you mean "X"?" or an empty text.
+std::string did_you_mean(const std::string& met,
+                         const std::vector<std::string>& known) {
+  const std::string near = suggestion(met, known);
+  return near.empty() ? "" : fmt::format(", did you mean \"{}\"?", near);
+}
+
+std::vector<std::string> purpose_names() {
+  std::vector<std::string> names;
+  for (int k = 0; k <= static_cast<int>(RunPurpose::kRandomRate); ++k)
+    names.emplace_back(purpose_name(static_cast<RunPurpose>(k)));
+  return names;
+}
+
+class QualificationReader {
+ public:
+  explicit QualificationReader(const std::filesystem::path& file)
+      : document_(ConfigDocument::read(file)),
+        root_(document_.root()),
+        folder_(file.parent_path()) {}
+
+  Qualification read() {
+    result_.name = root_.text("name");
+    result_.description = root_.text_or("description", "");
+    result_.text = document_.text();
+    result_.files.push_back(document_.path());
+    for (const ConfigTable& table : root_.tables("run")) {
+      result_.runs.push_back(read_run(table));
+      const std::string purpose = table.choice("purpose", purpose_names());
+      result_.runs.back().purpose = *purpose_of(purpose);
+    }
+    if (result_.runs.empty())
+      root_.fail("run", "there is none; expected at least one [[run]]");
+    for (const ConfigTable& table : root_.tables("training")) {
+      const bool is_held_out = table.flag_or("held_out", false);
+      (is_held_out ? result_.held_out : result_.training)
+          .push_back(read_run(table));
+    }
+    if (result_.training.empty() && !result_.held_out.empty())
+      root_.fail("training",
+                 "every run is held out; expected one that is trained on");
+    if (const auto table = root_.optional_table("metrics"))
+      for (const std::string& key : table->keys()) read_metric(*table, key);
+    document_.reject_unknown_keys();
+    return std::move(result_);
+  }
+
+ private:
+  QualificationRun read_run(const ConfigTable& table) {
+    QualificationRun run;
+    run.name = table.text("name");
+    if (!is_run_name(run.name))
+      table.fail("name", fmt::format("\"{}\": expected a letter a-z, then "
+                                     "letters, digits or _",
+                                     printable(run.name)));
+    if (!places_.emplace(run.name, table.place("name")).second)
+      table.fail("name",
+                 fmt::format("\"{}\": another run has this name", run.name));
+    read_scenario_of(table, run);
+    require_own_seed(table, run);
+    return run;
+  }
+
+  void read_scenario_of(const ConfigTable& table, QualificationRun& run) {
+    const std::filesystem::path path = folder_ / table.text("scenario");
+    if (!std::filesystem::is_regular_file(status_of(path)))
+      table.fail("scenario",
+                 fmt::format("there is no file {}; expected one, named "
+                             "relative to the qualification",
+                             path.string()));
+    Overrides overrides;
+    if (const auto changes = table.optional_table("overrides"))
+      for (const std::string& key : changes->keys())
+        overrides.add(dotted_parts(key), changes->value(key),
+                      changes->place(key));
+    const ConfigDocument document = ConfigDocument::read(path, overrides);
+    run.scenario = read_scenario(document);
+    document.reject_unknown_keys();
+    if (!overrides.all_used()) reject_unused(table, overrides);
+    run.scenario_text = document.text();
+    run.overrides_text = overrides.text();
+    add_file(path);
+    for (const std::filesystem::path& profile : profile_files(document))
+      add_file(profile);
+  }
+
+  [[noreturn]] static void reject_unused(const ConfigTable& table,
+                                         const Overrides& overrides) {
+    const ConfigTable changes = table.table("overrides");
+    const std::vector<std::string> asked = overrides.keys_asked();
+    for (const std::string& key : changes.keys())
+      if (std::ranges::count(asked, key) == 0)
+        changes.fail(key, fmt::format("the scenario takes no such key{}",
+                                      did_you_mean(key, asked)));
+    table.fail("overrides",
+               "a key is not used together with the others of the scenario");
+  }
+
+  void require_own_seed(const ConfigTable& table, const QualificationRun& run) {
+    if (!run.scenario.noise_enabled) return;
+    const auto [other, is_new] = seeds_.emplace(run.scenario.seed, run.name);
+    if (is_new) return;
+    table.fail(
+        "name",
+        fmt::format("\"{}\" has the seed {} of \"{}\", so that both would have "
+                    "the same noise; expected another in overrides = {{ seed = "
+                    "... }}",
+                    run.name, run.scenario.seed, other->second));
+  }
+
+  void read_metric(const ConfigTable& table, const std::string& key) {
+    const Metric* metric = find_metric(key);
+    if (metric == nullptr) {
+      std::vector<std::string> known;
+      for (const Metric& one : metrics()) known.emplace_back(one.name);
+      table.fail(key, fmt::format("there is no such metric{}",
+                                  did_you_mean(key, known)));
+    }
+    std::vector<std::string> names = table.texts(key);
+    for (std::size_t k = 0; k < names.size(); ++k)
+      require_readable(*metric, names[k], table.place(key, k));
+    result_.metric_runs.emplace(key, std::move(names));
+  }
+
+  void require_readable(const Metric& metric, const std::string& name,
+                        const std::string& place) const {
+    const auto run =
+        std::ranges::find(result_.runs, name, &QualificationRun::name);
+    if (run == result_.runs.end()) {
+      std::vector<std::string> known;
+      for (const QualificationRun& one : result_.runs)
+        known.push_back(one.name);
+      throw std::invalid_argument(
+          fmt::format("{}: there is no [[run]] of the name \"{}\"{}", place,
+                      printable(name), did_you_mean(name, known)));
+    }
+    if (std::ranges::count(metric.reads, run->purpose) > 0) return;
+    std::vector<std::string_view> read;
+    for (const RunPurpose purpose : metric.reads)
+      read.push_back(purpose_name(purpose));
+    throw std::invalid_argument(fmt::format(
+        "{}: \"{}\" has the purpose {}; the metric reads runs of {}", place,
+        name, purpose_name(run->purpose), fmt::join(read, ", ")));
+  }
+
+  void add_file(const std::filesystem::path& path) {
+    if (std::ranges::count(result_.files, path) == 0)
+      result_.files.push_back(path);
+  }
+
+  ConfigDocument document_;
+  const ConfigTable& root_;
+  std::filesystem::path folder_;
+  Qualification result_;
+  std::map<std::string, std::string> places_;   // of the names of runs
+  std::map<std::uint64_t, std::string> seeds_;  // names by seed
+};
+
+}  // namespace
+
+Qualification read_qualification(const std::filesystem::path& file) {
+  return QualificationReader(file).read();
+}
+
+}  // namespace beamgyro
