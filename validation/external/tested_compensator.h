@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,8 +13,8 @@ namespace beamgyro {
 
 /// What can be wrong with the way a compensator answers.
 enum class AnswerFault {
-  kCrashed,           // the process that ran it ended by a signal or a status
-  kTimedOut,          // no answer within the time allowed
+  kCrashed,           // its process ended by a signal or with a status
+  kTimedOut,          // neither took a sample nor answered for too long
   kOutOfMemory,       // it asked for more memory than allowed
   kTooFew,            // fewer answers than samples
   kTooMany,           // more answers than samples
@@ -36,30 +37,40 @@ struct Answer {
   std::vector<double> rate;  // [deg/s], one per time; NaN where none came
   std::vector<SeenFault> faults = {};
   std::size_t clamped = 0;  // samples outside what training saw, where known
-  double seconds = 0.0;     // of wall clock
+  double seconds = 0.0;     // of wall clock, with the start of its processes
 };
 
-/// Limits for a compensator that runs in a process of its own.
+/// What a compensator may use that runs in a process of its own.
 struct ProcessLimits {
-  double seconds_per_sample = 1e-3;           // [s], beside start_seconds
-  double start_seconds = 10.0;                // [s]
-  std::size_t memory = std::size_t{2} << 30;  // [bytes]
+  double stall = 10.0;  // [s], without taking a sample or giving an answer
+  std::size_t memory = std::size_t{2} << 30;  // [bytes]; 0: no limit
+
+  // The beamgyro program, which loads libraries in a process of its own.
+  // Inside the program itself: /proc/self/exe. Commands do not need it.
+  std::filesystem::path program = {};
 };
 
-/// A compensator of any kind that is to be validated. It is given the measured
-/// variables of a recording and nothing else. Every member may be called from
-/// several threads at once.
+/// A compensator of any kind that is to be validated. It is given time and the
+/// measured variables of the powered samples and nothing else. Every member may
+/// be called from several threads at once.
 class TestedCompensator {
  public:
   virtual ~TestedCompensator() = default;
 
-  /// Returns the measured variables that it reads, as recordings name them.
+  /// Returns the measured variables that it reads, as recordings name them. A
+  /// command is given all that a recording has.
   virtual std::vector<std::string> inputs() const = 0;
 
-  /// Returns its answers to a run, from the state after a reset. A fault of
-  /// the compensator is reported in the answer. Throws std::invalid_argument
-  /// when the recording lacks one of inputs().
-  virtual Answer answer(const Recording& run) const = 0;
+  /// Returns its answers to runs that follow each other in one process, with a
+  /// reset before each run and at each power-on within it. A fault of the
+  /// compensator is reported in the answer concerned. Throws
+  /// std::invalid_argument when a recording lacks one of inputs(), and
+  /// std::runtime_error when the system refuses a process.
+  virtual std::vector<Answer> answers(
+      const std::vector<const Recording*>& runs) const = 0;
+
+  /// Returns its answers to one run.
+  Answer answer(const Recording& run) const;
 };
 
 /// Opens a compensator file (FILE.json), a shared library (FILE.so) with the
@@ -67,5 +78,9 @@ class TestedCompensator {
 /// std::invalid_argument when it is none of them or cannot be read.
 std::unique_ptr<TestedCompensator> open_tested_compensator(
     const std::string& argument, const ProcessLimits& limits = {});
+
+/// Returns the name of a compensator as reports give it: without directories
+/// for a file, whole for a command.
+std::string tested_name(const std::string& argument);
 
 }  // namespace beamgyro

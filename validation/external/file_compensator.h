@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+
+#include "compensation/compensator/compensator.h"
+#include "validation/external/tested_compensator.h"
+
+namespace beamgyro {
+
+/// Returns a trained compensator as one to be validated. It is evaluated in
+/// this process.
+std::unique_ptr<TestedCompensator> tested(Compensator compensator);
+
+}  // namespace beamgyro
