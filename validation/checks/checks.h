@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compensation/compensator/compensator.h"
+#include "compensation/rows/run_source.h"
+#include "dataset/recording/recording.h"
+#include "validation/evidence/evidence.h"
+#include "validation/external/tested_compensator.h"
+
+namespace beamgyro {
+
+/// A run as the compensator answered it.
+struct CheckedRun {
+  std::string name;
+  RunPurpose purpose = RunPurpose::kSoak;
+  const Recording* recording = nullptr;   // not owned; with its true_rate
+  Answer answer = {};                     // to the recording as it is
+  std::string sha256 = {};                // of its file, if it has one
+  std::string device = {}, set_run = {};  // of a set: whose run, and which one
+};
+
+/// What is checked.
+struct CheckedCompensator {
+  const TestedCompensator* compensator = nullptr;  // not owned
+  std::vector<CheckedRun> runs;
+  double full_scale = 150.0;  // [deg/s]
+  // What the compensator says of its training, where it says anything.
+  const Provenance* provenance = nullptr;  // not owned
+  const SetPart* set = nullptr;  // of the runs that have a device; not owned
+};
+
+enum class CheckOutcome {
+  kPassed,
+  kFailed,
+  kNotTested,  // no run shows it
+};
+
+/// What a check found.
+struct CheckResult {
+  std::string name;  // plain words with underscores
+  CheckOutcome outcome = CheckOutcome::kNotTested;
+  // The figure behind the outcome and its limit. No value that depends on the
+  // speed of the machine, so that the same inputs give the same report.
+  std::optional<double> value = {}, limit = {};
+  std::string words;  // one sentence for a user
+
+  bool passed() const { return outcome == CheckOutcome::kPassed; }
+};
+
+/// A check against compensators that only look good (docs/reference/checks).
+struct CheckDefinition {
+  std::string_view name;
+  std::string_view figure;  // what CheckResult::value is, with its unit
+  // Whether a compensator passes as a whole without this check having been
+  // tested: one that names no training cannot be held against it.
+  bool may_be_untested = false;
+};
+
+/// Returns every check, in the order of reports.
+std::span<const CheckDefinition> check_definitions();
+
+/// Runs every check, in the order of check_definitions(). Answers to altered
+/// recordings are computed on `threads` threads; the results do not depend on
+/// their number. Throws what the compensator throws for a recording that lacks
+/// its inputs.
+std::vector<CheckResult> run_checks(const CheckedCompensator& checked,
+                                    std::size_t threads = 1);
+
+/// Returns kFailed if one check failed, else kNotTested if one that must be
+/// tested was not, else kPassed.
+CheckOutcome outcome_of(const std::vector<CheckResult>& results);
+
+}  // namespace beamgyro

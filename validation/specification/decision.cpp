@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "validation/specification/decision.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "random/random_stream.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool is_whole(const std::optional<Estimate>& estimate) {
+  return estimate && std::isfinite(estimate->value) &&
+         (!estimate->interval || !(std::isnan(estimate->interval->low) ||
+                                   std::isnan(estimate->interval->high)));
+}
+
+Estimate without_sign(const Estimate& estimate) {
+  Estimate result{std::abs(estimate.value)};
+  if (estimate.interval) {
+    const double low = std::abs(estimate.interval->low);
+    const double high = std::abs(estimate.interval->high);
+    const bool has_zero =
+        estimate.interval->low <= 0.0 && estimate.interval->high >= 0.0;
+    result.interval = {has_zero ? 0.0 : std::min(low, high),
+                       std::max(low, high)};
+  }
+  return result;
+}
+
+/// ln(a / b), infinite where b is zero.
+double log_distance(double a, double b) {
+  return b > 0.0 ? std::log(a / b) : kInfinity;
+}
+
+/// The quotient of two magnitudes, as decide() says.
+std::optional<Estimate> quotient(const Estimate& above, const Estimate& below) {
+  if (!(below.value > 0.0)) return std::nullopt;
+  Estimate result{above.value / below.value};
+  if (!above.interval && !below.interval) return result;
+  const Interval a =
+      above.interval.value_or(Interval{above.value, above.value});
+  const Interval b =
+      below.interval.value_or(Interval{below.value, below.value});
+  if (!(above.value > 0.0)) {
+    result.interval = {0.0, b.low > 0.0 ? a.high / b.low : kInfinity};
+    return result;
+  }
+  const double up = std::hypot(log_distance(a.high, above.value),
+                               log_distance(below.value, b.low));
+  const double down = std::hypot(log_distance(above.value, a.low),
+                                 log_distance(b.high, below.value));
+  result.interval = {result.value * std::exp(-down),
+                     result.value * std::exp(up)};
+  return result;
+}
+
+std::optional<Estimate> compared_with(
+    const Limit& limit, const std::optional<Estimate>& after,
+    const std::optional<Estimate>& reference) {
+  if (!is_whole(after)) return std::nullopt;
+  if (limit.relative_to.empty())
+    return limit.absolute ? without_sign(*after) : *after;
+  if (!is_whole(reference)) return std::nullopt;
+  return quotient(without_sign(*after), without_sign(*reference));
+}
+
+/// A limit on one side, with what lies between it and the value.
+struct Side {
+  double margin;         // positive within
+  double towards, away;  // guard bands when within and when beyond
+};
+
+Side side_of(const Estimate& found, double limit, double sign,
+             double widening) {
+  const Interval interval =
+      found.interval.value_or(Interval{found.value, found.value});
+  const double above = widening * std::max(interval.high - found.value, 0.0);
+  const double below = widening * std::max(found.value - interval.low, 0.0);
+  return {sign * (limit - found.value), sign > 0.0 ? above : below,
+          sign > 0.0 ? below : above};
+}
+
+Conformity conformity_of(const Side& side) {
+  if (side.margin >= side.towards) return Conformity::kPass;
+  if (-side.margin > side.away) return Conformity::kFail;
+  return Conformity::kUndecided;
+}
+
+std::string words_of(const Decision& decision, const Limit& limit) {
+  const std::string asked = text_of(limit);
+  if (!decision.compared)
+    return fmt::format("could not be evaluated, must be {}", asked);
+  const double value = decision.compared->value;
+  switch (decision.result) {
+    case Conformity::kPass:
+      return fmt::format("{:.4g} is {} by {:.3g}", value, asked,
+                         *decision.margin);
+    case Conformity::kFail:
+      return fmt::format("{:.4g}, must be {}: beyond by {:.3g}", value, asked,
+                         -*decision.margin);
+    case Conformity::kUndecided:
+      break;
+  }
+  return fmt::format(
+      "{:.4g} is within {:.3g} of the limit, its guard band; must be {}", value,
+      decision.guard_band, asked);
+}
+
+}  // namespace
+
+std::string_view conformity_name(Conformity conformity) {
+  switch (conformity) {
+    case Conformity::kPass:
+      return "pass";
+    case Conformity::kFail:
+      return "fail";
+    case Conformity::kUndecided:
+      break;
+  }
+  return "undecided";
+}
+
+Conformity worst_of(std::span<const Conformity> all) {
+  if (std::ranges::count(all, Conformity::kFail) > 0) return Conformity::kFail;
+  return std::ranges::count(all, Conformity::kUndecided) > 0
+             ? Conformity::kUndecided
+             : Conformity::kPass;
+}
+
+Decision decide(const Limit& limit, const std::optional<Estimate>& after,
+                const std::optional<Estimate>& reference, double risk) {
+  if (!(risk > 0.0 && risk <= 0.5))
+    throw std::invalid_argument(fmt::format(
+        "false-accept risk: {}, must be a number in (0, 0.5]", risk));
+  Decision decision;
+  decision.compared = compared_with(limit, after, reference);
+  if (decision.compared) {
+    const double widening =
+        normal_quantile(1.0 - risk) / normal_quantile(0.975);
+    std::vector<Side> sides;
+    if (limit.most)
+      sides.push_back(side_of(*decision.compared, *limit.most, 1.0, widening));
+    if (limit.least)
+      sides.push_back(
+          side_of(*decision.compared, *limit.least, -1.0, widening));
+    std::vector<Conformity> results;
+    for (const Side& side : sides) results.push_back(conformity_of(side));
+    decision.result = worst_of(results);
+    const auto nearer = std::ranges::min_element(sides, {}, &Side::margin);
+    decision.margin = nearer->margin;
+    decision.guard_band =
+        nearer->margin >= 0.0 ? nearer->towards : nearer->away;
+  }
+  decision.words = words_of(decision, limit);
+  return decision;
+}
+
+}  // namespace beamgyro

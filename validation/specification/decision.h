@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "validation/metrics/metric.h"
+#include "validation/specification/limit.h"
+
+namespace beamgyro {
+
+/// What a measured value says about a limit, after ASME B89.7.3.1: stringent
+/// acceptance and stringent rejection, with a guard band on both sides of the
+/// limit.
+enum class Conformity {
+  kPass,       // "pass": within the limits by the guard band or more
+  kFail,       // "fail": beyond a limit by the guard band or more
+  kUndecided,  // "undecided": within the guard band, or never evaluated
+};
+
+/// Returns the name used in files, as in the comments above.
+std::string_view conformity_name(Conformity conformity);
+
+/// Returns kFail if one of them fails, else kUndecided if one of them is
+/// undecided, else kPass. Of none it is kPass.
+Conformity worst_of(std::span<const Conformity> all);
+
+/// The largest probability with which a device beyond a limit passes, for a
+/// guard band of the whole 95 % interval.
+constexpr double kFalseAcceptRisk = 0.025;  // [-]
+
+/// A limit, what was found, and what follows.
+struct Decision {
+  Conformity result = Conformity::kUndecided;
+  // What was compared with the limit: the value itself, without its sign, or
+  // divided by that of another rate.
+  std::optional<Estimate> compared = {};
+  // From the value to the nearer limit, positive within; in the unit of the
+  // limit. Nothing without a value.
+  std::optional<double> margin = {};
+  double guard_band = 0.0;  // at that limit, same unit
+  std::string words;        // one sentence for a user
+};
+
+/// Decides on a limit. `after` is the metric of the compensated rate,
+/// `reference` that of the rate that limit.relative_to names. With z(p) the
+/// normal quantile the guard band is the half of the 95 % interval towards the
+/// limit, times z(1 - risk) / z(0.975).
+/// - A value without an interval is decided without a guard band.
+/// - No value, or one that is not finite, is undecided.
+/// - A quotient has an interval whose ends lie, in logarithms, as far from it
+///   as the root of the sum of squares of those of its two parts.
+/// Throws std::invalid_argument for a risk outside (0, 0.5].
+Decision decide(const Limit& limit, const std::optional<Estimate>& after,
+                const std::optional<Estimate>& reference = {},
+                double risk = kFalseAcceptRisk);
+
+}  // namespace beamgyro

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "validation/specification/specification_file.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "config/document.h"
+#include "config/suggestion.h"
+
+namespace beamgyro {
+namespace {
+
+[[noreturn]] void fail_unknown(const ConfigTable& limits,
+                               const std::string& name) {
+  std::vector<std::string> names;
+  for (const Metric& metric : metrics()) names.emplace_back(metric.name);
+  const std::string near = suggestion(name, names);
+  limits.fail(name, near.empty()
+                        ? std::string("not a metric; docs/reference/metrics.md "
+                                      "lists them")
+                        : fmt::format("not a metric; did you mean {}?", near));
+}
+
+Limit limit_of(const ConfigTable& limits, const std::string& metric,
+               const std::string& relative_to) {
+  const ConfigTable table = limits.table(metric);
+  Limit limit{.metric = metric,
+              .relative_to = relative_to,
+              .place = limits.position(metric)};
+  limit.least = table.optional_number("min");
+  limit.most = table.optional_number("max");
+  limit.absolute = table.flag_or("absolute", false);
+  limit.source = table.text("source");
+  if (!limit.least && !limit.most)
+    limits.fail(metric, "no limit; must have max, min or both");
+  if (limit.least && limit.most && *limit.least > *limit.most)
+    table.fail("min", fmt::format("{} is above max = {}, must be at most that",
+                                  *limit.least, *limit.most));
+  if (limit.source.empty())
+    table.fail("source", "empty, must say where the number comes from");
+  return limit;
+}
+
+void add_limits(const ConfigTable& limits, const std::string& relative_to,
+                std::vector<Limit>& all) {
+  for (const std::string& metric : limits.keys()) {
+    if (find_metric(metric) == nullptr) fail_unknown(limits, metric);
+    all.push_back(limit_of(limits, metric, relative_to));
+  }
+}
+
+SpecificationFile specification_of(const ConfigDocument& document) {
+  const ConfigTable& root = document.root();
+  SpecificationFile file;
+  file.name = root.text("name");
+  file.description = root.text_or("description", "");
+  file.false_accept_risk = root.number_or("false_accept_risk", kFalseAcceptRisk,
+                                          {0.0, 0.5, true, false});
+  add_limits(root.table_or_empty("limits"), "", file.limits);
+  const ConfigTable relative = root.table_or_empty("limits_relative_to");
+  for (const char* reference : {"before", "constant", "cubic", "spline"})
+    add_limits(relative.table_or_empty(reference), reference, file.limits);
+  document.reject_unknown_keys();
+  if (file.limits.empty())
+    root.fail("limits", "empty, must limit one metric or more");
+  file.text = document.text();
+  return file;
+}
+
+}  // namespace
+
+SpecificationFile read_specification_file(const std::filesystem::path& file) {
+  return specification_of(ConfigDocument::read(file));
+}
+
+SpecificationFile parse_specification_file(std::string_view text,
+                                           const std::string& name) {
+  return specification_of(ConfigDocument::parse(text, name));
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "validation/specification/decision.h"
+#include "validation/specification/limit.h"
+
+namespace beamgyro {
+
+/// What a user asks of a compensated gyro (docs/reference/specification_file).
+struct SpecificationFile {
+  std::string name, description;
+  double false_accept_risk = kFalseAcceptRisk;  // [-]
+  std::vector<Limit> limits;                    // in file order
+  std::string text;                             // byte for byte as read
+};
+
+/// Reads a file of limits. Throws std::invalid_argument with file, line and
+/// column for
+/// - text that is not TOML, and keys that are not known;
+/// - a metric that is not in metrics(), with the nearest name;
+/// - a limit without `max` and `min`, one with `min` above `max`, and one
+///   without a source;
+/// - no limit at all;
+/// - a risk outside (0, 0.5].
+SpecificationFile read_specification_file(const std::filesystem::path& file);
+
+/// The same for a text in memory, called `name` in messages.
+SpecificationFile parse_specification_file(std::string_view text,
+                                           const std::string& name);
+
+}  // namespace beamgyro
