@@ -8,7 +8,7 @@
 namespace beamgyro {
 namespace {
 
-constexpr std::array<std::pair<RunPurpose, std::string_view>, 11> kPurposes = {{
+constexpr std::array<std::pair<RunPurpose, std::string_view>, 12> kPurposes = {{
     {RunPurpose::kSoak, "soak"},
     {RunPurpose::kRamp, "ramp"},
     {RunPurpose::kWarmUp, "warm_up"},
@@ -20,6 +20,7 @@ constexpr std::array<std::pair<RunPurpose, std::string_view>, 11> kPurposes = {{
     {RunPurpose::kRest, "rest"},
     {RunPurpose::kTumble, "tumble"},
     {RunPurpose::kRandomRate, "random_rate"},
+    {RunPurpose::kVibration, "vibration"},
 }};
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,6 +24,7 @@ enum class RunPurpose {
   kRest,          // "rest": powered long before, constant ambient, no rate
   kTumble,        // "tumble": gravity along each axis in turn
   kRandomRate,    // "random_rate"
+  kVibration,     // "vibration": acceleration, or cross rates, that change
 };
 
 /// Returns the name used in files, as in the comments above.
@@ -38,6 +40,8 @@ struct EvidenceRun {
   RunPurpose purpose = RunPurpose::kSoak;
   const Recording* recording = nullptr;  // not owned; with its true_rate
   std::vector<double> rate;              // [deg/s], one per time; NaN: none
+  // Samples outside what training saw, where that is known.
+  std::optional<std::size_t> clamped = {};
 };
 
 /// What metrics are evaluated on. Metrics see truth; compensators never do.

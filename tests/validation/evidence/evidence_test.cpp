@@ -6,7 +6,7 @@
 namespace beamgyro::evidence_test {
 
 TEST(Evidence, EveryPurposeIsFoundByItsName) {
-  for (int k = 0; k <= static_cast<int>(RunPurpose::kRandomRate); ++k) {
+  for (int k = 0; k <= static_cast<int>(RunPurpose::kVibration); ++k) {
     const auto purpose = static_cast<RunPurpose>(k);
     EXPECT_EQ(purpose_of(purpose_name(purpose)), purpose);
   }
