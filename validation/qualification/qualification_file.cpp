@@ -62,6 +62,7 @@ class QualificationReader {
       result_.runs.push_back(read_run(table));
       const std::string purpose = table.choice("purpose", purpose_names());
       result_.runs.back().purpose = *purpose_of(purpose);
+      read_start(table, result_.runs.back());
     }
     if (result_.runs.empty())
       root_.fail("run", "there is none; expected at least one [[run]]");
@@ -93,6 +94,14 @@ class QualificationReader {
     read_scenario_of(table, run);
     require_own_seed(table, run);
     return run;
+  }
+
+  static void read_start(const ConfigTable& table, QualificationRun& run) {
+    run.from = table.number_or("from_s", 0, non_negative());
+    if (run.from >= run.scenario.duration)
+      table.fail("from_s", fmt::format("{:g} s is not before the end of the "
+                                       "run, duration_s = {:g}",
+                                       run.from, run.scenario.duration));
   }
 
   void read_scenario_of(const ConfigTable& table, QualificationRun& run) {

@@ -5,51 +5,98 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "validation/checks/checks.h"
 #include "validation/metrics/metric.h"
+#include "validation/specification/decision.h"
+#include "validation/specification/limit.h"
 
 namespace beamgyro {
 
 /// The value of a metric that a baseline leaves.
 struct BaselineEstimate {
-  std::string name;  // "constant", "cubic", "spline"
+  std::string name;  // "none", "constant", "cubic", "spline"
   std::optional<Estimate> estimate;
 };
 
-/// A metric of the rate that was recorded (before) and of the compensated rate
-/// (after).
+/// A metric of the recorded rate (before) and of the compensated rate (after).
 struct MetricResult {
   const Metric* metric;  // of metrics()
   std::optional<Estimate> before, after;
   std::vector<BaselineEstimate> baselines = {};
 };
 
-/// A file that a result depends on.
+/// A limit of the specification and what was decided.
+struct DecidedLimit {
+  Limit limit;
+  Decision decision;
+};
+
+/// A file or run that a result depends on.
 struct ResultFile {
-  std::string role;  // "compensator", "device", "qualification", "scenario"...
+  std::string role;  // "compensator", "device", "qualification", ...
   std::string name;  // without its folder
   std::string sha256;
 };
 
-/// What was judged: its argument and what is known of it.
+/// What was judged.
 struct JudgedCompensator {
   std::string name;         // of the file without its ending, or the command
   std::string kind;         // "compensator", "library", "command", "model"
-  std::string method = {};  // "BP network 2, 8", ... where it is known
+  std::string method = {};  // "cubic, ..." where it is known
   std::vector<std::string> inputs = {};  // the measured variables that it reads
 };
 
-/// The answer of the validator about one device.
-struct ValidationResult {
-  JudgedCompensator compensator;
-  std::vector<MetricResult> metrics;
-  std::string words;  // the verdict as a sentence
-  std::vector<std::string> warnings;
-  // Provenance.
+/// A figure of merit of each device of a population; NaN where a device has
+/// none.
+struct PopulationMetric {
+  const Metric* metric;
+  std::vector<double> before, after;  // one for each device
+};
+
+/// The answer for one device of a population.
+struct DeviceVerdict {
+  Conformity verdict = Conformity::kUndecided;
+  std::string words = {};  // the first reason against it
+};
+
+/// The share of a population that passes.
+struct PopulationYield {
+  std::string campaign;
+  bool trained_on_each = false;        // or one compensator for all
+  std::vector<DeviceVerdict> devices;  // by number
+  std::size_t passed = 0, failed = 0, undecided = 0;
+  std::size_t not_simulated = 0;  // of the failed
+  Interval interval = {};         // 95 %, of the share that passes
+  std::vector<PopulationMetric> metrics;
+
+  double share() const {
+    return static_cast<double>(passed) / static_cast<double>(devices.size());
+  }
+};
+
+/// Where a result comes from.
+struct ResultProvenance {
   std::string program_version, git_revision;
-  std::string device, qualification;  // names
-  std::vector<ResultFile> files;
+  std::string device, qualification, specification;  // names
+  double false_accept_risk = kFalseAcceptRisk;       // [-]
+  std::vector<ResultFile> files;                     // in the order of reading
+  std::vector<std::pair<std::string, std::uint64_t>> seeds;  // of the runs
+};
+
+/// The answer of the validator.
+struct ValidationResult {
+  Conformity verdict = Conformity::kUndecided;
+  std::string words;  // the verdict, in a sentence or two
+  JudgedCompensator compensator;
+  std::vector<MetricResult> metrics;  // in the order of metrics()
+  std::vector<DecidedLimit> limits;   // in the order of the specification
+  std::vector<CheckResult> checks;    // in the order of check_definitions()
+  std::optional<PopulationYield> population = {};
+  std::vector<std::string> warnings = {};
+  ResultProvenance provenance = {};
 };
 
 }  // namespace beamgyro

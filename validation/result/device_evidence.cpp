@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "validation/result/device_evidence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "compensation/compensator/training_use.h"
+#include "compensation/training/train.h"
+#include "config/document.h"
+#include "config/units.h"
+#include "parallel/work_queue.h"
+
+namespace beamgyro {
+namespace {
+
+struct BaselineModel {
+  std::string_view name, model;
+};
+constexpr BaselineModel kBaselineModels[] = {
+    {"constant", "kind = \"constant\""},
+    {"cubic",
+     "kind = \"polynomial\"\ninputs = [\"temperature\"]\n"
+     "[polynomial]\ndegree = 3"},
+    {"spline",
+     "kind = \"spline\"\ninputs = [\"temperature\"]\n"
+     "[spline]\nknot_spacing_K = 5\nends = \"not_a_knot\""},
+};
+
+std::vector<TrainingRun> training_runs(
+    const std::vector<QualificationRun>& planned, const QualifiedDevice& device,
+    std::size_t threads) {
+  std::vector<Recording> recordings = qualified_runs(planned, device, threads);
+  std::vector<TrainingRun> runs(planned.size());
+  for_each_task(runs.size(), threads, [&](std::size_t k, std::size_t) {
+    runs[k].name = planned[k].name;
+    runs[k].sha256 = measured_sha256(recordings[k]);
+    runs[k].recording = std::move(recordings[k]);
+  });
+  return runs;
+}
+
+// Returns the samples of a recording from a time on.
+Recording later_part(const Recording& whole, double from) {
+  Recording part = whole;
+  const auto first = std::ranges::lower_bound(whole.time, from);
+  const auto count = first - whole.time.begin();
+  const auto cut = [&](auto& values) {
+    values.erase(values.begin(), values.begin() + count);
+  };
+  cut(part.time);
+  cut(part.status);
+  for (Column& column : part.columns) cut(column.values);
+  return part;
+}
+
+// The rate of a run, which was answered as a whole, as evidence of the part
+// that metrics read.
+EvidenceRun evidence_run(const QualificationRun& planned, const Recording& late,
+                         std::vector<double> rate) {
+  const std::size_t cut = rate.size() - late.time.size();
+  rate.erase(rate.begin(), rate.begin() + static_cast<std::ptrdiff_t>(cut));
+  return {planned.name, planned.purpose, &late, std::move(rate)};
+}
+
+// Counts tasks that are done.
+class SharedProgress {
+ public:
+  SharedProgress(const ProgressOfWork& tell, std::size_t tasks)
+      : tell_(tell), tasks_(tasks) {}
+  void add_one() {
+    const std::size_t done = ++done_;
+    if (tell_) tell_(static_cast<double>(done) / static_cast<double>(tasks_));
+  }
+
+ private:
+  const ProgressOfWork& tell_;
+  std::size_t tasks_;
+  std::atomic<std::size_t> done_ = 0;
+};
+
+std::vector<Compensator> trained_baselines(const TrainingData& data,
+                                           std::size_t threads) {
+  if (data.training.empty()) return {};
+  std::vector<Compensator> trained(std::size(kBaselineModels));
+  for_each_task(trained.size(), threads, [&](std::size_t k, std::size_t) {
+    const auto& [name, text] = kBaselineModels[k];
+    const ConfigDocument document =
+        ConfigDocument::parse(text, std::string(name));
+    try {
+      trained[k] = trained_on(data, read_model(document));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format(
+          "the baseline {} cannot be trained on the [[training]] runs of the "
+          "qualification: {}",
+          name, error.what()));
+    }
+  });
+  return trained;
+}
+
+bool is_network(const ModelSpec& model) {
+  return !model.candidates.empty() ||
+         std::holds_alternative<BpSpec>(model.kind);
+}
+
+}  // namespace
+
+TrainingData training_data(const Qualification& qualification,
+                           const QualifiedDevice& device, std::size_t threads) {
+  return {training_runs(qualification.training, device, threads),
+          training_runs(qualification.held_out, device, threads)};
+}
+
+Compensator trained_on(const TrainingData& data, const ModelSpec& model) {
+  const std::vector<TrainingRun> none;
+  return train(model, data.training, is_network(model) ? data.held_out : none,
+               0)
+      .compensator;
+}
+
+DeviceEvidence device_evidence(const Qualification& qualification,
+                               const QualifiedDevice& device,
+                               const TestedCompensator& compensator,
+                               const TrainingData& data, std::size_t threads,
+                               const ProgressOfWork& progress) {
+  const std::vector<QualificationRun>& planned = qualification.runs;
+  SharedProgress done(progress, 2 * planned.size());
+  DeviceEvidence found;
+  found.runs =
+      qualified_runs(planned, device, threads, [&] { done.add_one(); });
+  const std::vector<Compensator> baselines = trained_baselines(data, threads);
+
+  const std::size_t count = planned.size();
+  found.late.resize(count);
+  found.answers.resize(count);
+  const Evidence blank{std::vector<EvidenceRun>(count),
+                       device.device.readout.full_scale / kDegree};
+  found.before = found.after = blank;
+  found.baselines.push_back({"none", blank});
+  for (std::size_t b = 0; b < baselines.size(); ++b)
+    found.baselines.push_back({std::string(kBaselineModels[b].name), blank});
+  for_each_task(count, threads, [&](std::size_t k, std::size_t) {
+    const Recording& run = found.runs[k];
+    if (planned[k].from > 0) found.late[k] = later_part(run, planned[k].from);
+    const Recording& read = planned[k].from > 0 ? found.late[k] : run;
+    const auto evidence = [&](std::vector<double> rate) {
+      return evidence_run(planned[k], read, std::move(rate));
+    };
+    found.before.runs[k] = evidence(column_values(run, "rate"));
+    found.baselines[0].evidence.runs[k] = found.before.runs[k];
+    for (std::size_t b = 0; b < baselines.size(); ++b)
+      found.baselines[b + 1].evidence.runs[k] =
+          evidence(compensated_rate(baselines[b], run));
+    found.answers[k] = compensator.answer(run);
+    found.after.runs[k] = evidence(found.answers[k].rate);
+    done.add_one();
+  });
+  return found;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "compensation/compensator/compensator.h"
+#include "compensation/training/model_file.h"
+#include "validation/evidence/evidence.h"
+#include "validation/external/tested_compensator.h"
+#include "validation/qualification/qualification.h"
+#include "validation/qualification/qualified_runs.h"
+
+namespace beamgyro {
+
+/// A method that a compensator is compared with, trained on the same runs.
+struct Baseline {
+  std::string name;  // "none", "constant", "cubic", "spline"
+  Evidence evidence;
+};
+
+/// Everything that a qualification shows of one device: its runs, the recorded
+/// rate, that of the compensator and those of the baselines.
+struct DeviceEvidence {
+  std::vector<Recording> runs;      // whole, in the order of the qualification
+  std::vector<Recording> late;      // from QualificationRun::from on, or empty
+  std::vector<Answer> answers;      // to `runs`
+  Evidence before, after;           // of `runs`, or of `late` where there is
+  std::vector<Baseline> baselines;  // with "none", the recorded rate
+};
+
+/// Work that is done, for a line of progress. Called from any thread.
+using ProgressOfWork = std::function<void(double share)>;
+
+/// The runs of a device that are trained on.
+struct TrainingData {
+  std::vector<TrainingRun> training, held_out;
+};
+
+/// Simulates the training runs of a qualification. A run is known by the
+/// SHA-256 of its measured variables.
+TrainingData training_data(const Qualification& qualification,
+                           const QualifiedDevice& device, std::size_t threads);
+
+/// Trains a model on them with seed 0. A model that is no network is not told
+/// of the held-out runs. Throws as train().
+Compensator trained_on(const TrainingData& data, const ModelSpec& model);
+
+/// Simulates the runs of a qualification, and answers each with the compensator
+/// and with every baseline that `data` allows: none without training runs but
+/// "none".
+DeviceEvidence device_evidence(const Qualification& qualification,
+                               const QualifiedDevice& device,
+                               const TestedCompensator& compensator,
+                               const TrainingData& data, std::size_t threads,
+                               const ProgressOfWork& progress = {});
+
+}  // namespace beamgyro

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "validation/result/device_evidence.h"
+#include "validation/result/validation_result.h"
+#include "validation/specification/specification_file.h"
+
+namespace beamgyro {
+
+/// Evaluates metrics before, after and of every baseline, each on the runs that
+/// the qualification names for it, or on all. `names` are those to evaluate;
+/// none: all of metrics().
+std::vector<MetricResult> metric_results(const DeviceEvidence& found,
+                                         const Qualification& qualification,
+                                         std::span<const std::string> names,
+                                         std::size_t threads);
+
+/// Decides on every limit of a specification.
+std::vector<DecidedLimit> decided_limits(
+    const SpecificationFile& specification,
+    const std::vector<MetricResult>& metrics);
+
+/// A verdict in words.
+struct WordedVerdict {
+  Conformity verdict;
+  std::string words;
+};
+
+/// Returns kFail when a limit or a check fails, else kUndecided when one is
+/// undecided or not tested that must be, else kPass; and which ones.
+WordedVerdict verdict_of(const std::vector<DecidedLimit>& limits,
+                         const std::vector<CheckResult>& checks);
+
+/// Returns the runs with their answers, as checks want them.
+CheckedCompensator checked_runs(const DeviceEvidence& found,
+                                const Qualification& qualification,
+                                const TestedCompensator& compensator);
+
+}  // namespace beamgyro

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "validation/result/result_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <span>
+
+namespace beamgyro {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+Json number_or_null(const std::optional<double>& value) {
+  return value ? number_or_null(*value) : Json();
+}
+
+Json interval_json(const std::optional<Interval>& interval) {
+  if (!interval) return nullptr;
+  return {number_or_null(interval->low), number_or_null(interval->high)};
+}
+
+Json estimate_json(const std::optional<Estimate>& estimate) {
+  if (!estimate) return nullptr;
+  return {{"value", number_or_null(estimate->value)},
+          {"interval", interval_json(estimate->interval)}};
+}
+
+// A limit in the unit of its metric: a number, or both ends.
+Json limit_json(const Limit& limit) {
+  if (limit.least && limit.most) return {*limit.least, *limit.most};
+  return limit.most ? *limit.most : *limit.least;
+}
+
+// The limits of one metric together: the value of the first that is not
+// relative, every one in words, and the worst result.
+void add_limits_of(const std::string_view metric,
+                   const std::vector<DecidedLimit>& limits, Json& json) {
+  Json value, words = Json::array();
+  std::vector<Conformity> results;
+  for (const auto& [limit, decision] : limits) {
+    if (limit.metric != metric) continue;
+    if (value.is_null() && limit.relative_to.empty()) value = limit_json(limit);
+    words.push_back(text_of(limit));
+    results.push_back(decision.result);
+  }
+  json["limit"] = value;
+  json["limits"] = words;
+  json["result"] =
+      results.empty() ? Json() : Json(conformity_name(worst_of(results)));
+}
+
+Json metric_json(const MetricResult& result,
+                 const std::vector<DecidedLimit>& limits) {
+  const Metric& metric = *result.metric;
+  Json json{{"name", metric.name},
+            {"unit", metric.unit},
+            {"clause", metric.clause},
+            {"definition", metric.definition},
+            {"before", estimate_json(result.before)},
+            {"after", estimate_json(result.after)}};
+  Json& baselines = json["baselines"] = Json::object();
+  for (const BaselineEstimate& baseline : result.baselines)
+    baselines[baseline.name] = estimate_json(baseline.estimate);
+  add_limits_of(metric.name, limits, json);
+  return json;
+}
+
+Json decided_json(const DecidedLimit& decided) {
+  const auto& [limit, decision] = decided;
+  return {{"metric", limit.metric},
+          {"min", number_or_null(limit.least)},
+          {"max", number_or_null(limit.most)},
+          {"absolute", limit.absolute},
+          {"relative_to",
+           limit.relative_to.empty() ? Json() : Json(limit.relative_to)},
+          {"source", limit.source},
+          {"compared", estimate_json(decision.compared)},
+          {"margin", number_or_null(decision.margin)},
+          {"guard_band", number_or_null(decision.guard_band)},
+          {"result", conformity_name(decision.result)},
+          {"words", decision.words}};
+}
+
+Json check_json(const CheckResult& check) {
+  return {{"name", check.name},
+          {"passed", check.outcome == CheckOutcome::kNotTested
+                         ? Json()
+                         : Json(check.passed())},
+          {"value", number_or_null(check.value)},
+          {"limit", number_or_null(check.limit)},
+          {"words", check.words}};
+}
+
+Json figures_json(std::span<const double> values) {
+  Json numbers = Json::array();
+  for (const double value : values) numbers.push_back(number_or_null(value));
+  return numbers;
+}
+
+Json yield_json(const PopulationYield& population) {
+  Json json{{"campaign", population.campaign},
+            {"devices", population.devices.size()},
+            {"trained_on_each", population.trained_on_each},
+            {"passed", population.passed},
+            {"failed", population.failed},
+            {"undecided", population.undecided},
+            {"not_simulated", population.not_simulated},
+            {"yield", number_or_null(population.share())},
+            {"interval", interval_json(population.interval)}};
+  Json& devices = json["verdicts"] = Json::array();
+  for (const DeviceVerdict& device : population.devices)
+    devices.push_back({{"verdict", conformity_name(device.verdict)},
+                       {"words", device.words}});
+  Json& metrics = json["metrics"] = Json::array();
+  for (const PopulationMetric& metric : population.metrics)
+    metrics.push_back({{"name", metric.metric->name},
+                       {"unit", metric.metric->unit},
+                       {"before", figures_json(metric.before)},
+                       {"after", figures_json(metric.after)}});
+  return json;
+}
+
+Json provenance_json(const ResultProvenance& provenance) {
+  Json json{{"beamgyro_version", provenance.program_version},
+            {"git_revision", provenance.git_revision},
+            {"device", provenance.device},
+            {"qualification", provenance.qualification},
+            {"specification", provenance.specification},
+            {"false_accept_risk", provenance.false_accept_risk}};
+  Json& files = json["files"] = Json::array();
+  for (const ResultFile& file : provenance.files)
+    files.push_back(
+        {{"role", file.role}, {"name", file.name}, {"sha256", file.sha256}});
+  Json& seeds = json["seeds"] = Json::object();
+  for (const auto& [run, seed] : provenance.seeds) seeds[run] = seed;
+  return json;
+}
+
+}  // namespace
+
+nlohmann::ordered_json to_json(const ValidationResult& result) {
+  Json json{{"filetype", "beamgyro-validation"},
+            {"verdict", conformity_name(result.verdict)},
+            {"words", result.words},
+            {"compensator",
+             {{"name", result.compensator.name},
+              {"kind", result.compensator.kind},
+              {"method", result.compensator.method},
+              {"inputs", result.compensator.inputs}}}};
+  for (const char* list : {"metrics", "limits", "checks"})
+    json[list] = Json::array();
+  for (const MetricResult& metric : result.metrics)
+    json["metrics"].push_back(metric_json(metric, result.limits));
+  for (const DecidedLimit& limit : result.limits)
+    json["limits"].push_back(decided_json(limit));
+  for (const CheckResult& check : result.checks)
+    json["checks"].push_back(check_json(check));
+  if (result.population)
+    json["population"] = yield_json(*result.population);
+  json["warnings"] = result.warnings;
+  json["provenance"] = provenance_json(result.provenance);
+  return json;
+}
+
+}  // namespace beamgyro
