@@ -1,20 +1,78 @@
 // SPDX-License-Identifier: MIT
 #include "validation/page/figures.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "validation/page/figure_makers.h"
 
 namespace beamgyro {
+namespace {
+
+void check_same_runs(const Evidence& before, const Evidence& after) {
+  const bool same = std::ranges::equal(
+      before.runs, after.runs, [](const EvidenceRun& a, const EvidenceRun& b) {
+        return a.name == b.name && a.purpose == b.purpose;
+      });
+  if (!same)
+    throw std::invalid_argument(
+        "figures need the same runs before and after compensation");
+}
+
+/// Share [%] of the devices whose value is at most x.
+FigureSeries share_of_devices(const std::string& role,
+                              std::span<const double> values) {
+  std::vector<double> sorted;
+  for (const double value : values)
+    if (std::isfinite(value)) sorted.push_back(value);
+  std::ranges::sort(sorted);
+  FigureSeries series{role, role};
+  const std::size_t step = sorted.size() / kFigurePoints + 1;
+  for (std::size_t k = 0; k < sorted.size(); ++k)
+    if (k % step == 0 || k + 1 == sorted.size())
+      series.add(sorted[k], 100.0 * static_cast<double>(k + 1) /
+                                static_cast<double>(values.size()));
+  return series;
+}
+
+}  // namespace
 
 nlohmann::ordered_json figures_of(const Evidence& before,
                                   const Evidence& after) {
-  if (before.runs.size() != after.runs.size())
-    throw std::invalid_argument("figures need the same runs before and after");
-  return nlohmann::ordered_json::array();
+  check_same_runs(before, after);
+  nlohmann::ordered_json figures = nlohmann::ordered_json::array();
+  for (const auto& make :
+       {bias_over_temperature_figures, hysteresis_figures, warm_up_figures,
+        residual_histogram_figures, rate_table_figures,
+        frequency_response_figures, rate_step_figures, allan_figures})
+    for (const Figure& figure : make({before, after}))
+      if (!figure.series.empty()) figures.push_back(to_json(figure));
+  return figures;
 }
 
-nlohmann::ordered_json population_figure(const PopulationFigure& figure) {
-  return {{"id", "population_yield"}, {"title", figure.name}};
+nlohmann::ordered_json population_figure(const PopulationFigure& population) {
+  const std::size_t devices = population.after.size();
+  Figure figure{"population_yield",
+                "Yield of a population",
+                fmt::format("Share of {} devices whose {} is at most the value "
+                            "on the axis.",
+                            devices, population.name),
+                {population.name, population.unit, true},
+                {"Share of the devices", "%"}};
+  figure.add(share_of_devices("before", population.before));
+  figure.add(share_of_devices("after", population.after));
+  if (population.limit)
+    figure.add({"limit",
+                "limit",
+                {*population.limit, *population.limit},
+                {0.0, 100.0}});
+  return to_json(figure);
 }
 
 }  // namespace beamgyro

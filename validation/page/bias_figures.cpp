@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "validation/page/figure_makers.h"
+#include "validation/page/residual_means.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr double kMinute = 60.0;                 // [s]
+constexpr double kWarmUpBlock = 30.0;            // [s]
+constexpr double kLeastTemperatureSlope = 0.05;  // [K/min], of a ramp
+constexpr int kHistogramBars = 31;
+
+FigureAxis bias_axis() { return {"Measured less true rate", "deg/s"}; }
+
+std::string direction_name(const std::string& role, bool rising) {
+  return role + (rising ? ", rising" : ", falling");
+}
+
+/// The whole, and the rate after compensation alone.
+std::vector<Figure> with_close_up(Figure whole, const std::string& title) {
+  std::vector<Figure> figures = close_up(whole, "after", "_after", title);
+  figures.insert(figures.begin(), std::move(whole));
+  return figures;
+}
+
+/// For each block of a ramp whether the temperature rises; a block without a
+/// slope goes on as the one before it.
+std::vector<bool> rising_blocks(const std::vector<ResidualMean>& blocks) {
+  std::vector<bool> rising(blocks.size(), true);
+  std::size_t first = blocks.size();  // with a slope
+  for (std::size_t k = 0; k + 1 < blocks.size(); ++k) {
+    const double minutes =
+        (blocks[k + 1].since_power_on - blocks[k].since_power_on) / kMinute;
+    const double move = blocks[k + 1].temperature - blocks[k].temperature;
+    if (k > 0) rising[k] = rising[k - 1];
+    if (std::abs(move) < kLeastTemperatureSlope * minutes) continue;
+    rising[k] = move > 0.0;
+    first = std::min(first, k);
+  }
+  if (blocks.size() > 1) rising.back() = rising[blocks.size() - 2];
+  for (std::size_t k = 0; k < first && first < blocks.size(); ++k)
+    rising[k] = rising[first];
+  return rising;
+}
+
+/// Mean over the last tenth of the blocks.
+double settled_residual(const std::vector<ResidualMean>& blocks) {
+  const std::size_t tenth = std::max<std::size_t>(1, blocks.size() / 10);
+  double sum = 0.0;
+  for (std::size_t k = blocks.size() - tenth; k < blocks.size(); ++k)
+    sum += blocks[k].residual;
+  return sum / static_cast<double>(tenth);
+}
+
+/// Residuals of every run that is at rest by its purpose.
+std::vector<double> residuals_at_rest(const Evidence& evidence) {
+  std::vector<double> found;
+  for (const EvidenceRun* run :
+       runs_for(evidence, {RunPurpose::kSoak, RunPurpose::kRamp,
+                           RunPurpose::kWarmUp, RunPurpose::kPowerCycle}))
+    for (const ResidualMean& mean : residual_means(*run, kMinute))
+      found.push_back(mean.residual);
+  return found;
+}
+
+struct Spread {
+  double mean = 0.0, sigma = 0.0;  // [deg/s]
+};
+
+Spread spread_of(const std::vector<double>& values) {
+  Spread spread;
+  const auto n = static_cast<double>(values.size());
+  for (const double value : values) spread.mean += value / n;
+  for (const double value : values)
+    spread.sigma += (value - spread.mean) * (value - spread.mean) / n;
+  spread.sigma = std::sqrt(spread.sigma);
+  return spread;
+}
+
+}  // namespace
+
+FigureAxis temperature_axis() { return {"Measured temperature", "degC"}; }
+
+std::vector<Figure> bias_over_temperature_figures(
+    const ComparedEvidence& both) {
+  Figure figure{
+      "bias_over_temperature", "Bias over temperature",
+      "Means over the last ten minutes of each soak. The two directions differ "
+      "by what the temperature sensor does not tell.",
+      temperature_axis(), bias_axis()};
+  for_both(both, RunPurpose::kSoak,
+           [&](const std::string& role, const EvidenceRun& run) {
+             std::array<FigureSeries, 2> by_direction = {
+                 FigureSeries{direction_name(role, true), role},
+                 FigureSeries{direction_name(role, false), role}};
+             for (const SettledSoak& soak : settled_soaks(run))
+               by_direction[soak.rising ? 0 : 1].add(soak.temperature,
+                                                     soak.residual);
+             for (FigureSeries& series : by_direction)
+               figure.add(std::move(series));
+           });
+  return with_close_up(std::move(figure),
+                       "Bias over temperature, after compensation");
+}
+
+std::vector<Figure> hysteresis_figures(const ComparedEvidence& both) {
+  Figure figure{"hysteresis", "Hysteresis loop",
+                "Bias while the chamber ramps up and down: a minute's mean at "
+                "each point. The loop is open where the gyro lags its "
+                "temperature sensor.",
+                temperature_axis(), bias_axis()};
+  for_both(both, RunPurpose::kRamp,
+           [&](const std::string& role, const EvidenceRun& run) {
+             const std::string name = role + ", " + run.name;
+             std::array<FigureSeries, 2> by_direction = {
+                 FigureSeries{direction_name(name, true), role},
+                 FigureSeries{direction_name(name, false), role}};
+             const auto blocks =
+                 residual_means(run, block_for_figure(run, kMinute));
+             const std::vector<bool> rising = rising_blocks(blocks);
+             for (std::size_t k = 0; k < blocks.size(); ++k)
+               by_direction[rising[k] ? 0 : 1].add(blocks[k].temperature,
+                                                   blocks[k].residual);
+             for (FigureSeries& series : by_direction)
+               figure.add(std::move(series));
+           });
+  return with_close_up(std::move(figure),
+                       "Hysteresis loop, after compensation");
+}
+
+std::vector<Figure> warm_up_figures(const ComparedEvidence& both) {
+  Figure figure{"warm_up",
+                "Warm-up",
+                "Bias since power-on, less its mean over the last tenth of the "
+                "run.",
+                {"Time since power-on", "min"},
+                {"Bias less its final value", "deg/s"}};
+  for_both(both, RunPurpose::kWarmUp,
+           [&](const std::string& role, const EvidenceRun& run) {
+             const auto blocks =
+                 residual_means(run, block_for_figure(run, kWarmUpBlock));
+             if (blocks.empty()) return;
+             const double final_residual = settled_residual(blocks);
+             FigureSeries series{
+                 fmt::format("{}, {} (from {:.0f} degC)", role, run.name,
+                             blocks.front().temperature),
+                 role};
+             for (const ResidualMean& block : blocks)
+               series.add(block.since_power_on / kMinute,
+                          block.residual - final_residual);
+             figure.add(std::move(series));
+           });
+  return with_close_up(std::move(figure), "Warm-up, after compensation");
+}
+
+std::vector<Figure> residual_histogram_figures(const ComparedEvidence& both) {
+  const std::vector<double> values = residuals_at_rest(both.after);
+  if (values.size() < 2) return {};
+  const auto [least, most] = std::ranges::minmax(values);
+  if (!(most > least)) return {};
+  const Spread spread = spread_of(values);
+  const double width = (most - least) / kHistogramBars;
+  std::vector<double> counts(kHistogramBars, 0.0);
+  for (const double value : values)
+    counts[std::min<std::size_t>(
+        kHistogramBars - 1,
+        static_cast<std::size_t>((value - least) / width))] += 1.0;
+  FigureSeries bars{"after", "after", {}, {}, {}, {}, "bars"};
+  FigureSeries normal{"normal distribution of that mean and 1-sigma", "fit"};
+  const double percent = 100.0 / static_cast<double>(values.size());
+  for (int k = 0; k < kHistogramBars; ++k) {
+    const double middle = least + (k + 0.5) * width;
+    const double score = (middle - spread.mean) / spread.sigma;
+    bars.add(middle, percent * counts[static_cast<std::size_t>(k)]);
+    normal.add(middle, 100.0 * width / spread.sigma *
+                           std::exp(-0.5 * score * score) /
+                           std::sqrt(2.0 * std::numbers::pi));
+  }
+  Figure figure{"residual_histogram",
+                "Residuals at rest, after compensation",
+                fmt::format("One-minute means of every run at rest: {} of "
+                            "them, mean {:.3g} deg/s, 1-sigma {:.3g} deg/s.",
+                            values.size(), spread.mean, spread.sigma),
+                {"Compensated less true rate", "deg/s"},
+                {"Share of the minutes", "%"},
+                "line"};
+  figure.add(std::move(bars));
+  figure.add(std::move(normal));
+  return {std::move(figure)};
+}
+
+}  // namespace beamgyro
