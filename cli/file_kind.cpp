@@ -35,6 +35,9 @@ constexpr KnownKind kKnownKinds[] = {
     {FileKind::kScenario, "a scenario", "beamgyro run"},
     {FileKind::kCampaign, "a campaign", "beamgyro generate"},
     {FileKind::kModel, "a model file", "beamgyro train --model"},
+    {FileKind::kQualification, "a qualification",
+     "beamgyro validate --qualification"},
+    {FileKind::kSpecification, "a specification", "beamgyro validate --spec"},
     {FileKind::kLogMap, "a log map", "beamgyro import --map"},
     {FileKind::kRecording, "a recording",
      "beamgyro info, allan, train, compensate or validate"},
@@ -72,7 +75,12 @@ std::vector<FileKind> kinds_of_toml(const fs::path& path) {
   };
   std::vector<FileKind> kinds;
   if (has({"beam", "patches", "bond"})) kinds.push_back(FileKind::kDevice);
-  if (has({"devices", "tolerances", "run"}))
+  const bool has_devices = has({"device", "devices", "tolerances"});
+  if (has({"run", "training"}) && !has_devices)
+    kinds.push_back(FileKind::kQualification);
+  if (has({"limits", "limits_relative_to"}))
+    kinds.push_back(FileKind::kSpecification);
+  if (has({"devices", "tolerances"}) || (has({"run"}) && has_devices))
     kinds.push_back(FileKind::kCampaign);
   if (has({"duration_s", "fidelity", "ambient"}))
     kinds.push_back(FileKind::kScenario);

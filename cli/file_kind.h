@@ -11,6 +11,8 @@ enum class FileKind {
   kScenario,
   kCampaign,
   kModel,
+  kQualification,
+  kSpecification,
   kLogMap,
   kRecording,
   kSetFile,

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "cli/validate.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +13,7 @@
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
+#include "cli/option_values.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
 #include "compensation/compensator/compensator_file.h"
@@ -23,16 +26,6 @@
 
 namespace beamgyro {
 namespace {
-
-constexpr int kSpecificationNotMet = 3;
-
-struct ValidateArguments {
-  std::string compensator, json;
-  std::vector<std::string> runs;
-  std::vector<std::string> set_runs;  // names, of a set
-  std::vector<long> set_devices;      // of a set
-  std::optional<double> full_scale;   // [deg/s]
-};
 
 Specification specification_of(const ValidateArguments& arguments) {
   return {.full_scale = arguments.full_scale};
@@ -53,9 +46,11 @@ int validate_on_set(const ValidateArguments& arguments,
     require_output(arguments.json, inputs_of(arguments));
     require_json_name(arguments.json);
   }
-  SetSelection selection{
-      {}, arguments.set_runs, device_numbers(arguments.set_devices)};
-  if (arguments.set_devices.empty()) selection.part = SetPartNumber::kTest;
+  std::vector<long> devices;
+  for (const std::string& word : arguments.device)
+    devices.push_back(whole_number("--device", word, 0, kLastDevice));
+  SetSelection selection{{}, arguments.set_runs, device_numbers(devices)};
+  if (devices.empty()) selection.part = SetPartNumber::kTest;
   const RunSource source = runs_of_set(arguments.runs[0], selection);
   std::optional<Progress> progress("validating " + arguments.compensator);
   const std::vector<DeviceScore> scores =
@@ -77,13 +72,13 @@ int validate_on_set(const ValidateArguments& arguments,
   const bool passed =
       std::all_of(scores.begin(), scores.end(),
                   [](const DeviceScore& score) { return score.passed; });
-  return passed ? 0 : kSpecificationNotMet;
+  return passed ? 0 : kNotPassed;
 }
 
-int run_validation(const ValidateArguments& arguments) {
+int validate_on_runs(const ValidateArguments& arguments) {
   const Compensator compensator = read_compensator(arguments.compensator);
   if (is_set(arguments.runs)) return validate_on_set(arguments, compensator);
-  if (!arguments.set_runs.empty() || !arguments.set_devices.empty())
+  if (!arguments.set_runs.empty() || !arguments.device.empty())
     throw std::invalid_argument(
         "--run and --device choose from a set, and there is none");
   std::optional<Progress> progress("validating " + arguments.compensator);
@@ -108,7 +103,63 @@ int run_validation(const ValidateArguments& arguments) {
   progress.reset();
   for (const std::string& warning : validation.warnings) print_warning(warning);
   print_result(table(validation));
-  return validation.passed() ? 0 : kSpecificationNotMet;
+  return validation.passed() ? 0 : kNotPassed;
+}
+
+bool is_number(const std::string& word) {
+  return !word.empty() &&
+         std::ranges::all_of(word, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+// Throws when an option is given that only a simulated device has.
+void require_no_device_options(const ValidateArguments& arguments) {
+  const std::pair<const char*, bool> options[] = {
+      {"--qualification", arguments.qualification.has_value()},
+      {"--spec", arguments.specification.has_value()},
+      {"--report", !arguments.report.empty()},
+      {"--campaign", arguments.campaign.has_value()},
+      {"--devices", arguments.devices.has_value()},
+      {"--jobs", arguments.jobs.has_value()}};
+  for (const auto& [name, is_given] : options)
+    if (is_given)
+      throw std::invalid_argument(fmt::format(
+          "{} is for a simulated device; expected --device DEVICE.toml in "
+          "place of {}",
+          name, arguments.runs[0]));
+  for (const std::string& word : arguments.device)
+    if (!is_number(word))
+      throw std::invalid_argument(fmt::format(
+          "--device {}: of a set, a number is expected; a device file is for a "
+          "call without {}",
+          word, arguments.runs[0]));
+}
+
+void require_device(const ValidateArguments& arguments) {
+  if (arguments.device.empty())
+    throw std::invalid_argument(
+        "nothing to validate on; expected RUN.h5..., the directory of a set, "
+        "or --device DEVICE.toml");
+  if (arguments.device.size() > 1 || is_number(arguments.device[0]))
+    throw std::invalid_argument(fmt::format(
+        "--device {}: {}", arguments.device.back(),
+        is_number(arguments.device[0])
+            ? "a number selects a device of a set, and there is none; expected "
+              "a set, or a device file (./5 for one of that name)"
+            : "a second device file; expected one"));
+  if (!arguments.set_runs.empty())
+    throw std::invalid_argument("--run chooses from a set, and there is none");
+  if (arguments.full_scale)
+    throw std::invalid_argument(
+        "--full-scale is for recordings; a device file says its own");
+}
+
+int validate(const ValidateArguments& arguments) {
+  if (!arguments.runs.empty()) {
+    require_no_device_options(arguments);
+    return validate_on_runs(arguments);
+  }
+  require_device(arguments);
+  return validate_on_device(arguments);
 }
 
 }  // namespace
@@ -119,28 +170,59 @@ void add_validate(CommandLine& program) {
       program.add("validate", kCompensation,
                   "Scores a compensator against the true rate; the status is 3 "
                   "when a check fails");
-  command.argument({"COMPENSATOR.json", "", "Compensator, as written by train"},
+  command.argument({"COMPENSATOR", "",
+                    "Compensator: FILE.json as written by train, LIBRARY.so, "
+                    "\"cmd:PROGRAM ARGS\", or with --device a MODEL.toml that "
+                    "is trained first"},
                    arguments->compensator);
-  command.reads({{FileKind::kCompensator}});
+  command.reads({{FileKind::kCompensator, FileKind::kModel}});
   command.arguments({"RUN.h5...", "",
                      "Recordings that training has not seen, or the directory "
-                     "of a set, whose test devices are scored"},
+                     "of a set, whose test devices are scored",
+                     "none, with --device DEVICE.toml"},
                     arguments->runs);
   command.reads({{FileKind::kRecording, FileKind::kSet}});
   command.number({"--full-scale", "DEG_PER_S", "Largest rate that is replayed",
                   "that of the recording's device file, or 150 for a log"},
                  arguments->full_scale, positive());
-  command.text({"--json", "FILE", "Writes every score to FILE", "no file"},
+  command.text({"--json", "FILE", "Writes every figure to FILE", "no file"},
                arguments->json);
+  command.group("On a simulated device");
+  command.texts({"--device", "DEVICE.toml|NUMBER",
+                 "Device that the qualification is simulated with; of a set "
+                 "the number of a device to score, which may be repeated",
+                 "the test devices of a set"},
+                arguments->device);
+  command.text(
+      {"--qualification", "FILE.toml", "Runs that the device goes through",
+       "the shipped scenarios/qualification.toml"},
+      arguments->qualification);
+  command.reads({{FileKind::kQualification}});
+  command.text({"--spec", "SPEC.toml", "Limits that have to be met",
+                "less drift than without a compensator"},
+               arguments->specification);
+  command.reads({{FileKind::kSpecification}});
+  command.text({"--report", "DIR", "Writes the page DIR/index.html", "no page"},
+               arguments->report);
+  command.text({"--campaign", "CAMPAIGN.toml",
+                "Also reports how many devices of a population pass",
+                "one device alone"},
+               arguments->campaign);
+  command.reads({{FileKind::kCampaign}});
+  command.integer(
+      {"--devices", "N", "Number of these devices", "that of the campaign"},
+      arguments->devices, {1, 4000000000});
+  command.integer({"--jobs", "N", "Number of threads", "one per core"},
+                  arguments->jobs, {1, 4096});
   command.group("Part of a set");
   command.list({"--run", "NAME", "Run to score; may be repeated", "all runs"},
                arguments->set_runs);
-  command.integers({"--device", "NUMBER", "Device to score; may be repeated",
-                    "the test devices"},
-                   arguments->set_devices, {0, kLastDevice});
   command.example("beamgyro validate cubic.json soak.h5 rates.h5",
                   "Prints a table and a verdict");
-  command.action([arguments] { return run_validation(*arguments); });
+  command.example(
+      "beamgyro validate cubic.json --device scenarios/devices/nominal.toml",
+      "Simulates what the compensator has to stand");
+  command.action([arguments] { return validate(*arguments); });
 }
 
 }  // namespace beamgyro

@@ -41,7 +41,7 @@ std::string did_you_mean(const std::string& met,
 
 std::vector<std::string> purpose_names() {
   std::vector<std::string> names;
-  for (int k = 0; k <= static_cast<int>(RunPurpose::kRandomRate); ++k)
+  for (int k = 0; k <= static_cast<int>(RunPurpose::kVibration); ++k)
     names.emplace_back(purpose_name(static_cast<RunPurpose>(k)));
   return names;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -59,12 +60,14 @@ Recording later_part(const Recording& whole, double from) {
 }
 
 // The rate of a run, which was answered as a whole, as evidence of the part
-// that metrics read.
-EvidenceRun evidence_run(const QualificationRun& planned, const Recording& late,
-                         std::vector<double> rate) {
-  const std::size_t cut = rate.size() - late.time.size();
+// `read` of it. How many samples were clamped is known of a whole run only.
+EvidenceRun evidence_run(const QualificationRun& planned, const Recording& read,
+                         std::vector<double> rate,
+                         std::optional<std::size_t> clamped) {
+  const std::size_t cut = rate.size() - read.time.size();
   rate.erase(rate.begin(), rate.begin() + static_cast<std::ptrdiff_t>(cut));
-  return {planned.name, planned.purpose, &late, std::move(rate)};
+  if (cut > 0 && clamped != std::size_t{0}) clamped.reset();
+  return {planned.name, planned.purpose, &read, std::move(rate), clamped};
 }
 
 // Counts tasks that are done.
@@ -127,6 +130,7 @@ DeviceEvidence device_evidence(const Qualification& qualification,
                                const QualifiedDevice& device,
                                const TestedCompensator& compensator,
                                const TrainingData& data, std::size_t threads,
+                               bool tells_clamped,
                                const ProgressOfWork& progress) {
   const std::vector<QualificationRun>& planned = qualification.runs;
   SharedProgress done(progress, 2 * planned.size());
@@ -148,16 +152,20 @@ DeviceEvidence device_evidence(const Qualification& qualification,
     const Recording& run = found.runs[k];
     if (planned[k].from > 0) found.late[k] = later_part(run, planned[k].from);
     const Recording& read = planned[k].from > 0 ? found.late[k] : run;
-    const auto evidence = [&](std::vector<double> rate) {
-      return evidence_run(planned[k], read, std::move(rate));
+    const auto evidence = [&](std::vector<double> rate,
+                              std::optional<std::size_t> clamped) {
+      return evidence_run(planned[k], read, std::move(rate), clamped);
     };
-    found.before.runs[k] = evidence(column_values(run, "rate"));
+    found.before.runs[k] = evidence(column_values(run, "rate"), {});
     found.baselines[0].evidence.runs[k] = found.before.runs[k];
     for (std::size_t b = 0; b < baselines.size(); ++b)
       found.baselines[b + 1].evidence.runs[k] =
-          evidence(compensated_rate(baselines[b], run));
+          evidence(compensated_rate(baselines[b], run),
+                   clamped_samples(baselines[b], run));
     found.answers[k] = compensator.answer(run);
-    found.after.runs[k] = evidence(found.answers[k].rate);
+    found.after.runs[k] = evidence(
+        found.answers[k].rate,
+        tells_clamped ? std::optional(found.answers[k].clamped) : std::nullopt);
     done.add_one();
   });
   return found;

@@ -50,11 +50,13 @@ Compensator trained_on(const TrainingData& data, const ModelSpec& model);
 
 /// Simulates the runs of a qualification, and answers each with the compensator
 /// and with every baseline that `data` allows: none without training runs but
-/// "none".
+/// "none". `tells_clamped`: the answers count the samples outside what training
+/// saw.
 DeviceEvidence device_evidence(const Qualification& qualification,
                                const QualifiedDevice& device,
                                const TestedCompensator& compensator,
                                const TrainingData& data, std::size_t threads,
+                               bool tells_clamped,
                                const ProgressOfWork& progress = {});
 
 }  // namespace beamgyro

@@ -160,8 +160,7 @@ nlohmann::ordered_json to_json(const ValidationResult& result) {
     json["limits"].push_back(decided_json(limit));
   for (const CheckResult& check : result.checks)
     json["checks"].push_back(check_json(check));
-  if (result.population)
-    json["population"] = yield_json(*result.population);
+  if (result.population) json["population"] = yield_json(*result.population);
   json["warnings"] = result.warnings;
   json["provenance"] = provenance_json(result.provenance);
   return json;

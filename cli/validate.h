@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace beamgyro {
+
+/// Exit status of a validation that ran and was not passed.
+constexpr int kNotPassed = 3;
+
+/// The words of `validate`.
+struct ValidateArguments {
+  std::string compensator, json, report, bundle, check;
+  std::vector<std::string> runs;      // recordings, or one set
+  std::vector<std::string> device;    // a device file, or numbers of a set
+  std::vector<std::string> set_runs;  // names, of a set
+  std::optional<double> full_scale;   // [deg/s]
+  std::optional<std::string> qualification, campaign, specification;
+  std::optional<long> devices, jobs;
+};
+
+/// Simulates a qualification with a device and judges the compensator by it.
+int validate_on_device(const ValidateArguments& arguments);
+
+}  // namespace beamgyro

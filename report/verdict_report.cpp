@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "report/verdict_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace beamgyro {
+namespace {
+
+constexpr std::size_t kReportWidth = 100;
+
+std::string figure(const std::optional<double>& value) {
+  return value ? fmt::format("{:.3g}", *value) : "-";
+}
+
+std::string figure(const std::optional<Estimate>& estimate) {
+  return estimate ? fmt::format("{:.3g}", estimate->value) : "-";
+}
+
+// Breaks a text between words. Later lines are indented.
+std::string wrapped(std::string_view text, std::size_t indent) {
+  std::string lines, line;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::string_view word = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (!line.empty() && line.size() + 1 + word.size() > kReportWidth) {
+      lines += line + '\n';
+      line = std::string(indent, ' ');
+    } else if (!line.empty()) {
+      line += ' ';
+    }
+    line += word;
+  }
+  return lines + line + '\n';
+}
+
+// Names of the baselines beside "none", which is the recorded rate.
+std::vector<std::string> baseline_names(const ValidationResult& result) {
+  std::vector<std::string> names;
+  if (result.metrics.empty()) return names;
+  for (const BaselineEstimate& baseline : result.metrics[0].baselines)
+    if (baseline.name != "none") names.push_back(baseline.name);
+  return names;
+}
+
+std::string metric_table(const ValidationResult& result) {
+  const std::vector<std::string> names = baseline_names(result);
+  std::size_t width = 6;
+  for (const MetricResult& metric : result.metrics)
+    width = std::max(width, metric.metric->name.size());
+  std::string text =
+      fmt::format("{:<{}}{:>10}{:>10}", "metric", width, "before", "after");
+  for (const std::string& name : names) text += fmt::format("{:>10}", name);
+  text += '\n';
+  for (const MetricResult& metric : result.metrics) {
+    if (!metric.before && !metric.after) continue;
+    text += fmt::format("{:<{}}{:>10}{:>10}", metric.metric->name, width,
+                        figure(metric.before), figure(metric.after));
+    for (const BaselineEstimate& baseline : metric.baselines)
+      if (baseline.name != "none")
+        text += fmt::format("{:>10}", figure(baseline.estimate));
+    text += '\n';
+  }
+  return text;
+}
+
+std::string limit_line(const DecidedLimit& decided) {
+  const auto& [limit, decision] = decided;
+  std::string value = figure(decision.compared);
+  if (decision.compared && decision.compared->interval)
+    value += fmt::format(" [{:.3g}, {:.3g}]", decision.compared->interval->low,
+                         decision.compared->interval->high);
+  return wrapped(fmt::format("{:<10}{}: {}, {}, margin {}",
+                             conformity_name(decision.result), limit.metric,
+                             value, text_of(limit), figure(decision.margin)),
+                 10);
+}
+
+std::string check_line(const CheckResult& check) {
+  const char* outcome = check.outcome == CheckOutcome::kPassed   ? "passed"
+                        : check.outcome == CheckOutcome::kFailed ? "FAILED"
+                                                                 : "not tested";
+  std::string text =
+      fmt::format("{:<11}{}: {}", outcome, check.name, check.words);
+  std::ranges::replace(text, '\n', ' ');
+  return wrapped(text, 11);
+}
+
+std::string yield_lines(const PopulationYield& population) {
+  return wrapped(
+      fmt::format(
+          "yield of {}: {} of {} devices pass every limit, {:.1f} % [{:.1f}, "
+          "{:.1f}]; {} fail, {} undecided; {}",
+          population.campaign, population.passed, population.devices.size(),
+          100 * population.share(), 100 * population.interval.low,
+          100 * population.interval.high, population.failed,
+          population.undecided,
+          population.trained_on_each ? "trained on each device"
+                                     : "one compensator for all"),
+      2);
+}
+
+std::string heading(const ValidationResult& result) {
+  std::string verdict(conformity_name(result.verdict));
+  std::ranges::transform(verdict, verdict.begin(), [](char c) {
+    return static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+  });
+  return wrapped(fmt::format("{}: {}", verdict, result.words), 2) +
+         wrapped(fmt::format("{} on {}, {}; {}", result.compensator.name,
+                             result.provenance.device,
+                             result.provenance.qualification,
+                             result.provenance.specification),
+                 2);
+}
+
+}  // namespace
+
+std::string verdict_report(const ValidationResult& result) {
+  std::string text = heading(result) + '\n' + metric_table(result) + '\n';
+  for (const DecidedLimit& limit : result.limits) text += limit_line(limit);
+  text += '\n';
+  for (const CheckResult& check : result.checks) text += check_line(check);
+  if (result.population) text += '\n' + yield_lines(*result.population);
+  return text;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "validation/external/tested_compensator.h"
+#include "validation/result/device_evidence.h"
+#include "validation/result/validation_result.h"
+
+namespace beamgyro {
+
+/// What `validate --device` is asked for. Files are named as the user does.
+struct ValidationRequest {
+  // FILE.json, FILE.so, "cmd:PROGRAM ARGS", or a model file (MODEL.toml) that
+  // is trained on the training runs of the qualification.
+  std::string compensator;
+  std::filesystem::path device, qualification;
+  std::optional<std::filesystem::path> specification = {};
+  std::optional<std::filesystem::path> campaign = {};  // for a yield
+  std::optional<long> devices = {};                    // of the campaign
+  std::string program_version, git_revision;
+  ProcessLimits limits = {};
+};
+
+/// A result and the evidence that it is drawn from.
+struct DeviceValidation {
+  ValidationResult result;
+  DeviceEvidence evidence;
+};
+
+/// A request whose files have been read and checked.
+class DeviceValidator {
+ public:
+  /// Reads every file. Throws std::invalid_argument as read_qualification(),
+  /// load_device(), read_specification_file(), Campaign::read(), read_model()
+  /// and open_tested_compensator(), and when
+  /// - a model is to be trained and the qualification has no training runs;
+  /// - a limit is relative to a baseline, and there are none of them either.
+  explicit DeviceValidator(ValidationRequest request);
+  ~DeviceValidator();
+  DeviceValidator(DeviceValidator&&) noexcept;
+
+  /// Returns every file that the result depends on.
+  const std::vector<std::filesystem::path>& files() const;
+
+  /// Simulates the qualification for the device, judges the compensator, and
+  /// does so with the devices of the campaign, if there is one. The result does
+  /// not depend on the number of threads.
+  DeviceValidation validate(std::size_t threads,
+                            const ProgressOfWork& progress = {}) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace beamgyro

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "validation/result/population_yield.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <boost/math/distributions/binomial.hpp>
+#include <limits>
+#include <memory>
+#include <set>
+#include <stdexcept>
+
+#include "parallel/work_queue.h"
+#include "sim/numerics/simulation_failure.h"
+#include "validation/external/file_compensator.h"
+#include "validation/result/judgement.h"
+
+namespace beamgyro {
+namespace {
+
+// Returns the qualification with the runs that the metrics read.
+Qualification shortened_to(const Qualification& whole,
+                           const std::vector<std::string>& names) {
+  Qualification shortened = whole;
+  shortened.runs.clear();
+  for (const QualificationRun& run : whole.runs) {
+    const bool is_read = std::ranges::any_of(names, [&](const auto& name) {
+      const auto named = whole.metric_runs.find(name);
+      return named != whole.metric_runs.end()
+                 ? std::ranges::count(named->second, run.name) > 0
+                 : std::ranges::count(find_metric(name)->reads, run.purpose) >
+                       0;
+    });
+    if (is_read) shortened.runs.push_back(run);
+  }
+  return shortened;
+}
+
+struct DeviceOutcome {
+  DeviceVerdict verdict;
+  std::vector<MetricResult> metrics;  // empty: could not be simulated
+};
+
+DeviceOutcome failed(const std::string& words) {
+  return {{Conformity::kFail, words.substr(0, words.find('\n'))}, {}};
+}
+
+class PopulationJudge {
+ public:
+  explicit PopulationJudge(const PopulationTask& task) : task_(task) {
+    std::set<std::string> names;
+    for (const Limit& limit : task.specification->limits) {
+      names.insert(limit.metric);
+      if (!limit.relative_to.empty() && limit.relative_to != "before")
+        needs_baselines_ = true;
+    }
+    for (const Metric& metric : metrics())
+      if (names.contains(std::string(metric.name)))
+        names_.emplace_back(metric.name);
+    qualification_ = shortened_to(*task.qualification, names_);
+  }
+
+  const std::vector<std::string>& metric_names() const { return names_; }
+
+  DeviceOutcome outcome_of_device(std::uint32_t number) const {
+    const VirtualDevice drawn = task_.campaign->device(number);
+    if (!drawn.device) return failed(drawn.failure);
+    try {
+      return judged({*drawn.device, task_.campaign->device_text(),
+                     drawn.overrides, number});
+    } catch (const SimulationFailure& error) {
+      return failed(error.what());
+    } catch (const std::invalid_argument& error) {
+      return failed(error.what());
+    }
+  }
+
+ private:
+  DeviceOutcome judged(const QualifiedDevice& device) const {
+    TrainingData data;
+    if (task_.model != nullptr || needs_baselines_)
+      data = training_data(*task_.qualification, device, 1);
+    std::unique_ptr<TestedCompensator> own;
+    if (task_.model != nullptr) own = tested(trained_on(data, *task_.model));
+    const DeviceEvidence found = device_evidence(
+        qualification_, device, own ? *own : *task_.compensator,
+        needs_baselines_ ? data : TrainingData{}, 1, own != nullptr);
+    DeviceOutcome outcome;
+    outcome.metrics = metric_results(found, qualification_, names_, 1);
+    const std::vector<DecidedLimit> limits =
+        decided_limits(*task_.specification, outcome.metrics);
+    std::vector<Conformity> results;
+    for (const auto& [limit, decision] : limits) {
+      results.push_back(decision.result);
+      if (decision.result != Conformity::kPass && outcome.verdict.words.empty())
+        outcome.verdict.words = decision.words;
+    }
+    outcome.verdict.verdict = worst_of(results);
+    return outcome;
+  }
+
+  const PopulationTask& task_;
+  std::vector<std::string> names_;  // of the metrics that have a limit
+  bool needs_baselines_ = false;
+  Qualification qualification_;  // with the runs that they read
+};
+
+double value_or_nan(const std::optional<Estimate>& estimate) {
+  return estimate ? estimate->value : std::numeric_limits<double>::quiet_NaN();
+}
+
+void count(const std::vector<DeviceOutcome>& outcomes,
+           PopulationYield& result) {
+  for (const DeviceOutcome& outcome : outcomes) {
+    result.devices.push_back(outcome.verdict);
+    switch (outcome.verdict.verdict) {
+      case Conformity::kPass:
+        ++result.passed;
+        break;
+      case Conformity::kFail:
+        ++result.failed;
+        break;
+      case Conformity::kUndecided:
+        ++result.undecided;
+        break;
+    }
+    if (outcome.metrics.empty()) ++result.not_simulated;
+  }
+  result.interval = clopper_pearson(result.passed, outcomes.size());
+}
+
+}  // namespace
+
+Interval clopper_pearson(std::size_t successes, std::size_t trials) {
+  using Binomial = boost::math::binomial_distribution<double>;
+  constexpr double kTail = 0.025;  // [-], on each side
+  const auto n = static_cast<double>(trials);
+  const auto k = static_cast<double>(successes);
+  return {Binomial::find_lower_bound_on_p(n, k, kTail),
+          Binomial::find_upper_bound_on_p(n, k, kTail)};
+}
+
+PopulationYield population_yield(const PopulationTask& task,
+                                 std::size_t threads,
+                                 const ProgressOfWork& progress) {
+  const PopulationJudge population(task);
+  const std::uint32_t devices = task.campaign->devices();
+  std::vector<DeviceOutcome> outcomes(devices);
+  std::atomic<std::uint32_t> done = 0;
+  for_each_task(devices, threads, [&](std::size_t k, std::size_t) {
+    outcomes[k] = population.outcome_of_device(static_cast<std::uint32_t>(k));
+    ++done;
+    if (progress) progress(static_cast<double>(done) / devices);
+  });
+
+  PopulationYield result;
+  result.campaign = task.campaign->name();
+  result.trained_on_each = task.model != nullptr;
+  count(outcomes, result);
+  for (std::size_t m = 0; m < population.metric_names().size(); ++m) {
+    PopulationMetric metric{find_metric(population.metric_names()[m]), {}, {}};
+    for (const DeviceOutcome& outcome : outcomes) {
+      const bool has = m < outcome.metrics.size();
+      metric.before.push_back(has ? value_or_nan(outcome.metrics[m].before)
+                                  : value_or_nan({}));
+      metric.after.push_back(has ? value_or_nan(outcome.metrics[m].after)
+                                 : value_or_nan({}));
+    }
+    result.metrics.push_back(std::move(metric));
+  }
+  return result;
+}
+
+}  // namespace beamgyro
