@@ -117,6 +117,7 @@ void require_no_device_options(const ValidateArguments& arguments) {
       {"--qualification", arguments.qualification.has_value()},
       {"--spec", arguments.specification.has_value()},
       {"--report", !arguments.report.empty()},
+      {"--bundle", !arguments.bundle.empty()},
       {"--campaign", arguments.campaign.has_value()},
       {"--devices", arguments.devices.has_value()},
       {"--jobs", arguments.jobs.has_value()}};
@@ -132,6 +133,19 @@ void require_no_device_options(const ValidateArguments& arguments) {
           "--device {}: of a set, a number is expected; a device file is for a "
           "call without {}",
           word, arguments.runs[0]));
+}
+
+void require_check_alone(const ValidateArguments& arguments) {
+  if (arguments.compensator.empty() && arguments.device.empty() &&
+      !arguments.qualification && !arguments.specification &&
+      !arguments.campaign && !arguments.devices && arguments.json.empty() &&
+      arguments.report.empty() && arguments.bundle.empty() &&
+      arguments.set_runs.empty() && !arguments.full_scale)
+    return;
+  throw std::invalid_argument(fmt::format(
+      "--check {}: the bundle says what is validated; expected no more than "
+      "--jobs beside it",
+      arguments.check));
 }
 
 void require_device(const ValidateArguments& arguments) {
@@ -153,7 +167,16 @@ void require_device(const ValidateArguments& arguments) {
         "--full-scale is for recordings; a device file says its own");
 }
 
-int validate(const ValidateArguments& arguments) {
+int validate_any(const ValidateArguments& arguments) {
+  if (!arguments.check.empty()) {
+    require_check_alone(arguments);
+    return check_bundle(arguments);
+  }
+  if (arguments.compensator.empty())
+    throw std::invalid_argument(
+        "COMPENSATOR is missing; expected beamgyro validate COMPENSATOR "
+        "RUN.h5..., beamgyro validate COMPENSATOR --device DEVICE.toml, or "
+        "beamgyro validate --check DIR");
   if (!arguments.runs.empty()) {
     require_no_device_options(arguments);
     return validate_on_runs(arguments);
@@ -173,7 +196,8 @@ void add_validate(CommandLine& program) {
   command.argument({"COMPENSATOR", "",
                     "Compensator: FILE.json as written by train, LIBRARY.so, "
                     "\"cmd:PROGRAM ARGS\", or with --device a MODEL.toml that "
-                    "is trained first"},
+                    "is trained first",
+                    "none, with --check"},
                    arguments->compensator);
   command.reads({{FileKind::kCompensator, FileKind::kModel}});
   command.arguments({"RUN.h5...", "",
@@ -204,6 +228,10 @@ void add_validate(CommandLine& program) {
   command.reads({{FileKind::kSpecification}});
   command.text({"--report", "DIR", "Writes the page DIR/index.html", "no page"},
                arguments->report);
+  command.text({"--bundle", "DIR",
+                "Writes inputs, result and report to the new directory DIR",
+                "no bundle"},
+               arguments->bundle);
   command.text({"--campaign", "CAMPAIGN.toml",
                 "Also reports how many devices of a population pass",
                 "one device alone"},
@@ -214,6 +242,12 @@ void add_validate(CommandLine& program) {
       arguments->devices, {1, 4000000000});
   command.integer({"--jobs", "N", "Number of threads", "one per core"},
                   arguments->jobs, {1, 4096});
+  command.group("A result made before");
+  command.text({"--check", "DIR",
+                "Makes the result of a bundle again and compares every byte; "
+                "the status is 1 when one differs",
+                "no check"},
+               arguments->check);
   command.group("Part of a set");
   command.list({"--run", "NAME", "Run to score; may be repeated", "all runs"},
                arguments->set_runs);
@@ -222,7 +256,7 @@ void add_validate(CommandLine& program) {
   command.example(
       "beamgyro validate cubic.json --device scenarios/devices/nominal.toml",
       "Simulates what the compensator has to stand");
-  command.action([arguments] { return validate(*arguments); });
+  command.action([arguments] { return validate_any(*arguments); });
 }
 
 }  // namespace beamgyro

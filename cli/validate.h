@@ -24,4 +24,8 @@ struct ValidateArguments {
 /// Simulates a qualification with a device and judges the compensator by it.
 int validate_on_device(const ValidateArguments& arguments);
 
+/// Makes the result of a bundle again. The status is 0 when every byte is the
+/// same, and 1 when not.
+int check_bundle(const ValidateArguments& arguments);
+
 }  // namespace beamgyro

@@ -15,6 +15,7 @@
 #include "dataset/files/atomic_file.h"
 #include "parallel/work_queue.h"
 #include "report/verdict_report.h"
+#include "validation/bundle/bundle.h"
 #include "validation/page/figures.h"
 #include "validation/page/page.h"
 #include "validation/result/device_validation.h"
@@ -24,6 +25,8 @@ namespace beamgyro {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr int kBundleDiffers = 1;
 
 // Returns the qualification that is shipped with this program: in its source
 // tree or where it was installed.
@@ -75,32 +78,85 @@ nlohmann::ordered_json json_of(const DeviceValidation& validation) {
   return json;
 }
 
+std::vector<BundleOutput> outputs_of(const DeviceValidation& validation) {
+  const nlohmann::ordered_json json = json_of(validation);
+  return {{"result.json", json.dump(2) + "\n"},
+          {"report.txt", verdict_report(validation.result)},
+          {"report/index.html", page_of(json)}};
+}
+
+std::vector<BundleOutput> validated(const DeviceValidator& validator,
+                                    const ValidateArguments& arguments,
+                                    Conformity& verdict) {
+  Progress progress("validating " + validator.request().compensator);
+  const DeviceValidation validation = validator.validate(
+      thread_count(static_cast<unsigned>(arguments.jobs.value_or(0))),
+      [&](double share) { progress.set_share(share); });
+  for (const std::string& warning : validation.result.warnings)
+    keep_warning(warning);
+  verdict = validation.result.verdict;
+  return outputs_of(validation);
+}
+
+// Prepares what the arguments name for writing.
+void require_result_places(const ValidateArguments& arguments,
+                     const std::vector<InputFile>& inputs) {
+  std::vector<fs::path> files;
+  for (const InputFile& input : inputs) files.push_back(input.path);
+  if (!arguments.bundle.empty()) require_new_bundle(arguments.bundle);
+  if (!arguments.report.empty()) {
+    require_directory_name(arguments.report);
+    fs::create_directories(arguments.report);
+    require_output(fs::path(arguments.report) / "index.html", files);
+  }
+  if (!arguments.json.empty()) require_output(arguments.json, files);
+}
+
 }  // namespace
 
 int validate_on_device(const ValidateArguments& arguments) {
   require_campaign(arguments);
   const DeviceValidator validator(request_of(arguments));
-  const fs::path page = fs::path(arguments.report) / "index.html";
-  if (!arguments.json.empty())
-    require_output(arguments.json, validator.files());
-  if (!arguments.report.empty()) {
-    require_directory_name(arguments.report);
-    fs::create_directories(arguments.report);
-    require_output(page, validator.files());
+  require_result_places(arguments, validator.inputs());
+  Conformity verdict{};
+  const std::vector<BundleOutput> outputs =
+      validated(validator, arguments, verdict);
+  if (!arguments.json.empty()) write_text_file(arguments.json, outputs[0].text);
+  if (!arguments.report.empty())
+    write_text_file(fs::path(arguments.report) / "index.html", outputs[2].text);
+  if (!arguments.bundle.empty())
+    write_bundle(arguments.bundle, validator, outputs);
+  print_result(outputs[1].text);
+  return verdict == Conformity::kPass ? 0 : kNotPassed;
+}
+
+int check_bundle(const ValidateArguments& arguments) {
+  Bundle bundle = read_bundle(arguments.check);
+  std::vector<std::string> different = std::move(bundle.changed);
+  if (different.empty()) {
+    bundle.request.program_version = kProgramVersion;
+    bundle.request.git_revision = kGitRevision;
+    bundle.request.limits.program = "/proc/self/exe";
+    const DeviceValidator validator(std::move(bundle.request));
+    Conformity verdict{};
+    different = different_outputs(arguments.check,
+                                  validated(validator, arguments, verdict));
   }
-  std::optional<Progress> progress("validating " + arguments.compensator);
-  const DeviceValidation validation = validator.validate(
-      thread_count(static_cast<unsigned>(arguments.jobs.value_or(0))),
-      [&](double share) { progress->set_share(share); });
-  const nlohmann::ordered_json json = json_of(validation);
-  if (!arguments.json.empty())
-    write_text_file(arguments.json, json.dump(2) + "\n");
-  if (!arguments.report.empty()) write_text_file(page, page_of(json));
-  progress.reset();
-  for (const std::string& warning : validation.result.warnings)
-    print_warning(warning);
-  print_result(verdict_report(validation.result));
-  return validation.result.verdict == Conformity::kPass ? 0 : kNotPassed;
+  if (different.empty()) {
+    print_result(fmt::format("{}: {} inputs and {} outputs are the same\n",
+                             arguments.check, bundle.inputs.size(),
+                             bundle.outputs.size()));
+    return 0;
+  }
+  for (const std::string& name : different)
+    print_result(fmt::format("{}: is not the same\n",
+                             (fs::path(arguments.check) / name).string()));
+  if (bundle.git_revision != kGitRevision)
+    print_note(
+        fmt::format("the bundle was made by beamgyro {} ({}), this is {} ({})",
+                    bundle.program_version, bundle.git_revision,
+                    kProgramVersion, kGitRevision));
+  return kBundleDiffers;
 }
 
 }  // namespace beamgyro

@@ -26,7 +26,7 @@ name = "without a specification"
 residual_rms_deg_per_s = { max = 1.0, source = "less than without it" }
 )";
 
-SpecificationFile specification_of(const ValidationRequest& request) {
+SpecificationFile asked_specification(const ValidationRequest& request) {
   if (request.specification)
     return read_specification_file(*request.specification);
   return parse_specification_file(kOwnSpecification, "specification");
@@ -73,20 +73,17 @@ struct DeviceValidator::State {
   std::optional<Compensator> file;
   std::optional<ModelSpec> model;
 
-  std::vector<std::filesystem::path> files;
-  std::vector<ResultFile> hashes;
+  std::vector<InputFile> inputs;
 
-  void add_file(const std::string& role, const std::filesystem::path& path) {
-    if (std::ranges::count(files, path) > 0) return;
-    files.push_back(path);
-    hashes.push_back({role, path.filename().string(), sha256_of_file(path)});
+  void add_file(const std::string& group, const std::filesystem::path& path) {
+    inputs.push_back({group, path});
   }
 
   void open_compensator() {
     const std::string& argument = request.compensator;
     if (is_model(argument)) {
       model = read_model(argument);
-      for (const auto& path : model->files) add_file("model", path);
+      for (const auto& path : model->files) add_file("compensator", path);
       if (qualification.training.empty())
         throw std::invalid_argument(
             fmt::format("{}: has no [[training]], on which {} would be trained",
@@ -121,8 +118,11 @@ struct DeviceValidator::State {
         .qualification = request.qualification.filename().string(),
         .specification = specification.name,
         .false_accept_risk = specification.false_accept_risk,
-        .files = hashes,
+        .files = {},
         .seeds = {}};
+    for (const auto& [group, path] : inputs)
+      p.files.push_back(
+          {group, path.filename().string(), sha256_of_file(path)});
     for (const auto* runs : {&qualification.runs, &qualification.training,
                              &qualification.held_out})
       for (const QualificationRun& run : *runs)
@@ -139,11 +139,11 @@ DeviceValidator::DeviceValidator(ValidationRequest request)
   LoadedDevice loaded = load_device(asked.device, {});
   s.device = {loaded.device, std::move(loaded.text)};
   s.qualification = read_qualification(asked.qualification);
-  s.specification = specification_of(asked);
+  s.specification = asked_specification(asked);
   s.open_compensator();
   s.add_file("device", asked.device);
-  s.add_file("qualification", asked.qualification);
-  for (const auto& path : s.qualification.files) s.add_file("scenario", path);
+  for (const auto& path : s.qualification.files)
+    s.add_file("qualification", path);
   if (asked.specification) s.add_file("specification", *asked.specification);
   if (asked.campaign) {
     s.campaign = Campaign::read(*asked.campaign, asked.devices);
@@ -156,8 +156,12 @@ DeviceValidator::DeviceValidator(ValidationRequest request)
 DeviceValidator::~DeviceValidator() = default;
 DeviceValidator::DeviceValidator(DeviceValidator&&) noexcept = default;
 
-const std::vector<std::filesystem::path>& DeviceValidator::files() const {
-  return state_->files;
+const ValidationRequest& DeviceValidator::request() const {
+  return state_->request;
+}
+
+const std::vector<InputFile>& DeviceValidator::inputs() const {
+  return state_->inputs;
 }
 
 DeviceValidation DeviceValidator::validate(

@@ -27,6 +27,12 @@ struct ValidationRequest {
   ProcessLimits limits = {};
 };
 
+/// A file that a result depends on.
+struct InputFile {
+  std::string group;  // "device", ...; names in a file are of its group
+  std::filesystem::path path;
+};
+
 /// A result and the evidence that it is drawn from.
 struct DeviceValidation {
   ValidationResult result;
@@ -45,8 +51,9 @@ class DeviceValidator {
   ~DeviceValidator();
   DeviceValidator(DeviceValidator&&) noexcept;
 
-  /// Returns every file that the result depends on.
-  const std::vector<std::filesystem::path>& files() const;
+  const ValidationRequest& request() const;
+  /// Returns every file that the result depends on; one of two groups twice.
+  const std::vector<InputFile>& inputs() const;
 
   /// Simulates the qualification for the device, judges the compensator, and
   /// does so with the devices of the campaign, if there is one. The result does

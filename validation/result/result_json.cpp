@@ -135,7 +135,7 @@ Json provenance_json(const ResultProvenance& provenance) {
   Json& files = json["files"] = Json::array();
   for (const ResultFile& file : provenance.files)
     files.push_back(
-        {{"role", file.role}, {"name", file.name}, {"sha256", file.sha256}});
+        {{"group", file.group}, {"name", file.name}, {"sha256", file.sha256}});
   Json& seeds = json["seeds"] = Json::object();
   for (const auto& [run, seed] : provenance.seeds) seeds[run] = seed;
   return json;

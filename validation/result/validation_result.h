@@ -36,8 +36,8 @@ struct DecidedLimit {
 
 /// A file or run that a result depends on.
 struct ResultFile {
-  std::string role;  // "compensator", "device", "qualification", ...
-  std::string name;  // without its folder
+  std::string group;  // "compensator", "device", "qualification", ...
+  std::string name;   // without its folder
   std::string sha256;
 };
 

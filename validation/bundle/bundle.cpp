@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+#include "validation/bundle/bundle.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "config/file_error.h"
+#include "dataset/files/directory.h"
+#include "dataset/files/json_node.h"
+#include "dataset/files/publish.h"
+#include "dataset/files/set_files.h"
+#include "dataset/files/sha256.h"
+#include "dataset/files/text_file.h"
+#include "dataset/set/source_copies.h"
+
+namespace beamgyro {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kBundleName = "bundle.json";
+constexpr const char* kBundleFiletype = "beamgyro-bundle";
+
+// A file of a bundle.
+struct BundleInput {
+  std::string name;  // inputs/GROUP/...
+  std::string text;
+};
+
+// Returns the copies of all inputs. Those of a group stand to each other as the
+// originals do, so that the names in them stay valid.
+std::vector<BundleInput> copies_of(const std::vector<InputFile>& inputs,
+                                   std::map<fs::path, std::string>& names) {
+  std::vector<std::string> groups;
+  for (const InputFile& input : inputs)
+    if (std::ranges::count(groups, input.group) == 0)
+      groups.push_back(input.group);
+  std::vector<BundleInput> copies;
+  for (const std::string& group : groups) {
+    std::vector<SourceText> texts;
+    for (const InputFile& input : inputs)
+      if (input.group == group)
+        texts.push_back({input.path, read_text_file(input.path)});
+    const std::vector<SourceEntry> entries = source_entries(texts);
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      const std::string name =
+          fmt::format("inputs/{}/{}", group,
+                      entries[k].file.substr(entries[k].file.find('/') + 1));
+      names.emplace(group / texts[k].path, name);
+      copies.push_back({name, std::move(texts[k].text)});
+    }
+  }
+  return copies;
+}
+
+void publish_text(const fs::path& directory, const std::string& name,
+                  const std::string& text) {
+  publish_file(directory, name, std::as_bytes(std::span(text)));
+}
+
+Json hashes_of(const auto& files) {
+  Json list = Json::array();
+  for (const auto& file : files)
+    list.push_back({{"file", file.name}, {"sha256", sha256(file.text)}});
+  return list;
+}
+
+Json request_json(const ValidationRequest& request,
+                  const std::map<fs::path, std::string>& names) {
+  const auto name_of = [&](const char* group, const fs::path& path) {
+    return names.at(fs::path(group) / path);
+  };
+  const auto optional_name = [&](const char* group,
+                                 const std::optional<fs::path>& path) {
+    return path ? Json(name_of(group, *path)) : Json();
+  };
+  const bool is_command = request.compensator.starts_with("cmd:");
+  return {
+      {"compensator", is_command ? request.compensator
+                                 : name_of("compensator", request.compensator)},
+      {"device", name_of("device", request.device)},
+      {"qualification", name_of("qualification", request.qualification)},
+      {"specification", optional_name("specification", request.specification)},
+      {"campaign", optional_name("campaign", request.campaign)},
+      {"devices", request.devices ? Json(*request.devices) : Json()}};
+}
+
+std::optional<fs::path> optional_path(const fs::path& directory,
+                                      const JsonNode& node) {
+  if (node.is_null()) return {};
+  return directory / node.text();
+}
+
+ValidationRequest request_from(const fs::path& directory,
+                               const JsonNode& node) {
+  ValidationRequest request;
+  request.compensator = node.at("compensator").text();
+  if (!request.compensator.starts_with("cmd:"))
+    request.compensator = (directory / request.compensator).string();
+  request.device = directory / node.at("device").text();
+  request.qualification = directory / node.at("qualification").text();
+  request.specification = optional_path(directory, node.at("specification"));
+  request.campaign = optional_path(directory, node.at("campaign"));
+  if (const JsonNode devices = node.at("devices"); !devices.is_null())
+    request.devices = devices.integer(1, 4'000'000'000);
+  return request;
+}
+
+bool has_bytes(const fs::path& directory, const std::string& name,
+               const std::string& digits) {
+  try {
+    return sha256_of_set_file(directory, name) == digits;
+  } catch (const std::invalid_argument&) {
+    return false;  // missing, or no ordinary file
+  }
+}
+
+}  // namespace
+
+void require_new_bundle(const fs::path& directory) {
+  if (!fs::exists(status_of(directory))) return;
+  if (!fs::is_directory(directory) || !Directory(directory).names().empty())
+    throw std::invalid_argument(fmt::format(
+        "--bundle {}: is there already; expected the name of a new directory",
+        directory.string()));
+}
+
+void write_bundle(const fs::path& directory, const DeviceValidator& validator,
+                  const std::vector<BundleOutput>& outputs) {
+  require_new_bundle(directory);
+  fs::create_directories(directory);
+  std::map<fs::path, std::string> names;
+  const std::vector<BundleInput> copies = copies_of(validator.inputs(), names);
+  for (const BundleInput& copy : copies)
+    publish_text(directory, copy.name, copy.text);
+  for (const BundleOutput& output : outputs)
+    publish_text(directory, output.name, output.text);
+  const ValidationRequest& request = validator.request();
+  const Json json{{"filetype", kBundleFiletype},
+                  {"format_version", 1},
+                  {"beamgyro_version", request.program_version},
+                  {"git_revision", request.git_revision},
+                  {"request", request_json(request, names)},
+                  {"inputs", hashes_of(copies)},
+                  {"outputs", hashes_of(outputs)}};
+  publish_text(directory, kBundleName, json.dump(2) + "\n");
+}
+
+Bundle read_bundle(const fs::path& directory) {
+  const std::string place = (directory / kBundleName).string();
+  const Json json = parse_json(read_text_file(place), place);
+  const JsonNode root(json, place);
+  if (root.at("filetype").text() != kBundleFiletype)
+    root.at("filetype")
+        .fail(fmt::format("is not \"{}\", what a bundle has", kBundleFiletype));
+  root.at("format_version").integer(1, 1);
+  Bundle bundle;
+  bundle.program_version = root.at("beamgyro_version").text();
+  bundle.git_revision = root.at("git_revision").text();
+  bundle.request = request_from(directory, root.at("request"));
+  for (const JsonNode& input : root.at("inputs").elements()) {
+    bundle.inputs.push_back(input.at("file").text());
+    if (!has_bytes(directory, bundle.inputs.back(), input.at("sha256").text()))
+      bundle.changed.push_back(bundle.inputs.back());
+  }
+  for (const JsonNode& output : root.at("outputs").elements())
+    bundle.outputs.push_back(output.at("file").text());
+  return bundle;
+}
+
+std::vector<std::string> different_outputs(
+    const fs::path& directory, const std::vector<BundleOutput>& outputs) {
+  std::vector<std::string> different;
+  for (const BundleOutput& output : outputs)
+    if (!has_bytes(directory, output.name, sha256(output.text)))
+      different.push_back(output.name);
+  return different;
+}
+
+}  // namespace beamgyro
