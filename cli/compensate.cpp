@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
+#include "cli/process_limits.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
 #include "cli/version.h"
@@ -17,49 +18,70 @@
 #include "dataset/files/sha256.h"
 #include "dataset/netcdf/recording_file.h"
 #include "dataset/recording/signals.h"
+#include "validation/external/tested_compensator.h"
 
 namespace beamgyro {
 namespace {
 
 constexpr const char* kColumn = "compensated_rate";
 
+constexpr int kCompensatorFailed = 3;
+
 struct CompensateArguments {
   std::string compensator, run, output;
+  LimitArguments limits;
 };
 
-std::vector<double> answers(const Compensator& compensator,
-                            const Recording& recording,
-                            const std::string& file) try {
-  return compensated_rate(compensator, recording);
+void warn_of_range(const CompensateArguments& arguments, std::size_t clamped,
+                   const Recording& recording) {
+  if (clamped == 0) return;
+  const TemperatureRange range =
+      read_compensator(arguments.compensator).temperature_range;
+  print_warning(fmt::format(
+      "{}: {} of {} samples lie outside {:g} to {:g} degC, the temperatures "
+      "seen in training; clamped",
+      arguments.run, clamped, recording.time.size(), range.lowest,
+      range.highest));
+}
+
+// Prints what is wrong with the answers. Returns whether anything is.
+bool report_faults(const std::string& compensator, const Answer& answer) {
+  for (const SeenFault& seen : answer.faults)
+    print_error(fmt::format("{}: {}", compensator, seen.words));
+  return !answer.faults.empty();
+}
+
+Answer answer_of(const TestedCompensator& compensator,
+                 const Recording& recording, const std::string& file) try {
+  return compensator.answer(recording);
 } catch (const std::invalid_argument& error) {
   throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
 }
 
 int compensate(const CompensateArguments& arguments) {
-  const Compensator compensator = read_compensator(arguments.compensator);
+  const std::unique_ptr<TestedCompensator> compensator =
+      open_tested_compensator(arguments.compensator,
+                              process_limits(arguments.limits));
+  const bool is_file = !is_command(arguments.compensator);
   std::optional<Progress> progress("compensating " + arguments.run);
   Recording recording = load_recording(arguments.run);
-  require_output(arguments.output, {arguments.compensator, arguments.run});
+  std::vector<std::filesystem::path> inputs = {arguments.run};
+  if (is_file) inputs.emplace_back(arguments.compensator);
+  require_output(arguments.output, inputs);
   require_recording_name(arguments.output);
   if (find_column(recording, kColumn)) {
     throw std::invalid_argument(fmt::format(
         "{}: holds a {} already; expected a recording that was not compensated",
         arguments.run, kColumn));
   }
-  std::vector<double> rate = answers(compensator, recording, arguments.run);
+  Answer answer = answer_of(*compensator, recording, arguments.run);
   progress.reset();
-  if (const std::size_t clamped = clamped_samples(compensator, recording)) {
-    print_warning(fmt::format(
-        "{}: {} of {} samples lie outside {:g} to {:g} degC, the temperatures "
-        "seen in training; clamped",
-        arguments.run, clamped, recording.time.size(),
-        compensator.temperature_range.lowest,
-        compensator.temperature_range.highest));
-  }
-  recording.columns.push_back(column_of(kColumn, std::move(rate)));
-  recording.compensator =
-      std::filesystem::path(arguments.compensator).filename().string();
-  recording.compensator_sha256 = sha256_of_file(arguments.compensator);
+  if (report_faults(arguments.compensator, answer)) return kCompensatorFailed;
+  warn_of_range(arguments, answer.clamped, recording);
+  recording.columns.push_back(column_of(kColumn, std::move(answer.rate)));
+  recording.compensator = tested_name(arguments.compensator);
+  if (is_file)
+    recording.compensator_sha256 = sha256_of_file(arguments.compensator);
   if (!recording.history.empty()) recording.history += '\n';
   recording.history += history_line("compensate with " + recording.compensator);
   write_recording(recording, arguments.output);
@@ -73,15 +95,23 @@ void add_compensate(CommandLine& program) {
   Command& command =
       program.add("compensate", kCompensation,
                   "Copies a recording and adds the compensated rate");
-  command.argument({"COMPENSATOR.json", "", "Compensator, as written by train"},
-                   arguments->compensator);
+  command.argument(
+      {"COMPENSATOR", "",
+       "FILE.json of train, a shared library ./FILE.so with the functions of "
+       "beamgyro/plugin.h, or \"cmd:PROGRAM ARGS\", which reads CSV and writes "
+       "one rate a line"},
+      arguments->compensator);
   command.reads({{FileKind::kCompensator}});
   command.argument({"RUN.h5", "", "Recording"}, arguments->run);
   command.reads({{FileKind::kRecording}});
   command.text({"-o,--output", "OUT.h5", "Recording to write"},
                arguments->output);
+  add_process_limits(command, arguments->limits);
   command.example("beamgyro compensate cubic.json flight.h5 -o compensated.h5",
                   "Adds the variable compensated_rate");
+  command.example(
+      "beamgyro compensate \"cmd:python3 mine.py\" flight.h5 -o mine.h5",
+      "The same by a program of your own");
   command.action([arguments] { return compensate(*arguments); });
 }
 

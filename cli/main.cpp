@@ -10,6 +10,7 @@
 #include "cli/signals.h"
 #include "cli/terminal.h"
 #include "cli/version.h"
+#include "validation/external/plugin_host.h"
 
 namespace beamgyro {
 namespace {
@@ -17,6 +18,8 @@ namespace {
 constexpr int kWorkFailed = 1, kWrongInput = 2;
 
 int run_program(const std::vector<std::string>& words) {
+  if (!words.empty() && words[0] == kPluginHostWord)
+    return host_plugin({words.begin() + 1, words.end()});
   CommandLine program(
       "Simulates vibrating-beam piezo gyros with thermal drift, and trains and "
       "scores compensators on them.",

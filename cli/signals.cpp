@@ -7,12 +7,14 @@
 
 #include "cli/terminal.h"
 #include "dataset/files/atomic_file.h"
+#include "validation/external/child_process.h"
 
 namespace beamgyro {
 namespace {
 
 // Dies by the signal, so that a loop of the shell ends, too.
 extern "C" void end_process(int signal) {
+  kill_child_processes();
   remove_partial_files();
   print_interrupted();
   std::signal(signal, SIG_DFL);

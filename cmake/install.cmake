@@ -16,6 +16,7 @@ install(TARGETS beamgyro_everything EXPORT beamgyroTargets)
 foreach(room parallel random config dataset sim compensation report)
   install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/beamgyro FILES_MATCHING PATTERN *.h)
 endforeach()
+install(DIRECTORY include/beamgyro DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})  # C headers, under their own names
 install(EXPORT beamgyroTargets NAMESPACE beamgyro:: DESTINATION ${PACKAGE_DIR})
 configure_package_config_file(cmake/beamgyroConfig.cmake.in ${PROJECT_BINARY_DIR}/beamgyroConfig.cmake
   INSTALL_DESTINATION ${PACKAGE_DIR})

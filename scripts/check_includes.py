@@ -23,7 +23,7 @@ VALIDATION = [f"validation/{room}" for room in
               ("external", "evidence", "metrics", "checks", "specification",
                "qualification", "result", "page", "bundle")]
 
-BASE = ["config", "random", "parallel"]
+BASE = ["config", "random", "parallel", "include"]
 
 
 def in_order(rooms, below):
@@ -34,7 +34,7 @@ ALL = [*BASE, *DATASET, *SIM, *COMPENSATION]
 
 # What each room may include besides itself.
 MAY_INCLUDE = {
-    "config": set(), "random": set(), "parallel": set(),
+    "config": set(), "random": set(), "parallel": set(), "include": set(),
     **in_order(DATASET, ["config"]),
     **in_order(SIM, [*BASE, *DATASET]),
     **in_order(COMPENSATION, [*BASE, *DATASET]),

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dataset/recording/recording.h"
@@ -78,6 +79,10 @@ class TestedCompensator {
 /// std::invalid_argument when it is none of them or cannot be read.
 std::unique_ptr<TestedCompensator> open_tested_compensator(
     const std::string& argument, const ProcessLimits& limits = {});
+
+/// What kind of compensator an argument names; a file otherwise.
+bool is_command(std::string_view argument);
+bool is_library(std::string_view argument);
 
 /// Returns the name of a compensator as reports give it: without directories
 /// for a file, whole for a command.

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "cli/process_limits.h"
+
+#include <cmath>
+
+namespace beamgyro {
+namespace {
+
+constexpr double kGibibyte = 1073741824.0;  // bytes
+constexpr double kMostMemory = 1048576.0;   // [GiB]
+constexpr double kLongestTimeout = 1e6;     // [s]
+
+}  // namespace
+
+void add_process_limits(Command& command, LimitArguments& arguments) {
+  command.group("A library or a command");
+  command.number({"--timeout-s", "S",
+                  "Time without a sample taken or an answer given after which "
+                  "it hangs",
+                  "10"},
+                 arguments.timeout, {1e-3, kLongestTimeout});
+  command.number({"--memory-GiB", "N", "Memory that it may use", "2"},
+                 arguments.memory, {1e-3, kMostMemory});
+}
+
+ProcessLimits process_limits(const LimitArguments& arguments) {
+  ProcessLimits limits;
+  limits.program = "/proc/self/exe";
+  if (arguments.timeout) limits.stall = *arguments.timeout;
+  if (arguments.memory)
+    limits.memory =
+        static_cast<std::size_t>(std::llround(*arguments.memory * kGibibyte));
+  return limits;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <stdexcept>
+#include <thread>
+
+#include "tests/compensation/message_of.h"
+#include "tests/validation/external/tested_run.h"
+#include "validation/external/answer_checks.h"
+#include "validation/external/answering.h"
+
+namespace beamgyro::library_test {
+namespace {
+
+constexpr std::size_t kFaultySample = 700;  // of faulty_plugin.c
+
+void expect_none_by_comparison(const TestedCompensator& compensator) {
+  EXPECT_FALSE(state_kept_over_reset(compensator, tested_run()));
+  EXPECT_FALSE(later_samples_used(compensator, tested_run()));
+}
+
+}  // namespace
+
+TEST(LibraryCompensator, AnswersEveryPoweredSample) {
+  const Recording run = tested_run();
+  for (const char* name : {"NONE", "PRINTS"}) {
+    const auto library = faulty_plugin(name);
+    const Answer answer = library->answer(run);
+    EXPECT_TRUE(answer.faults.empty()) << answer.faults[0].words;
+    ASSERT_EQ(answer.rate.size(), run.time.size());
+    const auto& rate = column_values(run, "rate");
+    const auto& temperature = column_values(run, "temperature");
+    for (std::size_t k = 0; k < run.time.size(); ++k) {
+      if ((run.status[k] & kUnpowered) != 0)
+        EXPECT_TRUE(std::isnan(answer.rate[k]));
+      else
+        EXPECT_EQ(answer.rate[k], rate[k] - 0.01 * temperature[k]);
+    }
+    expect_none_by_comparison(*library);
+  }
+}
+
+TEST(LibraryCompensator, ReadsTheSignalsThatItNames) {
+  EXPECT_EQ(faulty_plugin("NONE")->inputs(),
+            (std::vector<std::string>{"rate", "temperature"}));
+}
+
+TEST(LibraryCompensator, AnswersAreTheSameFromSeveralThreads) {
+  const auto library = faulty_plugin("NONE");
+  const Recording run = tested_run();
+  std::vector<Answer> answers(8);
+  {
+    std::vector<std::jthread> threads;
+    for (Answer& answer : answers)
+      threads.emplace_back([&] { answer = library->answer(run); });
+  }
+  for (const Answer& answer : answers) {
+    EXPECT_TRUE(answer.faults.empty());
+    EXPECT_EQ(difference_of(answer, answers[0]).largest, 0.0);
+  }
+}
+
+TEST(LibraryCompensator, ACrashIsReportedAtItsSample) {
+  const SeenFault crash = only_fault(*faulty_plugin("CRASHES"));
+  EXPECT_EQ(crash.fault, AnswerFault::kCrashed);
+  EXPECT_EQ(crash.sample, kFaultySample);
+  EXPECT_EQ(crash.words,
+            "crashed (signal 11, Segmentation fault) at sample 700 (7 s)");
+  const SeenFault abort = only_fault(*faulty_plugin("ABORTS"));
+  EXPECT_EQ(abort.fault, AnswerFault::kCrashed);
+  EXPECT_EQ(abort.sample, kFaultySample);
+  const SeenFault recursion = only_fault(*faulty_plugin("RECURSES"));
+  EXPECT_EQ(recursion.fault, AnswerFault::kCrashed);
+  EXPECT_EQ(recursion.sample, kFaultySample);
+}
+
+TEST(LibraryCompensator, AnExitInTheMiddleIsNoEnd) {
+  const SeenFault exit = only_fault(*faulty_plugin("EXITS"));
+  EXPECT_EQ(exit.fault, AnswerFault::kCrashed);
+  EXPECT_LE(exit.sample, kFaultySample);
+}
+
+TEST(LibraryCompensator, AHangIsStopped) {
+  const Stopwatch watch;
+  const SeenFault hang = only_fault(*faulty_plugin("HANGS"));
+  EXPECT_EQ(hang.fault, AnswerFault::kTimedOut);
+  EXPECT_LE(hang.sample, kFaultySample);
+  EXPECT_GT(hang.sample + 64, kFaultySample);  // answers of one batch
+  EXPECT_LT(watch.seconds(), 4.0 * test_limits().stall);
+}
+
+TEST(LibraryCompensator, TooMuchMemoryIsRefused) {
+  if (test_limits().memory == 0) GTEST_SKIP() << "a sanitizer needs it";
+  const SeenFault at_once = only_fault(*faulty_plugin("USES_NO_MEMORY"));
+  EXPECT_EQ(at_once.fault, AnswerFault::kOutOfMemory) << at_once.words;
+  EXPECT_EQ(at_once.sample, kFaultySample);
+  const SeenFault by_and_by = only_fault(*faulty_plugin("LEAKS"));
+  EXPECT_EQ(by_and_by.fault, AnswerFault::kOutOfMemory) << by_and_by.words;
+}
+
+TEST(LibraryCompensator, OneNaNIsFound) {
+  const auto library = faulty_plugin("ANSWERS_NAN");
+  const SeenFault nan = only_fault(*library);
+  EXPECT_EQ(nan.fault, AnswerFault::kNotFinite);
+  EXPECT_EQ(nan.sample, kFaultySample);
+  expect_none_by_comparison(*library);
+}
+
+TEST(LibraryCompensator, StateKeptOverAResetIsFound) {
+  const auto library = faulty_plugin("KEEPS_STATE");
+  EXPECT_TRUE(library->answer(tested_run()).faults.empty());
+  const auto kept = state_kept_over_reset(*library, tested_run());
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->fault, AnswerFault::kKeepsState);
+  EXPECT_EQ(kept->sample, 0u);
+  EXPECT_FALSE(later_samples_used(*library, tested_run()));
+}
+
+TEST(LibraryCompensator, SlowerThanRealTimeIsSaid) {
+  const SeenFault slow = only_fault(*faulty_plugin("IS_SLOW"), tested_run(1.0));
+  EXPECT_EQ(slow.fault, AnswerFault::kTooSlow) << slow.words;
+}
+
+TEST(LibraryCompensator, ARefusedPeriodIsSaid) {
+  const SeenFault refusal = only_fault(*faulty_plugin("REFUSES_PERIOD"));
+  EXPECT_EQ(refusal.fault, AnswerFault::kCrashed);
+  EXPECT_NE(refusal.words.find("reset() returned -1 for a period of 0.01 s"),
+            std::string::npos)
+      << refusal.words;
+}
+
+TEST(LibraryCompensator, ALaterRunIsNotAskedAfterACrash) {
+  const Recording run = tested_run();
+  const auto answers = faulty_plugin("CRASHES")->answers({&run, &run});
+  ASSERT_EQ(answers.size(), 2u);
+  ASSERT_EQ(answers[1].faults.size(), 1u);
+  EXPECT_EQ(answers[1].faults[0].fault, AnswerFault::kCrashed);
+}
+
+TEST(LibraryCompensator, WhatIsNoPluginIsRefused) {
+  const auto refusal = [](const std::string& name) {
+    return message_of([&] { faulty_plugin(name); });
+  };
+  EXPECT_NE(refusal("OTHER_VERSION").find("version 77"), std::string::npos);
+  EXPECT_NE(refusal("LACKS_A_FUNCTION").find("beamgyro_plugin_step"),
+            std::string::npos);
+  EXPECT_NE(refusal("WANTS_TRUTH").find("\"true_rate\", which no gyro"),
+            std::string::npos);
+  EXPECT_NE(refusal("CRASHES_WHEN_LOADED").find("signal 11"),
+            std::string::npos);
+  EXPECT_NE(refusal("HANGS_WHEN_LOADED").find("hung"), std::string::npos);
+  EXPECT_NE(refusal("missing").find("No such file"), std::string::npos);
+}
+
+TEST(LibraryCompensator, ASignalThatTheRunLacksIsNamed) {
+  const auto library = faulty_plugin("WANTS_MORE");
+  const Recording run = tested_run();
+  EXPECT_NE(message_of([&] { library->answer(run); }).find("magnetic_field"),
+            std::string::npos);
+}
+
+TEST(LibraryCompensator, LeavesNoDescriptorAndNoProcess) {
+  const auto descriptors = [] {
+    const std::filesystem::directory_iterator all("/proc/self/fd");
+    return std::distance(begin(all), end(all));
+  };
+  const auto before = descriptors();
+  for (const char* name : {"NONE", "CRASHES", "EXITS"})
+    faulty_plugin(name)->answer(tested_run());
+  EXPECT_EQ(descriptors(), before);
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);  // ECHILD: none is left
+  EXPECT_EQ(errno, ECHILD);
+}
+
+}  // namespace beamgyro::library_test

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+#include "validation/external/child_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "validation/external/answering.h"
+
+extern char** environ;
+
+namespace beamgyro {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr pid_t kFreeSlot = 0, kTakenSlot = -1;
+
+// Leaders of process groups, where a signal handler may read them.
+static_assert(std::atomic<pid_t>::is_always_lock_free);
+std::array<std::atomic<pid_t>, 256> live_groups;
+
+// With more processes than slots it waits.
+std::size_t take_process_slot() {
+  for (;; std::this_thread::sleep_for(milliseconds(1)))
+    for (std::size_t k = 0; k < live_groups.size(); ++k)
+      if (pid_t expected = kFreeSlot;
+          live_groups[k].compare_exchange_strong(expected, kTakenSlot))
+        return k;
+}
+
+struct Pipe {
+  OpenFile reads, writes;
+};
+
+// Above the standard ones, which are set in the child one after the other.
+OpenFile above_standard(int descriptor) {
+  OpenFile original(descriptor);
+  if (descriptor > STDERR_FILENO) return original;
+  return OpenFile(::fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+}
+
+Pipe make_pipe() {
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0)
+    throw std::system_error(errno, std::generic_category(), "a pipe");
+  OpenFile reads(ends[0]), writes(ends[1]);
+  return {above_standard(reads.release()), above_standard(writes.release())};
+}
+
+void make_nonblocking(OpenFile& file) {
+  const int flags = ::fcntl(file.descriptor(), F_GETFL);
+  ::fcntl(file.descriptor(), F_SETFL, flags | O_NONBLOCK);
+}
+
+// The attributes of a new process: a group of its own and signals as usual.
+class SpawnAttributes {
+ public:
+  SpawnAttributes() {
+    posix_spawnattr_init(&attributes_);
+    sigset_t none, usual;
+    sigemptyset(&none);
+    sigemptyset(&usual);
+    for (const int signal :
+         {SIGPIPE, SIGXFSZ, SIGINT, SIGTERM, SIGHUP, SIGQUIT})
+      sigaddset(&usual, signal);
+    posix_spawnattr_setsigmask(&attributes_, &none);
+    posix_spawnattr_setsigdefault(&attributes_, &usual);
+    posix_spawnattr_setpgroup(&attributes_, 0);
+    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP |
+                                               POSIX_SPAWN_SETSIGMASK |
+                                               POSIX_SPAWN_SETSIGDEF);
+  }
+  ~SpawnAttributes() { posix_spawnattr_destroy(&attributes_); }
+  SpawnAttributes(const SpawnAttributes&) = delete;
+  SpawnAttributes& operator=(const SpawnAttributes&) = delete;
+  const posix_spawnattr_t* get() const { return &attributes_; }
+
+ private:
+  posix_spawnattr_t attributes_;
+};
+
+class StandardFiles {
+ public:
+  StandardFiles(const OpenFile& in, const OpenFile& out, const OpenFile& err) {
+    posix_spawn_file_actions_init(&actions_);
+    int standard = STDIN_FILENO;
+    for (const OpenFile* file : {&in, &out, &err})
+      posix_spawn_file_actions_adddup2(&actions_, file->descriptor(),
+                                       standard++);
+  }
+  ~StandardFiles() { posix_spawn_file_actions_destroy(&actions_); }
+  StandardFiles(const StandardFiles&) = delete;
+  StandardFiles& operator=(const StandardFiles&) = delete;
+  const posix_spawn_file_actions_t* get() const { return &actions_; }
+
+ private:
+  posix_spawn_file_actions_t actions_;
+};
+
+}  // namespace
+
+std::string end_words(const ProcessEnd& end) {
+  const int signal =
+      end.signal != 0 ? end.signal : (end.status > 128 ? end.status - 128 : 0);
+  if (signal > 0 && signal < NSIG)
+    return fmt::format(
+        "crashed (signal {}, {})", signal,
+        ::sigdescr_np(signal) == nullptr ? "unknown" : ::sigdescr_np(signal));
+  return fmt::format("ended with status {}", end.status);
+}
+
+ChildProcess::ChildProcess(const std::vector<std::string>& words) try {
+  Pipe in = make_pipe(), out = make_pipe(), error = make_pipe();
+  std::vector<char*> arguments;
+  for (const std::string& word : words)
+    arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  const SpawnAttributes attributes;
+  const StandardFiles files(in.reads, out.writes, error.writes);
+  slot_ = take_process_slot();
+  const int failed =
+      ::posix_spawnp(&id_, arguments[0], files.get(), attributes.get(),
+                     arguments.data(), environ);
+  live_groups[slot_] = failed == 0 ? id_ : kFreeSlot;
+  if (failed != 0)
+    throw std::system_error(failed, std::generic_category(), "a process");
+  input_.emplace(std::move(in.writes));
+  output_.emplace(std::move(out.reads));
+  error_.emplace(std::move(error.reads));
+  for (auto* file : {&input_, &output_, &error_}) make_nonblocking(**file);
+} catch (const std::system_error& failure) {
+  throw std::runtime_error(
+      fmt::format("cannot start {}: {}", words[0], failure.code().message()));
+}
+
+std::optional<ProcessEnd> ChildProcess::wait(double seconds) {
+  const Stopwatch watch;
+  for (;;) {
+    siginfo_t about{};
+    if (::waitid(P_PID, static_cast<id_t>(id_), &about,
+                 WEXITED | WNOHANG | WNOWAIT) == 0 &&
+        about.si_pid == id_) {
+      if (about.si_code == CLD_EXITED) return ProcessEnd{about.si_status, 0};
+      return ProcessEnd{0, about.si_status};
+    }
+    if (watch.seconds() >= seconds) return std::nullopt;
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+}
+
+void ChildProcess::kill() {
+  // The group has this number as long as its leader is not reaped.
+  if (!killed_) ::kill(-id_, SIGKILL);
+  killed_ = true;
+}
+
+ChildProcess::~ChildProcess() {
+  kill();
+  live_groups[slot_] = kFreeSlot;
+  while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+void kill_child_processes() noexcept {
+  for (const std::atomic<pid_t>& group : live_groups)
+    if (const pid_t id = group; id > 0) ::kill(-id, SIGKILL);
+}
+
+NoBrokenPipeSignal::NoBrokenPipeSignal() {
+  sigset_t pipe;
+  sigemptyset(&pipe);
+  sigaddset(&pipe, SIGPIPE);
+  pthread_sigmask(SIG_BLOCK, &pipe, &before_);
+}
+
+NoBrokenPipeSignal::~NoBrokenPipeSignal() {
+  if (sigismember(&before_, SIGPIPE) == 0) {
+    sigset_t pipe;
+    sigemptyset(&pipe);
+    sigaddset(&pipe, SIGPIPE);
+    const timespec at_once{};
+    sigtimedwait(&pipe, nullptr, &at_once);  // takes a waiting one
+  }
+  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dataset/files/open_file.h"
+
+namespace beamgyro {
+
+/// How a process ended.
+struct ProcessEnd {
+  int status = 0;  // of exit
+  int signal = 0;  // that ended it, or 0
+};
+
+/// Returns the words for it, such as "crashed (signal 11, Segmentation fault)".
+/// A status above 128 is the signal that a shell reports.
+std::string end_words(const ProcessEnd& end);
+
+/// A process with pipes to its standard input, output and error. It is the
+/// leader of a process group of its own, so that Ctrl-C on a terminal does not
+/// reach it; whoever handles signals calls kill_child_processes().
+class ChildProcess {
+ public:
+  /// Starts the program `words[0]`, a path or a name to be found in PATH.
+  /// Throws std::runtime_error when that fails.
+  explicit ChildProcess(const std::vector<std::string>& words);
+
+  /// Kills the process group if that was not done, and reaps the process.
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  // Our ends. They do not block.
+  std::optional<OpenFile>& input() { return input_; }
+  std::optional<OpenFile>& output() { return output_; }
+  std::optional<OpenFile>& error() { return error_; }
+
+  /// Returns how the process ended if it ends within `seconds`.
+  std::optional<ProcessEnd> wait(double seconds);
+
+  /// Kills all processes of its group.
+  void kill();
+
+ private:
+  std::optional<OpenFile> input_, output_, error_;
+  pid_t id_ = 0;
+  std::size_t slot_ = 0;  // in the table of processes
+  bool killed_ = false;
+};
+
+/// Kills the process groups of all ChildProcess. May be called from a signal
+/// handler that ends this process.
+void kill_child_processes() noexcept;
+
+/// Keeps SIGPIPE from this thread: a write to a process that ended fails with
+/// EPIPE.
+class NoBrokenPipeSignal {
+ public:
+  NoBrokenPipeSignal();
+  ~NoBrokenPipeSignal();
+  NoBrokenPipeSignal(const NoBrokenPipeSignal&) = delete;
+  NoBrokenPipeSignal& operator=(const NoBrokenPipeSignal&) = delete;
+
+ private:
+  sigset_t before_;
+};
+
+}  // namespace beamgyro

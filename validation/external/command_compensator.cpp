@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "validation/external/command_compensator.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+
+#include "dataset/recording/signals.h"
+#include "validation/external/answering.h"
+#include "validation/external/conversation.h"
+#include "validation/external/measured_signals.h"
+
+namespace beamgyro {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r");
+  if (begin == text.npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
+}
+
+class CsvLanguage : public AnswerLanguage {
+ public:
+  void start(const AskedStretch& stretch, std::string& bytes) override {
+    run_ = stretch.run;
+    const std::vector<std::string> names = measured_names(*run_);
+    signals_ = MeasuredSignals(*run_, names);
+    fmt::format_to(std::back_inserter(bytes), "time,{}\n",
+                   fmt::join(names, ","));
+  }
+
+  void sample(std::size_t k, std::string& bytes) override {
+    auto end = std::back_inserter(bytes);
+    fmt::format_to(end, "{}", run_->time[k]);
+    for (std::size_t i = 0; i < signals_.count(); ++i)
+      fmt::format_to(end, ",{}", signals_.at(i, k));
+    bytes += '\n';
+  }
+
+  std::optional<WrittenAnswer> answer(std::string_view& bytes,
+                                      bool at_end) override {
+    const std::size_t end = bytes.find('\n');
+    if (end == bytes.npos && (!at_end || bytes.empty())) return std::nullopt;
+    const std::string_view line = trimmed(bytes.substr(0, end));
+    bytes.remove_prefix(end == bytes.npos ? bytes.size() : end + 1);
+    const char* first = line.data() + (line.starts_with('+') ? 1 : 0);
+    const char* last = line.data() + line.size();
+    double rate = 0.0;
+    const auto [rest, failure] = std::from_chars(first, last, rate);
+    if (failure == std::errc() && rest == last) return WrittenAnswer{rate, {}};
+    return WrittenAnswer{{}, std::string(line)};
+  }
+
+ private:
+  const Recording* run_ = nullptr;
+  MeasuredSignals signals_;
+};
+
+class CommandCompensator : public TestedCompensator {
+ public:
+  CommandCompensator(const std::string& command, ProcessLimits limits)
+      : limits_(std::move(limits)) {
+    script_ = "ulimit -c 0\n";
+    if (limits_.memory > 0)
+      script_ += fmt::format("ulimit -v {}\n", limits_.memory / 1024);
+    script_ += command;
+  }
+
+  std::vector<std::string> inputs() const override {
+    std::vector<std::string> names;
+    for (const RecordedSignal& signal : recorded_signals())
+      if (signal.role == Role::kMeasured) names.emplace_back(signal.name);
+    return names;
+  }
+
+  std::vector<Answer> answers(
+      const std::vector<const Recording*>& runs) const override {
+    std::vector<Answer> all(runs.size());
+    for (std::size_t k = 0; k < runs.size(); ++k) fill(*runs[k], all[k]);
+    return all;
+  }
+
+ private:
+  void fill(const Recording& run, Answer& answer) const {
+    const Stopwatch watch;
+    for (const AskedStretch& stretch : asked_stretches(run, answer)) {
+      ChildProcess process({"/bin/sh", "-c", script_});
+      CsvLanguage language;
+      if (!converse(process, language, {stretch}, limits_)) break;
+    }
+    answer.seconds = watch.seconds();
+    add_fault_of_values(run, answer);
+    add_fault_of_speed(run, answer);
+  }
+
+  std::string script_;
+  ProcessLimits limits_;
+};
+
+}  // namespace
+
+std::unique_ptr<TestedCompensator> open_command(const std::string& command,
+                                                const ProcessLimits& limits) {
+  if (trimmed(command).empty())
+    throw std::invalid_argument(
+        "cmd: no command; expected \"cmd:PROGRAM ARGS\"");
+  return std::make_unique<CommandCompensator>(command, limits);
+}
+
+}  // namespace beamgyro

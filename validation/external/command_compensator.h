@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "validation/external/tested_compensator.h"
+
+namespace beamgyro {
+
+/// Returns a command as a compensator. The shell runs it anew at each power-on.
+/// It reads CSV: a line of names, `time` first, then a line for each powered
+/// sample with every measured variable of the recording. It writes a line with
+/// one rate for each sample, at once or later. Throws std::invalid_argument for
+/// an empty command.
+std::unique_ptr<TestedCompensator> open_command(const std::string& command,
+                                                const ProcessLimits& limits);
+
+}  // namespace beamgyro

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include "validation/external/library_compensator.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include "compensation/inputs/sample_ranges.h"
+#include "validation/external/answering.h"
+#include "validation/external/conversation.h"
+#include "validation/external/error_text.h"
+#include "validation/external/measured_signals.h"
+#include "validation/external/plugin_host.h"
+
+namespace beamgyro {
+namespace {
+
+class HostLanguage : public AnswerLanguage {
+ public:
+  explicit HostLanguage(const std::vector<std::string>& names)
+      : names_(names) {}
+
+  void start(const AskedStretch& stretch, std::string& bytes) override {
+    if (stretch.run != run_) {
+      run_ = stretch.run;
+      signals_ = MeasuredSignals(*run_, names_);
+      period_ = usual_step(*run_);
+    }
+    append(static_cast<double>(HostRecord::kReset), bytes);
+    append(period_, bytes);
+    for (std::size_t i = 0; i < names_.size(); ++i) append(0.0, bytes);
+  }
+
+  void sample(std::size_t k, std::string& bytes) override {
+    append(static_cast<double>(HostRecord::kStep), bytes);
+    append(run_->time[k], bytes);
+    for (std::size_t i = 0; i < names_.size(); ++i)
+      append(signals_.at(i, k), bytes);
+  }
+
+  std::optional<WrittenAnswer> answer(std::string_view& bytes,
+                                      bool /*at_end*/) override {
+    double rate;
+    if (bytes.size() < sizeof rate) return std::nullopt;
+    std::memcpy(&rate, bytes.data(), sizeof rate);
+    bytes.remove_prefix(sizeof rate);
+    return WrittenAnswer{rate, {}};
+  }
+
+ private:
+  static void append(double value, std::string& bytes) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+
+  const std::vector<std::string>& names_;
+  const Recording* run_ = nullptr;
+  MeasuredSignals signals_;
+  double period_ = 0.0;  // [s]
+};
+
+class LibraryCompensator : public TestedCompensator {
+ public:
+  LibraryCompensator(std::filesystem::path library,
+                     std::vector<std::string> names, ProcessLimits limits)
+      : library_(std::move(library)),
+        names_(std::move(names)),
+        limits_(std::move(limits)) {}
+
+  std::vector<std::string> inputs() const override { return names_; }
+
+  std::vector<Answer> answers(
+      const std::vector<const Recording*>& runs) const override;
+
+ private:
+  std::filesystem::path library_;
+  std::vector<std::string> names_;
+  ProcessLimits limits_;
+};
+
+// A library that answers too little has ended the process by itself.
+void rename_exit(std::vector<Answer>& answers) {
+  for (Answer& answer : answers)
+    for (SeenFault& seen : answer.faults)
+      if (seen.fault == AnswerFault::kTooFew)
+        seen = {AnswerFault::kCrashed, seen.sample,
+                "ended its process: " + seen.words};
+}
+
+// Those without an answer because the process did not survive a run before.
+void add_fault_before(std::vector<Answer>& answers) {
+  for (std::size_t k = 1; k < answers.size(); ++k)
+    if (answers[k].faults.empty() && !answers[k - 1].faults.empty())
+      answers[k].faults.push_back(
+          {answers[k - 1].faults.back().fault, 0,
+           "was not asked: " + answers[k - 1].faults.back().words});
+}
+
+std::vector<Answer> LibraryCompensator::answers(
+    const std::vector<const Recording*>& runs) const {
+  const Stopwatch watch;
+  std::vector<Answer> all(runs.size());
+  std::vector<AskedStretch> stretches;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    MeasuredSignals(*runs[k], names_);  // throws for one that is missing
+    const auto more = asked_stretches(*runs[k], all[k]);
+    stretches.insert(stretches.end(), more.begin(), more.end());
+  }
+  ChildProcess process(plugin_host_words(limits_.program, library_,
+                                         HostTask::kAnswer, limits_.memory));
+  HostLanguage language(names_);
+  if (!converse(process, language, stretches, limits_)) {
+    rename_exit(all);
+    add_fault_before(all);
+  }
+  const double share = watch.seconds() / static_cast<double>(runs.size());
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    all[k].seconds = share;
+    add_fault_of_values(*runs[k], all[k]);
+    add_fault_of_speed(*runs[k], all[k]);
+  }
+  return all;
+}
+
+std::string read_until_end(OpenFile& file, double seconds, bool& in_time) {
+  std::string text;
+  const Stopwatch watch;
+  for (;;) {
+    pollfd wait{file.descriptor(), POLLIN, 0};
+    const double left = seconds - watch.seconds();
+    in_time = left > 0.0;
+    if (!in_time) return text;
+    if (::poll(&wait, 1, static_cast<int>(1e3 * left) + 1) <= 0) continue;
+    std::array<char, 4096> bytes;
+    const ssize_t n = ::read(file.descriptor(), bytes.data(), bytes.size());
+    if (n <= 0) return text;
+    text.append(bytes.data(), static_cast<std::size_t>(n));
+  }
+}
+
+std::vector<std::string> split_names(const std::string& text) {
+  std::vector<std::string> names;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    names.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return names;
+}
+
+// Asks the library which signals it wants.
+std::vector<std::string> described(const std::filesystem::path& library,
+                                   const ProcessLimits& limits) {
+  ChildProcess process(plugin_host_words(limits.program, library,
+                                         HostTask::kDescribe, limits.memory));
+  process.input().reset();
+  bool in_time = true;
+  const std::string names =
+      read_until_end(*process.output(), limits.stall, in_time);
+  const std::optional<ProcessEnd> end =
+      in_time ? process.wait(limits.stall) : std::nullopt;
+  const auto refuse = [&](const std::string& why) {
+    throw std::invalid_argument(fmt::format("{}: {}", library.string(), why));
+  };
+  if (!end)
+    refuse(fmt::format("cannot be loaded: hung for {:.3g} s", limits.stall));
+  if (end->status == 0 && end->signal == 0) return split_names(names);
+  const std::string error =
+      read_until_end(*process.error(), limits.stall, in_time);
+  if (end->status == 2 && !error.empty()) refuse(error);
+  refuse(fmt::format("cannot be loaded: {}{}", end_words(*end),
+                     last_words(error)));
+  return {};
+}
+
+}  // namespace
+
+std::unique_ptr<TestedCompensator> open_library(
+    const std::filesystem::path& library, const ProcessLimits& limits) {
+  if (limits.program.empty())
+    throw std::logic_error("ProcessLimits::program is not given");
+  std::vector<std::string> names = described(library, limits);
+  try {
+    for (const std::string& name : names) require_measurable(name);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(
+        fmt::format("{}: {}", library.string(), error.what()));
+  }
+  return std::make_unique<LibraryCompensator>(library, std::move(names),
+                                              limits);
+}
+
+}  // namespace beamgyro

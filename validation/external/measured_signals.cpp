@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "validation/external/measured_signals.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "dataset/recording/signals.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr std::string_view kStatus = "status";
+
+[[noreturn]] void refuse_signal(std::string_view name) {
+  throw std::invalid_argument(fmt::format(
+      "asks for \"{}\", which no gyro measures; expected measured variables",
+      name));
+}
+
+}  // namespace
+
+void require_measurable(std::string_view name) {
+  const RecordedSignal* known = find_recorded_signal(name);
+  if (name.empty() || name == "time" || name.starts_with("true_") ||
+      (known != nullptr && known->role != Role::kMeasured))
+    refuse_signal(name);
+}
+
+std::vector<std::string> measured_names(const Recording& run) {
+  std::vector<std::string> names;
+  for (const Column& column : run.columns)
+    if (column.role == Role::kMeasured) names.push_back(column.name);
+  names.emplace_back(kStatus);
+  return names;
+}
+
+MeasuredSignals::MeasuredSignals(const Recording& run,
+                                 const std::vector<std::string>& names)
+    : status_(run.status.data()) {
+  for (const std::string& name : names) {
+    if (name == kStatus) {
+      values_.push_back(nullptr);
+      continue;
+    }
+    const std::vector<double>& values = column_values(run, name);
+    if (find_column(run, name)->role != Role::kMeasured) refuse_signal(name);
+    values_.push_back(values.data());
+  }
+}
+
+}  // namespace beamgyro

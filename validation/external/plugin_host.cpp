@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+#include "validation/external/plugin_host.h"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <span>
+#include <stdexcept>
+
+#include "dataset/files/open_file.h"
+#include "include/beamgyro/plugin.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr std::size_t kBatchBytes = 1 << 16;
+constexpr std::size_t kAnswerBatch = 64;  // lost at most when the library hangs
+constexpr std::string_view kOutOfMemory = "out of memory\n";
+
+// Answers that are not written yet, where the handler of a crash finds them.
+struct PendingAnswers {
+  int descriptor = -1;
+  volatile std::size_t count = 0;
+  std::array<double, kAnswerBatch> values{};
+} pending;
+
+void write_pending() noexcept {
+  const auto* bytes = reinterpret_cast<const char*>(pending.values.data());
+  const std::size_t size = pending.count * sizeof(double);
+  for (std::size_t done = 0; done < size;) {
+    const ssize_t n = ::write(pending.descriptor, bytes + done, size - done);
+    if (n < 0 && errno != EINTR) break;
+    if (n > 0) done += static_cast<std::size_t>(n);
+  }
+  pending.count = 0;
+}
+
+void say(std::string_view text) noexcept {
+  static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
+}
+
+// A pointer from a failed malloc() that is used crashes with errno as malloc()
+// left it.
+extern "C" void report_crash(int signal) {
+  const bool no_memory = errno == ENOMEM;
+  write_pending();
+  if (no_memory) say(kOutOfMemory);
+  std::signal(signal, SIG_DFL);
+  raise(signal);
+}
+
+void handle_crashes() {
+  static std::array<std::byte, 1 << 16> stack;  // also for an endless recursion
+  stack_t alternate{};
+  alternate.ss_sp = stack.data();
+  alternate.ss_size = stack.size();
+  ::sigaltstack(&alternate, nullptr);
+  struct sigaction action {};
+  action.sa_handler = report_crash;
+  action.sa_flags = SA_ONSTACK | SA_NODEFER;
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
+    ::sigaction(signal, &action, nullptr);
+}
+
+struct Plugin {
+  decltype(&beamgyro_plugin_signals) signals;
+  decltype(&beamgyro_plugin_create) create;
+  decltype(&beamgyro_plugin_reset) reset;
+  decltype(&beamgyro_plugin_step) step;
+  decltype(&beamgyro_plugin_destroy) destroy;
+};
+
+template <class Function>
+Function function_of(void* library, const char* name) {
+  void* found = ::dlsym(library, name);
+  if (found == nullptr)
+    throw std::invalid_argument(fmt::format(
+        "has no function {}(); expected those of beamgyro/plugin.h", name));
+  return reinterpret_cast<Function>(found);
+}
+
+Plugin load_plugin(const std::filesystem::path& file) {
+  void* library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) {
+    std::string why = ::dlerror();  // "FILE: why"
+    if (why.starts_with(file.string() + ": "))
+      why = why.substr(file.string().size() + 2);
+    throw std::invalid_argument("cannot be loaded: " + why);
+  }
+  const auto version = function_of<decltype(&beamgyro_plugin_abi)>(
+      library, "beamgyro_plugin_abi")();
+  if (version != BEAMGYRO_PLUGIN_ABI)
+    throw std::invalid_argument(
+        fmt::format("is made for version {} of beamgyro/plugin.h; expected {}",
+                    version, BEAMGYRO_PLUGIN_ABI));
+  Plugin plugin{};
+  plugin.signals =
+      function_of<decltype(plugin.signals)>(library, "beamgyro_plugin_signals");
+  plugin.create =
+      function_of<decltype(plugin.create)>(library, "beamgyro_plugin_create");
+  plugin.reset =
+      function_of<decltype(plugin.reset)>(library, "beamgyro_plugin_reset");
+  plugin.step =
+      function_of<decltype(plugin.step)>(library, "beamgyro_plugin_step");
+  plugin.destroy =
+      function_of<decltype(plugin.destroy)>(library, "beamgyro_plugin_destroy");
+  return plugin;
+}
+
+std::string signals_of(const Plugin& plugin) {
+  const char* names = plugin.signals();
+  if (names == nullptr)
+    throw std::invalid_argument("beamgyro_plugin_signals() returned no names");
+  return names;
+}
+
+// Adds the memory that the program has anyway.
+void limit_memory(std::size_t memory) {
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  if (memory == 0) return;
+  std::array<std::byte, 64> text{};
+  const std::size_t count = OpenFile("/proc/self/statm", O_RDONLY).read(text);
+  std::size_t pages = 0;
+  const auto* first = reinterpret_cast<const char*>(text.data());
+  std::from_chars(first, first + count, pages);
+  const rlim_t bytes =
+      memory + pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const rlimit limit{bytes, bytes};
+  ::setrlimit(RLIMIT_AS, &limit);
+}
+
+void reset(const Plugin& plugin, void* instance, double period) {
+  if (const int status = plugin.reset(instance, period); status != 0)
+    throw std::runtime_error(
+        fmt::format("beamgyro_plugin_reset() returned {} for a period of {:.6g} s",
+                    status, period));
+}
+
+void answer_record(const Plugin& plugin, void* instance,
+                   std::span<const double> record) {
+  if (record[0] != static_cast<double>(HostRecord::kStep)) {
+    reset(plugin, instance, record[1]);
+    return;
+  }
+  const double rate = plugin.step(instance, record[1], record.data() + 2);
+  pending.values[pending.count] = rate;
+  pending.count = pending.count + 1;
+  if (pending.count == kAnswerBatch) write_pending();
+}
+
+void answer_records(const Plugin& plugin, OpenFile& input) {
+  const std::string names = signals_of(plugin);
+  const std::size_t width =
+      3 + static_cast<std::size_t>(std::ranges::count(names, ','));
+  errno = 0;
+  void* instance = plugin.create();
+  if (instance == nullptr) {
+    if (errno == ENOMEM) throw std::bad_alloc();
+    throw std::runtime_error("beamgyro_plugin_create() returned no instance");
+  }
+  // The library sees one sample at a time, and nothing of the next.
+  std::vector<double> record(width);
+  std::array<std::byte, kBatchBytes> batch{};
+  const std::size_t size = width * sizeof(double);
+  for (std::size_t held = 0;;) {
+    const ssize_t n =
+        ::read(input.descriptor(), batch.data() + held, batch.size() - held);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) break;
+    held += static_cast<std::size_t>(n);
+    std::size_t used = 0;
+    for (; held - used >= size; used += size) {
+      std::memcpy(record.data(), batch.data() + used, size);
+      errno = 0;
+      answer_record(plugin, instance, record);
+    }
+    std::memmove(batch.data(), batch.data() + used, held - used);
+    held -= used;
+    write_pending();
+  }
+  plugin.destroy(instance);
+}
+
+// Takes over standard input and output: what the library prints goes to
+// standard error.
+OpenFile take_over(int standard, int replacement) {
+  OpenFile file(::fcntl(standard, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+  ::dup2(replacement, standard);
+  return file;
+}
+
+void serve(const std::filesystem::path& file, bool describe) {
+  const OpenFile nothing("/dev/null", O_RDONLY);
+  OpenFile input = take_over(STDIN_FILENO, nothing.descriptor());
+  OpenFile output = take_over(STDOUT_FILENO, STDERR_FILENO);
+  pending.descriptor = output.descriptor();
+  handle_crashes();
+  const Plugin plugin = load_plugin(file);
+  if (!describe) return answer_records(plugin, input);
+  const std::string names = signals_of(plugin);
+  output.write(std::as_bytes(std::span(names)));
+}
+
+}  // namespace
+
+std::vector<std::string> plugin_host_words(const std::filesystem::path& program,
+                                           const std::filesystem::path& library,
+                                           HostTask task, std::size_t memory) {
+  return {program.string(), std::string(kPluginHostWord),
+          task == HostTask::kDescribe ? "describe" : "answer",
+          std::to_string(memory), std::filesystem::absolute(library).string()};
+}
+
+int host_plugin(const std::vector<std::string>& words) try {
+  if (words.size() != 3 || (words[0] != "describe" && words[0] != "answer"))
+    throw std::invalid_argument("is started by beamgyro itself only");
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  limit_memory(std::stoull(words[1]));
+  serve(words[2], words[0] == "describe");
+  return 0;
+} catch (const std::bad_alloc&) {
+  write_pending();
+  say(kOutOfMemory);
+  return 1;
+} catch (const std::invalid_argument& error) {
+  say(error.what());
+  return 2;
+} catch (const std::exception& error) {
+  write_pending();
+  say(error.what());
+  return 1;
+}
+
+}  // namespace beamgyro
