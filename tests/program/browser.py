@@ -104,12 +104,13 @@ class Browser:
                 self.seen("Network.requestWillBeSent")]
         return [url for url in urls if not url.startswith("data:")]
 
-    def screenshot(self, file):
-        """A PNG of the whole page."""
+    def screenshot(self, file, top=0, height=None):
+        """A PNG of the page, or of a part of it."""
         size = self.call("Page.getLayoutMetrics")["cssContentSize"]
         picture = self.call("Page.captureScreenshot", captureBeyondViewport=True,
-                            clip={"x": 0, "y": 0, "width": size["width"],
-                                  "height": size["height"], "scale": 1})
+                            clip={"x": 0, "y": top, "width": size["width"],
+                                  "height": height or size["height"] - top,
+                                  "scale": 1})
         file.write_bytes(base64.b64decode(picture["data"]))
 
     def pdf(self, file):

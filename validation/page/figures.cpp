@@ -41,6 +41,15 @@ FigureSeries share_of_devices(const std::string& role,
   return series;
 }
 
+/// "bias pp" of bias_pp_deg_per_s, in deg/s.
+std::string spoken_name(std::string name, const std::string& unit) {
+  std::string suffix = "_";
+  for (const char c : unit) suffix += c == '/' ? "_per_" : std::string(1, c);
+  if (name.ends_with(suffix)) name.resize(name.size() - suffix.size());
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
 }  // namespace
 
 nlohmann::ordered_json figures_of(const Evidence& before,
@@ -58,15 +67,22 @@ nlohmann::ordered_json figures_of(const Evidence& before,
 
 nlohmann::ordered_json population_figure(const PopulationFigure& population) {
   const std::size_t devices = population.after.size();
-  Figure figure{"population_yield",
-                "Yield of a population",
+  const std::string name = spoken_name(population.name, population.unit);
+  Figure figure{"population_" + population.name,
+                "Yield: " + name,
                 fmt::format("Share of {} devices whose {} is at most the value "
                             "on the axis.",
-                            devices, population.name),
-                {population.name, population.unit, true},
+                            devices, name),
+                {name, population.unit},
                 {"Share of the devices", "%"}};
-  figure.add(share_of_devices("before", population.before));
-  figure.add(share_of_devices("after", population.after));
+  FigureSeries before = share_of_devices("before", population.before);
+  FigureSeries after = share_of_devices("after", population.after);
+  // Values of one sign that differ much are told apart by their ratios.
+  figure.x.logarithmic = !before.x.empty() && !after.x.empty() &&
+                         before.x.front() > 0.0 && after.x.front() > 0.0 &&
+                         (!population.limit || *population.limit > 0.0);
+  figure.add(std::move(before));
+  figure.add(std::move(after));
   if (population.limit)
     figure.add({"limit",
                 "limit",

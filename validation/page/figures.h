@@ -30,8 +30,8 @@ struct PopulationFigure {
   std::optional<double> limit = {};  // the most that is allowed
 };
 
-/// Returns the figure of a yield: the share of the devices whose figure of
-/// merit is at most x, before and after, and the limit.
+/// Returns the figure of a yield, "population_" and the name: the share of the
+/// devices whose metric is at most x, before and after, and the limit.
 nlohmann::ordered_json population_figure(const PopulationFigure& figure);
 
 }  // namespace beamgyro

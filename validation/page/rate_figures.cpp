@@ -126,8 +126,7 @@ TableLine table_line(const TableAtTemperature& table) {
 /// Departures of a table from its line.
 FigureSeries departures(const TableAtTemperature& table, const TableLine& line,
                         const std::string& role) {
-  FigureSeries series{fmt::format("{}, {:.0f} degC", role, table.temperature),
-                      role};
+  FigureSeries series{fmt::format("{:.0f} degC", table.temperature), role};
   const double unit = kMillion / ((1.0 + line.slope) * line.largest);
   for (const auto& [held, hold] : table.holds) {
     const double mean = hold.sum / hold.samples;
@@ -205,13 +204,17 @@ FigureSeries around_step(const std::string& name, const std::string& role,
 }  // namespace
 
 std::vector<Figure> rate_table_figures(const ComparedEvidence& both) {
-  Figure residual{"rate_table",
-                  "Rate-table residuals",
-                  "Departure of each held rate from the straight line through "
-                  "the table of its temperature, in parts per million of the "
-                  "largest rate. Whiskers: noise, 95 %.",
-                  {"True rate", "deg/s"},
-                  {"Departure from the line", "ppm"}};
+  const char* caption =
+      "Departure of each held rate from the straight line through the table of "
+      "its temperature, in parts per million of the largest rate. Whiskers: "
+      "noise, 95 %.";
+  const FigureAxis rate{"True rate", "deg/s"};
+  const FigureAxis departure{"Departure from the line", "ppm"};
+  Figure before{"rate_table_before",
+                "Rate-table residuals, before compensation", caption, rate,
+                departure};
+  Figure after{"rate_table_after", "Rate-table residuals, after compensation",
+               caption, rate, departure};
   Figure slope{"scale_factor_over_temperature",
                "Scale factor over temperature",
                "Slope of each rate table, less one. Whiskers: 95 %, from the "
@@ -219,18 +222,18 @@ std::vector<Figure> rate_table_figures(const ComparedEvidence& both) {
                temperature_axis(),
                {"Scale factor error", "ppm"}};
   FigureSeries slopes[2] = {{"before", "before"}, {"after", "after"}};
-  for_both(both, RunPurpose::kRateTable,
-           [&](const std::string& role, const EvidenceRun& run) {
-             for (const TableAtTemperature& table : tables_of(run)) {
-               const TableLine line = table_line(table);
-               residual.add(departures(table, line, role));
-               slopes[role == "after"].add(table.temperature,
-                                           kMillion * line.slope,
-                                           kMillion * line.half_interval);
-             }
-           });
+  for_both(
+      both, RunPurpose::kRateTable,
+      [&](const std::string& role, const EvidenceRun& run) {
+        for (const TableAtTemperature& table : tables_of(run)) {
+          const TableLine line = table_line(table);
+          (role == "after" ? after : before).add(departures(table, line, role));
+          slopes[role == "after"].add(table.temperature, kMillion * line.slope,
+                                      kMillion * line.half_interval);
+        }
+      });
   for (FigureSeries& series : slopes) slope.add(std::move(series));
-  return {std::move(residual), std::move(slope)};
+  return {std::move(before), std::move(after), std::move(slope)};
 }
 
 std::vector<Figure> frequency_response_figures(const ComparedEvidence& both) {
