@@ -1,49 +1,116 @@
 // SPDX-License-Identifier: MIT
 #include "validation/checks/checks.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 
+#include "validation/checks/check_context.h"
+#include "validation/checks/random_response.h"
+
 namespace beamgyro {
 
+namespace {
+
+// Checks run stage by stage.
+enum class Stage {
+  kReset,       // whether two answers can be compared at all
+  kConduct,     // may make the answers unfit for comparison
+  kComparison,  // compare answers with each other or with the truth
+  kFaults,      // report what was seen of faults, also in altered recordings
+};
+
+struct CheckRow {
+  CheckDefinition definition;
+  CheckFunction run;
+  Stage stage = Stage::kComparison;
+};
+
+constexpr std::array kChecks{
+    CheckRow{{"jacobian", "largest departure from 1 of d(answer)/d(rate) [-]"},
+             check_jacobian},
+    CheckRow{{"injection",
+              "largest departure from 1 of the share of an added rate that "
+              "comes out [-]"},
+             check_injection},
+    CheckRow{{"true_rate",
+              "largest departure from 1 of the scale factor kept on a rate "
+              "table [-]"},
+             check_true_rate},
+    CheckRow{{"allan_fingerprint",
+              "departure from 1 of the Allan deviation at 1 s, after over "
+              "before [-]"},
+             check_allan_fingerprint},
+    CheckRow{{"shuffled_output",
+              "change of the correction over change of the output when the "
+              "output is shuffled [-]"},
+             check_shuffled_output},
+    CheckRow{{"rate_correlation",
+              "share of the true rate that the correction follows [-]"},
+             check_rate_correlation},
+    CheckRow{{"hold_out", "runs that training used", true},
+             check_hold_out,
+             Stage::kFaults},
+    CheckRow{{"causality", "runs whose answers use what follows"},
+             check_causality,
+             Stage::kConduct},
+    CheckRow{{"answers", "runs that are not answered as they must be"},
+             check_answers,
+             Stage::kFaults},
+    CheckRow{{"finite", "powered samples without a finite answer"},
+             check_finite,
+             Stage::kFaults},
+    CheckRow{{"reset", "runs answered otherwise after a reset"},
+             check_reset,
+             Stage::kReset},
+    CheckRow{{"output_stuck",
+              "longest time with the same answer while the output changes [s]"},
+             check_output_stuck,
+             Stage::kConduct},
+    CheckRow{{"real_time", ""}, check_real_time, Stage::kFaults}};
+
+/// Returns why answers cannot be compared, or an empty text when they can.
+std::string obstacle_to_comparison(const CheckContext& context,
+                                   const std::vector<CheckResult>& results) {
+  if (!context.answered())
+    return "too many answers are missing; see the checks \"answers\" and "
+           "\"finite\".";
+  for (const CheckResult& result : results)
+    if (result.outcome == CheckOutcome::kFailed)
+      return fmt::format("see the check \"{}\" first.", result.name);
+  return "";
+}
+
+}  // namespace
+
 std::span<const CheckDefinition> check_definitions() {
-  static const std::array kDefinitions{
-      CheckDefinition{"jacobian",
-                      "largest departure from 1 of d(answer)/d(rate) [-]"},
-      CheckDefinition{"injection",
-                      "largest departure from 1 of the share of an added rate "
-                      "that is kept [-]"},
-      CheckDefinition{"true_rate",
-                      "largest departure from 1 of the scale factor kept on a "
-                      "rate table [-]"},
-      CheckDefinition{"allan_fingerprint",
-                      "Allan deviation at 1 s, after over before [-]"},
-      CheckDefinition{"shuffled_output",
-                      "change of the correction when the output is shuffled, "
-                      "of the change of the output [-]"},
-      CheckDefinition{"rate_correlation",
-                      "correlation of the correction with the true rate, over "
-                      "the one by chance [-]"},
-      CheckDefinition{"hold_out", "runs that training used", true},
-      CheckDefinition{"causality",
-                      "samples whose answer changes with what follows or with "
-                      "what is not measured"},
-      CheckDefinition{"answers", "faults in the way of answering"},
-      CheckDefinition{"finite", "powered samples without a finite answer"},
-      CheckDefinition{"reset", "samples answered otherwise after a reset"},
-      CheckDefinition{"output_stuck",
-                      "longest time without a change of the answer while the "
-                      "output changes [s]"},
-      CheckDefinition{"real_time", "runs answered slower than real time"}};
+  static const auto kDefinitions = [] {
+    std::array<CheckDefinition, kChecks.size()> all;
+    std::ranges::transform(kChecks, all.begin(), &CheckRow::definition);
+    return all;
+  }();
   return kDefinitions;
 }
 
-std::vector<CheckResult> run_checks(const CheckedCompensator& /*checked*/,
-                                    std::size_t /*threads*/) {
-  std::vector<CheckResult> results;
-  for (const CheckDefinition& definition : check_definitions())
-    results.push_back(
-        {.name = std::string(definition.name), .words = "not tested"});
+std::vector<CheckResult> run_checks(const CheckedCompensator& checked,
+                                    std::size_t threads) {
+  CheckContext context(checked, threads);
+  std::vector<CheckResult> results(kChecks.size());
+  const auto run_stage = [&](Stage stage, const std::string& obstacle) {
+    for (std::size_t k = 0; k < kChecks.size(); ++k) {
+      if (kChecks[k].stage != stage) continue;
+      results[k] =
+          obstacle.empty() ? kChecks[k].run(context) : not_tested(obstacle);
+      results[k].name = kChecks[k].definition.name;
+    }
+  };
+  run_stage(Stage::kReset, "");
+  run_stage(Stage::kConduct, obstacle_to_comparison(context, results));
+  const std::string obstacle = obstacle_to_comparison(context, results);
+  if (obstacle.empty()) context.random = random_response(context);
+  run_stage(Stage::kComparison, obstacle);
+  run_stage(Stage::kFaults, "");
   return results;
 }
 

@@ -44,12 +44,12 @@ enum class CheckOutcome {
 
 /// What a check found.
 struct CheckResult {
-  std::string name;  // plain words with underscores
+  std::string name = {};  // plain words with underscores
   CheckOutcome outcome = CheckOutcome::kNotTested;
   // The figure behind the outcome and its limit. No value that depends on the
   // speed of the machine, so that the same inputs give the same report.
   std::optional<double> value = {}, limit = {};
-  std::string words;  // one sentence for a user
+  std::string words = {};  // one sentence for a user
 
   bool passed() const { return outcome == CheckOutcome::kPassed; }
 };

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+// Compensators with a known fault, checked on simulated runs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "compensation/compensator/training_use.h"
+#include "tests/validation/checks/simulated_runs.h"
+#include "validation/metrics/metric.h"
+#include "validation/specification/decision.h"
+
+namespace beamgyro::planted_faults_test {
+namespace {
+
+using Names = std::vector<std::string>;
+using Function = FunctionCompensator::Function;
+
+std::vector<double> sound(const Recording& run) {
+  return compensated_rate(trained("spline"), run);
+}
+
+Names failed(const Function& function) {
+  const FunctionCompensator compensator(function);
+  return failed_checks(checked(compensator));
+}
+
+CheckResult result_of(const Function& function, const std::string& name) {
+  const FunctionCompensator compensator(function);
+  for (const CheckResult& result : run_checks(checked(compensator)))
+    if (result.name == name) return result;
+  throw std::invalid_argument(name + ": not a check");
+}
+
+// The recording with its temperatures changed.
+template <class Change>
+Recording with_temperature(Recording run, const Change& change) {
+  for (Column& column : run.columns)
+    if (column.name == "temperature")
+      for (double& value : column.values) value = change(value);
+  return run;
+}
+
+TEST(PlantedFaults, ASoundCompensatorPassesEveryCheck) {
+  const FunctionCompensator compensator(sound);
+  const auto results = run_checks(checked(compensator));
+  for (const CheckResult& result : results)
+    EXPECT_TRUE(result.passed() || result.name == "hold_out")
+        << result.name << ": " << result.words;
+  EXPECT_EQ(outcome_of(results), CheckOutcome::kPassed);
+}
+
+// Trained at rest on output and temperature, the paper's inputs.
+TEST(PlantedFaults, ANetworkThatEatsTheRate) {
+  const auto network = [](const Recording& run) {
+    return compensated_rate(trained("output_and_temperature"), run);
+  };
+  EXPECT_EQ(failed(network),
+            (Names{"jacobian", "injection", "true_rate", "allan_fingerprint",
+                   "shuffled_output", "rate_correlation"}));
+}
+
+// Its time constant of 100 s leaves white noise and rates of 1 Hz as they are.
+TEST(PlantedFaults, AHighPassFilter) {
+  const auto high_pass = [](const Recording& run) {
+    std::vector<double> answers = sound(run);
+    double low = answers[0];
+    for (double& value : answers) {
+      low += (value - low) * 0.1 / 100.0;
+      value -= low;
+    }
+    return answers;
+  };
+  EXPECT_EQ(failed(high_pass),
+            (Names{"jacobian", "injection", "true_rate", "shuffled_output"}));
+}
+
+TEST(PlantedFaults, AScaleFactorThatIsOffByOnePercent) {
+  const auto scaled = [](const Recording& run) {
+    std::vector<double> answers = sound(run);
+    for (double& value : answers) value *= 0.99;
+    return answers;
+  };
+  EXPECT_EQ(failed(scaled), (Names{"jacobian", "injection", "true_rate",
+                                   "shuffled_output", "rate_correlation"}));
+  EXPECT_NEAR(*result_of(scaled, "injection").value, 0.01, 1e-9);
+}
+
+TEST(PlantedFaults, ADelayOfATenthOfASecond) {
+  const auto delayed = [](const Recording& run) {
+    std::vector<double> answers = sound(run);
+    std::copy_backward(answers.begin(), answers.end() - 1, answers.end());
+    return answers;
+  };
+  EXPECT_EQ(failed(delayed), Names{"injection"});
+  EXPECT_NE(result_of(delayed, "injection").words.find("0.1 s late"),
+            std::string::npos);
+}
+
+TEST(PlantedFaults, AnOutputThatSticksAfterTenMinutes) {
+  const auto sticks = [](const Recording& run) {
+    std::vector<double> answers = sound(run);
+    for (std::size_t k = 6000; k < answers.size(); ++k)
+      answers[k] = answers[5999];
+    return answers;
+  };
+  EXPECT_EQ(failed(sticks), Names{"output_stuck"});
+}
+
+TEST(PlantedFaults, StateThatIsKeptOverAReset) {
+  const auto state = std::make_shared<double>(0.0);
+  const auto keeps = [state](const Recording& run) {
+    std::vector<double> answers = sound(run);
+    for (double& value : answers) {
+      *state += 1e-3 * (value - *state);
+      value += 1e-6 * *state;
+    }
+    return answers;
+  };
+  EXPECT_EQ(failed(keeps), Names{"reset"});
+}
+
+TEST(PlantedFaults, PeekingOneSampleAhead) {
+  const auto peeks = [](const Recording& run) {
+    std::vector<double> answers = sound(run);
+    std::copy(answers.begin() + 1, answers.end(), answers.begin());
+    return answers;
+  };
+  EXPECT_EQ(failed(peeks), Names{"causality"});
+}
+
+TEST(PlantedFaults, NanOnceInAHundredThousandSamples) {
+  const auto nan = [](const Recording& run) {
+    std::vector<double> answers = sound(run);
+    if (answers.size() > 30000) answers[30000] = std::nan("");
+    return answers;
+  };
+  EXPECT_EQ(failed(nan), Names{"finite"});
+  EXPECT_EQ(result_of(nan, "finite").value, 1.0);
+}
+
+Provenance provenance_of(const SimulatedRun& run) {
+  Provenance provenance;
+  provenance.training = {{"train.h5", std::string(64, '0'),
+                          measured_sha256(run.recording),
+                          measured_sketch(run.recording)}};
+  return provenance;
+}
+
+TEST(PlantedFaults, TrainedOnTheTestRun) {
+  const FunctionCompensator compensator(sound);
+  const Provenance cheat = provenance_of(simulated_runs()[0]);
+  CheckedCompensator all = checked(compensator);
+  all.provenance = &cheat;
+  EXPECT_EQ(failed_checks(all), Names{"hold_out"});
+
+  const Recording sweep = training_sweep(0).recording;
+  const Provenance honest = provenance_of({"sweep", RunPurpose::kSoak, sweep});
+  all.provenance = &honest;
+  EXPECT_EQ(failed_checks(all), Names{});
+  EXPECT_TRUE(run_checks(all)[6].passed()) << run_checks(all)[6].words;
+}
+
+TEST(PlantedFaults, TrainedOnADeviceOfTheTestSet) {
+  const FunctionCompensator compensator(sound);
+  const SetPart set{.name = "set",
+                    .manifest_sha256 = std::string(64, 'a'),
+                    .devices = 10,
+                    .files = 1};
+  SetPart part = set;
+  part.device_numbers = {3, 4};
+  Provenance provenance;
+  provenance.training_set = part;
+  CheckedCompensator all = checked(compensator);
+  all.provenance = &provenance;
+  all.set = &set;
+  for (CheckedRun& run : all.runs) run.device = "5";
+  EXPECT_EQ(failed_checks(all), Names{});
+  all.runs[1].device = "4";
+  EXPECT_EQ(failed_checks(all), Names{"hold_out"});
+}
+
+TEST(PlantedFaults, HeldOutRunsThatWereFittedLeak) {
+  const FunctionCompensator compensator(sound);
+  const SimulatedRun sweep{"sweep", RunPurpose::kSoak,
+                           training_sweep(0).recording};
+  Provenance provenance = provenance_of(sweep);
+  provenance.held_out = provenance.training;
+  CheckedCompensator all = checked(compensator);
+  all.provenance = &provenance;
+  EXPECT_EQ(failed_checks(all), Names{"causality"});
+}
+
+// The truth, and of a rate that is added to the recording all of it.
+std::vector<double> perfect(const Recording& run) {
+  const auto& temperature = column_values(run, "temperature");
+  const auto is_of_run = [&](const SimulatedRun& known) {
+    const auto& T = column_values(known.recording, "temperature");
+    return std::equal(T.begin(), T.begin() + 3000, temperature.begin());
+  };
+  const auto known = std::ranges::find_if(simulated_runs(), is_of_run);
+  const auto& truth = column_values(known->recording, "true_rate");
+  const auto& recorded = column_values(known->recording, "rate");
+  std::vector<double> answers = column_values(run, "rate");
+  for (std::size_t k = 0; k < answers.size(); ++k)
+    answers[k] += truth[k] - recorded[k];
+  return answers;
+}
+
+TEST(PlantedFaults, APerfectCompensatorPassesEverything) {
+  const FunctionCompensator compensator(perfect);
+  const CheckedCompensator all = checked(compensator);
+  const auto results = run_checks(all);
+  for (const CheckResult& result : results)
+    EXPECT_TRUE(result.passed() || result.name == "hold_out")
+        << result.name << ": " << result.words;
+  EXPECT_EQ(outcome_of(results), CheckOutcome::kPassed);
+}
+
+}  // namespace
+}  // namespace beamgyro::planted_faults_test

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "validation/checks/check_context.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "compensation/inputs/sample_ranges.h"
+#include "compensation/scoring/scale_factor.h"
+#include "parallel/work_queue.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr double kMostMissing = 0.01;  // [-], of the powered samples
+
+std::size_t missing_answers(const Recording& run, const Answer& answer) {
+  std::size_t missing = 0;
+  for (std::size_t k = 0; k < run.time.size(); ++k)
+    if ((run.status[k] & kUnpowered) == 0 &&
+        !(k < answer.rate.size() && std::isfinite(answer.rate[k])))
+      ++missing;
+  return missing;
+}
+
+}  // namespace
+
+std::vector<double> bridged(const Recording& run, std::vector<double> answers) {
+  const auto& rate = column_values(run, "rate");
+  answers.resize(run.time.size(), std::nan(""));
+  double correction = 0.0;
+  for (std::size_t k = 0; k < answers.size(); ++k) {
+    if ((run.status[k] & kUnpowered) != 0) continue;
+    if (std::isfinite(answers[k]))
+      correction = rate[k] - answers[k];
+    else
+      answers[k] = rate[k] - correction;
+  }
+  return answers;
+}
+
+std::vector<double> AlteredAnswers::operator()(const Recording& altered) const {
+  Answer answer = compensator_.answer(altered);
+  for (const SeenFault& seen : answer.faults)
+    seen_[static_cast<std::size_t>(seen.fault)] = true;
+  if (missing_answers(altered, answer) > 0)
+    seen_[static_cast<std::size_t>(AnswerFault::kNotFinite)] = true;
+  return bridged(altered, std::move(answer.rate));
+}
+
+void ScaleFactorCurve::add(double temperature, double scale_factor) {
+  const auto place =
+      std::ranges::upper_bound(points_, temperature, {}, &Point::temperature);
+  points_.insert(place, {temperature, scale_factor});
+}
+
+double ScaleFactorCurve::at(double temperature) const {
+  const auto right =
+      std::ranges::upper_bound(points_, temperature, {}, &Point::temperature);
+  if (right == points_.begin()) return points_.front().scale_factor;
+  if (right == points_.end()) return points_.back().scale_factor;
+  const auto left = right - 1;
+  const double share = (temperature - left->temperature) /
+                       (right->temperature - left->temperature);
+  return std::lerp(left->scale_factor, right->scale_factor, share);
+}
+
+double ScaleFactorCurve::largest_departure() const {
+  double largest = 0.0;
+  for (const Point& point : points_)
+    largest = std::max(largest, std::abs(point.scale_factor - 1.0));
+  return largest;
+}
+
+CheckContext::CheckContext(const CheckedCompensator& all, std::size_t count)
+    : checked(all), threads(count), altered(*all.compensator) {
+  for (const CheckedRun& run : all.runs) {
+    const Recording& recording = *run.recording;
+    for (const std::uint8_t status : recording.status)
+      samples += (status & kUnpowered) == 0 ? 1 : 0;
+    missing += missing_answers(recording, run.answer);
+    answers.push_back(bridged(recording, run.answer.rate));
+    for (const PlateauSlope& plateau : plateau_slopes(recording, kTableRate))
+      scale_factor.add(plateau.temperature, plateau.raw / plateau.truth);
+  }
+}
+
+bool CheckContext::answered() const {
+  return samples > 0 && static_cast<double>(missing) <=
+                            kMostMissing * static_cast<double>(samples);
+}
+
+std::ptrdiff_t CheckContext::lag_in(const Recording& run) const {
+  const double lag = random ? random->lag : 0.0;
+  return static_cast<std::ptrdiff_t>(std::round(lag / usual_step(run)));
+}
+
+std::vector<std::size_t> CheckContext::runs_of(
+    const std::vector<RunPurpose>& purposes) const {
+  std::vector<std::size_t> found, every;
+  for (std::size_t k = 0; k < checked.runs.size(); ++k) {
+    every.push_back(k);
+    if (std::ranges::find(purposes, checked.runs[k].purpose) != purposes.end())
+      found.push_back(k);
+  }
+  return found.empty() ? every : found;
+}
+
+void CheckContext::for_each(
+    const std::vector<std::size_t>& runs,
+    const std::function<void(std::size_t)>& work) const {
+  for_each_task(runs.size(), threads,
+                [&work](std::size_t k, std::size_t) { work(k); });
+}
+
+std::vector<RunPurpose> thermal_purposes() {
+  return {RunPurpose::kSoak, RunPurpose::kRamp, RunPurpose::kWarmUp,
+          RunPurpose::kRest};
+}
+
+CheckResult not_tested(const std::string& why) {
+  return {.outcome = CheckOutcome::kNotTested, .words = "Not tested: " + why};
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "validation/checks/checks.h"
+
+namespace beamgyro {
+
+/// Returns the answers with those that are missing at powered samples replaced
+/// by the recorded rate less the last correction, so that one missing answer
+/// is found by the check of missing answers alone.
+std::vector<double> bridged(const Recording& run, std::vector<double> answers);
+
+/// Answers to altered recordings, bridged. Notes the faults that were seen.
+/// Every member may be called from several threads at once.
+class AlteredAnswers {
+ public:
+  explicit AlteredAnswers(const TestedCompensator& compensator)
+      : compensator_(compensator) {}
+
+  std::vector<double> operator()(const Recording& altered) const;
+
+  bool has_seen(AnswerFault fault) const {
+    return seen_[static_cast<std::size_t>(fault)];
+  }
+
+ private:
+  static constexpr std::size_t kFaults =
+      static_cast<std::size_t>(AnswerFault::kTooSlow) + 1;
+
+  const TestedCompensator& compensator_;
+  mutable std::array<std::atomic<bool>, kFaults> seen_ = {};
+};
+
+/// The scale factor of the recorded rate over temperature, as rate tables show
+/// it.
+class ScaleFactorCurve {
+ public:
+  void add(double temperature, double scale_factor);
+  bool empty() const { return points_.empty(); }
+  double at(double temperature) const;  // linear between, constant beyond
+  double largest_departure() const;     // from 1 [-]
+
+ private:
+  struct Point {
+    double temperature;   // [degC]
+    double scale_factor;  // [-]
+  };
+  std::vector<Point> points_;  // rising temperatures
+};
+
+/// The answers to a rate that is new at every sample.
+struct RandomResponse {
+  double gain = 1.0;         // [-], slope at the same sample
+  double intercept = 0.0;    // [deg/s]
+  double chance = 0.0;       // [deg/s], 3 sigma of a mean of the answers
+  double lag = 0.0;          // [s], positive when answers come late
+  double temperature = 0.0;  // [degC], at the begin; NaN if not measured
+  double time = 0.0;         // [s], of the begin
+};
+
+/// What every check may use.
+struct CheckContext {
+  explicit CheckContext(const CheckedCompensator& all, std::size_t threads);
+
+  const CheckedCompensator& checked;
+  std::size_t threads;
+  AlteredAnswers altered;
+  std::vector<std::vector<double>> answers;  // bridged, of checked.runs
+  ScaleFactorCurve scale_factor;
+  std::optional<RandomResponse> random;
+  // Powered samples of all runs, and those without a finite answer.
+  std::size_t samples = 0, missing = 0;
+
+  /// Returns whether enough was answered to say anything else.
+  bool answered() const;
+  /// Returns by how many samples of a run the answers come late.
+  std::ptrdiff_t lag_in(const Recording& run) const;
+  /// Returns the indices of the runs with one of the purposes, or those of all
+  /// runs if there is none.
+  std::vector<std::size_t> runs_of(
+      const std::vector<RunPurpose>& purposes) const;
+  /// Calls `work` with the position in `runs` of every run, on all threads.
+  void for_each(const std::vector<std::size_t>& runs,
+                const std::function<void(std::size_t)>& work) const;
+};
+
+/// Purposes of runs that show the temperatures, most of them at rest.
+std::vector<RunPurpose> thermal_purposes();
+
+/// A check, which fills everything of its result but the name.
+using CheckFunction = CheckResult (*)(const CheckContext&);
+
+CheckResult check_jacobian(const CheckContext& context);
+CheckResult check_injection(const CheckContext& context);
+CheckResult check_true_rate(const CheckContext& context);
+CheckResult check_allan_fingerprint(const CheckContext& context);
+CheckResult check_shuffled_output(const CheckContext& context);
+CheckResult check_rate_correlation(const CheckContext& context);
+CheckResult check_hold_out(const CheckContext& context);
+CheckResult check_causality(const CheckContext& context);
+CheckResult check_answers(const CheckContext& context);
+CheckResult check_finite(const CheckContext& context);
+CheckResult check_reset(const CheckContext& context);
+CheckResult check_output_stuck(const CheckContext& context);
+CheckResult check_real_time(const CheckContext& context);
+
+/// Returns a result without a figure.
+CheckResult not_tested(const std::string& why);
+
+}  // namespace beamgyro

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+// Checks of the way in which a compensator answers, and of its training.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "compensation/compensator/training_use.h"
+#include "compensation/inputs/sample_ranges.h"
+#include "compensation/scoring/rate_injection.h"
+#include "validation/checks/check_context.h"
+#include "validation/checks/random_response.h"
+#include "validation/checks/white_number.h"
+#include "validation/external/answer_checks.h"
+
+namespace beamgyro {
+namespace {
+
+CheckResult counted(std::size_t count, const std::string& passed,
+                    const std::string& failed) {
+  return {.outcome = count == 0 ? CheckOutcome::kPassed : CheckOutcome::kFailed,
+          .value = static_cast<double>(count),
+          .limit = 0.0,
+          .words = count == 0 ? passed : failed};
+}
+
+/// Returns the first fault of one of these kinds in the runs, with the name of
+/// its run before it.
+std::optional<std::string> first_words(const CheckContext& context,
+                                       const std::vector<AnswerFault>& kinds) {
+  for (const CheckedRun& run : context.checked.runs)
+    for (const SeenFault& seen : run.answer.faults)
+      if (std::ranges::find(kinds, seen.fault) != kinds.end())
+        return fmt::format("Run {}: {}.", run.name, seen.words);
+  return std::nullopt;
+}
+
+bool in_altered(const CheckContext& context,
+                const std::vector<AnswerFault>& kinds) {
+  return std::ranges::any_of(kinds, [&context](AnswerFault kind) {
+    return context.altered.has_seen(kind);
+  });
+}
+
+/// The result of a check that only looks for faults.
+CheckResult fault_result(const CheckContext& context,
+                         const std::vector<AnswerFault>& kinds,
+                         const std::string& passed) {
+  std::size_t runs = 0;
+  for (const CheckedRun& run : context.checked.runs)
+    runs += std::ranges::any_of(run.answer.faults, [&](const SeenFault& seen) {
+      return std::ranges::find(kinds, seen.fault) != kinds.end();
+    });
+  if (runs == 0 && in_altered(context, kinds))
+    return counted(1, "",
+                   "Fails on a recording with rates added to it, which looks "
+                   "like any other to a compensator.");
+  return counted(runs, passed, first_words(context, kinds).value_or(""));
+}
+
+bool was_used(const CheckedCompensator& checked, const CheckedRun& run) {
+  if (checked.set != nullptr && !run.device.empty()) {
+    const TrainingRun of_set{.name = run.name,
+                             .sha256 = "",
+                             .recording = {},
+                             .device = run.device,
+                             .run = run.set_run};
+    if (was_used_in_training(*checked.provenance, *checked.set, of_set))
+      return true;
+  }
+  return was_used_in_training(*checked.provenance, run.sha256, *run.recording);
+}
+
+/// Returns the first file that was fitted and held out at once, whole or in
+/// pieces: then its early stopping and its choices have seen the answer.
+std::optional<std::string> leak(const Provenance& provenance) {
+  for (const SourceFile& held : provenance.held_out)
+    for (const SourceFile& fitted : provenance.training)
+      if ((!held.sha256.empty() && held.sha256 == fitted.sha256) ||
+          (!held.measured_sha256.empty() &&
+           held.measured_sha256 == fitted.measured_sha256) ||
+          shares_stretches(held.sketch, fitted.sketch) ||
+          shares_stretches(fitted.sketch, held.sketch))
+        return held.name;
+  return std::nullopt;
+}
+
+}  // namespace
+
+CheckResult check_hold_out(const CheckContext& context) {
+  const Provenance* provenance = context.checked.provenance;
+  if (provenance == nullptr || !warning_of_no_training(*provenance).empty())
+    return not_tested(
+        "the compensator names no recording that it was trained on.");
+  std::vector<std::string> used;
+  for (const CheckedRun& run : context.checked.runs)
+    if (was_used(context.checked, run)) used.push_back(run.name);
+  return counted(
+      used.size(),
+      fmt::format("Training saw none of the {} runs.",
+                  context.checked.runs.size()),
+      fmt::format("Training saw {} of the {} runs, so they prove nothing: {}.",
+                  used.size(), context.checked.runs.size(),
+                  fmt::join(used, ", ")));
+}
+
+namespace {
+
+/// The run with the fewest samples that are enough to cut.
+const Recording* shortest_run(const CheckContext& context) {
+  constexpr std::size_t kEnough = 100;
+  const Recording* shortest = nullptr;
+  for (const CheckedRun& run : context.checked.runs) {
+    const std::size_t size = run.recording->time.size();
+    if (size >= kEnough &&
+        (shortest == nullptr || size < shortest->time.size()))
+      shortest = run.recording;
+  }
+  return shortest;
+}
+
+const std::string kTooShort = "every run is shorter than 100 samples.";
+
+CheckResult seen_result(const std::optional<SeenFault>& seen,
+                        const std::string& passed) {
+  return counted(seen ? 1 : 0, passed,
+                 seen ? fmt::format("The compensator {}.", seen->words) : "");
+}
+
+}  // namespace
+
+CheckResult check_causality(const CheckContext& context) {
+  const CheckResult given =
+      fault_result(context, {AnswerFault::kUsesLaterSamples}, "");
+  if (!given.passed()) return given;
+  if (context.checked.provenance != nullptr)
+    if (const auto leaked = leak(*context.checked.provenance))
+      return counted(1, "",
+                     fmt::format("{} was fitted and held out at once: what was "
+                                 "chosen by it has seen the answer.",
+                                 *leaked));
+  const Recording* run = shortest_run(context);
+  if (run == nullptr) return not_tested(kTooShort);
+  return seen_result(later_samples_used(*context.checked.compensator, *run),
+                     "No answer changes with a later sample.");
+}
+
+CheckResult check_reset(const CheckContext& context) {
+  const CheckResult given =
+      fault_result(context, {AnswerFault::kKeepsState}, "");
+  if (!given.passed()) return given;
+  const Recording* run = shortest_run(context);
+  if (run == nullptr) return not_tested(kTooShort);
+  return seen_result(state_kept_over_reset(*context.checked.compensator, *run),
+                     "The same run after a reset has the same answers.");
+}
+
+CheckResult check_answers(const CheckContext& context) {
+  return fault_result(
+      context,
+      {AnswerFault::kCrashed, AnswerFault::kTimedOut, AnswerFault::kOutOfMemory,
+       AnswerFault::kTooFew, AnswerFault::kTooMany, AnswerFault::kNotANumber},
+      "Every run is answered, one number for each sample.");
+}
+
+CheckResult check_finite(const CheckContext& context) {
+  if (context.missing == 0 && context.altered.has_seen(AnswerFault::kNotFinite))
+    return counted(1, "",
+                   "An answer to a recording with rates added to it is not "
+                   "finite.");
+  return counted(context.missing, "Every answer is finite.",
+                 fmt::format("{} of {} answers are not finite.",
+                             context.missing, context.samples));
+}
+
+namespace {
+
+constexpr double kLongestStuck = 30.0;     // [s]
+constexpr std::size_t kLeastChanges = 10;  // of the output meanwhile
+
+/// The longest time [s] over which the answers stay the same while the rate
+/// changes kLeastChanges times or more.
+double longest_stuck(const Recording& run, const std::vector<double>& answers) {
+  const auto& rate = column_values(run, "rate");
+  double longest = 0.0;
+  for (const SampleRange& stretch : powered_stretches(run)) {
+    std::size_t begin = stretch.begin, changes = 0;
+    for (std::size_t k = stretch.begin + 1;
+         k < std::min(stretch.end, answers.size()); ++k) {
+      if (answers[k] != answers[k - 1]) {
+        begin = k;
+        changes = 0;
+      } else if (rate[k] != rate[k - 1] && ++changes >= kLeastChanges) {
+        longest = std::max(longest, run.time[k] - run.time[begin]);
+      }
+    }
+  }
+  return longest;
+}
+
+/// The same with rates added, for a gyro at rest may well answer zero.
+double stuck_with_rates(const CheckContext& context, const Recording& run) {
+  std::vector<double> added;
+  for (std::size_t k = 0; k < run.time.size(); ++k)
+    added.push_back(kAddedShare * context.checked.full_scale * white_number(k));
+  const auto moved = with_injected_rate(run, added);
+  return moved ? longest_stuck(*moved, context.altered(*moved)) : HUGE_VAL;
+}
+
+}  // namespace
+
+CheckResult check_output_stuck(const CheckContext& context) {
+  CheckResult result{.outcome = CheckOutcome::kPassed,
+                     .value = 0.0,
+                     .limit = kLongestStuck,
+                     .words = "The answers change when the output does."};
+  for (const CheckedRun& run : context.checked.runs) {
+    double stuck = longest_stuck(*run.recording, run.answer.rate);
+    if (stuck > kLongestStuck)
+      stuck = std::min(stuck, stuck_with_rates(context, *run.recording));
+    if (stuck <= *result.value) continue;
+    result.value = stuck;
+    if (stuck <= kLongestStuck) continue;
+    result.outcome = CheckOutcome::kFailed;
+    result.words = fmt::format(
+        "Run {}: the answer stays the same for {:g} s while the output "
+        "changes.",
+        run.name, stuck);
+  }
+  return result;
+}
+
+CheckResult check_real_time(const CheckContext& context) {
+  CheckResult result =
+      fault_result(context, {AnswerFault::kTooSlow},
+                   "Every run is answered faster than it was recorded.");
+  result.value.reset();
+  result.limit.reset();
+  return result;
+}
+
+}  // namespace beamgyro

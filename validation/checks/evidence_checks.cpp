@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: MIT
+// Checks of the answers against the true rate.
+#include <fmt/core.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "compensation/inputs/sample_ranges.h"
+#include "compensation/scoring/rate_departure.h"
+#include "compensation/scoring/rate_injection.h"
+#include "compensation/scoring/scale_factor.h"
+#include "validation/checks/check_context.h"
+#include "validation/checks/gain_judge.h"
+#include "validation/checks/white_number.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr std::size_t kLeastTemperatures = 5;
+constexpr std::size_t kLeastRates = 11;
+constexpr double kSameTemperature = 2.0;  // [K]
+
+std::size_t different_values(std::vector<double> values, double same) {
+  std::ranges::sort(values);
+  std::size_t different = 0;
+  double last = 0.0;
+  for (const double value : values) {
+    if (different > 0 && value - last < same) continue;
+    last = value;
+    ++different;
+  }
+  return different;
+}
+
+std::size_t held_rates(const Recording& run) {
+  const auto& truth = column_values(run, "true_rate");
+  std::vector<double> held;
+  for (std::size_t k = 1; k < truth.size(); ++k)
+    if (truth[k] == truth[k - 1] && (held.empty() || held.back() != truth[k]))
+      held.push_back(truth[k]);
+  return different_values(held, 1e-6);
+}
+
+}  // namespace
+
+CheckResult check_true_rate(const CheckContext& context) {
+  GainJudge judge(context.scale_factor);
+  std::vector<double> temperatures;
+  std::size_t rates = 0;
+  for (const std::size_t k : context.runs_of({RunPurpose::kRateTable})) {
+    const Recording& run = *context.checked.runs[k].recording;
+    const auto plateaus = plateau_slopes(run, kTableRate, context.answers[k]);
+    for (const PlateauSlope& plateau : plateaus) {
+      judge.add({context.checked.full_scale, plateau.compensated / plateau.raw,
+                 plateau.temperature, run.time.front(),
+                 context.checked.full_scale});
+      temperatures.push_back(plateau.temperature);
+    }
+    if (!plateaus.empty()) rates = std::max(rates, held_rates(run));
+  }
+  const std::size_t seen = different_values(temperatures, kSameTemperature);
+  if (judge.passed() && (seen < kLeastTemperatures || rates < kLeastRates))
+    return not_tested(fmt::format(
+        "{} rates at {} temperatures were recorded, must be {} at {} or more.",
+        rates, seen, kLeastRates, kLeastTemperatures));
+  CheckResult result{
+      .outcome = judge.passed() ? CheckOutcome::kPassed : CheckOutcome::kFailed,
+      .value = judge.departure(),
+      .limit = judge.limit()};
+  if (judge.passed())
+    result.words = fmt::format(
+        "The compensator {} the scale factor on a rate table of {} rates at {} "
+        "temperatures.",
+        judge.corrects() ? "corrects" : "keeps", rates, seen);
+  else
+    result.words = fmt::format(
+        "On a rate table the compensator changes the scale factor to {:.6g} of "
+        "the recorded one at {:.1f} degC.",
+        judge.worst().gain, judge.worst().temperature);
+  return result;
+}
+
+namespace {
+
+constexpr double kAllanTolerance = 0.02;  // [-]
+constexpr std::size_t kAllanBlock = 20;   // clusters
+constexpr std::size_t kLeastClusters = 200;
+constexpr double kConfidence = 1.96;  // [-], 95 %
+
+/// Means over 1 s of the residuals before and after, from stretches without a
+/// gap; a stretch ends with NaN.
+struct ClusterMeans {
+  std::vector<double> before, after;
+};
+
+/// Returns the sample `lag` later, within the stretch.
+std::size_t shifted(std::size_t k, std::ptrdiff_t lag,
+                    const SampleRange& stretch) {
+  const auto at = static_cast<std::ptrdiff_t>(k) + lag;
+  return static_cast<std::size_t>(
+      std::clamp(at, static_cast<std::ptrdiff_t>(stretch.begin),
+                 static_cast<std::ptrdiff_t>(stretch.end) - 1));
+}
+
+/// Returns nothing for a run that is not sampled a whole number of times a
+/// second.
+std::optional<ClusterMeans> cluster_means(const Recording& run,
+                                          const std::vector<double>& answers,
+                                          std::ptrdiff_t lag) {
+  const double step = usual_step(run);
+  const double samples = step > 0.0 ? std::round(1.0 / step) : 0.0;
+  if (samples < 1.0 || std::abs(samples * step - 1.0) > 1e-6)
+    return std::nullopt;
+  const auto& rate = column_values(run, "rate");
+  const auto& truth = column_values(run, "true_rate");
+  const auto size = static_cast<std::size_t>(samples);
+  ClusterMeans means;
+  for (const SampleRange& stretch : powered_stretches(run)) {
+    for (std::size_t k = stretch.begin; k + size <= stretch.end; k += size) {
+      double before = 0.0, after = 0.0;
+      for (std::size_t i = k; i < k + size; ++i) {
+        before += rate[i] - truth[i];
+        after += answers[shifted(i, lag, stretch)] - truth[i];
+      }
+      means.before.push_back(before / samples);
+      means.after.push_back(after / samples);
+    }
+    means.before.push_back(std::nan(""));
+    means.after.push_back(std::nan(""));
+  }
+  return means;
+}
+
+/// Ratio of two Allan deviations at 1 s of the same clusters, with its 95 %
+/// interval from blocks of clusters.
+struct AllanRatio {
+  double ratio, low, high;  // [-]
+};
+
+std::optional<AllanRatio> allan_ratio(const ClusterMeans& means) {
+  std::vector<double> before, after;  // sums over a block
+  std::size_t count = 0;
+  for (std::size_t k = 1; k < means.before.size(); ++k) {
+    const double b = means.before[k] - means.before[k - 1];
+    const double a = means.after[k] - means.after[k - 1];
+    if (std::isnan(a) || std::isnan(b)) continue;
+    if (count++ % kAllanBlock == 0) {
+      before.push_back(0.0);
+      after.push_back(0.0);
+    }
+    before.back() += b * b;
+    after.back() += a * a;
+  }
+  if (count < kLeastClusters) return std::nullopt;
+  double above = 0.0, below = 0.0, squares = 0.0;
+  for (const double value : after) above += value;
+  for (const double value : before) below += value;
+  if (!(below > 0.0)) return std::nullopt;
+  const double variance = above / below;
+  for (std::size_t k = 0; k < before.size(); ++k)
+    squares += std::pow(after[k] - variance * before[k], 2);
+  const double half = kConfidence * std::sqrt(squares) / below;
+  return AllanRatio{std::sqrt(variance),
+                    std::sqrt(std::max(variance - half, 0.0)),
+                    std::sqrt(variance + half)};
+}
+
+bool is_at_rest(const Recording& run) {
+  const auto& truth = column_values(run, "true_rate");
+  return std::ranges::all_of(truth,
+                             [&](double rate) { return rate == truth[0]; });
+}
+
+}  // namespace
+
+namespace {
+
+/// The run at rest whose ratio departs most from 1.
+struct WorstAllan {
+  AllanRatio ratio;
+  std::size_t run;
+};
+
+std::optional<WorstAllan> worst_allan(const CheckContext& context) {
+  std::optional<WorstAllan> worst;
+  for (const std::size_t k : context.runs_of({RunPurpose::kRest})) {
+    const Recording& run = *context.checked.runs[k].recording;
+    if (!is_at_rest(run)) continue;
+    const auto means =
+        cluster_means(run, context.answers[k], context.lag_in(run));
+    const auto found = means ? allan_ratio(*means) : std::nullopt;
+    if (found && (!worst || std::abs(found->ratio - 1.0) >
+                                std::abs(worst->ratio.ratio - 1.0)))
+      worst = WorstAllan{*found, k};
+  }
+  return worst;
+}
+
+/// Returns the share of a random rate as large as the noise and as fast, a new
+/// one each second, that the answers show.
+double noise_like_rate_kept(const CheckContext& context, std::size_t number) {
+  const Recording& run = *context.checked.runs[number].recording;
+  const auto& answers = context.answers[number];
+  const auto means = cluster_means(run, answers, 0);
+  double squares = 0.0, count = 0.0;
+  for (std::size_t k = 1; k < means->before.size(); ++k) {
+    const double change = means->before[k] - means->before[k - 1];
+    if (std::isnan(change)) continue;
+    squares += 0.5 * change * change;
+    count += 1.0;
+  }
+  const double size = std::sqrt(3.0 * squares / count);
+  std::vector<double> added;
+  for (const double t : run.time)
+    added.push_back(size * white_number(static_cast<std::size_t>(
+                               std::floor(t - run.time.front() + 1e-6))));
+  const auto moved = with_injected_rate(run, added);
+  if (!moved) return 0.0;
+  const std::vector<double> shown = context.altered(*moved);
+  double product = 0.0, square = 0.0;
+  for (std::size_t k = 0; k < added.size(); ++k) {
+    if ((run.status[k] & kUnpowered) != 0) continue;
+    product += added[k] * (shown[k] - answers[k]);
+    square += added[k] * added[k];
+  }
+  return product / square;
+}
+
+CheckResult allan_result(const CheckContext& context, const WorstAllan& worst) {
+  const auto within = [](double ratio) {
+    return std::abs(ratio - 1.0) <= kAllanTolerance;
+  };
+  const auto& [ratio, low, high] = worst.ratio;
+  CheckResult result{.value = std::abs(ratio - 1.0), .limit = kAllanTolerance};
+  const std::string found = fmt::format(
+      "The Allan deviation at 1 s is {:.4f} ({:.4f} to {:.4f}) of the recorded "
+      "one's",
+      ratio, low, high);
+  if (within(low) && within(high)) {
+    result.outcome = CheckOutcome::kPassed;
+    result.words = found + ": the compensator leaves the noise as it is.";
+  } else if (low <= 1.0 + kAllanTolerance && high >= 1.0 - kAllanTolerance) {
+    result.words = "Not tested: " + found +
+                   ". The runs at rest are too short to tell it within 2 %.";
+  } else if (ratio > 1.0) {
+    result.outcome = CheckOutcome::kFailed;
+    result.words = found + ": the compensator adds noise.";
+  } else if (within(noise_like_rate_kept(context, worst.run))) {
+    result.outcome = CheckOutcome::kPassed;
+    result.words = found +
+                   ", and a rate as small and as fast as the noise comes out "
+                   "whole.";
+  } else {
+    result.outcome = CheckOutcome::kFailed;
+    result.words = found + ": noise that drops is rate that was eaten.";
+  }
+  return result;
+}
+
+}  // namespace
+
+CheckResult check_allan_fingerprint(const CheckContext& context) {
+  const auto worst = worst_allan(context);
+  if (!worst)
+    return not_tested(
+        "no run at rest has noise and 200 s of samples, a whole number of them "
+        "each second.");
+  return allan_result(context, *worst);
+}
+
+namespace {
+
+constexpr double kChance = 3.0;      // standard deviations
+constexpr std::size_t kShifts = 64;  // of the true rate against the answers
+constexpr double kLeastRateSpread = 0.1;  // [deg/s], rms
+
+using Series = Eigen::VectorXd;
+
+/// The samples of a run that can be correlated.
+struct MixedRun {
+  std::vector<double> time;
+  Series truth, temperature;
+  Series kept, corrected;  // corrections: rate - answer, rate / s(T) - answer
+};
+
+MixedRun mixed_run(const CheckContext& context, std::size_t number) {
+  const Recording& run = *context.checked.runs[number].recording;
+  const auto& rate = column_values(run, "rate");
+  const auto& truth = column_values(run, "true_rate");
+  const Column* temperature = find_column(run, "temperature");
+  const std::ptrdiff_t lag = context.lag_in(run);
+  std::vector<double> all[4];
+  MixedRun mixed;
+  for (std::size_t k = 0; k < run.time.size(); ++k) {
+    const std::ptrdiff_t later = static_cast<std::ptrdiff_t>(k) + lag;
+    const auto at = static_cast<std::size_t>(later);
+    if (later < 0 || at >= run.time.size() || run.status[k] != 0 ||
+        run.status[at] != 0)
+      continue;
+    const double T = temperature ? temperature->values[k] : 0.0;
+    const double s = context.scale_factor.empty() || !temperature
+                         ? 1.0
+                         : context.scale_factor.at(T);
+    const double answer = context.answers[number][at];
+    mixed.time.push_back(run.time[k]);
+    all[0].push_back(truth[k]);
+    all[1].push_back(T);
+    all[2].push_back(rate[k] - answer);
+    all[3].push_back(rate[k] / s - answer);
+  }
+  Series* series[] = {&mixed.truth, &mixed.temperature, &mixed.kept,
+                      &mixed.corrected};
+  for (std::size_t k = 0; k < 4; ++k)
+    *series[k] = Eigen::Map<const Series>(
+        all[k].data(), static_cast<Eigen::Index>(all[k].size()));
+  return mixed;
+}
+
+struct RateShare {
+  double share = 0.0;   // [-], of the true rate in the correction
+  double chance = 0.0;  // [-], kChance sigma of it when nothing is there
+};
+
+/// The share, and by chance that of the true rate turned round by parts of the
+/// run.
+RateShare rate_share(const Series& rate, const Series& correction) {
+  const Eigen::Index n = rate.size();
+  const double square = rate.squaredNorm();
+  RateShare result{rate.dot(correction) / square};
+  double squares = 0.0;
+  for (std::size_t k = 1; k < kShifts; ++k) {
+    const auto shift =
+        static_cast<Eigen::Index>(k) * n / static_cast<Eigen::Index>(kShifts);
+    const double product =
+        rate.head(n - shift).dot(correction.tail(n - shift)) +
+        rate.tail(shift).dot(correction.head(shift));
+    squares += std::pow(product / square, 2);
+  }
+  result.chance = kChance * std::sqrt(squares / (kShifts - 1));
+  return result;
+}
+
+}  // namespace
+
+CheckResult check_rate_correlation(const CheckContext& context) {
+  std::optional<CheckResult> worst;
+  for (const std::size_t k : context.runs_of({RunPurpose::kRandomRate})) {
+    const MixedRun run = mixed_run(context, k);
+    if (run.truth.size() < static_cast<Eigen::Index>(10 * kShifts)) continue;
+    const Series rate = without_drift(run.truth, run.temperature, run.time);
+    if (rate.norm() <
+        kLeastRateSpread * std::sqrt(static_cast<double>(rate.size())))
+      continue;
+    const auto found = [&](const Series& correction, double tolerance) {
+      const RateShare share = rate_share(
+          rate, without_drift(correction, run.temperature, run.time));
+      const double limit = std::max(tolerance, share.chance);
+      return CheckResult{.outcome = std::abs(share.share) <= limit
+                                        ? CheckOutcome::kPassed
+                                        : CheckOutcome::kFailed,
+                         .value = std::abs(share.share),
+                         .limit = limit};
+    };
+    CheckResult result = found(run.kept, kGainTolerance);
+    const double spread = context.scale_factor.empty()
+                              ? 0.0
+                              : context.scale_factor.largest_departure();
+    if (!result.passed() && 0.5 * spread > kCorrectedTolerance)
+      if (const auto corrected = found(run.corrected, kCorrectedTolerance);
+          corrected.passed())
+        result = corrected;
+    if (!worst || *result.value / *result.limit > *worst->value / *worst->limit)
+      worst = result;
+  }
+  if (!worst)
+    return not_tested("no run varies its true rate over 640 samples or more.");
+  worst->words =
+      worst->passed()
+          ? "The correction has nothing to do with the true rate."
+          : fmt::format(
+                "The correction follows the true rate: {:.3g} of it is "
+                "found there, by chance it would be below {:.3g}.",
+                *worst->value, *worst->limit);
+  return *worst;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "validation/checks/gain_judge.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace beamgyro {
+
+std::string place_words(const AddedRate& found) {
+  std::string words;
+  if (!std::isnan(found.temperature))
+    words = fmt::format("at {:.1f} degC, ", found.temperature);
+  return words + fmt::format("{:g} s into its run", found.time);
+}
+
+void GainJudge::keep(Worst& worst, double departure, const AddedRate& where) {
+  if (std::isnan(departure))
+    departure = std::numeric_limits<double>::infinity();
+  if (worst.where) {
+    const double here = std::min(departure, 1.0);
+    const double there = std::min(worst.departure, 1.0);
+    if (here < there ||
+        (here == there && std::abs(where.rate) <= std::abs(worst.where->rate)))
+      return;
+  }
+  worst = {departure, where};
+}
+
+void GainJudge::add(const AddedRate& found) {
+  ++count_;
+  const auto counted = [&found](double gain) {
+    const double departure = std::abs(gain - 1.0);
+    return departure * std::abs(found.change) < kRateResolution ? 0.0
+                                                                : departure;
+  };
+  keep(kept_, counted(found.gain), found);
+  if (!curve_->empty())
+    keep(corrected_,
+         counted(found.gain * (std::isnan(found.temperature)
+                                   ? 1.0
+                                   : curve_->at(found.temperature))),
+         found);
+}
+
+void GainJudge::add(const GainJudge& other) {
+  count_ += other.count_;
+  if (other.kept_.where) keep(kept_, other.kept_.departure, *other.kept_.where);
+  if (other.corrected_.where)
+    keep(corrected_, other.corrected_.departure, *other.corrected_.where);
+}
+
+bool GainJudge::corrects() const {
+  return kept_.departure > kGainTolerance && corrected_.where &&
+         corrected_.departure <= kCorrectedTolerance &&
+         corrected_.departure < 0.5 * curve_->largest_departure();
+}
+
+bool GainJudge::passed() const {
+  return corrects() || kept_.departure <= kGainTolerance;
+}
+
+double GainJudge::limit() const {
+  return corrects() ? kCorrectedTolerance : kGainTolerance;
+}
+
+const AddedRate& GainJudge::worst() const { return *judged().where; }
+
+}  // namespace beamgyro

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// Checks by the answers to recordings with an altered rate.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "compensation/inputs/sample_ranges.h"
+#include "compensation/scoring/rate_injection.h"
+#include "validation/checks/check_context.h"
+#include "validation/checks/gain_judge.h"
+#include "validation/checks/random_response.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr double kJacobianHold = 4.0;    // [s]
+constexpr double kJacobianStep = 0.01;   // [-], of full scale
+constexpr double kJacobianSettle = 1.0;  // [s]
+
+double temperature_at(const Recording& run, std::size_t k) {
+  const Column* temperature = find_column(run, "temperature");
+  return temperature == nullptr ? std::nan("") : temperature->values[k];
+}
+
+/// The judgement of all runs, with why there is none.
+template <class Work>
+GainJudge judged_runs(const CheckContext& context,
+                      const std::vector<std::size_t>& runs, const Work& work) {
+  std::vector<GainJudge> judges(context.checked.runs.size(),
+                                GainJudge(context.scale_factor));
+  context.for_each(runs, [&](std::size_t k) {
+    work(*context.checked.runs[runs[k]].recording, context.answers[runs[k]],
+         judges[k]);
+  });
+  GainJudge all(context.scale_factor);
+  for (const GainJudge& judge : judges) all.add(judge);
+  return all;
+}
+
+const std::string kNoInjection =
+    "no run has an output that follows its rate, so that none could be added.";
+
+/// Adds d(answer)/d(rate) at rates held in turn over a run, by the difference
+/// between two of them.
+void add_jacobian(const AlteredAnswers& answers, const Recording& run,
+                  double full_scale, GainJudge& judge) {
+  const double step = usual_step(run);
+  const double hold = std::max(kJacobianHold, 4.0 * step);
+  const std::size_t samples = run.time.size();
+  std::vector<double> rate(samples), moved(samples), since(samples);
+  for (std::size_t k = 0; k < samples; ++k) {
+    const double t = run.time[k] - run.time.front() + 0.5 * step;
+    const double number = std::floor(t / hold);
+    since[k] = t - number * hold;
+    rate[k] = held_rate(static_cast<std::size_t>(number), full_scale);
+    moved[k] = rate[k] - std::copysign(kJacobianStep * full_scale, rate[k]);
+  }
+  const auto at_rate = with_injected_rate(run, rate);
+  const auto at_moved = with_injected_rate(run, moved);
+  if (!at_rate || !at_moved) return;
+  const std::vector<double> one = answers(*at_rate), two = answers(*at_moved);
+  for (std::size_t k = 0; k < samples; ++k)
+    if ((run.status[k] & kUnpowered) == 0 && since[k] >= kJacobianSettle)
+      judge.add({rate[k], (one[k] - two[k]) / (rate[k] - moved[k]),
+                 temperature_at(run, k), run.time[k], rate[k] - moved[k]});
+}
+
+}  // namespace
+
+CheckResult check_jacobian(const CheckContext& context) {
+  const double full_scale = context.checked.full_scale;
+  const GainJudge judge =
+      judged_runs(context, context.runs_of(thermal_purposes()),
+                  [&](const Recording& run, const auto&, GainJudge& found) {
+                    add_jacobian(context.altered, run, full_scale, found);
+                  });
+  if (judge.count() == 0) return not_tested(kNoInjection);
+  CheckResult result{
+      .outcome = judge.passed() ? CheckOutcome::kPassed : CheckOutcome::kFailed,
+      .value = judge.departure(),
+      .limit = judge.limit()};
+  const AddedRate& worst = judge.worst();
+  result.words =
+      judge.passed()
+          ? fmt::format(
+                "The answer follows small changes of the rate "
+                "everywhere within {:g} deg/s.",
+                full_scale)
+          : fmt::format(
+                "The correction depends on the rate itself: of a small "
+                "change of the rate at {:.4g} deg/s the answer shows "
+                "{:.6g} ({}).",
+                worst.rate, worst.gain, place_words(worst));
+  return result;
+}
+
+namespace {
+
+/// A permutation without fixed order: k -> (k stride) mod size, with a stride
+/// near the golden section that shares no divisor with the size.
+std::size_t golden_stride(std::size_t size) {
+  auto stride = static_cast<std::size_t>(0.618 * static_cast<double>(size)) + 1;
+  while (std::gcd(stride, size) != 1) ++stride;
+  return stride;
+}
+
+struct ShuffleSums {
+  // Σ (change of the answer - gain x change of the rate)^2 with gain 1 and
+  // with gain 1 / s(T), Σ (change of the rate)^2
+  double kept = 0.0, corrected = 0.0, rate = 0.0;
+};
+
+ShuffleSums shuffle_sums(const CheckContext& context, const Recording& run,
+                         const std::vector<double>& answers) {
+  const auto& rate = column_values(run, "rate");
+  std::vector<double> change(run.time.size(), 0.0);
+  for (const SampleRange& plateau : temperature_plateaus(run)) {
+    const std::size_t size = plateau.size();
+    const std::size_t stride = golden_stride(size);
+    for (std::size_t k = 0; k < size; ++k)
+      change[plateau.begin + k] =
+          rate[plateau.begin + k * stride % size] - rate[plateau.begin + k];
+  }
+  const auto shuffled = with_injected_rate(run, change);
+  ShuffleSums sums;
+  if (!shuffled) return sums;
+  const std::vector<double> moved = context.altered(*shuffled);
+  const std::ptrdiff_t lag = context.lag_in(run);
+  for (std::size_t k = 0; k < change.size(); ++k) {
+    const auto at =
+        static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) + lag);
+    if (!is_powered_at(run, k) || !is_powered_at(run, at)) continue;
+    const double difference = moved[at] - answers[at];
+    const double s = context.scale_factor.empty()
+                         ? 1.0
+                         : context.scale_factor.at(temperature_at(run, k));
+    sums.kept += std::pow(difference - change[k], 2);
+    sums.corrected += std::pow(difference - change[k] / s, 2);
+    sums.rate += change[k] * change[k];
+  }
+  return sums;
+}
+
+}  // namespace
+
+CheckResult check_shuffled_output(const CheckContext& context) {
+  const auto runs = context.runs_of(thermal_purposes());
+  std::vector<ShuffleSums> all(runs.size());
+  context.for_each(runs, [&](std::size_t k) {
+    all[k] = shuffle_sums(context, *context.checked.runs[runs[k]].recording,
+                          context.answers[runs[k]]);
+  });
+  ShuffleSums sums;
+  for (const ShuffleSums& run : all) {
+    sums.kept += run.kept;
+    sums.corrected += run.corrected;
+    sums.rate += run.rate;
+  }
+  if (!(sums.rate > 0.0)) return not_tested(kNoInjection);
+  const double kept = std::sqrt(sums.kept / sums.rate);
+  const double corrected = std::sqrt(sums.corrected / sums.rate);
+  const bool corrects =
+      kept > kGainTolerance && corrected <= kCorrectedTolerance &&
+      corrected < 0.5 * context.scale_factor.largest_departure();
+  const double value = corrects ? corrected : kept;
+  const double limit = corrects ? kCorrectedTolerance : kGainTolerance;
+  CheckResult result{
+      .outcome = value <= limit ? CheckOutcome::kPassed : CheckOutcome::kFailed,
+      .value = value,
+      .limit = limit};
+  result.words =
+      result.passed()
+          ? "The correction stays the same when the output is shuffled among "
+            "samples of one temperature."
+          : fmt::format(
+                "The correction changes by {:.3g} of the change of the "
+                "output when the output is shuffled among samples of "
+                "one temperature: it is not made from the temperature.",
+                value);
+  return result;
+}
+
+}  // namespace beamgyro
