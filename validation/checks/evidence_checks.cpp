@@ -95,8 +95,8 @@ struct ClusterMeans {
 };
 
 /// Returns the sample `lag` later, within the stretch.
-std::size_t shifted(std::size_t k, std::ptrdiff_t lag,
-                    const SampleRange& stretch) {
+std::size_t later_sample(std::size_t k, std::ptrdiff_t lag,
+                         const SampleRange& stretch) {
   const auto at = static_cast<std::ptrdiff_t>(k) + lag;
   return static_cast<std::size_t>(
       std::clamp(at, static_cast<std::ptrdiff_t>(stretch.begin),
@@ -121,7 +121,7 @@ std::optional<ClusterMeans> cluster_means(const Recording& run,
       double before = 0.0, after = 0.0;
       for (std::size_t i = k; i < k + size; ++i) {
         before += rate[i] - truth[i];
-        after += answers[shifted(i, lag, stretch)] - truth[i];
+        after += answers[later_sample(i, lag, stretch)] - truth[i];
       }
       means.before.push_back(before / samples);
       means.after.push_back(after / samples);

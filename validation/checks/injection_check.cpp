@@ -68,7 +68,7 @@ void add_sines(const CheckContext& context, std::size_t number,
     for (std::size_t k = sine.begin; k < sine.end; ++k)
       added[k] = amplitude * std::sin(2.0 * std::numbers::pi * sine.frequency *
                                       (run.time[k] - run.time[sine.begin]));
-  const auto found = shown(context, number, std::move(added));
+  const auto found = seen_of_added(context, number, std::move(added));
   if (!found) return;
   const Column* temperature = find_column(run, "temperature");
   for (const SineSegment& sine : segments) {
@@ -80,7 +80,7 @@ void add_sines(const CheckContext& context, std::size_t number,
     for (std::size_t k = settled; k < sine.end; ++k) {
       if (!is_powered_at(run, k)) continue;
       xx += found->added[k] * found->added[k];
-      xy += found->added[k] * found->shown[k];
+      xy += found->added[k] * found->seen[k];
     }
     if (xx > 0.0)
       judge.add({amplitude, xy / xx,

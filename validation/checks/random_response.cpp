@@ -15,19 +15,19 @@ namespace {
 constexpr std::size_t kLongestRandom = 20000;  // samples
 constexpr double kLongestLag = 2.0;            // [s]
 
-double sum_at_lag(const Recording& run, const Shown& found,
+double sum_at_lag(const Recording& run, const AddedAndSeen& found,
                   std::ptrdiff_t lag) {
   double sum = 0.0;
-  const auto size = static_cast<std::ptrdiff_t>(found.shown.size());
+  const auto size = static_cast<std::ptrdiff_t>(found.seen.size());
   for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(lag, 0);
        k < std::min(size, size + lag); ++k)
     if (is_powered_at(run, static_cast<std::size_t>(k)))
-      sum += found.shown[static_cast<std::size_t>(k)] *
+      sum += found.seen[static_cast<std::size_t>(k)] *
              found.added[static_cast<std::size_t>(k - lag)];
   return sum;
 }
 
-double best_lag(const Recording& run, const Shown& found) {
+double best_lag(const Recording& run, const AddedAndSeen& found) {
   const double step = usual_step(run);
   const auto most = static_cast<std::ptrdiff_t>(std::ceil(kLongestLag / step));
   std::ptrdiff_t best = 0;
@@ -43,14 +43,15 @@ double best_lag(const Recording& run, const Shown& found) {
 
 }  // namespace
 
-std::optional<Shown> shown(const CheckContext& context, std::size_t number,
-                           std::vector<double> added) {
+std::optional<AddedAndSeen> seen_of_added(const CheckContext& context,
+                                          std::size_t number,
+                                          std::vector<double> added) {
   const Recording& run = *context.checked.runs[number].recording;
   const auto moved = with_injected_rate(run, added);
   if (!moved) return std::nullopt;
-  Shown result{std::move(added), context.altered(*moved)};
-  for (std::size_t k = 0; k < result.shown.size(); ++k)
-    result.shown[k] -= context.answers[number][k];
+  AddedAndSeen result{std::move(added), context.altered(*moved)};
+  for (std::size_t k = 0; k < result.seen.size(); ++k)
+    result.seen[k] -= context.answers[number][k];
   return result;
 }
 
@@ -80,7 +81,7 @@ std::optional<RandomResponse> random_response(const CheckContext& context) {
   const std::size_t last = std::min(added.size(), kLongestRandom);
   for (std::size_t k = 0; k < last; ++k)
     added[k] = kAddedShare * context.checked.full_scale * white_number(k);
-  const auto found = shown(context, number, std::move(added));
+  const auto found = seen_of_added(context, number, std::move(added));
   if (!found) return std::nullopt;
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, noise = 0.0;
   const std::vector<double>& answers = context.answers[number];
@@ -88,9 +89,9 @@ std::optional<RandomResponse> random_response(const CheckContext& context) {
     if (!is_powered_at(run, k) || !is_powered_at(run, k - 1)) continue;
     n += 1.0;
     x += found->added[k];
-    y += found->shown[k];
+    y += found->seen[k];
     xx += found->added[k] * found->added[k];
-    xy += found->added[k] * found->shown[k];
+    xy += found->added[k] * found->seen[k];
     noise += 0.5 * std::pow(answers[k] - answers[k - 1], 2);
   }
   const double spread = n * xx - x * x;

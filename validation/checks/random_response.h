@@ -12,13 +12,14 @@ namespace beamgyro {
 constexpr double kAddedShare = 0.1;  // [-], of full scale: sines, random rates
 
 /// What the answers show of a rate that was added to one run.
-struct Shown {
-  std::vector<double> added, shown;  // [deg/s]
+struct AddedAndSeen {
+  std::vector<double> added, seen;  // [deg/s]
 };
 
 /// Returns nothing for a run that no rate can be added to.
-std::optional<Shown> shown(const CheckContext& context, std::size_t number,
-                           std::vector<double> added);
+std::optional<AddedAndSeen> seen_of_added(const CheckContext& context,
+                                          std::size_t number,
+                                          std::vector<double> added);
 
 /// Returns whether the run has this sample, with power.
 bool is_powered_at(const Recording& run, std::size_t k);
