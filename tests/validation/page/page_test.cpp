@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace beamgyro::page_test {
 
@@ -34,6 +35,36 @@ TEST(ReportPage, TextThatLooksLikeAMarkOfTheTemplateIsKept) {
 TEST(ReportPage, TheSameResultGivesTheSameBytes) {
   const nlohmann::ordered_json result = {{"verdict", "pass"}, {"b", 0.1}};
   EXPECT_EQ(page_of(result), page_of(nlohmann::ordered_json(result)));
+}
+
+/// The page without Chart.js, whose comments name its authors' sites.
+std::string page_itself() {
+  std::string page = page_of({});
+  const std::size_t begin = page.find("/*!\n * Chart.js");
+  const std::size_t end = page.find("</script>", begin);
+  EXPECT_LT(begin, end);
+  return page.erase(begin, end - begin);
+}
+
+TEST(ReportPage, NamesNothingToLoad) {
+  const std::string page = page_itself();
+  for (const char* loader : {"src=", "url(", "@import", "import(", "fetch(",
+                             "XMLHttpRequest", "innerHTML", "eval("})
+    EXPECT_EQ(page.find(loader), std::string::npos) << loader;
+  // The name of SVG, which is no address to load from.
+  EXPECT_EQ(occurrences(page, "http"), occurrences(page, "http-equiv") + 1);
+  EXPECT_EQ(occurrences(page, "http://www.w3.org/2000/svg"), 1u);
+  EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
+}
+
+TEST(ReportPage, IsSmallWithEveryFigureFull) {
+  const std::vector<double> values(300, -0.123456);
+  nlohmann::ordered_json result;
+  for (int figure = 0; figure < 20; ++figure)
+    for (int series = 0; series < 8; ++series)
+      result["figures"][figure]["series"][series] = {
+          {"name", "after, slow_ramp, rising"}, {"x", values}, {"y", values}};
+  EXPECT_LT(page_of(result).size(), 2'000'000u);
 }
 
 }  // namespace beamgyro::page_test
