@@ -71,6 +71,18 @@ double ScaleFactorCurve::largest_departure() const {
   return largest;
 }
 
+double ScaleFactorCurve::departure_of_corrected(double gain,
+                                                double temperature) const {
+  const auto right =
+      std::ranges::upper_bound(points_, temperature, {}, &Point::temperature);
+  const double above =
+      (right == points_.end() ? points_.back() : *right).scale_factor;
+  const double below =
+      (right == points_.begin() ? points_.front() : *(right - 1)).scale_factor;
+  const auto [low, high] = std::minmax(above, below);
+  return std::abs(gain / std::clamp(gain, 1.0 / high, 1.0 / low) - 1.0);
+}
+
 CheckContext::CheckContext(const CheckedCompensator& all, std::size_t count)
     : checked(all), threads(count), altered(*all.compensator) {
   for (const CheckedRun& run : all.runs) {

@@ -47,6 +47,9 @@ class ScaleFactorCurve {
   bool empty() const { return points_.empty(); }
   double at(double temperature) const;  // linear between, constant beyond
   double largest_departure() const;     // from 1 [-]
+  /// Returns the departure from 1 [-] of a gain that may be 1 / s for every s
+  /// between those of the rate tables next to the temperature.
+  double departure_of_corrected(double gain, double temperature) const;
 
  private:
   struct Point {

@@ -52,9 +52,10 @@ CheckResult check_true_rate(const CheckContext& context) {
     const Recording& run = *context.checked.runs[k].recording;
     const auto plateaus = plateau_slopes(run, kTableRate, context.answers[k]);
     for (const PlateauSlope& plateau : plateaus) {
-      judge.add({context.checked.full_scale, plateau.compensated / plateau.raw,
-                 plateau.temperature, run.time.front(),
-                 context.checked.full_scale});
+      judge.add(
+          {context.checked.full_scale, plateau.compensated / plateau.raw,
+           plateau.temperature, run.time.front(), context.checked.full_scale},
+          plateau.raw / plateau.truth);
       temperatures.push_back(plateau.temperature);
     }
     if (!plateaus.empty()) rates = std::max(rates, held_rates(run));

@@ -8,6 +8,14 @@
 #include <limits>
 
 namespace beamgyro {
+namespace {
+
+/// Departures of less than the resolution count as none.
+double counted(const AddedRate& found, double departure) {
+  return departure * std::abs(found.change) < kRateResolution ? 0.0 : departure;
+}
+
+}  // namespace
 
 std::string place_words(const AddedRate& found) {
   std::string words;
@@ -30,19 +38,20 @@ void GainJudge::keep(Worst& worst, double departure, const AddedRate& where) {
 }
 
 void GainJudge::add(const AddedRate& found) {
-  ++count_;
-  const auto counted = [&found](double gain) {
-    const double departure = std::abs(gain - 1.0);
-    return departure * std::abs(found.change) < kRateResolution ? 0.0
-                                                                : departure;
-  };
-  keep(kept_, counted(found.gain), found);
-  if (!curve_->empty())
+  if (!curve_->empty() && !std::isnan(found.temperature))
     keep(corrected_,
-         counted(found.gain * (std::isnan(found.temperature)
-                                   ? 1.0
-                                   : curve_->at(found.temperature))),
+         counted(found,
+                 curve_->departure_of_corrected(found.gain, found.temperature)),
          found);
+  keep(kept_, counted(found, std::abs(found.gain - 1.0)), found);
+  ++count_;
+}
+
+void GainJudge::add(const AddedRate& found, double scale_factor) {
+  keep(corrected_, counted(found, std::abs(found.gain * scale_factor - 1.0)),
+       found);
+  keep(kept_, counted(found, std::abs(found.gain - 1.0)), found);
+  ++count_;
 }
 
 void GainJudge::add(const GainJudge& other) {

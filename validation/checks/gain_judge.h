@@ -26,14 +26,17 @@ struct AddedRate {
 std::string place_words(const AddedRate& found);
 
 /// Collects gains and judges the worst one. A compensator either keeps the
-/// rate, gain 1 within kGainTolerance, or corrects the scale factor s(T), gain
-/// 1 / s(T) within kCorrectedTolerance; then it has to leave less than half of
-/// the largest departure that rate tables show.
+/// rate, gain 1 within kGainTolerance, or corrects the scale factor s, gain
+/// 1 / s within kCorrectedTolerance; then it has to leave less than half of the
+/// largest departure that rate tables show. Where s is not known,
+/// ScaleFactorCurve::departure_of_corrected() counts.
 class GainJudge {
  public:
   explicit GainJudge(const ScaleFactorCurve& curve) : curve_(&curve) {}
 
   void add(const AddedRate& found);
+  /// The same where the scale factor of the recorded rate is known.
+  void add(const AddedRate& found, double scale_factor);
   void add(const GainJudge& other);
   std::size_t count() const { return count_; }
 

@@ -106,17 +106,40 @@ std::size_t golden_stride(std::size_t size) {
   return stride;
 }
 
-struct ShuffleSums {
-  // Σ (change of the answer - gain x change of the rate)^2 with gain 1 and
-  // with gain 1 / s(T), Σ (change of the rate)^2
-  double kept = 0.0, corrected = 0.0, rate = 0.0;
+/// What shuffled samples show: the gain of each plateau, and what of the change
+/// of the answers no gain explains.
+struct Shuffled {
+  GainJudge gains;
+  double unexplained = 0.0, change = 0.0;  // [(deg/s)^2], sums of squares
 };
 
-ShuffleSums shuffle_sums(const CheckContext& context, const Recording& run,
-                         const std::vector<double>& answers) {
+void add_plateau(const CheckContext& context, const Recording& run,
+                 const SampleRange& plateau, const std::vector<double>& change,
+                 const std::vector<double>& difference, Shuffled& found) {
+  const std::ptrdiff_t lag = context.lag_in(run);
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (std::size_t k = plateau.begin; k < plateau.end; ++k) {
+    const auto at =
+        static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) + lag);
+    if (!is_powered_at(run, at)) continue;
+    xx += change[k] * change[k];
+    xy += change[k] * difference[at];
+    yy += difference[at] * difference[at];
+  }
+  if (!(xx > 0.0)) return;
+  const double full_scale = context.checked.full_scale;
+  found.gains.add({full_scale, xy / xx, temperature_at(run, plateau.begin),
+                   run.time[plateau.begin], full_scale});
+  found.unexplained += std::max(yy - xy * xy / xx, 0.0);
+  found.change += xx;
+}
+
+void add_shuffled(const CheckContext& context, const Recording& run,
+                  const std::vector<double>& answers, Shuffled& found) {
   const auto& rate = column_values(run, "rate");
+  const auto plateaus = temperature_plateaus(run);
   std::vector<double> change(run.time.size(), 0.0);
-  for (const SampleRange& plateau : temperature_plateaus(run)) {
+  for (const SampleRange& plateau : plateaus) {
     const std::size_t size = plateau.size();
     const std::size_t stride = golden_stride(size);
     for (std::size_t k = 0; k < size; ++k)
@@ -124,52 +147,37 @@ ShuffleSums shuffle_sums(const CheckContext& context, const Recording& run,
           rate[plateau.begin + k * stride % size] - rate[plateau.begin + k];
   }
   const auto shuffled = with_injected_rate(run, change);
-  ShuffleSums sums;
-  if (!shuffled) return sums;
-  const std::vector<double> moved = context.altered(*shuffled);
-  const std::ptrdiff_t lag = context.lag_in(run);
-  for (std::size_t k = 0; k < change.size(); ++k) {
-    const auto at =
-        static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) + lag);
-    if (!is_powered_at(run, k) || !is_powered_at(run, at)) continue;
-    const double difference = moved[at] - answers[at];
-    const double s = context.scale_factor.empty()
-                         ? 1.0
-                         : context.scale_factor.at(temperature_at(run, k));
-    sums.kept += std::pow(difference - change[k], 2);
-    sums.corrected += std::pow(difference - change[k] / s, 2);
-    sums.rate += change[k] * change[k];
-  }
-  return sums;
+  if (!shuffled) return;
+  std::vector<double> difference = context.altered(*shuffled);
+  for (std::size_t k = 0; k < difference.size(); ++k)
+    difference[k] -= answers[k];
+  for (const SampleRange& plateau : plateaus)
+    add_plateau(context, run, plateau, change, difference, found);
 }
 
 }  // namespace
 
 CheckResult check_shuffled_output(const CheckContext& context) {
   const auto runs = context.runs_of(thermal_purposes());
-  std::vector<ShuffleSums> all(runs.size());
+  std::vector<Shuffled> all(runs.size(), {GainJudge(context.scale_factor)});
   context.for_each(runs, [&](std::size_t k) {
-    all[k] = shuffle_sums(context, *context.checked.runs[runs[k]].recording,
-                          context.answers[runs[k]]);
+    add_shuffled(context, *context.checked.runs[runs[k]].recording,
+                 context.answers[runs[k]], all[k]);
   });
-  ShuffleSums sums;
-  for (const ShuffleSums& run : all) {
-    sums.kept += run.kept;
-    sums.corrected += run.corrected;
-    sums.rate += run.rate;
+  Shuffled sums{GainJudge(context.scale_factor)};
+  for (const Shuffled& run : all) {
+    sums.gains.add(run.gains);
+    sums.unexplained += run.unexplained;
+    sums.change += run.change;
   }
-  if (!(sums.rate > 0.0)) return not_tested(kNoInjection);
-  const double kept = std::sqrt(sums.kept / sums.rate);
-  const double corrected = std::sqrt(sums.corrected / sums.rate);
-  const bool corrects =
-      kept > kGainTolerance && corrected <= kCorrectedTolerance &&
-      corrected < 0.5 * context.scale_factor.largest_departure();
-  const double value = corrects ? corrected : kept;
-  const double limit = corrects ? kCorrectedTolerance : kGainTolerance;
-  CheckResult result{
-      .outcome = value <= limit ? CheckOutcome::kPassed : CheckOutcome::kFailed,
-      .value = value,
-      .limit = limit};
+  if (!(sums.change > 0.0)) return not_tested(kNoInjection);
+  const double value = std::hypot(sums.gains.departure(),
+                                  std::sqrt(sums.unexplained / sums.change));
+  CheckResult result{.outcome = value <= sums.gains.limit()
+                                    ? CheckOutcome::kPassed
+                                    : CheckOutcome::kFailed,
+                     .value = value,
+                     .limit = sums.gains.limit()};
   result.words =
       result.passed()
           ? "The correction stays the same when the output is shuffled among "
