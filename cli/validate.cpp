@@ -115,12 +115,8 @@ bool is_number(const std::string& word) {
 void require_no_device_options(const ValidateArguments& arguments) {
   const std::pair<const char*, bool> options[] = {
       {"--qualification", arguments.qualification.has_value()},
-      {"--spec", arguments.specification.has_value()},
-      {"--report", !arguments.report.empty()},
-      {"--bundle", !arguments.bundle.empty()},
       {"--campaign", arguments.campaign.has_value()},
-      {"--devices", arguments.devices.has_value()},
-      {"--jobs", arguments.jobs.has_value()}};
+      {"--devices", arguments.devices.has_value()}};
   for (const auto& [name, is_given] : options)
     if (is_given)
       throw std::invalid_argument(fmt::format(
@@ -133,6 +129,27 @@ void require_no_device_options(const ValidateArguments& arguments) {
           "--device {}: of a set, a number is expected; a device file is for a "
           "call without {}",
           word, arguments.runs[0]));
+}
+
+// Whether the recordings are judged by metrics and checks, and not scored
+// alone: when a specification or a page is asked for, and for compensators that
+// are no files of this program.
+bool is_judged(const ValidateArguments& arguments) {
+  return arguments.specification || !arguments.report.empty() ||
+         !arguments.bundle.empty() || !arguments.compensator.ends_with(".json");
+}
+
+int judge_on_runs(const ValidateArguments& arguments) {
+  if (is_set(arguments.runs))
+    throw std::invalid_argument(fmt::format(
+        "{}: is the directory of a set, on which files of the kind "
+        "COMPENSATOR.json are scored without --spec, --report and --bundle; "
+        "expected recordings",
+        arguments.runs[0]));
+  if (!arguments.set_runs.empty() || !arguments.device.empty())
+    throw std::invalid_argument(
+        "--run and --device choose from a set, and there is none");
+  return validate_by_specification(arguments);
 }
 
 void require_check_alone(const ValidateArguments& arguments) {
@@ -179,10 +196,11 @@ int validate_any(const ValidateArguments& arguments) {
         "beamgyro validate --check DIR");
   if (!arguments.runs.empty()) {
     require_no_device_options(arguments);
-    return validate_on_runs(arguments);
+    return is_judged(arguments) ? judge_on_runs(arguments)
+                                : validate_on_runs(arguments);
   }
   require_device(arguments);
-  return validate_on_device(arguments);
+  return validate_by_specification(arguments);
 }
 
 }  // namespace

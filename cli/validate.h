@@ -21,8 +21,9 @@ struct ValidateArguments {
   std::optional<long> devices, jobs;
 };
 
-/// Simulates a qualification with a device and judges the compensator by it.
-int validate_on_device(const ValidateArguments& arguments);
+/// Judges a compensator by every metric, check and limit, on a simulated device
+/// or on recordings.
+int validate_by_specification(const ValidateArguments& arguments);
 
 /// Makes the result of a bundle again. The status is 0 when every byte is the
 /// same, and 1 when not.

@@ -18,8 +18,8 @@
 #include "validation/bundle/bundle.h"
 #include "validation/page/figures.h"
 #include "validation/page/page.h"
-#include "validation/result/device_validation.h"
 #include "validation/result/result_json.h"
+#include "validation/result/validator.h"
 
 namespace beamgyro {
 namespace {
@@ -50,23 +50,26 @@ void require_campaign(const ValidateArguments& arguments) {
 }
 
 ValidationRequest request_of(const ValidateArguments& arguments) {
-  ValidationRequest request{.compensator = arguments.compensator,
-                            .device = arguments.device.at(0),
-                            .qualification = {},
-                            .devices = arguments.devices,
-                            .program_version = kProgramVersion,
-                            .git_revision = kGitRevision,
-                            .limits = {.program = "/proc/self/exe"}};
-  request.qualification = arguments.qualification
-                              ? fs::path(*arguments.qualification)
-                              : shipped_qualification();
+  ValidationRequest request{.compensator = arguments.compensator};
+  request.full_scale = arguments.full_scale;
+  request.devices = arguments.devices;
+  request.program_version = kProgramVersion;
+  request.git_revision = kGitRevision;
+  request.limits.program = "/proc/self/exe";
+  request.runs.assign(arguments.runs.begin(), arguments.runs.end());
+  if (arguments.runs.empty()) {
+    request.device = arguments.device.at(0);
+    request.qualification = arguments.qualification
+                                ? fs::path(*arguments.qualification)
+                                : shipped_qualification();
+  }
   if (arguments.specification) request.specification = *arguments.specification;
   if (arguments.campaign) request.campaign = *arguments.campaign;
   return request;
 }
 
 // Returns what --json writes and the page shows.
-nlohmann::ordered_json json_of(const DeviceValidation& validation) {
+nlohmann::ordered_json json_of(const CompletedValidation& validation) {
   nlohmann::ordered_json json = to_json(validation.result);
   json["figures"] =
       figures_of(validation.evidence.before, validation.evidence.after);
@@ -78,18 +81,18 @@ nlohmann::ordered_json json_of(const DeviceValidation& validation) {
   return json;
 }
 
-std::vector<BundleOutput> outputs_of(const DeviceValidation& validation) {
+std::vector<BundleOutput> outputs_of(const CompletedValidation& validation) {
   const nlohmann::ordered_json json = json_of(validation);
   return {{"result.json", json.dump(2) + "\n"},
           {"report.txt", verdict_report(validation.result)},
           {"report/index.html", page_of(json)}};
 }
 
-std::vector<BundleOutput> validated(const DeviceValidator& validator,
+std::vector<BundleOutput> validated(const Validator& validator,
                                     const ValidateArguments& arguments,
                                     Conformity& verdict) {
   Progress progress("validating " + validator.request().compensator);
-  const DeviceValidation validation = validator.validate(
+  const CompletedValidation validation = validator.validate(
       thread_count(static_cast<unsigned>(arguments.jobs.value_or(0))),
       [&](double share) { progress.set_share(share); });
   for (const std::string& warning : validation.result.warnings)
@@ -100,7 +103,7 @@ std::vector<BundleOutput> validated(const DeviceValidator& validator,
 
 // Prepares what the arguments name for writing.
 void require_result_places(const ValidateArguments& arguments,
-                     const std::vector<InputFile>& inputs) {
+                           const std::vector<InputFile>& inputs) {
   std::vector<fs::path> files;
   for (const InputFile& input : inputs) files.push_back(input.path);
   if (!arguments.bundle.empty()) require_new_bundle(arguments.bundle);
@@ -114,9 +117,9 @@ void require_result_places(const ValidateArguments& arguments,
 
 }  // namespace
 
-int validate_on_device(const ValidateArguments& arguments) {
+int validate_by_specification(const ValidateArguments& arguments) {
   require_campaign(arguments);
-  const DeviceValidator validator(request_of(arguments));
+  const Validator validator(request_of(arguments));
   require_result_places(arguments, validator.inputs());
   Conformity verdict{};
   const std::vector<BundleOutput> outputs =
@@ -137,7 +140,7 @@ int check_bundle(const ValidateArguments& arguments) {
     bundle.request.program_version = kProgramVersion;
     bundle.request.git_revision = kGitRevision;
     bundle.request.limits.program = "/proc/self/exe";
-    const DeviceValidator validator(std::move(bundle.request));
+    const Validator validator(std::move(bundle.request));
     Conformity verdict{};
     different = different_outputs(arguments.check,
                                   validated(validator, arguments, verdict));

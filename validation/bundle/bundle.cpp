@@ -28,6 +28,9 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kBundleName = "bundle.json";
 constexpr const char* kBundleFiletype = "beamgyro-bundle";
 
+// Names of copies by group and path.
+using CopyNames = std::map<std::pair<std::string, fs::path>, std::string>;
+
 // A file of a bundle.
 struct BundleInput {
   std::string name;  // inputs/GROUP/...
@@ -37,7 +40,7 @@ struct BundleInput {
 // Returns the copies of all inputs. Those of a group stand to each other as the
 // originals do, so that the names in them stay valid.
 std::vector<BundleInput> copies_of(const std::vector<InputFile>& inputs,
-                                   std::map<fs::path, std::string>& names) {
+                                   CopyNames& names) {
   std::vector<std::string> groups;
   for (const InputFile& input : inputs)
     if (std::ranges::count(groups, input.group) == 0)
@@ -49,12 +52,18 @@ std::vector<BundleInput> copies_of(const std::vector<InputFile>& inputs,
       if (input.group == group)
         texts.push_back({input.path, read_text_file(input.path)});
     const std::vector<SourceEntry> entries = source_entries(texts);
-    for (std::size_t k = 0; k < entries.size(); ++k) {
+    std::vector<fs::path> placed;  // of the entries: one for each file
+    for (SourceText& text : texts) {
+      const fs::path path = fs::absolute(text.path).lexically_normal();
+      const auto known = std::ranges::find(placed, path);
+      const auto k = static_cast<std::size_t>(known - placed.begin());
+      const std::string& file = entries[k].file;  // source/...
       const std::string name =
-          fmt::format("inputs/{}/{}", group,
-                      entries[k].file.substr(entries[k].file.find('/') + 1));
-      names.emplace(group / texts[k].path, name);
-      copies.push_back({name, std::move(texts[k].text)});
+          fmt::format("inputs/{}{}", group, file.substr(file.find('/')));
+      names.emplace(std::pair(group, text.path), name);
+      if (known != placed.end()) continue;
+      placed.push_back(path);
+      copies.push_back({name, std::move(text.text)});
     }
   }
   return copies;
@@ -72,21 +81,27 @@ Json hashes_of(const auto& files) {
   return list;
 }
 
-Json request_json(const ValidationRequest& request,
-                  const std::map<fs::path, std::string>& names) {
+Json request_json(const ValidationRequest& request, const CopyNames& names) {
   const auto name_of = [&](const char* group, const fs::path& path) {
-    return names.at(fs::path(group) / path);
+    return names.at({group, path});
   };
   const auto optional_name = [&](const char* group,
                                  const std::optional<fs::path>& path) {
     return path ? Json(name_of(group, *path)) : Json();
   };
   const bool is_command = request.compensator.starts_with("cmd:");
+  Json runs = Json::array();
+  for (const fs::path& run : request.runs) runs.push_back(name_of("runs", run));
   return {
       {"compensator", is_command ? request.compensator
                                  : name_of("compensator", request.compensator)},
-      {"device", name_of("device", request.device)},
-      {"qualification", name_of("qualification", request.qualification)},
+      {"device", optional_name("device", request.device)},
+      {"qualification",
+       request.device ? Json(name_of("qualification", request.qualification))
+                      : Json()},
+      {"runs", runs},
+      {"full_scale_deg_per_s",
+       request.full_scale ? Json(*request.full_scale) : Json()},
       {"specification", optional_name("specification", request.specification)},
       {"campaign", optional_name("campaign", request.campaign)},
       {"devices", request.devices ? Json(*request.devices) : Json()}};
@@ -104,8 +119,12 @@ ValidationRequest request_from(const fs::path& directory,
   request.compensator = node.at("compensator").text();
   if (!request.compensator.starts_with("cmd:"))
     request.compensator = (directory / request.compensator).string();
-  request.device = directory / node.at("device").text();
-  request.qualification = directory / node.at("qualification").text();
+  request.device = optional_path(directory, node.at("device"));
+  if (request.device)
+    request.qualification = directory / node.at("qualification").text();
+  for (const std::string& run : node.at("runs").texts())
+    request.runs.push_back(directory / run);
+  request.full_scale = node.at("full_scale_deg_per_s").optional_number();
   request.specification = optional_path(directory, node.at("specification"));
   request.campaign = optional_path(directory, node.at("campaign"));
   if (const JsonNode devices = node.at("devices"); !devices.is_null())
@@ -132,11 +151,11 @@ void require_new_bundle(const fs::path& directory) {
         directory.string()));
 }
 
-void write_bundle(const fs::path& directory, const DeviceValidator& validator,
+void write_bundle(const fs::path& directory, const Validator& validator,
                   const std::vector<BundleOutput>& outputs) {
   require_new_bundle(directory);
   fs::create_directories(directory);
-  std::map<fs::path, std::string> names;
+  CopyNames names;
   const std::vector<BundleInput> copies = copies_of(validator.inputs(), names);
   for (const BundleInput& copy : copies)
     publish_text(directory, copy.name, copy.text);

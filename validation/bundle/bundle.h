@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "validation/result/device_validation.h"
+#include "validation/result/validator.h"
 
 namespace beamgyro {
 
@@ -20,7 +20,7 @@ struct BundleOutput {
 /// hashes. Throws std::invalid_argument when the directory is there and not
 /// empty, and as publish_file().
 void write_bundle(const std::filesystem::path& directory,
-                  const DeviceValidator& validator,
+                  const Validator& validator,
                   const std::vector<BundleOutput>& outputs);
 
 /// Throws what write_bundle() would throw for the name of the directory.

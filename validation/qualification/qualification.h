@@ -21,6 +21,10 @@ struct QualificationRun {
   std::string overrides_text;  // one KEY=VALUE per line
 };
 
+/// Names of the runs that a metric reads, by its name; a metric that is not
+/// there reads every run of its purposes.
+using MetricRuns = std::map<std::string, std::vector<std::string>, std::less<>>;
+
 /// The contents of a qualification file: the runs that evidence is taken from,
 /// and those that the baselines and a model are trained on.
 struct Qualification {
@@ -28,9 +32,7 @@ struct Qualification {
   std::vector<QualificationRun> runs;
   std::vector<QualificationRun> training;  // fitted
   std::vector<QualificationRun> held_out;  // a network stops early on them
-  // Names of the runs that a metric reads, by its name; a metric that is not
-  // here reads every run of its purposes.
-  std::map<std::string, std::vector<std::string>, std::less<>> metric_runs;
+  MetricRuns metric_runs;
   std::string text;                          // byte for byte as read
   std::vector<std::filesystem::path> files;  // all that were read
 };

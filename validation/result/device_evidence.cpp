@@ -61,13 +61,13 @@ Recording later_part(const Recording& whole, double from) {
 
 // The rate of a run, which was answered as a whole, as evidence of the part
 // `read` of it. How many samples were clamped is known of a whole run only.
-EvidenceRun evidence_run(const QualificationRun& planned, const Recording& read,
+EvidenceRun evidence_run(const ReadRun& named, const Recording& read,
                          std::vector<double> rate,
                          std::optional<std::size_t> clamped) {
   const std::size_t cut = rate.size() - read.time.size();
   rate.erase(rate.begin(), rate.begin() + static_cast<std::ptrdiff_t>(cut));
   if (cut > 0 && clamped != std::size_t{0}) clamped.reset();
-  return {planned.name, planned.purpose, &read, std::move(rate), clamped};
+  return {named.name, named.purpose, &read, std::move(rate), clamped};
 }
 
 // Counts tasks that are done.
@@ -86,16 +86,19 @@ class SharedProgress {
   std::atomic<std::size_t> done_ = 0;
 };
 
-std::vector<Compensator> trained_baselines(const TrainingData& data,
-                                           std::size_t threads) {
+std::vector<BaselineMethod> trained_baselines(const TrainingData& data,
+                                              std::size_t threads) {
   if (data.training.empty()) return {};
-  std::vector<Compensator> trained(std::size(kBaselineModels));
+  std::vector<BaselineMethod> trained(std::size(kBaselineModels));
   for_each_task(trained.size(), threads, [&](std::size_t k, std::size_t) {
-    const auto& [name, text] = kBaselineModels[k];
+    const std::string name(kBaselineModels[k].name);
     const ConfigDocument document =
-        ConfigDocument::parse(text, std::string(name));
+        ConfigDocument::parse(kBaselineModels[k].model, name);
     try {
-      trained[k] = trained_on(data, read_model(document));
+      trained[k] = {name, [one = trained_on(data, read_model(document))](
+                              const Recording& run) {
+                      return compensated_rate(one, run);
+                    }};
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fmt::format(
           "the baseline {} cannot be trained on the [[training]] runs of the "
@@ -126,49 +129,65 @@ Compensator trained_on(const TrainingData& data, const ModelSpec& model) {
       .compensator;
 }
 
+DeviceEvidence answered_evidence(std::vector<ReadRun> read,
+                                 std::vector<Recording> runs,
+                                 const Answering& answering,
+                                 std::size_t threads,
+                                 const std::function<void()>& on_done) {
+  const std::size_t count = read.size();
+  DeviceEvidence found;
+  found.read = std::move(read);
+  found.runs = std::move(runs);
+  found.late.resize(count);
+  found.answers.resize(count);
+  const Evidence blank{std::vector<EvidenceRun>(count), answering.full_scale};
+  found.before = found.after = blank;
+  found.baselines.push_back({"none", blank});
+  for (const BaselineMethod& baseline : answering.baselines)
+    found.baselines.push_back({baseline.name, blank});
+  for_each_task(count, threads, [&](std::size_t k, std::size_t) {
+    const Recording& run = found.runs[k];
+    const ReadRun& named = found.read[k];
+    if (named.from > 0) found.late[k] = later_part(run, named.from);
+    const Recording& part = named.from > 0 ? found.late[k] : run;
+    const auto evidence = [&](std::vector<double> rate,
+                              std::optional<std::size_t> clamped = {}) {
+      return evidence_run(named, part, std::move(rate), clamped);
+    };
+    found.before.runs[k] = evidence(column_values(run, "rate"));
+    found.baselines[0].evidence.runs[k] = found.before.runs[k];
+    for (std::size_t b = 0; b < answering.baselines.size(); ++b)
+      found.baselines[b + 1].evidence.runs[k] =
+          evidence(answering.baselines[b].rate(run));
+    found.answers[k] = answering.compensator.answer(run);
+    found.after.runs[k] = evidence(found.answers[k].rate,
+                                   answering.tells_clamped
+                                       ? std::optional(found.answers[k].clamped)
+                                       : std::nullopt);
+    if (on_done) on_done();
+  });
+  return found;
+}
+
 DeviceEvidence device_evidence(const Qualification& qualification,
                                const QualifiedDevice& device,
                                const TestedCompensator& compensator,
-                               const TrainingData& data, std::size_t threads,
-                               bool tells_clamped,
+                               const TrainingData& data, bool tells_clamped,
+                               std::size_t threads,
                                const ProgressOfWork& progress) {
   const std::vector<QualificationRun>& planned = qualification.runs;
   SharedProgress done(progress, 2 * planned.size());
-  DeviceEvidence found;
-  found.runs =
-      qualified_runs(planned, device, threads, [&] { done.add_one(); });
-  const std::vector<Compensator> baselines = trained_baselines(data, threads);
-
-  const std::size_t count = planned.size();
-  found.late.resize(count);
-  found.answers.resize(count);
-  const Evidence blank{std::vector<EvidenceRun>(count),
-                       device.device.readout.full_scale / kDegree};
-  found.before = found.after = blank;
-  found.baselines.push_back({"none", blank});
-  for (std::size_t b = 0; b < baselines.size(); ++b)
-    found.baselines.push_back({std::string(kBaselineModels[b].name), blank});
-  for_each_task(count, threads, [&](std::size_t k, std::size_t) {
-    const Recording& run = found.runs[k];
-    if (planned[k].from > 0) found.late[k] = later_part(run, planned[k].from);
-    const Recording& read = planned[k].from > 0 ? found.late[k] : run;
-    const auto evidence = [&](std::vector<double> rate,
-                              std::optional<std::size_t> clamped) {
-      return evidence_run(planned[k], read, std::move(rate), clamped);
-    };
-    found.before.runs[k] = evidence(column_values(run, "rate"), {});
-    found.baselines[0].evidence.runs[k] = found.before.runs[k];
-    for (std::size_t b = 0; b < baselines.size(); ++b)
-      found.baselines[b + 1].evidence.runs[k] =
-          evidence(compensated_rate(baselines[b], run),
-                   clamped_samples(baselines[b], run));
-    found.answers[k] = compensator.answer(run);
-    found.after.runs[k] = evidence(
-        found.answers[k].rate,
-        tells_clamped ? std::optional(found.answers[k].clamped) : std::nullopt);
-    done.add_one();
-  });
-  return found;
+  const auto on_done = [&] { done.add_one(); };
+  std::vector<Recording> runs =
+      qualified_runs(planned, device, threads, on_done);
+  std::vector<ReadRun> read;
+  for (const QualificationRun& run : planned)
+    read.push_back({run.name, run.purpose, run.from});
+  return answered_evidence(
+      std::move(read), std::move(runs),
+      {compensator, trained_baselines(data, threads),
+       device.device.readout.full_scale / kDegree, tells_clamped},
+      threads, on_done);
 }
 
 }  // namespace beamgyro

@@ -21,11 +21,20 @@ struct Baseline {
   Evidence evidence;
 };
 
+/// A run as metrics read it.
+struct ReadRun {
+  std::string name;
+  RunPurpose purpose = RunPurpose::kSoak;
+  double from = 0.0;        // [s]
+  std::string sha256 = {};  // of its file, if it has one
+};
+
 /// Everything that a qualification shows of one device: its runs, the recorded
 /// rate, that of the compensator and those of the baselines.
 struct DeviceEvidence {
+  std::vector<ReadRun> read;        // names of the runs
   std::vector<Recording> runs;      // whole, in the order of the qualification
-  std::vector<Recording> late;      // from QualificationRun::from on, or empty
+  std::vector<Recording> late;      // from ReadRun::from on, or empty
   std::vector<Answer> answers;      // to `runs`
   Evidence before, after;           // of `runs`, or of `late` where there is
   std::vector<Baseline> baselines;  // with "none", the recorded rate
@@ -48,15 +57,37 @@ TrainingData training_data(const Qualification& qualification,
 /// of the held-out runs. Throws as train().
 Compensator trained_on(const TrainingData& data, const ModelSpec& model);
 
-/// Simulates the runs of a qualification, and answers each with the compensator
-/// and with every baseline that `data` allows: none without training runs but
-/// "none". `tells_clamped`: the answers count the samples outside what training
-/// saw.
+/// A method whose answers stand beside those of a compensator.
+struct BaselineMethod {
+  std::string name;
+  std::function<std::vector<double>(const Recording&)> rate;  // [deg/s]
+};
+
+/// How runs are answered.
+struct Answering {
+  const TestedCompensator& compensator;
+  std::vector<BaselineMethod> baselines = {};  // beside "none"
+  double full_scale = 150.0;                   // [deg/s]
+  // Whether the answers count the samples outside what training saw.
+  bool tells_clamped = false;
+};
+
+/// Answers runs with the compensator and every baseline. `on_done`, if there is
+/// one, is called after each run.
+DeviceEvidence answered_evidence(std::vector<ReadRun> read,
+                                 std::vector<Recording> runs,
+                                 const Answering& answering,
+                                 std::size_t threads,
+                                 const std::function<void()>& on_done = {});
+
+/// Simulates the runs of a qualification and answers them. The baselines
+/// "constant", "cubic" and "spline" are trained on `data`; without training
+/// runs there are none of them.
 DeviceEvidence device_evidence(const Qualification& qualification,
                                const QualifiedDevice& device,
                                const TestedCompensator& compensator,
-                               const TrainingData& data, std::size_t threads,
-                               bool tells_clamped,
+                               const TrainingData& data, bool tells_clamped,
+                               std::size_t threads,
                                const ProgressOfWork& progress = {});
 
 }  // namespace beamgyro

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "parallel/work_queue.h"
 
@@ -14,9 +15,9 @@ namespace {
 // Evaluates a metric on the runs that the qualification names for it. A metric
 // without names takes those of its purposes itself.
 std::optional<Estimate> evaluated(const Metric& metric, const Evidence& all,
-                                  const Qualification& qualification) {
-  const auto named = qualification.metric_runs.find(metric.name);
-  if (named == qualification.metric_runs.end()) return metric.evaluate(all);
+                                  const MetricRuns& runs) {
+  const auto named = runs.find(metric.name);
+  if (named == runs.end()) return metric.evaluate(all);
   Evidence read{{}, all.full_scale};
   for (const EvidenceRun& run : all.runs)
     if (std::ranges::count(named->second, run.name) > 0)
@@ -65,7 +66,7 @@ Reasons reasons_of(const std::vector<DecidedLimit>& limits,
 }  // namespace
 
 std::vector<MetricResult> metric_results(const DeviceEvidence& found,
-                                         const Qualification& qualification,
+                                         const MetricRuns& runs,
                                          std::span<const std::string> names,
                                          std::size_t threads) {
   std::vector<MetricResult> results;
@@ -87,7 +88,7 @@ std::vector<MetricResult> metric_results(const DeviceEvidence& found,
             rate == 0   ? result.before
             : rate == 1 ? result.after
                         : result.baselines[rate - 2].estimate;
-        estimate = evaluated(*result.metric, all, qualification);
+        estimate = evaluated(*result.metric, all, runs);
       });
   return results;
 }
@@ -130,16 +131,27 @@ WordedVerdict verdict_of(const std::vector<DecidedLimit>& limits,
 }
 
 CheckedCompensator checked_runs(const DeviceEvidence& found,
-                                const Qualification& qualification,
                                 const TestedCompensator& compensator) {
   CheckedCompensator checked;
   checked.compensator = &compensator;
   checked.full_scale = found.before.full_scale;
   for (std::size_t k = 0; k < found.runs.size(); ++k)
-    checked.runs.push_back({qualification.runs[k].name,
-                            qualification.runs[k].purpose, &found.runs[k],
-                            found.answers[k]});
+    checked.runs.push_back({found.read[k].name, found.read[k].purpose,
+                            &found.runs[k], found.answers[k],
+                            found.read[k].sha256});
   return checked;
+}
+
+void judge(const JudgedBy& by, const DeviceEvidence& found, std::size_t threads,
+           ValidationResult& result) {
+  result.metrics = metric_results(found, by.metric_runs, {}, threads);
+  result.limits = decided_limits(by.specification, result.metrics);
+  CheckedCompensator checked = checked_runs(found, by.compensator);
+  checked.provenance = by.provenance;
+  result.checks = run_checks(checked, threads);
+  WordedVerdict verdict = verdict_of(result.limits, result.checks);
+  result.verdict = verdict.verdict;
+  result.words = std::move(verdict.words);
 }
 
 }  // namespace beamgyro

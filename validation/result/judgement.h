@@ -13,11 +13,11 @@
 
 namespace beamgyro {
 
-/// Evaluates metrics before, after and of every baseline, each on the runs that
-/// the qualification names for it, or on all. `names` are those to evaluate;
+/// Evaluates metrics before, after and of every baseline, each on the
+/// `runs` that are named for it, or on all. `names` are those to evaluate;
 /// none: all of metrics().
 std::vector<MetricResult> metric_results(const DeviceEvidence& found,
-                                         const Qualification& qualification,
+                                         const MetricRuns& runs,
                                          std::span<const std::string> names,
                                          std::size_t threads);
 
@@ -37,9 +37,21 @@ struct WordedVerdict {
 WordedVerdict verdict_of(const std::vector<DecidedLimit>& limits,
                          const std::vector<CheckResult>& checks);
 
+/// What a compensator is judged by, beside the evidence.
+struct JudgedBy {
+  const SpecificationFile& specification;
+  const MetricRuns& metric_runs;
+  const TestedCompensator& compensator;
+  const Provenance* provenance;  // of its training, where it is known
+};
+
+/// Evaluates every metric, decides on the limits, runs the checks and writes
+/// them and the verdict into `result`.
+void judge(const JudgedBy& by, const DeviceEvidence& found, std::size_t threads,
+           ValidationResult& result);
+
 /// Returns the runs with their answers, as checks want them.
 CheckedCompensator checked_runs(const DeviceEvidence& found,
-                                const Qualification& qualification,
                                 const TestedCompensator& compensator);
 
 }  // namespace beamgyro

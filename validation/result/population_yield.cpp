@@ -85,9 +85,10 @@ class PopulationJudge {
     if (task_.model != nullptr) own = tested(trained_on(data, *task_.model));
     const DeviceEvidence found = device_evidence(
         qualification_, device, own ? *own : *task_.compensator,
-        needs_baselines_ ? data : TrainingData{}, 1, own != nullptr);
+        needs_baselines_ ? data : TrainingData{}, own != nullptr, 1);
     DeviceOutcome outcome;
-    outcome.metrics = metric_results(found, qualification_, names_, 1);
+    outcome.metrics =
+        metric_results(found, qualification_.metric_runs, names_, 1);
     const std::vector<DecidedLimit> limits =
         decided_limits(*task_.specification, outcome.metrics);
     std::vector<Conformity> results;

@@ -14,16 +14,20 @@
 
 namespace beamgyro {
 
-/// What `validate --device` is asked for. Files are named as the user does.
+/// What `validate` is asked for. Files are named as the user does.
 struct ValidationRequest {
   // FILE.json, FILE.so, "cmd:PROGRAM ARGS", or a model file (MODEL.toml) that
   // is trained on the training runs of the qualification.
   std::string compensator;
-  std::filesystem::path device, qualification;
+  // A device and what it goes through, or else recordings.
+  std::optional<std::filesystem::path> device = {};
+  std::filesystem::path qualification = {};
+  std::vector<std::filesystem::path> runs = {};
+  std::optional<double> full_scale = {};  // [deg/s], of recordings
   std::optional<std::filesystem::path> specification = {};
   std::optional<std::filesystem::path> campaign = {};  // for a yield
   std::optional<long> devices = {};                    // of the campaign
-  std::string program_version, git_revision;
+  std::string program_version = {}, git_revision = {};
   ProcessLimits limits = {};
 };
 
@@ -34,32 +38,32 @@ struct InputFile {
 };
 
 /// A result and the evidence that it is drawn from.
-struct DeviceValidation {
+struct CompletedValidation {
   ValidationResult result;
   DeviceEvidence evidence;
 };
 
 /// A request whose files have been read and checked.
-class DeviceValidator {
+class Validator {
  public:
   /// Reads every file. Throws std::invalid_argument as read_qualification(),
   /// load_device(), read_specification_file(), Campaign::read(), read_model()
   /// and open_tested_compensator(), and when
   /// - a model is to be trained and the qualification has no training runs;
   /// - a limit is relative to a baseline, and there are none of them either.
-  explicit DeviceValidator(ValidationRequest request);
-  ~DeviceValidator();
-  DeviceValidator(DeviceValidator&&) noexcept;
+  explicit Validator(ValidationRequest request);
+  ~Validator();
+  Validator(Validator&&) noexcept;
 
   const ValidationRequest& request() const;
   /// Returns every file that the result depends on; one of two groups twice.
   const std::vector<InputFile>& inputs() const;
 
-  /// Simulates the qualification for the device, judges the compensator, and
-  /// does so with the devices of the campaign, if there is one. The result does
-  /// not depend on the number of threads.
-  DeviceValidation validate(std::size_t threads,
-                            const ProgressOfWork& progress = {}) const;
+  /// Simulates the qualification for the device, or reads the recordings, and
+  /// judges the compensator; does so with the devices of the campaign, if there
+  /// is one. The result does not depend on the number of threads.
+  CompletedValidation validate(std::size_t threads,
+                               const ProgressOfWork& progress = {}) const;
 
  private:
   struct State;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "validation/result/device_validation.h"
+#include "validation/result/validator.h"
 
 #include <fmt/format.h>
 
@@ -15,6 +15,7 @@
 #include "validation/qualification/qualification_file.h"
 #include "validation/result/judgement.h"
 #include "validation/result/population_yield.h"
+#include "validation/result/recorded_evidence.h"
 
 namespace beamgyro {
 namespace {
@@ -62,7 +63,7 @@ std::vector<std::string> warnings_about(const Qualification& qualification,
 
 }  // namespace
 
-struct DeviceValidator::State {
+struct Validator::State {
   ValidationRequest request;
   Qualification qualification;
   SpecificationFile specification;
@@ -79,9 +80,23 @@ struct DeviceValidator::State {
     inputs.push_back({group, path});
   }
 
+  void read_device() {
+    LoadedDevice loaded = load_device(*request.device, {});
+    device = {loaded.device, std::move(loaded.text)};
+    qualification = read_qualification(request.qualification);
+    add_file("device", *request.device);
+    for (const auto& path : qualification.files)
+      add_file("qualification", path);
+  }
+
   void open_compensator() {
     const std::string& argument = request.compensator;
     if (is_model(argument)) {
+      if (!request.device)
+        throw std::invalid_argument(fmt::format(
+            "{}: a model is trained on simulated runs; expected --device "
+            "DEVICE.toml, or a compensator that was trained",
+            argument));
       model = read_model(argument);
       for (const auto& path : model->files) add_file("compensator", path);
       if (qualification.training.empty())
@@ -99,22 +114,24 @@ struct DeviceValidator::State {
     if (!argument.starts_with("cmd:")) add_file("compensator", argument);
   }
 
+  // Throws when a limit is relative to a baseline that there will not be.
   void require_baselines() const {
     if (!qualification.training.empty()) return;
-    for (const Limit& limit : specification.limits)
-      if (!limit.relative_to.empty() && limit.relative_to != "before")
-        throw std::invalid_argument(fmt::format(
-            "{}: the limit of {} is relative to the {}, which is trained on "
-            "the [[training]] runs of {}; it has none",
-            limit.place, limit.metric, limit.relative_to,
-            request.qualification.string()));
+    for (const Limit& limit : specification.limits) {
+      if (limit.relative_to.empty() || limit.relative_to == "before") continue;
+      if (!request.device && file && limit.relative_to == "cubic") continue;
+      throw std::invalid_argument(fmt::format(
+          "{}: the limit of {} is relative to the {}, which is trained on the "
+          "[[training]] runs of a qualification; there are none",
+          limit.place, limit.metric, limit.relative_to));
+    }
   }
 
   ResultProvenance provenance() const {
     ResultProvenance p{
         .program_version = request.program_version,
         .git_revision = request.git_revision,
-        .device = request.device.filename().string(),
+        .device = request.device ? request.device->filename().string() : "",
         .qualification = request.qualification.filename().string(),
         .specification = specification.name,
         .false_accept_risk = specification.false_accept_risk,
@@ -131,19 +148,15 @@ struct DeviceValidator::State {
   }
 };
 
-DeviceValidator::DeviceValidator(ValidationRequest request)
+Validator::Validator(ValidationRequest request)
     : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.request = std::move(request);
   const ValidationRequest& asked = s.request;
-  LoadedDevice loaded = load_device(asked.device, {});
-  s.device = {loaded.device, std::move(loaded.text)};
-  s.qualification = read_qualification(asked.qualification);
+  if (asked.device) s.read_device();
   s.specification = asked_specification(asked);
   s.open_compensator();
-  s.add_file("device", asked.device);
-  for (const auto& path : s.qualification.files)
-    s.add_file("qualification", path);
+  for (const auto& path : asked.runs) s.add_file("runs", path);
   if (asked.specification) s.add_file("specification", *asked.specification);
   if (asked.campaign) {
     s.campaign = Campaign::read(*asked.campaign, asked.devices);
@@ -153,22 +166,22 @@ DeviceValidator::DeviceValidator(ValidationRequest request)
   s.require_baselines();
 }
 
-DeviceValidator::~DeviceValidator() = default;
-DeviceValidator::DeviceValidator(DeviceValidator&&) noexcept = default;
+Validator::~Validator() = default;
+Validator::Validator(Validator&&) noexcept = default;
 
-const ValidationRequest& DeviceValidator::request() const {
-  return state_->request;
-}
+const ValidationRequest& Validator::request() const { return state_->request; }
 
-const std::vector<InputFile>& DeviceValidator::inputs() const {
+const std::vector<InputFile>& Validator::inputs() const {
   return state_->inputs;
 }
 
-DeviceValidation DeviceValidator::validate(
-    std::size_t threads, const ProgressOfWork& progress) const {
+CompletedValidation Validator::validate(std::size_t threads,
+                                        const ProgressOfWork& progress) const {
   const State& s = *state_;
   const double share = s.campaign ? 0.05 : 0.8;  // of the work, of the device
-  const TrainingData data = training_data(s.qualification, s.device, threads);
+  const TrainingData data =
+      s.request.device ? training_data(s.qualification, s.device, threads)
+                       : TrainingData{};
   std::unique_ptr<TestedCompensator> own;
   std::optional<Compensator> trained;
   if (s.model) {
@@ -176,37 +189,37 @@ DeviceValidation DeviceValidator::validate(
     own = tested(*trained);
   }
   const TestedCompensator& compensator = own ? *own : *s.compensator;
-  const std::optional<Compensator>& known = s.model ? trained : s.file;
+  const Compensator* known = s.model ? &*trained : s.file ? &*s.file : nullptr;
 
-  DeviceValidation validation;
-  DeviceEvidence& found = validation.evidence;
-  found = device_evidence(s.qualification, s.device, compensator, data, threads,
-                          known.has_value(), [&](double done) {
-                            if (progress) progress(share * done);
-                          });
-  ValidationResult& result = validation.result;
+  CompletedValidation done;
+  ValidationResult& result = done.result;
+  if (s.request.device) {
+    done.evidence =
+        device_evidence(s.qualification, s.device, compensator, data,
+                        known != nullptr, threads, [&](double part) {
+                          if (progress) progress(share * part);
+                        });
+    result.warnings =
+        warnings_about(s.qualification, s.device.device, done.evidence);
+  } else {
+    done.evidence = recorded_evidence(s.request.runs, compensator, known,
+                                      s.request.full_scale, threads);
+  }
+  result.provenance = s.provenance();
   result.compensator = {
       tested_name(s.request.compensator), kind_of(s.request.compensator),
-      known ? known->provenance.method : "", compensator.inputs()};
-  result.metrics = metric_results(found, s.qualification, {}, threads);
-  result.limits = decided_limits(s.specification, result.metrics);
-  CheckedCompensator checked =
-      checked_runs(found, s.qualification, compensator);
-  if (known) checked.provenance = &known->provenance;
-  result.checks = run_checks(checked, threads);
-  const WordedVerdict verdict = verdict_of(result.limits, result.checks);
-  result.verdict = verdict.verdict;
-  result.words = verdict.words;
-  result.warnings = warnings_about(s.qualification, s.device.device, found);
-  result.provenance = s.provenance();
+      known != nullptr ? known->provenance.method : "", compensator.inputs()};
+  judge({s.specification, s.qualification.metric_runs, compensator,
+         known != nullptr ? &known->provenance : nullptr},
+        done.evidence, threads, result);
   if (s.campaign)
     result.population =
         population_yield({&*s.campaign, &s.qualification, &s.specification,
                           s.compensator.get(), s.model ? &*s.model : nullptr},
-                         threads, [&](double done) {
-                           if (progress) progress(share + (1 - share) * done);
+                         threads, [&](double part) {
+                           if (progress) progress(share + (1 - share) * part);
                          });
-  return validation;
+  return done;
 }
 
 }  // namespace beamgyro

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "dataset/recording/recording.h"
+#include "validation/evidence/evidence.h"
+
+namespace beamgyro {
+
+/// Returns what a recording shows, told from its columns:
+/// - a rate that is held at five values or more: kRateTable; at fewer, for five
+///   minutes or more: kConstantRate; else kRateStep;
+/// - a rate that swings at one frequency: kSineRate; any other: kRandomRate;
+/// - at rest, accelerations that are held: kTumble; other motion: kVibration;
+/// - at rest with two power-ons or more: kPowerCycle;
+/// - at rest at one ambient temperature, or with a measured temperature within
+///   8 K: kRest if it is longer than kRestBegins and half an hour, else
+///   kWarmUp;
+/// - at rest with three plateaus of ambient temperature or more: kSoak; else
+///   kRamp.
+/// Throws std::invalid_argument without true_rate.
+RunPurpose recorded_purpose(const Recording& recording);
+
+/// A recording at rest shows noise and not warm-up from here on [s].
+constexpr double kRestBegins = 7200.0;
+
+}  // namespace beamgyro
