@@ -103,15 +103,23 @@ std::string yield_lines(const PopulationYield& population) {
       2);
 }
 
+// "nominal.toml, qualification.toml", or "3 recordings".
+std::string evidence_words(const ResultProvenance& provenance) {
+  if (!provenance.device.empty())
+    return provenance.device + ", " + provenance.qualification;
+  const auto runs = std::ranges::count(provenance.files, std::string("runs"),
+                                       &ResultFile::group);
+  return fmt::format("{} recording{}", runs, runs == 1 ? "" : "s");
+}
+
 std::string heading(const ValidationResult& result) {
   std::string verdict(conformity_name(result.verdict));
   std::ranges::transform(verdict, verdict.begin(), [](char c) {
     return static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
   });
   return wrapped(fmt::format("{}: {}", verdict, result.words), 2) +
-         wrapped(fmt::format("{} on {}, {}; {}", result.compensator.name,
-                             result.provenance.device,
-                             result.provenance.qualification,
+         wrapped(fmt::format("{} on {}; {}", result.compensator.name,
+                             evidence_words(result.provenance),
                              result.provenance.specification),
                  2);
 }

@@ -117,12 +117,12 @@ WordedVerdict verdict_of(const std::vector<DecidedLimit>& limits,
                          const std::vector<CheckResult>& checks) {
   const auto [against, open] = reasons_of(limits, checks);
   if (!against.empty())
-    return {Conformity::kFail, fmt::format("The compensator fails: {} not met.",
-                                           fmt::join(against, ", "))};
+    return {Conformity::kFail,
+            fmt::format("Not met: {}.", fmt::join(against, ", "))};
   if (!open.empty())
-    return {Conformity::kUndecided,
-            fmt::format("Undecided: the evidence does not tell {}.",
-                        fmt::join(open, ", "))};
+    return {
+        Conformity::kUndecided,
+        fmt::format("The evidence does not tell: {}.", fmt::join(open, ", "))};
   return {Conformity::kPass,
           fmt::format("The compensator passes: {} limit{} met, {} check{} "
                       "passed.",
