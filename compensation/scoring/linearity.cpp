@@ -15,17 +15,12 @@
 namespace beamgyro {
 namespace {
 
-struct HeldRate {
-  double rate;    // [deg/s]
-  double answer;  // [deg/s]
-};
-
 struct Line {
   double offset = 0.0;  // [deg/s]
   double slope = 0.0;   // [-]
 };
 
-Line fit(const std::vector<HeldRate>& table) {
+Line fit(std::span<const HeldRate> table) {
   double rate = 0.0;
   double answer = 0.0;
   for (const HeldRate& held : table) {
@@ -44,7 +39,7 @@ Line fit(const std::vector<HeldRate>& table) {
   return {answer - slope * rate, slope};
 }
 
-double slope_of_side(const std::vector<HeldRate>& table, double sign) {
+double slope_of_side(std::span<const HeldRate> table, double sign) {
   std::vector<HeldRate> side;
   for (const HeldRate& held : table) {
     if (sign * held.rate >= 0.0) {
@@ -52,31 +47,6 @@ double slope_of_side(const std::vector<HeldRate>& table, double sign) {
     }
   }
   return fit(side).slope;
-}
-
-bool is_rate_table(const std::vector<HeldRate>& table) {
-  const auto positive = std::ranges::count_if(
-      table, [](const HeldRate& held) { return held.rate > 0.0; });
-  const auto negative = std::ranges::count_if(
-      table, [](const HeldRate& held) { return held.rate < 0.0; });
-  return table.size() >= kLeastRatesOfTable && positive >= 2 && negative >= 2;
-}
-
-Linearity linearity_of(const std::vector<HeldRate>& table) {
-  const Line line = fit(table);
-  double deviation = 0.0;
-  double full_scale = 0.0;
-  for (const HeldRate& held : table) {
-    const double answer = line.offset + line.slope * held.rate;
-    deviation = std::max(deviation, std::abs(held.answer - answer));
-    full_scale = std::max(full_scale, std::abs(held.rate));
-  }
-  const double positive = slope_of_side(table, 1.0);
-  const double negative = slope_of_side(table, -1.0);
-  return {
-      .nonlinearity = 1e6 * deviation / (std::abs(line.slope) * full_scale),
-      .asymmetry = 1e6 * 2.0 * (positive - negative) / (positive + negative),
-      .rates = table.size()};
 }
 
 std::vector<HeldRate> held_rates(const Recording& recording,
@@ -108,6 +78,32 @@ std::vector<HeldRate> held_rates(const Recording& recording,
 }
 
 }  // namespace
+
+bool is_rate_table(std::span<const HeldRate> table) {
+  const auto positive = std::ranges::count_if(
+      table, [](const HeldRate& held) { return held.rate > 0.0; });
+  const auto negative = std::ranges::count_if(
+      table, [](const HeldRate& held) { return held.rate < 0.0; });
+  return table.size() >= kLeastRatesOfTable && positive >= 2 && negative >= 2;
+}
+
+Linearity linearity_of(std::span<const HeldRate> table) {
+  const Line line = fit(table);
+  double deviation = 0.0;
+  double full_scale = 0.0;
+  for (const HeldRate& held : table) {
+    const double answer = line.offset + line.slope * held.rate;
+    deviation = std::max(deviation, std::abs(held.answer - answer));
+    full_scale = std::max(full_scale, std::abs(held.rate));
+  }
+  const double positive = slope_of_side(table, 1.0);
+  const double negative = slope_of_side(table, -1.0);
+  return {
+      .nonlinearity = 1e6 * deviation / (std::abs(line.slope) * full_scale),
+      .asymmetry = 1e6 * 2.0 * (positive - negative) / (positive + negative),
+      .rates = table.size(),
+      .slope = line.slope};
+}
 
 std::optional<Linearity> linearity(const Recording& recording,
                                    std::span<const double> rate) {

@@ -13,8 +13,7 @@
 
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/scale_factor.h"
-#include "config/config_node.h"
-#include "config/document.h"
+#include "compensation/scoring/stated_values.h"
 
 namespace beamgyro {
 namespace {
@@ -27,16 +26,6 @@ constexpr double kBeyond = 1.01;         // [-], of full scale
 constexpr double kLineTolerance = 1e-6;  // [-], of the span of the output
 constexpr double kLeastRateSpan = 1e-9;  // [deg/s]
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    if (end > begin) lines.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return lines;
-}
 
 std::vector<double>& values_of(Recording& recording, std::string_view name) {
   const auto found = std::ranges::find(recording.columns, name, &Column::name);
@@ -154,24 +143,10 @@ void append_blocks(const Recording& recording, const Injection& injection,
 
 }  // namespace
 
-std::optional<double> stated_full_scale(const Recording& recording) try {
-  if (recording.device_text.empty()) {
-    return std::nullopt;
-  }
-  Overrides overrides(lines_of(recording.overrides_text));
-  const ConfigDocument device =
-      ConfigDocument::parse(recording.device_text, "device", overrides);
-  const ConfigNode* value = device.value("readout.full_scale_deg_per_s");
-  if (value == nullptr) {
-    return std::nullopt;
-  }
-  const double stated = value->kind == ConfigNode::Kind::kInteger
-                            ? static_cast<double>(value->integer)
-                            : value->number;
-  return stated > 0.0 && std::isfinite(stated) ? std::optional(stated)
-                                               : std::nullopt;
-} catch (const std::invalid_argument&) {
-  return std::nullopt;  // a text of another program's device
+std::optional<double> stated_full_scale(const Recording& recording) {
+  const std::optional<double> stated =
+      stated_device_number(recording, "readout.full_scale_deg_per_s");
+  return stated > 0.0 && std::isfinite(*stated) ? stated : std::nullopt;
 }
 
 double held_rate(std::size_t hold, double largest) {

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "validation/metrics/noisy_means.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "validation/metrics/random_purposes.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr std::size_t kManySegments = 500;
+constexpr std::uint32_t kDraws = 200;
+constexpr std::uint32_t kFewDraws = 60;  // with many segments
+
+using Draws = std::vector<std::vector<double>>;
+
+Draws draws_of(const NoisyMeans& means) {
+  const bool many = means.values.size() > kManySegments;
+  Draws draws;
+  for (std::uint32_t d = 0; d < (many ? kFewDraws : kDraws); ++d)
+    draws.push_back(means.drawn_noise(d));
+  return draws;
+}
+
+double mean_of(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+double mean_square(std::span<const double> values, double about) {
+  double sum = 0.0;
+  for (const double value : values) sum += (value - about) * (value - about);
+  return sum / static_cast<double>(values.size());
+}
+
+/// Ends of the ranges of means that are drawn towards one value.
+std::vector<std::size_t> group_ends(const NoisyMeans& means,
+                                    Shrinkage shrinkage) {
+  std::vector<std::size_t> ends;
+  if (shrinkage == Shrinkage::kToPowerOn) {
+    std::size_t end = 0;
+    for (const std::size_t size : means.sizes) {
+      for (std::size_t i = end + 1; i < end + size; ++i)
+        if (means.segments[i].power_on != means.segments[i - 1].power_on)
+          ends.push_back(i);
+      end += size;
+      ends.push_back(end);
+    }
+  } else {
+    ends.push_back(means.values.size());
+  }
+  return ends;
+}
+
+std::vector<double> centres_of(std::span<const double> values,
+                               const std::vector<std::size_t>& ends,
+                               Shrinkage shrinkage) {
+  std::vector<double> centres(values.size(), 0.0);
+  if (shrinkage == Shrinkage::kToZero) return centres;
+  std::size_t begin = 0;
+  for (const std::size_t end : ends) {
+    const double centre = mean_of(values.subspan(begin, end - begin));
+    std::fill(centres.begin() + static_cast<std::ptrdiff_t>(begin),
+              centres.begin() + static_cast<std::ptrdiff_t>(end), centre);
+    begin = end;
+  }
+  return centres;
+}
+
+double sum_of_squares(std::span<const double> values,
+                      std::span<const double> centres) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    sum += (values[i] - centres[i]) * (values[i] - centres[i]);
+  return sum;
+}
+
+std::vector<double> shrunken(const NoisyMeans& means, const Draws& draws,
+                             Shrinkage shrinkage) {
+  std::vector<double> base = means.values;
+  if (shrinkage == Shrinkage::kNone) return base;
+  const std::vector<std::size_t> ends = group_ends(means, shrinkage);
+  double noise = 0.0;
+  for (const std::vector<double>& draw : draws)
+    noise += sum_of_squares(draw, centres_of(draw, ends, shrinkage));
+  noise /= static_cast<double>(draws.size());
+  const std::vector<double> centres = centres_of(base, ends, shrinkage);
+  const double all = sum_of_squares(base, centres);
+  const double kept = all > noise ? std::sqrt(1.0 - noise / all) : 0.0;
+  for (std::size_t i = 0; i < base.size(); ++i)
+    base[i] = centres[i] + kept * (base[i] - centres[i]);
+  return base;
+}
+
+std::vector<double> figures_with(const Draws& draws,
+                                 const std::vector<double>& base,
+                                 const Statistic& statistic) {
+  std::vector<double> figures;
+  std::vector<double> noisy(base.size());
+  for (const std::vector<double>& draw : draws) {
+    std::ranges::transform(base, draw, noisy.begin(), std::plus<>());
+    figures.push_back(statistic(noisy));
+  }
+  return figures;
+}
+
+}  // namespace
+
+void NoisyMeans::add(const Recording& recording,
+                     std::span<const SampleRange> ranges,
+                     std::span<const double> signal,
+                     std::span<const double> residual) {
+  const std::vector<Segment> more = segments_of(recording, ranges);
+  const std::vector<double> means = means_over(more, signal);
+  noise.emplace_back(seen_noise(recording, residual), more);
+  sizes.push_back(more.size());
+  segments.insert(segments.end(), more.begin(), more.end());
+  values.insert(values.end(), means.begin(), means.end());
+}
+
+std::vector<double> NoisyMeans::drawn_noise(std::uint32_t draw) const {
+  std::vector<double> drawn(values.size());
+  std::size_t first = 0;
+  for (std::size_t run = 0; run < noise.size(); ++run) {
+    RandomStream random(0, draw, static_cast<std::uint32_t>(run),
+                        kIntervalStream);
+    noise[run].draw(random, std::span(drawn).subspan(first, sizes[run]));
+    first += sizes[run];
+  }
+  return drawn;
+}
+
+bool NoisyMeans::without_noise() const {
+  return std::ranges::all_of(noise, &SegmentNoise::none);
+}
+
+Estimate estimate_beneath_noise(const NoisyMeans& means,
+                                const Statistic& statistic, Shrinkage shrinkage,
+                                double least) {
+  const double value = statistic(means.values);
+  if (means.without_noise() || !std::isfinite(value))
+    return {value, Interval{value, value}};
+  const Draws draws = draws_of(means);
+  const std::vector<double> base = shrunken(means, draws, shrinkage);
+  const double exact = statistic(base);
+  std::vector<double> errors = figures_with(draws, base, statistic);
+  for (double& error : errors) error -= exact;
+  const double shift = mean_of(errors);
+  const double half = kNormal975 * std::sqrt(mean_square(errors, shift));
+  return {value,
+          Interval{std::min(value, std::max(least, value - shift - half)),
+                   std::max(value, value - shift + half)}};
+}
+
+Estimate estimate_of_noise(const NoisyMeans& means,
+                           const Statistic& statistic) {
+  const double value = statistic(means.values);
+  if (means.without_noise() || !(value > 0.0) || !std::isfinite(value))
+    return {value, Interval{value, value}};
+  const Draws draws = draws_of(means);
+  const std::vector<double> nothing(means.values.size(), 0.0);
+  const double noise =
+      mean_square(figures_with(draws, nothing, statistic), 0.0);
+  const double kept =
+      value * value > noise ? std::sqrt(1.0 - noise / (value * value)) : 0.0;
+  std::vector<double> base = means.values;
+  for (double& v : base) v *= kept;
+  const double exact = std::sqrt(std::pow(statistic(base), 2) + noise);
+  std::vector<double> errors = figures_with(draws, base, statistic);
+  for (double& error : errors) error = std::log(error / exact);
+  const double shift = mean_of(errors);
+  const double half = kNormal975 * std::sqrt(mean_square(errors, shift));
+  return {value, Interval{std::min(value, value * std::exp(-shift - half)),
+                          std::max(value, value * std::exp(-shift + half))}};
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "validation/metrics/metric.h"
+#include "validation/metrics/rate_noise_model.h"
+
+namespace beamgyro {
+
+constexpr double kNormal975 = 1.959963984540054;  // [-], normal quantile
+
+/// Means over segments of several runs, one after the other, with their noise.
+struct NoisyMeans {
+  std::vector<double> values;  // [deg/s]
+  std::vector<Segment> segments;
+  std::vector<SegmentNoise> noise;  // of each run
+  std::vector<std::size_t> sizes;   // segments of each run
+
+  /// Adds segments of a run: means of `signal`, with the noise seen in
+  /// `residual`.
+  void add(const Recording& recording, std::span<const SampleRange> ranges,
+           std::span<const double> signal, std::span<const double> residual);
+
+  std::vector<double> drawn_noise(std::uint32_t draw) const;  // [deg/s]
+  bool without_noise() const;
+};
+
+/// A figure computed from the means.
+using Statistic = std::function<double(std::span<const double> means)>;
+
+/// What the figure would be without the noise, roughly: the means themselves,
+/// or drawn together towards zero, towards their mean, or towards the mean
+/// since their power-on, by the share of their variance that is noise.
+enum class Shrinkage { kNone, kToZero, kToMean, kToPowerOn };
+
+/// Returns a figure of the means and the 95 % interval of what it would be
+/// without the noise. The error of the figure is drawn: noise is added to the
+/// shrunken means, and e is by how much that changes the figure. The interval
+/// is
+///
+///   value - mean(e) -+ 1.96 sigma(e),
+///
+/// widened to contain the value, and cut off below `least`. It has no width if
+/// there is no noise.
+Estimate estimate_beneath_noise(const NoisyMeans& means,
+                                const Statistic& statistic, Shrinkage shrinkage,
+                                double least = -HUGE_VAL);
+
+/// The same for a figure that measures the noise itself, so that its truth is
+/// the root of the mean square over many draws; e are logarithms of ratios.
+Estimate estimate_of_noise(const NoisyMeans& means, const Statistic& statistic);
+
+}  // namespace beamgyro

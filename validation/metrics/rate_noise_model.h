@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "random/random_stream.h"
+#include "validation/metrics/segments.h"
+
+namespace beamgyro {
+
+/// Noise of a rate, of the same law as that of the simulator: white noise,
+/// flicker, a random walk from time 0 on, an offset at each power-on.
+struct NoiseLevels {
+  double angle_random_walk = 0.0;  // N [deg/sqrt(s)]
+  double bias_instability = 0.0;   // B [deg/s]
+  double rate_random_walk = 0.0;   // K [deg/s/sqrt(s)]
+  double turn_on = 0.0;            // 1-sigma [deg/s]
+
+  bool operator==(const NoiseLevels&) const = default;
+};
+
+/// Returns the noise that the device file of a recording states, none at all
+/// where the scenario has switched it off, or nothing without a device file.
+std::optional<NoiseLevels> stated_noise(const Recording& recording);
+
+/// Returns the noise of a residual [deg/s]. The third differences of its means
+/// over 1 s or a sample, whichever is longer, tell its size, since they do not
+/// see a smooth drift: their median size is that of white noise and flicker.
+/// - If the device states its noise, all of it is scaled to that size; what is
+///   above it is white.
+/// - Otherwise the third differences of means over 60 s tell the flicker.
+/// A residual without noise has none, whatever the device states.
+NoiseLevels seen_noise(const Recording& recording,
+                       std::span<const double> residual);
+
+/// The noise of the means over segments of one run, in order of time.
+class SegmentNoise {
+ public:
+  SegmentNoise(const NoiseLevels& levels, std::span<const Segment> segments);
+
+  bool none() const { return none_; }
+  const std::vector<double>& standard_deviations() const {  // [deg/s]
+    return deviations_;
+  }
+
+  /// Writes the noise [deg/s] of every segment, drawn from `random`.
+  void draw(RandomStream& random, std::span<double> means) const;
+
+ private:
+  struct Step {
+    double white;     // [deg/s], 1-sigma of all that neighbours do not share
+    double walk;      // [deg/s], 1-sigma of the walk since the segment before
+    bool powered_on;  // since the segment before
+  };
+  struct SharedFlicker {
+    double correlation;  // [-], with the segment before
+    double fresh;        // [-], sqrt(1 - correlation^2)
+    double part;         // [deg/s], 1-sigma of the mean
+  };
+  double turn_on_ = 0.0;  // [deg/s]
+  bool none_ = true;
+  std::size_t poles_ = 0;
+  std::vector<Step> steps_;
+  std::vector<SharedFlicker> flicker_;  // by segment, then pole
+  std::vector<double> deviations_;      // [deg/s]
+};
+
+}  // namespace beamgyro

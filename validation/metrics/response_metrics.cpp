@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "validation/metrics/evaluations.h"
+#include "validation/metrics/frequency_response.h"
+#include "validation/metrics/segments.h"
+
+namespace beamgyro::evaluation {
+namespace {
+
+constexpr double kHalfPower = 20.0 * 0.15051499783199057;  // [dB], 10 log10(2)
+constexpr double kQuarterTurn = 0.5 * std::numbers::pi;    // [rad]
+constexpr double kLongestDelay = 2.0;                      // [s], looked for
+constexpr double kLeastSpread = 1e-15;                     // [rad]
+
+Estimate with_t_interval(double value, double sigma, double freedom) {
+  if (!(sigma > 0.0) || !(freedom >= 1.0))
+    return {value, Interval{value, value}};
+  const boost::math::students_t chance(freedom);
+  const double half = quantile(chance, 0.975) * sigma;
+  return {value, Interval{value - half, value + half}};
+}
+
+std::optional<Estimate> crossing_of(std::span<const ResponsePoint> points,
+                                    std::span<const double> values,
+                                    std::span<const double> sigmas) {
+  const auto found = first_crossing(points, values, sigmas);
+  if (!found) return std::nullopt;
+  return with_t_interval(found->frequency, found->sigma, found->freedom);
+}
+
+/// Phases [rad] by rising frequency, each within half a turn of a constant
+/// delay through the one before.
+std::vector<double> unwrapped(std::span<const ResponsePoint> points) {
+  std::vector<double> phases;
+  double expected = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i > 0)
+      expected = phases[i - 1] * points[i].frequency / points[i - 1].frequency;
+    const double phase = std::arg(points[i].gain);
+    const double turn = 2.0 * std::numbers::pi;
+    phases.push_back(phase + turn * std::round((expected - phase) / turn));
+  }
+  return phases;
+}
+
+/// Delay [s] from phases over frequency, weighted by their certainty.
+Estimate delay_of(std::span<const ResponsePoint> points) {
+  const std::vector<double> phases = unwrapped(points);
+  double sum = 0.0, weights = 0.0, freedom = HUGE_VAL;
+  bool exact = true;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double omega = 2.0 * std::numbers::pi * points[i].frequency;
+    const double spread = points[i].sigma / std::abs(points[i].gain);
+    const double weight = std::pow(omega / std::max(spread, kLeastSpread), 2);
+    exact = exact && !(spread > kLeastSpread);
+    sum += weight * -phases[i] / omega;
+    weights += weight;
+    freedom = std::min(freedom, points[i].freedom);
+  }
+  return with_t_interval(sum / weights, exact ? 0.0 : 1.0 / std::sqrt(weights),
+                         freedom);
+}
+
+double dot_shifted(std::span<const double> after,
+                   std::span<const double> before, std::ptrdiff_t lag,
+                   std::size_t margin) {
+  double sum = 0.0;
+  for (std::size_t k = margin; k + margin < after.size(); ++k)
+    sum +=
+        after[k] *
+        before[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) - lag)];
+  return sum;
+}
+
+void centre(std::vector<double>& values) {
+  double mean = 0.0;
+  for (const double value : values)
+    mean += value / static_cast<double>(values.size());
+  for (double& value : values) value -= mean;
+}
+
+/// Delay of a run whose rate is no sine: the lag of the largest
+/// cross-correlation, between samples by a parabola.
+std::optional<Estimate> correlated_delay(const EvidenceRun& run) {
+  const Recording& recording = *run.recording;
+  const auto stretches = powered_stretches(recording);
+  if (stretches.empty()) return std::nullopt;
+  const SampleRange range = stretches.back();
+  const auto& raw = column_values(recording, "rate");
+  const auto part = [&](const std::vector<double>& all) {
+    std::vector<double> values(
+        all.begin() + static_cast<std::ptrdiff_t>(range.begin),
+        all.begin() + static_cast<std::ptrdiff_t>(range.end));
+    centre(values);
+    return values;
+  };
+  const std::vector<double> after = part(run.rate), before = part(raw);
+  const double step = usual_step(recording);
+  const auto margin = static_cast<std::size_t>(
+      std::min(kLongestDelay / step, 0.1 * static_cast<double>(range.size())));
+  if (margin < 2) return std::nullopt;
+  const auto reach = static_cast<std::ptrdiff_t>(margin) - 1;
+  std::ptrdiff_t best = 0;
+  std::vector<double> sums;
+  for (std::ptrdiff_t lag = -reach; lag <= reach; ++lag) {
+    sums.push_back(dot_shifted(after, before, lag, margin));
+    if (sums.back() > sums[static_cast<std::size_t>(best)])
+      best = static_cast<std::ptrdiff_t>(sums.size()) - 1;
+  }
+  if (best == 0 || best == 2 * reach) return std::nullopt;
+  const auto b = static_cast<std::size_t>(best);
+  const double bend = sums[b - 1] - 2.0 * sums[b] + sums[b + 1];
+  const double peak = 0.5 * (sums[b - 1] - sums[b + 1]) / bend;
+  const double delay = step * (static_cast<double>(best - reach) + peak);
+  // What the shifted rate leaves, over the slopes that a delay would show.
+  const double gain = sums[b] / dot_shifted(before, before, 0, margin);
+  double left = 0.0, slopes = 0.0;
+  for (std::size_t k = margin; k + margin < after.size(); ++k) {
+    const std::size_t j =
+        static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) - best + reach);
+    const double slope = 0.5 * (before[j + 1] - before[j - 1]) / step;
+    const double expected = gain * (before[j] - peak * step * slope);
+    left += std::pow(after[k] - expected, 2);
+    slopes += std::pow(gain * slope, 2);
+  }
+  const auto n = static_cast<double>(after.size() - 2 * margin);
+  return with_t_interval(delay, std::sqrt(left / n / slopes), n - 2.0);
+}
+
+}  // namespace
+
+std::optional<Estimate> bandwidth(const Evidence& evidence) {
+  const std::vector<ResponsePoint> points = response_to_true_rate(evidence);
+  if (points.size() < 2) return std::nullopt;
+  const double lowest = std::abs(points[0].gain);
+  std::vector<double> values, sigmas;
+  const double decibels = 20.0 / std::numbers::ln10;
+  for (const ResponsePoint& point : points) {
+    values.push_back(decibels * std::log(std::abs(point.gain) / lowest) +
+                     kHalfPower);
+    sigmas.push_back(decibels * point.sigma / std::abs(point.gain));
+  }
+  return crossing_of(points, values, sigmas);
+}
+
+std::optional<Estimate> phase_lag_90(const Evidence& evidence) {
+  const std::vector<ResponsePoint> points = response_to_true_rate(evidence);
+  if (points.size() < 2) return std::nullopt;
+  std::vector<double> values = unwrapped(points), sigmas;
+  for (double& value : values) value += kQuarterTurn;
+  for (const ResponsePoint& point : points)
+    sigmas.push_back(point.sigma / std::abs(point.gain));
+  return crossing_of(points, values, sigmas);
+}
+
+std::optional<Estimate> added_delay(const Evidence& evidence) {
+  std::vector<ResponsePoint> points;
+  for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kSineRate})) {
+    const auto& raw = column_values(*run->recording, "rate");
+    if (const auto point = sine_response(*run->recording, raw, run->rate))
+      points.push_back(*point);
+  }
+  std::ranges::sort(points, {}, &ResponsePoint::frequency);
+  if (!points.empty()) return delay_of(points);
+  for (const EvidenceRun* run :
+       runs_for(evidence, {RunPurpose::kRandomRate, RunPurpose::kRateStep}))
+    if (const auto delay = correlated_delay(*run)) return delay;
+  return std::nullopt;
+}
+
+}  // namespace beamgyro::evaluation

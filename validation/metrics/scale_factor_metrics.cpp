@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "compensation/scoring/linearity.h"
+#include "compensation/scoring/scale_factor.h"
+#include "validation/metrics/evaluations.h"
+#include "validation/metrics/noisy_means.h"
+
+namespace beamgyro::evaluation {
+namespace {
+
+constexpr double kPpm = 1e6;
+constexpr double kTableReference = 25.0;       // [degC]
+constexpr double kLeastTemperatureSpan = 1.0;  // [K]
+
+/// The rates of one table: which means belong to each.
+struct RateTable {
+  std::map<double, std::vector<std::size_t>> means_at;  // by rate [deg/s]
+  double temperature = 0.0;                             // [degC], mean
+};
+
+std::vector<HeldRate> held_rates_of(const RateTable& table,
+                                    std::span<const double> means) {
+  std::vector<HeldRate> held;
+  for (const auto& [rate, indices] : table.means_at) {
+    double sum = 0.0;
+    for (const std::size_t i : indices) sum += means[i];
+    held.push_back({rate, sum / static_cast<double>(indices.size())});
+  }
+  return held;
+}
+
+struct RateTables {
+  NoisyMeans means;  // judged rates
+  std::vector<RateTable> tables;
+};
+
+/// The settled and unsaturated part of every held rate within `plateau`.
+std::vector<SampleRange> settled_rates(const Recording& recording,
+                                       std::span<const SampleRange> held,
+                                       const SampleRange& plateau) {
+  std::vector<SampleRange> ranges;
+  for (SampleRange range : held) {
+    range.begin = std::max(range.begin, plateau.begin);
+    range.end = std::min(range.end, plateau.end);
+    if (range.begin >= range.end) continue;
+    range = settled(recording, range, kSettlingTime);
+    const bool saturated = std::any_of(
+        recording.status.begin() + static_cast<std::ptrdiff_t>(range.begin),
+        recording.status.begin() + static_cast<std::ptrdiff_t>(range.end),
+        [](std::uint8_t status) { return (status & kOutputSaturated) != 0; });
+    if (range.size() > 0 && !saturated) ranges.push_back(range);
+  }
+  return ranges;
+}
+
+/// Adds the table over the held rates of a plateau, if they are one.
+bool add_table(const Recording& recording, const std::vector<double>& truth,
+               std::span<const SampleRange> ranges,
+               std::vector<SampleRange>& used, std::size_t first,
+               std::vector<RateTable>& tables) {
+  RateTable table;
+  std::size_t next = first + used.size();
+  double samples = 0.0;
+  for (const Segment& segment : segments_of(recording, ranges)) {
+    const auto size = static_cast<double>(segment.samples.size());
+    table.means_at[truth[segment.samples.begin]].push_back(next++);
+    table.temperature += segment.temperature * size;
+    samples += size;
+  }
+  std::vector<HeldRate> rates;
+  for (const auto& [rate, indices] : table.means_at)
+    rates.push_back({rate, 0.0});
+  if (!is_rate_table(rates)) return false;
+  table.temperature /= samples;
+  used.insert(used.end(), ranges.begin(), ranges.end());
+  tables.push_back(table);
+  return true;
+}
+
+RateTables rate_tables_of(const Evidence& evidence) {
+  RateTables all;
+  for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kRateTable})) {
+    const Recording& recording = *run->recording;
+    const auto& truth = column_values(recording, "true_rate");
+    const std::vector<SampleRange> held =
+        held_ranges(recording, std::array{&truth});
+    const std::size_t first = all.means.values.size();
+    std::vector<SampleRange> used;
+    bool found = false;
+    for (const SampleRange& plateau : temperature_plateaus(recording))
+      found |=
+          add_table(recording, truth, settled_rates(recording, held, plateau),
+                    used, first, all.tables);
+    if (!found)  // the temperature moves along the table
+      add_table(recording, truth,
+                settled_rates(recording, held, {0, truth.size()}), used, first,
+                all.tables);
+    all.means.add(recording, used, run->rate, residual_of(*run));
+  }
+  return all;
+}
+
+std::optional<Estimate> table_figure(
+    const Evidence& evidence,
+    const std::function<double(const std::vector<Linearity>&)>& figure,
+    double least) {
+  const RateTables all = rate_tables_of(evidence);
+  if (all.tables.empty()) return std::nullopt;
+  return estimate_beneath_noise(
+      all.means,
+      [&](std::span<const double> means) {
+        std::vector<Linearity> found;
+        for (const RateTable& table : all.tables)
+          found.push_back(linearity_of(held_rates_of(table, means)));
+        return figure(found);
+      },
+      Shrinkage::kNone, least);
+}
+
+/// White noise of the difference of judged and recorded rate.
+double white_noise_of_correction(const EvidenceRun& run) {
+  const auto& raw = column_values(*run.recording, "rate");
+  std::vector<double> correction(raw.size());
+  std::ranges::transform(run.rate, raw, correction.begin(), std::minus<>());
+  Recording bare;  // without a device that states the noise of the rate
+  bare.time = run.recording->time;
+  bare.status = run.recording->status;
+  return seen_noise(bare, correction).angle_random_walk;
+}
+
+std::optional<Estimate> retained(const Evidence& evidence,
+                                 double largest_rate) {
+  using enum RunPurpose;
+  SlopeSums sums;
+  double variance = 0.0;  // of sums.compensated_without_drift
+  for (const EvidenceRun* run :
+       runs_for(evidence, {kRateTable, kSineRate, kRateStep, kRandomRate})) {
+    const SlopeSums more = slope_sums(*run->recording, run->rate, largest_rate);
+    const double step = usual_step(*run->recording);
+    sums += more;
+    variance += std::pow(white_noise_of_correction(*run), 2) / step *
+                more.truth_without_drift;
+  }
+  const auto found = scale_factor(sums);
+  if (!found) return std::nullopt;
+  const double half =
+      kNormal975 * std::sqrt(variance) / std::abs(sums.raw_without_drift);
+  return Estimate{found->retained,
+                  Interval{found->retained - half, found->retained + half}};
+}
+
+}  // namespace
+
+std::optional<Estimate> scale_factor(const Evidence& evidence) {
+  return table_figure(
+      evidence,
+      [](const std::vector<Linearity>& tables) {
+        double sum = 0.0;
+        for (const Linearity& table : tables) sum += table.slope;
+        return sum / static_cast<double>(tables.size());
+      },
+      -HUGE_VAL);
+}
+
+std::optional<Estimate> scale_factor_error(const Evidence& evidence) {
+  return table_figure(
+      evidence,
+      [](const std::vector<Linearity>& tables) {
+        double largest = 0.0;
+        for (const Linearity& table : tables)
+          largest = std::max(largest, kPpm * std::abs(table.slope - 1.0));
+        return largest;
+      },
+      0.0);
+}
+
+std::optional<Estimate> scale_factor_nonlinearity(const Evidence& evidence) {
+  return table_figure(
+      evidence,
+      [](const std::vector<Linearity>& tables) {
+        return std::ranges::max(tables, {}, &Linearity::nonlinearity)
+            .nonlinearity;
+      },
+      0.0);
+}
+
+std::optional<Estimate> scale_factor_asymmetry(const Evidence& evidence) {
+  return table_figure(
+      evidence,
+      [](const std::vector<Linearity>& tables) {
+        return std::ranges::max(tables, {},
+                                [](const Linearity& table) {
+                                  return std::abs(table.asymmetry);
+                                })
+            .asymmetry;
+      },
+      -HUGE_VAL);
+}
+
+std::optional<Estimate> scale_factor_temperature_sensitivity(
+    const Evidence& evidence) {
+  const RateTables all = rate_tables_of(evidence);
+  const auto n = static_cast<double>(all.tables.size());
+  double mean = 0.0, squares = 0.0;
+  for (const RateTable& table : all.tables) mean += table.temperature / n;
+  for (const RateTable& table : all.tables)
+    squares += std::pow(table.temperature - mean, 2);
+  if (!(squares > std::pow(kLeastTemperatureSpan, 2))) return std::nullopt;
+  return estimate_beneath_noise(
+      all.means,
+      [&](std::span<const double> means) {
+        double level = 0.0, slope = 0.0;
+        for (const RateTable& table : all.tables) {
+          const double K = linearity_of(held_rates_of(table, means)).slope;
+          level += K / n;
+          slope += K * (table.temperature - mean) / squares;
+        }
+        return kPpm * slope / (level + slope * (kTableReference - mean));
+      },
+      Shrinkage::kNone);
+}
+
+std::optional<Estimate> scale_factor_retained(const Evidence& evidence) {
+  return retained(evidence, kEveryRate);
+}
+
+std::optional<Estimate> scale_factor_retained_small(const Evidence& evidence) {
+  return retained(evidence, kSmallRate);
+}
+
+}  // namespace beamgyro::evaluation

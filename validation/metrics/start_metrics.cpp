@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+
+#include "validation/metrics/evaluations.h"
+#include "validation/metrics/noisy_means.h"
+#include "validation/metrics/random_purposes.h"
+
+namespace beamgyro::evaluation {
+namespace {
+
+constexpr double kWarmUpBand = 0.05;      // [-], of the whole change
+constexpr double kNoiseBand = 3.0;        // [-], sigma
+constexpr double kEndShare = 0.1;         // [-], of the blocks of a warm-up
+constexpr double kSmoothing = 0.05;       // [-], of the time from power-on
+constexpr std::size_t kLeastBlocks = 10;  // of a warm-up
+constexpr std::size_t kLeastCycles = 3;
+constexpr double kZeroing = 10.0;  // [s], the user's zero, and each mean
+constexpr std::uint32_t kWarmUpDraws = 200;
+
+std::vector<const EvidenceRun*> power_ons(const Evidence& evidence) {
+  return runs_for(evidence, {RunPurpose::kWarmUp, RunPurpose::kPowerCycle});
+}
+
+double mean_between(std::span<const double> values, std::size_t begin,
+                    std::size_t end) {
+  double sum = 0.0;
+  for (std::size_t i = begin; i < end; ++i) sum += values[i];
+  return sum / static_cast<double>(end - begin);
+}
+
+/// |B(t) - B_end| of a warm-up, smoothed over 5 % of the time from power-on.
+std::vector<double> distances(std::span<const double> blocks) {
+  const std::size_t n = blocks.size();
+  const auto end = std::max<std::size_t>(
+      1,
+      static_cast<std::size_t>(std::round(kEndShare * static_cast<double>(n))));
+  const double settled = mean_between(blocks, n - end, n);
+  std::vector<double> d;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto reach =
+        static_cast<std::size_t>(kSmoothing * (static_cast<double>(i) + 0.5));
+    const std::size_t side = std::min(reach, n - 1 - i);
+    d.push_back(mean_between(blocks, i - side, i + side + 1) - settled);
+  }
+  return d;
+}
+
+/// Time [s] at which |d| last crosses the band; 0 if it never leaves it.
+double last_crossing(std::span<const Segment> blocks, std::span<const double> d,
+                     std::span<const double> band) {
+  for (std::size_t i = d.size(); i-- > 0;) {
+    const double above = std::abs(d[i]) - band[i];
+    if (above <= 0.0) continue;
+    if (i + 1 == d.size()) return blocks[i].powered;
+    const double below = band[i + 1] - std::abs(d[i + 1]);
+    return blocks[i].powered + (blocks[i + 1].powered - blocks[i].powered) *
+                                   above / (above + below);
+  }
+  return 0.0;
+}
+
+/// Warm-up time of one power-on.
+Estimate warm_up_of(std::span<const Segment> blocks,
+                    std::span<const double> values, const SegmentNoise& noise) {
+  const std::vector<double> d = distances(values);
+  // The noise of d, and the change, that of the first block carried on to
+  // power-on.
+  std::vector<double> sigma(d.size(), 0.0);
+  if (!noise.none()) {
+    std::vector<double> drawn(d.size());
+    for (std::uint32_t draw = 0; draw < kWarmUpDraws; ++draw) {
+      RandomStream random(0, draw, 0, kIntervalStream);
+      noise.draw(random, drawn);
+      const std::vector<double> n = distances(drawn);
+      for (std::size_t i = 0; i < n.size(); ++i) sigma[i] += n[i] * n[i];
+    }
+    for (double& s : sigma) s = std::sqrt(s / kWarmUpDraws);
+  }
+  const double change = std::abs(1.5 * d[0] - 0.5 * d[1]);
+  std::vector<double> band, wide, narrow;
+  for (const double s : sigma) {
+    band.push_back(std::max(kWarmUpBand * change, kNoiseBand * s));
+    wide.push_back(band.back() + kNormal975 * s);
+    narrow.push_back(band.back() - kNormal975 * s);
+  }
+  return {last_crossing(blocks, d, band),
+          Interval{last_crossing(blocks, d, wide),
+                   last_crossing(blocks, d, narrow)}};
+}
+
+/// The later of two times.
+std::optional<Estimate> later(const std::optional<Estimate>& a,
+                              const Estimate& b) {
+  if (!a) return b;
+  return Estimate{std::max(a->value, b.value),
+                  Interval{std::max(a->interval->low, b.interval->low),
+                           std::max(a->interval->high, b.interval->high)}};
+}
+
+/// Means of 10 s from each power-on, as long as `length` [s] and complete.
+NoisyMeans power_on_means(const Evidence& evidence, double length,
+                          std::size_t& of_each) {
+  NoisyMeans means;
+  of_each = static_cast<std::size_t>(std::round(length / kZeroing)) + 1;
+  for (const EvidenceRun* run : power_ons(evidence)) {
+    const Recording& recording = *run->recording;
+    const auto blocks =
+        segments_of(recording, score_blocks(recording, kZeroing));
+    std::vector<SampleRange> ranges;
+    for (std::size_t i = 0; i + of_each <= blocks.size();) {
+      std::size_t same = i;
+      while (same < blocks.size() &&
+             blocks[same].power_on == blocks[i].power_on)
+        ++same;
+      const double reach = blocks[i + of_each - 1].powered - blocks[i].powered;
+      if (same - i >= of_each && blocks[i].powered < kZeroing &&
+          std::abs(reach - length) < kZeroing)
+        for (std::size_t j = i; j < i + of_each; ++j)
+          ranges.push_back(blocks[j].samples);
+      i = same;
+    }
+    if (ranges.empty()) continue;
+    const std::vector<double> residual = residual_of(*run);
+    means.add(recording, ranges, residual, residual);
+  }
+  return means;
+}
+
+std::optional<Estimate> worst_power_on(
+    const Evidence& evidence, double length,
+    double (*figure)(std::span<const double> from_power_on)) {
+  std::size_t of_each = 0;
+  const NoisyMeans means = power_on_means(evidence, length, of_each);
+  if (means.values.empty()) return std::nullopt;
+  return estimate_beneath_noise(
+      means,
+      [&](std::span<const double> b) {
+        double worst = 0.0;
+        for (std::size_t i = 0; i < b.size(); i += of_each)
+          worst = std::max(worst, figure(b.subspan(i, of_each)));
+        return worst;
+      },
+      Shrinkage::kToPowerOn, 0.0);
+}
+
+double largest_departure(std::span<const double> b) {
+  double largest = 0.0;
+  for (const double value : b)
+    largest = std::max(largest, std::abs(value - b[0]));
+  return largest;
+}
+
+double heading_error(std::span<const double> b) {
+  double angle = 0.0;
+  for (const double value : b.subspan(1)) angle += kZeroing * (value - b[0]);
+  return std::abs(angle);
+}
+
+}  // namespace
+
+std::optional<Estimate> turn_on_time(const Evidence& evidence) {
+  using enum RunPurpose;
+  std::optional<double> longest;
+  for (const EvidenceRun* run :
+       runs_for(evidence, {kWarmUp, kPowerCycle, kRateStep})) {
+    const Recording& recording = *run->recording;
+    if (recording.fidelity == "quasistatic" || recording.fidelity == "imported")
+      continue;
+    for (const SampleRange& stretch : powered_stretches(recording)) {
+      std::size_t locked = stretch.end;
+      while (locked > stretch.begin &&
+             (recording.status[locked - 1] & kLoopNotLocked) == 0)
+        --locked;
+      if (locked == stretch.end) continue;  // never locked
+      const double time =
+          recording.time[locked] - recording.time[stretch.begin];
+      longest = std::max(longest.value_or(0.0), time);
+    }
+  }
+  if (!longest) return std::nullopt;
+  return Estimate{*longest};
+}
+
+std::optional<Estimate> warm_up_time(const Evidence& evidence) {
+  std::optional<Estimate> longest;
+  for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kWarmUp})) {
+    const std::vector<double> residual = residual_of(*run);
+    const NoiseLevels levels = seen_noise(*run->recording, residual);
+    const auto all =
+        segments_of(*run->recording, score_blocks(*run->recording));
+    for (auto begin = all.begin(); begin != all.end();) {
+      const auto end = std::find_if(begin, all.end(), [&](const Segment& s) {
+        return s.power_on != begin->power_on;
+      });
+      const std::span<const Segment> blocks(begin, end);
+      begin = end;
+      if (blocks.size() < kLeastBlocks) continue;
+      const std::vector<double> values = means_over(blocks, residual);
+      if (!std::ranges::all_of(values,
+                               [](double v) { return std::isfinite(v); }))
+        return Estimate{NAN};
+      longest = later(longest,
+                      warm_up_of(blocks, values, SegmentNoise(levels, blocks)));
+    }
+  }
+  return longest;
+}
+
+std::optional<Estimate> turn_on_repeatability(const Evidence& evidence) {
+  double squares = 0.0;
+  double freedom = 0.0;
+  for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kPowerCycle})) {
+    const auto cycles = powered_stretches(*run->recording);
+    if (cycles.size() < kLeastCycles) continue;
+    const std::size_t shortest =
+        std::ranges::min(cycles, {}, &SampleRange::size).size();
+    const std::vector<double> residual = residual_of(*run);
+    std::vector<double> means;
+    for (const SampleRange& cycle : cycles)
+      means.push_back(
+          mean_between(residual, cycle.begin, cycle.begin + shortest));
+    const double mean = mean_between(means, 0, means.size());
+    for (const double m : means) squares += (m - mean) * (m - mean);
+    freedom += static_cast<double>(means.size() - 1);
+  }
+  if (!(freedom > 0.0)) return std::nullopt;
+  const double sigma = std::sqrt(squares / freedom);
+  const boost::math::chi_squared chance(freedom);
+  return Estimate{sigma,
+                  Interval{std::sqrt(squares / quantile(chance, 0.975)),
+                           std::sqrt(squares / quantile(chance, 0.025))}};
+}
+
+std::optional<Estimate> power_on_drift_3_min(const Evidence& evidence) {
+  return worst_power_on(evidence, 180.0 - kZeroing, &largest_departure);
+}
+
+std::optional<Estimate> heading_error_1_min(const Evidence& evidence) {
+  return worst_power_on(evidence, 60.0, &heading_error);
+}
+
+std::optional<Estimate> heading_error_10_min(const Evidence& evidence) {
+  return worst_power_on(evidence, 600.0, &heading_error);
+}
+
+}  // namespace beamgyro::evaluation

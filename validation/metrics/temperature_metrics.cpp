@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "compensation/scoring/residual_scores.h"
+#include "validation/metrics/evaluations.h"
+#include "validation/metrics/noisy_means.h"
+
+namespace beamgyro::evaluation {
+namespace {
+
+constexpr double kLeastSoak = 600.0;        // [s]
+constexpr double kSoakAverage = 300.0;      // [s], at its end
+constexpr double kSameTemperature = 0.5;    // [K], of soaks
+constexpr double kMeasuredHold = 0.05;      // [K], in a minute
+constexpr double kLeastSlope = 0.05;        // [K/min], of a ramp
+constexpr double kSameSlope = 0.1;          // [-], of ramps
+constexpr std::size_t kLeastLegBlocks = 5;  // blocks of a ramp
+
+enum class Direction { kNone, kUp, kDown };
+
+struct Soak {
+  SampleRange range;
+  double ambient;  // [degC]; the measured temperature without one
+  Direction reached = Direction::kNone;
+};
+
+/// Ranges of constant ambient temperature, or in a recording without one those
+/// whose measured temperature no longer moves from minute to minute.
+std::vector<SampleRange> constant_temperature(const Recording& recording) {
+  if (const Column* ambient =
+          find_column(recording, "true_ambient_temperature"))
+    return held_ranges(recording, std::array{&ambient->values});
+  std::vector<SampleRange> ranges;
+  double last = NAN;
+  for (const Segment& block : segments_of(recording, score_blocks(recording))) {
+    const bool held = std::abs(block.temperature - last) < kMeasuredHold;
+    if (!held || ranges.empty()) ranges.push_back(block.samples);
+    ranges.back().end = block.samples.end;
+    last = block.temperature;
+  }
+  return ranges;
+}
+
+std::vector<Soak> soaks_of(const Recording& recording) {
+  const Column* ambient = find_column(recording, "true_ambient_temperature");
+  const Column* measured = find_column(recording, "temperature");
+  if (ambient == nullptr) ambient = measured;
+  const double step = usual_step(recording);
+  std::vector<Soak> soaks;
+  for (SampleRange range : constant_temperature(recording)) {
+    const double length = static_cast<double>(range.size()) * step;
+    if (ambient == nullptr || length < kLeastSoak) continue;
+    const auto average = static_cast<std::size_t>(
+        std::max(1.0, std::round(kSoakAverage / step)));
+    range.begin = range.end - std::min(average, range.size());
+    Soak soak{range, ambient->values[range.end - 1]};
+    if (!soaks.empty())
+      soak.reached = soak.ambient > soaks.back().ambient ? Direction::kUp
+                                                         : Direction::kDown;
+    soaks.push_back(soak);
+  }
+  return soaks;
+}
+
+struct Soaks {
+  NoisyMeans means;
+  std::vector<Soak> soaks;  // one for each mean
+};
+
+Soaks all_soaks(const Evidence& evidence) {
+  Soaks all;
+  for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kSoak})) {
+    const std::vector<Soak> soaks = soaks_of(*run->recording);
+    std::vector<SampleRange> ranges;
+    for (const Soak& soak : soaks) ranges.push_back(soak.range);
+    const std::vector<double> residual = residual_of(*run);
+    all.means.add(*run->recording, ranges, residual, residual);
+    all.soaks.insert(all.soaks.end(), soaks.begin(), soaks.end());
+  }
+  return all;
+}
+
+std::optional<Estimate> soak_figure(const Evidence& evidence,
+                                    double ResidualScores::*figure) {
+  const Soaks all = all_soaks(evidence);
+  if (all.soaks.size() < 2) return std::nullopt;
+  return estimate_beneath_noise(
+      all.means,
+      [figure](std::span<const double> b) {
+        return residual_scores(b).*figure;
+      },
+      Shrinkage::kToMean, 0.0);
+}
+
+/// A mean, and the line between two others that it is compared with.
+struct Comparison {
+  std::size_t here;
+  std::size_t left, right;
+  double share;  // [-], of the right one
+};
+
+double difference(const Comparison& c, std::span<const double> b) {
+  return b[c.here] - (1.0 - c.share) * b[c.left] - c.share * b[c.right];
+}
+
+double largest_difference(const std::vector<Comparison>& comparisons,
+                          std::span<const double> b) {
+  double largest = 0.0;
+  for (const Comparison& c : comparisons)
+    largest = std::max(largest, std::abs(difference(c, b)));
+  return largest;
+}
+
+double rms_difference(const std::vector<Comparison>& comparisons,
+                      std::span<const double> b) {
+  double squares = 0.0;
+  for (const Comparison& c : comparisons)
+    squares += std::pow(difference(c, b), 2);
+  return std::sqrt(squares / static_cast<double>(comparisons.size()));
+}
+
+/// Part of a ramp run in one direction: indices of means, rising temperature.
+struct Leg {
+  std::vector<std::size_t> blocks;
+  double slope;  // [K/min]
+};
+
+/// Temperature [degC] that tells the direction of a ramp.
+std::vector<double> chamber_temperatures(const Recording& recording,
+                                         std::span<const Segment> blocks) {
+  const Column* ambient = find_column(recording, "true_ambient_temperature");
+  if (ambient != nullptr) return means_over(blocks, ambient->values);
+  std::vector<double> temperatures;
+  for (const Segment& block : blocks) temperatures.push_back(block.temperature);
+  return temperatures;
+}
+
+void add_legs(const Recording& recording, std::span<const Segment> blocks,
+              std::size_t first, std::vector<Leg>& legs) {
+  const std::vector<double> chamber = chamber_temperatures(recording, blocks);
+  std::vector<std::size_t> leg;  // numbers within the run
+  int direction = 0;
+  const auto finish = [&] {
+    if (direction != 0 && leg.size() >= kLeastLegBlocks) {
+      const double minutes =
+          (blocks[leg.back()].time - blocks[leg.front()].time) / 60.0;
+      Leg found{{}, (chamber[leg.back()] - chamber[leg.front()]) / minutes};
+      for (const std::size_t i : leg) found.blocks.push_back(first + i);
+      if (direction < 0) std::ranges::reverse(found.blocks);
+      legs.push_back(found);
+    }
+    leg.clear();
+  };
+  for (std::size_t i = 1; i < blocks.size(); ++i) {
+    const double slope = 60.0 * (chamber[i] - chamber[i - 1]) /
+                         (blocks[i].time - blocks[i - 1].time);
+    const int now = std::abs(slope) < kLeastSlope ? 0 : slope > 0.0 ? 1 : -1;
+    if (now != direction || blocks[i].power_on != blocks[i - 1].power_on) {
+      finish();
+      direction = now;
+    }
+    leg.push_back(i);
+  }
+  finish();
+}
+
+/// Compares every block of one leg with the line through those of the other.
+void compare(const Leg& up, const Leg& down, std::span<const Segment> blocks,
+             std::vector<Comparison>& comparisons) {
+  for (const std::size_t here : up.blocks) {
+    const double T = blocks[here].temperature;
+    const auto right = std::ranges::find_if(
+        down.blocks, [&](std::size_t i) { return blocks[i].temperature >= T; });
+    if (right == down.blocks.begin() || right == down.blocks.end()) continue;
+    const auto left = right - 1;
+    const double span = blocks[*right].temperature - blocks[*left].temperature;
+    comparisons.push_back(
+        {here, *left, *right, (T - blocks[*left].temperature) / span});
+  }
+}
+
+std::optional<Estimate> ramp_figure(
+    const Evidence& evidence,
+    double (*figure)(const std::vector<Comparison>&, std::span<const double>)) {
+  NoisyMeans means;
+  std::vector<Leg> legs;
+  for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kRamp})) {
+    const std::vector<double> residual = residual_of(*run);
+    const std::size_t first = means.segments.size();
+    means.add(*run->recording, score_blocks(*run->recording), residual,
+              residual);
+    add_legs(*run->recording, std::span(means.segments).subspan(first), first,
+             legs);
+  }
+  std::vector<Comparison> comparisons;
+  for (const Leg& up : legs)
+    for (const Leg& down : legs)
+      if (up.slope > 0.0 && down.slope < 0.0 &&
+          std::abs(up.slope + down.slope) <= kSameSlope * up.slope)
+        compare(up, down, means.segments, comparisons);
+  if (comparisons.empty()) return std::nullopt;
+  return estimate_beneath_noise(
+      means, [&](std::span<const double> b) { return figure(comparisons, b); },
+      Shrinkage::kToMean, 0.0);
+}
+
+}  // namespace
+
+std::optional<Estimate> bias_pp(const Evidence& evidence) {
+  return soak_figure(evidence, &ResidualScores::peak_to_peak);
+}
+
+std::optional<Estimate> bias_sigma(const Evidence& evidence) {
+  return soak_figure(evidence, &ResidualScores::sigma);
+}
+
+std::optional<Estimate> bias_sensitivity(const Evidence& evidence) {
+  const Soaks all = all_soaks(evidence);
+  const auto& segments = all.means.segments;
+  if (segments.size() < 2) return std::nullopt;
+  double mean = 0.0;
+  for (const Segment& s : segments)
+    mean += s.temperature / static_cast<double>(segments.size());
+  double squares = 0.0;
+  for (const Segment& s : segments)
+    squares += std::pow(s.temperature - mean, 2);
+  if (!(squares > 0.0)) return std::nullopt;
+  return estimate_beneath_noise(
+      all.means,
+      [&](std::span<const double> b) {
+        double sum = 0.0;
+        for (std::size_t j = 0; j < b.size(); ++j)
+          sum += (segments[j].temperature - mean) * b[j];
+        return sum / squares;
+      },
+      Shrinkage::kNone);
+}
+
+std::optional<Estimate> bias_sensitivity_max(const Evidence& evidence) {
+  const Soaks all = all_soaks(evidence);
+  const auto& segments = all.means.segments;
+  std::vector<std::size_t> order(segments.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, {},
+                    [&](std::size_t j) { return segments[j].temperature; });
+  // Soaks at one temperature count as one.
+  std::vector<std::vector<std::size_t>> groups;
+  for (const std::size_t j : order) {
+    if (groups.empty() ||
+        segments[j].temperature - segments[groups.back()[0]].temperature >
+            kSameTemperature)
+      groups.emplace_back();
+    groups.back().push_back(j);
+  }
+  if (groups.size() < 3) return std::nullopt;
+  const auto mean_of_group = [&](std::size_t g, auto value) {
+    double sum = 0.0;
+    for (const std::size_t j : groups[g]) sum += value(j);
+    return sum / static_cast<double>(groups[g].size());
+  };
+  return estimate_beneath_noise(
+      all.means,
+      [&](std::span<const double> b) {
+        const auto bias_at = [&](std::size_t j) { return b[j]; };
+        const auto temperature = [&](std::size_t j) {
+          return segments[j].temperature;
+        };
+        double largest = 0.0;
+        for (std::size_t g = 1; g + 1 < groups.size(); ++g)
+          largest =
+              std::max(largest, std::abs((mean_of_group(g + 1, bias_at) -
+                                          mean_of_group(g - 1, bias_at)) /
+                                         (mean_of_group(g + 1, temperature) -
+                                          mean_of_group(g - 1, temperature))));
+        return largest;
+      },
+      Shrinkage::kToMean, 0.0);
+}
+
+std::optional<Estimate> soak_hysteresis_max(const Evidence& evidence) {
+  const Soaks all = all_soaks(evidence);
+  std::vector<Comparison> comparisons;
+  for (std::size_t i = 0; i < all.soaks.size(); ++i)
+    for (std::size_t j = 0; j < all.soaks.size(); ++j)
+      if (all.soaks[i].reached == Direction::kUp &&
+          all.soaks[j].reached == Direction::kDown &&
+          std::abs(all.soaks[i].ambient - all.soaks[j].ambient) <
+              kSameTemperature)
+        comparisons.push_back({i, j, j, 0.0});
+  if (comparisons.empty()) return std::nullopt;
+  return estimate_beneath_noise(
+      all.means,
+      [&](std::span<const double> b) {
+        return largest_difference(comparisons, b);
+      },
+      Shrinkage::kToMean, 0.0);
+}
+
+std::optional<Estimate> hysteresis_max(const Evidence& evidence) {
+  return ramp_figure(evidence, &largest_difference);
+}
+
+std::optional<Estimate> hysteresis_rms(const Evidence& evidence) {
+  return ramp_figure(evidence, &rms_difference);
+}
+
+}  // namespace beamgyro::evaluation
