@@ -3,7 +3,7 @@ include(CMakePackageConfigHelpers)
 set(PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/beamgyro)
 
 install(TARGETS beamgyro RUNTIME)
-install(DIRECTORY scenarios DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro)
+install(DIRECTORY scenarios specs DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro)
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # Everything at once. The name of the program is taken within this build.

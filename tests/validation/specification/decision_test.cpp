@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "validation/specification/decision.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "random/random_stream.h"
+
+namespace beamgyro::decision_test {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+const Limit kAtMostOne{.metric = "bias_deg_per_s", .most = 1.0};
+const Limit kAtLeastOne{.metric = "bandwidth_Hz", .least = 1.0};
+
+Conformity result(const Limit& limit, const std::optional<Estimate>& after,
+                  const std::optional<Estimate>& reference = {}) {
+  return decide(limit, after, reference).result;
+}
+
+TEST(Decision, AWholeIntervalWithinTheLimitPassesAndOneBeyondFails) {
+  EXPECT_EQ(result(kAtMostOne, Estimate{0.8, Interval{0.7, 1.0}}),
+            Conformity::kPass);
+  EXPECT_EQ(result(kAtMostOne, Estimate{0.8, Interval{0.7, 1.01}}),
+            Conformity::kUndecided);
+  EXPECT_EQ(result(kAtMostOne, Estimate{1.2, Interval{0.99, 1.3}}),
+            Conformity::kUndecided);
+  EXPECT_EQ(result(kAtMostOne, Estimate{1.2, Interval{1.01, 1.3}}),
+            Conformity::kFail);
+  EXPECT_EQ(result(kAtLeastOne, Estimate{1.2, Interval{1.01, 1.3}}),
+            Conformity::kPass);
+  EXPECT_EQ(result(kAtLeastOne, Estimate{1.2, Interval{0.99, 1.3}}),
+            Conformity::kUndecided);
+  EXPECT_EQ(result(kAtLeastOne, Estimate{0.8, Interval{0.7, 0.99}}),
+            Conformity::kFail);
+}
+
+TEST(Decision, MarginAndGuardBandAreThoseOfTheNearerLimit) {
+  const Limit both{.metric = "scale_factor", .least = 0.9, .most = 1.1};
+  const Decision found = decide(both, Estimate{1.06, Interval{1.05, 1.08}});
+  EXPECT_NEAR(*found.margin, 0.04, 1e-15);
+  EXPECT_NEAR(found.guard_band, 0.02, 1e-15);
+  EXPECT_EQ(found.result, Conformity::kPass);
+  const Decision beyond = decide(both, Estimate{0.8, Interval{0.75, 0.87}});
+  EXPECT_NEAR(*beyond.margin, -0.1, 1e-15);
+  EXPECT_NEAR(beyond.guard_band, 0.07, 1e-15);
+  EXPECT_EQ(beyond.result, Conformity::kFail);
+}
+
+TEST(Decision, AValueWithoutAnIntervalIsDecidedDirectly) {
+  EXPECT_EQ(result(kAtMostOne, Estimate{1.0}), Conformity::kPass);
+  EXPECT_EQ(result(kAtMostOne, Estimate{std::nextafter(1.0, 2.0)}),
+            Conformity::kFail);
+}
+
+TEST(Decision, WhatCouldNotBeEvaluatedIsUndecided) {
+  EXPECT_EQ(result(kAtMostOne, std::nullopt), Conformity::kUndecided);
+  EXPECT_EQ(result(kAtMostOne, Estimate{kNan}), Conformity::kUndecided);
+  EXPECT_EQ(result(kAtMostOne, Estimate{kInfinity}), Conformity::kUndecided);
+  EXPECT_EQ(result(kAtMostOne, Estimate{0.5, Interval{0.4, kNan}}),
+            Conformity::kUndecided);
+  EXPECT_EQ(result(kAtMostOne, Estimate{0.5, Interval{0.4, kInfinity}}),
+            Conformity::kUndecided);
+  EXPECT_FALSE(decide(kAtMostOne, std::nullopt).margin.has_value());
+}
+
+TEST(Decision, TheSignCanBeLeftOut) {
+  Limit limit = kAtMostOne;
+  const Estimate negative{-1.5, Interval{-1.6, -1.4}};
+  EXPECT_EQ(result(limit, negative), Conformity::kPass);
+  limit.absolute = true;
+  EXPECT_EQ(result(limit, negative), Conformity::kFail);
+  // Both ends count: -1.2 is within the interval.
+  EXPECT_EQ(result(limit, Estimate{-0.1, Interval{-1.2, 0.9}}),
+            Conformity::kUndecided);
+}
+
+TEST(Decision, AQuotientIsComparedWithItsInterval) {
+  Limit limit{.metric = "residual_sigma_deg_per_s", .most = 0.1};
+  limit.relative_to = "before";
+  EXPECT_EQ(result(limit, Estimate{0.09}, Estimate{-1.0}), Conformity::kPass);
+  EXPECT_EQ(result(limit, Estimate{0.11}, Estimate{1.0}), Conformity::kFail);
+  EXPECT_EQ(result(limit, Estimate{0.09}, std::nullopt),
+            Conformity::kUndecided);
+  EXPECT_EQ(result(limit, Estimate{0.09}, Estimate{0.0}),
+            Conformity::kUndecided);
+  // Factors 1.1 upwards of both: exp(sqrt(2) ln 1.1) = 1.1443.
+  const Decision found = decide(limit, Estimate{0.05, Interval{0.04, 0.055}},
+                                Estimate{1.1, Interval{1.0, 1.3}});
+  ASSERT_TRUE(found.compared && found.compared->interval);
+  EXPECT_NEAR(found.compared->value, 0.05 / 1.1, 1e-15);
+  EXPECT_NEAR(found.compared->interval->high,
+              0.05 / 1.1 * std::pow(1.1, std::sqrt(2.0)), 1e-15);
+}
+
+TEST(Decision, AnotherRiskWidensTheGuardBand) {
+  const Estimate found{0.8, Interval{0.7, 0.9}};
+  const double wide = decide(kAtMostOne, found, {}, 0.001).guard_band;
+  EXPECT_NEAR(wide, 0.1 * 3.0902323 / 1.9599640, 1e-8);  // quantiles, tables
+  EXPECT_EQ(decide(kAtMostOne, found, {}, 0.5).guard_band, 0.0);
+  EXPECT_THROW(decide(kAtMostOne, found, {}, 0.0), std::invalid_argument);
+  EXPECT_THROW(decide(kAtMostOne, found, {}, 0.51), std::invalid_argument);
+}
+
+TEST(Decision, TheWorstCounts) {
+  using enum Conformity;
+  EXPECT_EQ(worst_of({}), kPass);
+  EXPECT_EQ(worst_of(std::vector{kPass, kUndecided}), kUndecided);
+  EXPECT_EQ(worst_of(std::vector{kFail, kUndecided}), kFail);
+}
+
+// An estimate of `truth` from twenty-five samples with noise of 1-sigma 0.5,
+// whose 95 % interval is that of a known sigma.
+Estimate measured(double truth, RandomStream& random) {
+  constexpr int kSamples = 25;
+  double mean = 0.0;
+  for (int k = 0; k < kSamples; ++k)
+    mean += (truth + 0.5 * random.normal()) / kSamples;
+  const double half = 1.9599640 * 0.5 / std::sqrt(kSamples);
+  return {mean, Interval{mean - half, mean + half}};
+}
+
+TEST(Decision, OverAThousandDevicesWrongAcceptsStayBelowTheRisk) {
+  RandomStream random(1, 0, 0, RandomPurpose{1000});
+  int wrong = 0, accepted = 0;
+  for (int device = 0; device < 1000; ++device) {
+    const double truth = 0.8 + 0.3 * random.normal();
+    if (result(kAtMostOne, measured(truth, random)) != Conformity::kPass)
+      continue;
+    ++accepted;
+    wrong += truth > 1.0 ? 1 : 0;
+  }
+  EXPECT_GT(accepted, 300);
+  EXPECT_LT(wrong, kFalseAcceptRisk * 1000);
+}
+
+// The worst case: every device is as little beyond the limit as can be. Then
+// the share is the risk itself, 25 of 1000; 99.9 % of the binomial distribution
+// lies within 25 +- 3.3 sqrt(1000 0.025 0.975) = 25 +- 16.
+TEST(Decision, DevicesAtTheLimitPassAsOftenAsTheRiskSays) {
+  RandomStream random(2, 0, 0, RandomPurpose{1000});
+  int passed = 0;
+  for (int device = 0; device < 1000; ++device)
+    passed +=
+        result(kAtMostOne, measured(1.0, random)) == Conformity::kPass ? 1 : 0;
+  EXPECT_NEAR(passed, 25, 16);
+}
+
+}  // namespace
+}  // namespace beamgyro::decision_test

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include "validation/specification/specification_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "validation/metrics/metric.h"
+
+namespace beamgyro::specification_file_test {
+namespace {
+
+SpecificationFile parsed(const std::string& text) {
+  return parse_specification_file(text, "spec.toml");
+}
+
+const std::string kLimit =
+    "residual_rms_deg_per_s = { max = 0.1, source = \"s\" }\n";
+
+TEST(SpecificationFile, LimitsAreReadInTheirOrder) {
+  const SpecificationFile file = parsed(
+      "name = \"mine\"\ndescription = \"of mine\"\nfalse_accept_risk = 0.01\n"
+      "[limits]\nscale_factor = { min = 0.99, max = 1.01, source = \"a\" }\n"
+      "residual_mean_deg_per_s = { max = 2, absolute = true, source = \"b\" }\n"
+      "[limits_relative_to.cubic]\n" +
+      kLimit);
+  EXPECT_EQ(file.name, "mine");
+  EXPECT_EQ(file.description, "of mine");
+  EXPECT_EQ(file.false_accept_risk, 0.01);
+  ASSERT_EQ(file.limits.size(), 3u);
+  EXPECT_EQ(file.limits[0].least, 0.99);
+  EXPECT_EQ(file.limits[0].most, 1.01);
+  EXPECT_TRUE(file.limits[1].absolute);
+  EXPECT_EQ(file.limits[1].source, "b");
+  EXPECT_EQ(file.limits[1].place, "spec.toml:6:27");
+  EXPECT_EQ(file.limits[2].metric, "residual_rms_deg_per_s");
+  EXPECT_EQ(file.limits[2].relative_to, "cubic");
+}
+
+TEST(SpecificationFile, LimitsSayWhatTheyAskIn) {
+  EXPECT_EQ(text_of(Limit{.metric = "m", .most = 0.1}), "at most 0.1");
+  EXPECT_EQ(text_of(Limit{.metric = "m", .least = 1, .most = 2}), "1 to 2");
+  Limit limit{.metric = "m", .most = 0.27};
+  limit.relative_to = "cubic";
+  EXPECT_EQ(text_of(limit), "at most 0.27 times the cubic's");
+}
+
+struct BadFile {
+  const char* text;
+  const char* message;
+};
+
+void PrintTo(const BadFile& bad, std::ostream* out) { *out << bad.text; }
+
+class BadSpecification : public testing::TestWithParam<BadFile> {};
+
+TEST_P(BadSpecification, IsRefusedWithItsPlace) {
+  try {
+    parsed(GetParam().text);
+    FAIL() << "read without an error";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), GetParam().message);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, BadSpecification,
+    testing::Values(
+        BadFile{"name = ",
+                "spec.toml:1:8: not TOML: Error while parsing key-value pair: "
+                "encountered end-of-file"},
+        BadFile{"[limits]\n",
+                "spec.toml:1:1: name: missing; expected a text in quotes"},
+        BadFile{"name = \"a\"\n",
+                "spec.toml:1:1: limits: empty, must limit one metric or more"},
+        BadFile{"name = \"a\"\n[limit]\n",
+                "spec.toml:2:2: limit: unknown key; did you mean 'limits'?"},
+        BadFile{"name = \"a\"\n[limits]\nresidual_rms_deg_per_h = 1\n",
+                "spec.toml:3:26: limits.residual_rms_deg_per_h: not a metric; "
+                "did you mean 'residual_rms_deg_per_s'?"},
+        BadFile{"name = \"a\"\n[limits]\nspeed = { max = 1 }\n",
+                "spec.toml:3:9: limits.speed: not a metric; "
+                "docs/reference/metrics.md lists them"},
+        BadFile{"name = \"a\"\n[limits]\nscale_factor = 1\n",
+                "spec.toml:3:16: limits.scale_factor: 1 is wrong here; "
+                "expected a table"},
+        BadFile{"name = \"a\"\n[limits]\nscale_factor = { source = \"s\" }\n",
+                "spec.toml:3:16: limits.scale_factor: no limit; must have max, "
+                "min or both"},
+        BadFile{"name = \"a\"\n[limits]\nscale_factor = { max = 1 }\n",
+                "spec.toml:3:16: limits.scale_factor.source: missing; expected "
+                "a text in quotes"},
+        BadFile{"name = \"a\"\n[limits]\n"
+                "scale_factor = { max = 1, source = \"\" }\n",
+                "spec.toml:3:36: limits.scale_factor.source: empty, must say "
+                "where the number comes from"},
+        BadFile{"name = \"a\"\n[limits]\n"
+                "scale_factor = { min = 2, max = 1, source = \"s\" }\n",
+                "spec.toml:3:24: limits.scale_factor.min: 2 is above max = 1, "
+                "must be at most that"},
+        BadFile{"name = \"a\"\n[limits]\n"
+                "scale_factor = { maximum = 1, source = \"s\" }\n",
+                "spec.toml:3:16: limits.scale_factor: no limit; must have max, "
+                "min or both"},
+        BadFile{"name = \"a\"\n[limits]\n"
+                "scale_factor = { max = 1, sorce = \"s\" }\n",
+                "spec.toml:3:16: limits.scale_factor.source: missing; expected "
+                "a text in quotes; there is a 'sorce' in line 3"},
+        BadFile{"name = \"a\"\n[limits]\n"
+                "scale_factor = { max = \"1\", source = \"s\" }\n",
+                "spec.toml:3:24: limits.scale_factor.max: \"1\" is wrong here; "
+                "expected a finite number"},
+        BadFile{"name = \"a\"\n[limits]\n"
+                "scale_factor = { max = nan, source = \"s\" }\n",
+                "spec.toml:3:24: limits.scale_factor.max: nan is not finite; "
+                "expected a finite number"},
+        BadFile{"name = \"a\"\n[limits]\n"
+                "scale_factor = { max = 1, absolute = 1, source = \"s\" }\n",
+                "spec.toml:3:38: limits.scale_factor.absolute: 1 is wrong "
+                "here; expected true or false"},
+        BadFile{"name = \"a\"\nfalse_accept_risk = 0\n",
+                "spec.toml:2:21: false_accept_risk: 0 is out of range; "
+                "expected a number in (0, 0.5]"},
+        BadFile{"name = \"a\"\nfalse_accept_risk = 0.6\n",
+                "spec.toml:2:21: false_accept_risk: 0.6 is out of range; "
+                "expected a number in (0, 0.5]"},
+        BadFile{"name = \"a\"\n[limits_relative_to.raw]\n",
+                "spec.toml:2:21: limits_relative_to.raw: unknown key; "
+                "[limits_relative_to] takes before, constant, cubic, spline"},
+        BadFile{"name = \"a\"\n[limits]\nscale_factor = { max = 1, source = "
+                "\"s\" }\nscale_factor = { max = 2, source = \"s\" }\n",
+                "spec.toml:4:16: not TOML: Error while parsing key-value pair: "
+                "cannot redefine existing table 'scale_factor'"}));
+
+TEST(SpecificationFile, AMissingFileIsNamed) {
+  EXPECT_THROW(read_specification_file("no/such/spec.toml"),
+               std::invalid_argument);
+}
+
+TEST(SpecificationFile, ShippedOnesAreReadAndNameTheirSources) {
+  std::size_t files = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(BEAMGYRO_SPECS)) {
+    const SpecificationFile file = read_specification_file(entry.path());
+    EXPECT_EQ(file.name, entry.path().stem());
+    for (const Limit& limit : file.limits) {
+      EXPECT_NE(find_metric(limit.metric), nullptr) << limit.metric;
+      EXPECT_GT(limit.source.size(), 20u) << limit.place;
+    }
+    ++files;
+  }
+  EXPECT_EQ(files, 3u);
+}
+
+}  // namespace
+}  // namespace beamgyro::specification_file_test
