@@ -116,7 +116,8 @@ NamedTexts c_texts(const ExportArguments& arguments, const NamedCompensator& of,
     print_warning(fmt::format("{}: {}", of.file.string(), warning));
   return {{name + ".h", c.header},
           {name + ".c", c.source},
-          {name + "_selftest.c", c.self_test}};
+          {name + "_selftest.c", c.self_test},
+          {name + "_plugin.c", c.plugin}};
 }
 
 void require_options(const ExportArguments& arguments) {
@@ -206,10 +207,11 @@ void add_export(CommandLine& program) {
                      "for each axis"},
                     arguments->compensators, 3);
   command.reads({{FileKind::kCompensator}});
-  command.choice({"--format", "c|px4|ardupilot",
-                  "c writes NAME.h, NAME.c and NAME_selftest.c; px4 writes "
-                  "NAME.params; ardupilot writes NAME.parm"},
-                 arguments->format, {"c", "px4", "ardupilot"});
+  command.choice(
+      {"--format", "c|px4|ardupilot",
+       "c writes NAME.h, NAME.c, NAME_selftest.c and NAME_plugin.c; px4 writes "
+       "NAME.params; ardupilot writes NAME.parm"},
+      arguments->format, {"c", "px4", "ardupilot"});
   command.text({"-o,--output", "DIR", "Directory to write to"},
                arguments->output);
   command.text({"--name", "NAME", "Name of the files and of the C functions",

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "compensation/export/export_header.h"
+#include "compensation/export/export_plugin.h"
 #include "compensation/export/export_self_test.h"
 #include "compensation/export/firmware_model.h"
 #include "compensation/firmware/c_text.h"
@@ -225,7 +226,7 @@ ExportedC export_c(const Compensator& compensator, const std::string& name,
   const Writer writer(compensator, name, model);
   return {header_text(compensator, name, model, found),
           writer.source(found.objections), self_test_source(compensator, name),
-          found.objections};
+          plugin_source(name, model), found.objections};
 }
 
 }  // namespace beamgyro

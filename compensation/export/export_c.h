@@ -14,6 +14,7 @@ struct ExportedC {
   std::string header;     // NAME.h
   std::string source;     // NAME.c
   std::string self_test;  // NAME_selftest.c, the only one with main()
+  std::string plugin;     // NAME_plugin.c, for validation only
   std::vector<std::string> warnings;  // what `force` overrode
 };
 

@@ -48,7 +48,8 @@ class ExportC(ExportTest):
         for kind in MODELS:
             folder = self.export(kind)
             self.assertEqual({path.name for path in folder.iterdir()},
-                             {"net.h", "net.c", "net_selftest.c"})
+                             {"net.h", "net.c", "net_selftest.c",
+                              "net_plugin.c"})
             for compiler, more in compilers:
                 if shutil.which(compiler) is None:
                     continue

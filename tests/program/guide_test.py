@@ -41,6 +41,8 @@ def pattern(expected):
 def project(folder):
     """A directory with what the commands of the guides name."""
     shutil.copytree(ROOT / "scenarios", folder / "scenarios")
+    for name in ["examples", "include"]:
+        (folder / name).symlink_to(ROOT / name)
     program = folder / "build/release/beamgyro"
     program.parent.mkdir(parents=True)
     program.symlink_to(PROGRAM)

@@ -99,7 +99,7 @@ class Inputs(Set):
         self.run_scenario("a", text=ramp())
         self.write("model.toml", CUBIC)
         self.ok("train", "a.h5", "--model", "model.toml", "-o", "c.json")
-        for name in ["c.h", "c.c", "c_selftest.c"]:
+        for name in ["c.h", "c.c", "c_selftest.c", "c_plugin.c"]:
             (self.dir / "c").mkdir()
             os.link(self.dir / "c.json", self.dir / "c" / name)
             self.rejected("export", "c.json", "--format", "c", "-o", "c",

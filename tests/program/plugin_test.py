@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: MIT
+"""Compensators that are not ours: libraries and commands, in `compensate`."""
+
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+from export_firmware_test import CORE, EMULATOR, LINK, missing
+from exported import MODELS, ExportTest
+from program import PROGRAM, ROOT, ProgramTest, ramp
+
+EXAMPLES = ROOT / "examples/plugins"
+PYTHON = f"'{sys.executable}'"
+BIAS = [3.1422e-5, 2.0124e-3, -0.048258, 0.68417]  # of the examples
+QEMU = (f"cmd:{EMULATOR} -M mps2-an386 -display none -serial none "
+        "-monitor none -semihosting-config enable=on,target=native "
+        "-kernel net.elf")
+
+# Power is lost for a while, so that a plug-in begins twice.
+TWICE = ramp(seconds=600, rate_Hz=5) + "[power]\non_s = [0, 320]\noff_s = [280]\n"
+
+
+def rates(path):
+    with h5py.File(path) as file:
+        return {name: file[name][:] for name in
+                ["time", "rate", "temperature", "status", "compensated_rate"]}
+
+
+def processes(word):
+    """Ids of processes whose command line contains the word."""
+    found = []
+    for entry in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            if word.encode() in entry.read_bytes():
+                found.append(int(entry.parent.name))
+        except OSError:
+            pass
+    return found
+
+
+class Plugins(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.run_scenario("run", text=TWICE)
+
+    def build(self, source, name, compiler="cc", options=()):
+        subprocess.run([compiler, "-O2", "-Wall", "-Wextra", "-Werror",
+                        "-shared", "-fPIC", f"-I{ROOT}/include", *options,
+                        str(source), "-o", name], cwd=self.dir, check=True)
+        return f"./{name}"
+
+    def compensated(self, compensator, name="out.h5"):
+        self.ok("compensate", compensator, "run.h5", "-o", name)
+        return rates(self.dir / name)
+
+    def test_the_cubic_in_c_and_in_python_gives_the_same_bits(self):
+        in_c = self.compensated(self.build(EXAMPLES / "cubic.c", "cubic.so"))
+        in_python = self.compensated(f"cmd:{PYTHON} '{EXAMPLES}/cubic.py'",
+                                     "python.h5")
+        np.testing.assert_array_equal(in_c["compensated_rate"],
+                                      in_python["compensated_rate"])
+        x = in_c["temperature"] - 25
+        # Rounding of a bias of 1 deg/s and a rate.
+        np.testing.assert_allclose(in_c["compensated_rate"],
+                                   in_c["rate"] - np.polyval(BIAS, x),
+                                   atol=1e-13)
+        unpowered = in_c["status"] & 1 == 1
+        self.assertGreater(unpowered.sum(), 100)
+        np.testing.assert_array_equal(
+            unpowered, np.isnan(in_c["compensated_rate"]))
+
+    def test_the_filter_in_cpp_starts_anew_at_each_power_on(self):
+        out = self.compensated(self.build(
+            EXAMPLES / "lagging_cubic.cpp", "lagging.so", "c++"))
+        gain, expected, slow = 1 - np.exp(-0.2 / 100), [], None
+        for rate, temperature in zip(out["rate"], out["temperature"]):
+            if np.isnan(rate):
+                slow = None
+                expected.append(np.nan)
+                continue
+            slow = temperature if slow is None else \
+                slow + gain * (temperature - slow)
+            x = temperature - 25
+            expected.append(rate - (0.66218 + x * (-0.048326 + x * (
+                2.0176e-3 + x * 3.156e-5)) + 0.1755 * (temperature - slow)))
+        np.testing.assert_allclose(out["compensated_rate"], expected,
+                                   atol=1e-12)
+
+    def test_the_copy_names_the_plugin(self):
+        library = self.build(EXAMPLES / "cubic.c", "cubic.so")
+        self.compensated(library)
+        with h5py.File(self.dir / "out.h5") as file:
+            self.assertEqual(file.attrs["compensator"], b"cubic.so")
+            self.assertEqual(len(file.attrs["compensator_sha256"]), 64)
+        command = f"cmd:{PYTHON} '{EXAMPLES}/cubic.py'"
+        self.compensated(command, "python.h5")
+        with h5py.File(self.dir / "python.h5") as file:
+            self.assertEqual(file.attrs["compensator"], command.encode())
+            self.assertNotIn("compensator_sha256", file.attrs)
+
+    def test_each_fault_is_one_message_with_status_3_and_no_file(self):
+        per_line = "import sys; sys.stdin.readline()\nfor line in sys.stdin: "
+        for code, says in [
+                ("raise SystemExit(5)", "ended with status 5 at sample 0"),
+                ("import os; os.abort()", "signal 6, Aborted"),
+                ("x = bytearray(1 << 40)", "ran out of memory"),
+                ("pass", "fewer answers than samples"),
+                (per_line + "print(1); print(2)", "more answers than samples"),
+                (per_line + "print('nan')", "answered nan at sample 0"),
+                (per_line + "print('ok')", 'answered "ok", which is no number'),
+                ("import time; time.sleep(60)", "hung at sample 0")]:
+            script = self.write("bad.py", code)
+            with self.subTest(code):
+                self.rejected("compensate", f"cmd:{PYTHON} {script}", "run.h5",
+                              "-o", "out.h5", "--timeout-s", 1, says=says,
+                              status=3)
+
+    def test_what_is_no_plugin_is_wrong_input(self):
+        self.write("text.so", "not a library")
+        wants = self.write("wants.c", (EXAMPLES / "cubic.c").read_text()
+                           .replace('"rate,temperature"', '"rate,true_rate"'))
+        self.build(wants, "wants.so")
+        for compensator, says in [
+                ("./text.so", "cannot be loaded"),
+                ("./missing.so", "No such file"),
+                ("./wants.so", '"true_rate", which no gyro measures'),
+                ("cmd:", "no command")]:
+            self.rejected("compensate", compensator, "run.h5", "-o", "out.h5",
+                          says=says)
+
+    def test_no_library_is_overwritten(self):
+        self.build(EXAMPLES / "cubic.c", "cubic.so")
+        os.link(self.dir / "cubic.so", self.dir / "out.h5")
+        self.rejected("compensate", "./cubic.so", "run.h5", "-o", "out.h5",
+                      says="is read by this command")
+
+    def test_an_interrupt_ends_the_command_and_what_it_started(self):
+        word = f"sleep 98{os.getpid() % 1000:03}"
+        for number in [signal.SIGINT, signal.SIGTERM]:
+            with subprocess.Popen(
+                    [PROGRAM, "compensate", f"cmd:{word} | cat", "run.h5",
+                     "-o", "out.h5"], cwd=self.dir,
+                    stderr=subprocess.PIPE) as program:
+                slept = word.replace(" ", "\0")
+                for _ in range(200):
+                    if processes(slept):
+                        break
+                    time.sleep(0.05)
+                self.assertTrue(processes(slept))
+                program.send_signal(number)
+                program.communicate(timeout=20)
+                self.assertEqual(program.returncode, -number)
+            for _ in range(100):  # until the system has ended them
+                if not processes(slept):
+                    break
+                time.sleep(0.02)
+            self.assertEqual(processes(slept), [])
+            self.assertFalse((self.dir / "out.h5").exists())
+
+
+class Firmware(ExportTest):
+    """The exported source is what runs."""
+
+    def test_every_kind_of_exported_code_is_a_plugin(self):
+        for kind in MODELS:
+            folder = self.export(kind)
+            with self.subTest(kind):
+                self.compile(folder, "-std=c99", "-O2", "-Wall", "-Wextra",
+                             "-Wpedantic", "-Wconversion", "-Wmissing-prototypes",
+                             "-Werror", "-shared", "-fPIC", "net.c",
+                             "net_plugin.c", "-o", "net.so")
+                self.ok("compensate", f"./{kind}/net.so", "train.h5", "-o",
+                        f"{kind}_c.h5")
+                self.ok("compensate", f"{kind}.json", "train.h5", "-o",
+                        f"{kind}_json.h5")
+                firmware = rates(self.dir / f"{kind}_c.h5")
+                workbench = rates(self.dir / f"{kind}_json.h5")
+                # What export allows single precision.
+                np.testing.assert_allclose(
+                    firmware["compensated_rate"],
+                    workbench["compensated_rate"], atol=1e-4, rtol=0)
+                self.assertTrue(
+                    (firmware["status"] & 1 == 1).any())
+
+    @unittest.skipIf(missing(), missing())
+    def test_the_image_of_a_cortex_m4_answers_as_the_library(self):
+        folder = self.export("cubic")
+        self.compile(folder, "-O2", "-ffp-contract=off", "-shared", "-fPIC",
+                     "net.c", "net_plugin.c", "-o", "net.so")
+        main = (EXAMPLES / "cortex_m4.c").read_text().replace("gyro_", "net_") \
+            .replace("gyro.h", "net.h")
+        (folder / "main.c").write_text(main)
+        self.compile(folder, *CORE, "-ffp-contract=off", "-Wall", "-Wextra",
+                     "main.c", "net.c", *LINK, "-o", "../net.elf",
+                     compiler="arm-none-eabi-gcc")
+        self.ok("compensate", "./cubic/net.so", "train.h5", "-o", "so.h5")
+        self.ok("compensate", QEMU, "train.h5", "-o", "qemu.h5")
+        np.testing.assert_array_equal(
+            rates(self.dir / "so.h5")["compensated_rate"],
+            rates(self.dir / "qemu.h5")["compensated_rate"])
+
+
+if __name__ == "__main__":
+    unittest.main()
