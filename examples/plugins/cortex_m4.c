@@ -22,7 +22,7 @@
 enum { kLongestLine = 400 };
 
 /* The number of the column called `name` in the line of names. */
-static int column(const char *names, const char *name) {
+static int column(const char* names, const char* name) {
   const size_t length = strlen(name);
   int k = 0;
   for (; *names != '\0'; ++names, ++k) {
@@ -34,7 +34,7 @@ static int column(const char *names, const char *name) {
   return -1;
 }
 
-static double value(const char *line, int at) {
+static double value(const char* line, int at) {
   for (; at > 0; --at) {
     line = strchr(line, ',');
     if (line == NULL) return 0.0;

@@ -36,20 +36,20 @@ class Compensator {
 
 uint32_t beamgyro_plugin_abi() { return BEAMGYRO_PLUGIN_ABI; }
 
-const char *beamgyro_plugin_signals() { return "rate,temperature"; }
+const char* beamgyro_plugin_signals() { return "rate,temperature"; }
 
-void *beamgyro_plugin_create() { return new (std::nothrow) Compensator; }
+void* beamgyro_plugin_create() { return new (std::nothrow) Compensator; }
 
-int beamgyro_plugin_reset(void *instance, double period) {
-  static_cast<Compensator *>(instance)->reset(period);
+int beamgyro_plugin_reset(void* instance, double period) {
+  static_cast<Compensator*>(instance)->reset(period);
   return 0;
 }
 
-double beamgyro_plugin_step(void *instance, double, const double *signals) {
-  return static_cast<Compensator *>(instance)->compensated(signals[0],
-                                                           signals[1]);
+double beamgyro_plugin_step(void* instance, double, const double* signals) {
+  return static_cast<Compensator*>(instance)->compensated(signals[0],
+                                                          signals[1]);
 }
 
-void beamgyro_plugin_destroy(void *instance) {
-  delete static_cast<Compensator *>(instance);
+void beamgyro_plugin_destroy(void* instance) {
+  delete static_cast<Compensator*>(instance);
 }
