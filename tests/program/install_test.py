@@ -59,6 +59,11 @@ class Install(unittest.TestCase):
                   "run.h5")
         self.assertIn("recording", self.call(program, "info", "run.h5"))
 
+    def test_the_specifications_are_installed(self):
+        specs = self.prefix / "share/beamgyro/specs"
+        self.assertEqual(sorted(path.name for path in specs.iterdir()),
+                         ["paper.toml", "tactical.toml", "uav.toml"])
+
     def test_another_project_finds_and_links_the_libraries(self):
         (self.dir / "user.cpp").write_text(USER)
         (self.dir / "CMakeLists.txt").write_text(USER_CMAKE)

@@ -10,6 +10,7 @@
 #include "tests/validation/checks/simulated_runs.h"
 #include "validation/metrics/metric.h"
 #include "validation/specification/decision.h"
+#include "validation/specification/specification_file.h"
 
 namespace beamgyro::planted_faults_test {
 namespace {
@@ -216,6 +217,88 @@ TEST(PlantedFaults, APerfectCompensatorPassesEverything) {
     EXPECT_TRUE(result.passed() || result.name == "hold_out")
         << result.name << ": " << result.words;
   EXPECT_EQ(outcome_of(results), CheckOutcome::kPassed);
+}
+
+// Faults of the bias leave the rate alone: no check fails, a metric does.
+
+std::vector<double> identity(const Recording& run) {
+  return column_values(run, "rate");
+}
+
+std::vector<double> twice(const Recording& run) {
+  std::vector<double> answers = sound(run);
+  const std::vector<double>& rate = column_values(run, "rate");
+  for (std::size_t k = 0; k < answers.size(); ++k)
+    answers[k] -= rate[k] - answers[k];
+  return answers;
+}
+
+std::vector<double> in_reverse_order(const Recording& run) {
+  Compensator compensator = trained("cubic");
+  auto& polynomial = std::get<Polynomial>(compensator.bias.function);
+  std::ranges::reverse(polynomial.coefficients);
+  return compensated_rate(compensator, run);
+}
+
+std::vector<double> with_the_wrong_sign(const Recording& run) {
+  return sound(with_temperature(run, [](double T) { return -T; }));
+}
+
+std::vector<double> off_by_10_kelvin(const Recording& run) {
+  return sound(with_temperature(run, [](double T) { return T - 10.0; }));
+}
+
+// The decision on a residual of at most 15 % of the recorded one. The ramps of
+// the runs, 5 K/min, leave 10 % to the sound compensator.
+Conformity residual_decision(const Function& function) {
+  const Limit limit{.metric = "residual_rms_deg_per_s",
+                    .most = 0.15,
+                    .relative_to = "before"};
+  const Metric& residual = *find_metric(limit.metric);
+  const FunctionCompensator compensator(function);
+  return decide(limit, residual.evaluate(evidence_of(checked(compensator))),
+                residual.evaluate(recorded_evidence()))
+      .result;
+}
+
+TEST(PlantedFaults, FaultsOfTheBiasAreCaughtByTheResidual) {
+  EXPECT_EQ(residual_decision(sound), Conformity::kPass);
+  for (const Function& fault :
+       {Function(twice), Function(in_reverse_order),
+        Function(with_the_wrong_sign), Function(off_by_10_kelvin)}) {
+    EXPECT_EQ(residual_decision(fault), Conformity::kFail);
+    EXPECT_EQ(failed(fault), Names{});
+  }
+}
+
+TEST(PlantedFaults, IdentityPassesTheChecksAndLeavesTheDrift) {
+  EXPECT_EQ(failed(identity), Names{});
+  const Metric& residual = *find_metric("residual_rms_deg_per_s");
+  const FunctionCompensator compensator(identity);
+  const auto after = residual.evaluate(evidence_of(checked(compensator)));
+  const auto before = residual.evaluate(recorded_evidence());
+  EXPECT_EQ(after->value, before->value);
+  EXPECT_EQ(residual_decision(identity), Conformity::kFail);
+}
+
+TEST(PlantedFaults, APerfectCompensatorMeetsEveryShippedLimit) {
+  const FunctionCompensator compensator(perfect);
+  const Evidence after = evidence_of(checked(compensator));
+  const Evidence before = recorded_evidence();
+  for (const char* name : {"paper", "uav", "tactical"})
+    for (const Limit& limit :
+         read_specification_file(BEAMGYRO_SPECS "/" + std::string(name) +
+                                 ".toml")
+             .limits) {
+      const Metric& metric = *find_metric(limit.metric);
+      const auto found = metric.evaluate(after);
+      const Decision decision = decide(limit, found, metric.evaluate(before));
+      EXPECT_NE(decision.result, Conformity::kFail) << decision.words;
+      if (limit.metric.starts_with("residual")) {
+        EXPECT_LT(std::abs(found->value), 1e-12) << limit.metric;
+        EXPECT_EQ(decision.result, Conformity::kPass) << decision.words;
+      }
+    }
 }
 
 }  // namespace
