@@ -89,7 +89,7 @@ def study(job, name):
         "rate_table_rms_deg_per_s": table["rms_deg_per_s"],
         "parameters": parameters_of(compensator),
         "train_cpu_s": seconds,
-        "verdict": validation["verdict"],
+        "verdict": validation["words"],
     }
 
 

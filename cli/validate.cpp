@@ -22,7 +22,12 @@
 #include "compensation/scoring/set_scores.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/sha256.h"
+#include "parallel/work_queue.h"
 #include "report/validation_report.h"
+#include "validation/external/file_compensator.h"
+#include "validation/result/judgement.h"
+#include "validation/result/recorded_evidence.h"
+#include "validation/result/result_json.h"
 
 namespace beamgyro {
 namespace {
@@ -57,10 +62,14 @@ int validate_on_set(const ValidateArguments& arguments,
       score_devices(compensator, source, specification_of(arguments));
   const std::vector<std::string> warnings =
       warnings_of(compensator, source, scores);
+  const bool passed =
+      std::all_of(scores.begin(), scores.end(),
+                  [](const DeviceScore& score) { return score.passed; });
   if (!arguments.json.empty())
     write_text_file(
         arguments.json,
-        nlohmann::ordered_json{{"set", source.set->name},
+        nlohmann::ordered_json{{"verdict", passed ? "pass" : "fail"},
+                               {"set", source.set->name},
                                {"manifest_sha256", source.set->manifest_sha256},
                                {"warnings", warnings},
                                {"devices", to_json(scores)}}
@@ -69,10 +78,15 @@ int validate_on_set(const ValidateArguments& arguments,
   progress.reset();
   for (const std::string& warning : warnings) print_warning(warning);
   print_result(device_table(scores));
-  const bool passed =
-      std::all_of(scores.begin(), scores.end(),
-                  [](const DeviceScore& score) { return score.passed; });
   return passed ? 0 : kNotPassed;
+}
+
+nlohmann::ordered_json metrics_on_runs(const ValidateArguments& arguments,
+                                       const Compensator& compensator) {
+  const DeviceEvidence found = recorded_evidence(
+      {arguments.runs.begin(), arguments.runs.end()}, *tested(compensator),
+      &compensator, arguments.full_scale, thread_count(0));
+  return metrics_json(metric_results(found, {}, {}, thread_count(0)), {});
 }
 
 int validate_on_runs(const ValidateArguments& arguments) {
@@ -98,7 +112,9 @@ int validate_on_runs(const ValidateArguments& arguments) {
       compensator, std::filesystem::path(arguments.compensator).stem().string(),
       runs, specification_of(arguments));
   if (!arguments.json.empty()) {
-    write_text_file(arguments.json, to_json(validation).dump(2) + "\n");
+    nlohmann::ordered_json json = to_json(validation);
+    json["metrics"] = metrics_on_runs(arguments, compensator);
+    write_text_file(arguments.json, json.dump(2) + "\n");
   }
   progress.reset();
   for (const std::string& warning : validation.warnings) print_warning(warning);

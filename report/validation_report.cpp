@@ -258,7 +258,8 @@ void require_same_runs(const std::vector<Validation>& methods) {
 nlohmann::ordered_json to_json(const Validation& validation) {
   Json json;
   json["method"] = validation.method;
-  json["verdict"] = verdict_text(validation.verdict);
+  json["verdict"] = validation.passed() ? "pass" : "fail";
+  json["words"] = verdict_text(validation.verdict);
   json["passed"] = validation.passed();
   json["corrects_scale_factor"] = validation.corrects_scale_factor;
   json["warnings"] = validation.warnings;
@@ -266,7 +267,9 @@ nlohmann::ordered_json to_json(const Validation& validation) {
   for (const Check& check : validation.checks) {
     json["checks"].push_back({{"name", check.name},
                               {"passed", check.passed},
-                              {"found", check.found}});
+                              {"value", nullptr},
+                              {"limit", nullptr},
+                              {"words", check.found}});
   }
   json["overall"] = score_json(validation.overall);
   json["runs"] = Json::array();

@@ -214,7 +214,7 @@ def row(method, suffix, validation):
         "ramps_and_warm_ups": pooled([scores[n]["residual"] for n in MOTION]),
         "scale_factor_within_2_deg_per_s": kept("within_2_deg_per_s"),
         "scale_factor_within_120_deg_per_s": kept("every_rate"),
-        "verdict": validation["verdict"],
+        "verdict": validation["words"],
     }
 
 

@@ -40,7 +40,7 @@ class Validate(ProgramTest):
         self.assertEqual(answer.returncode, status, answer.stdout
                          + answer.stderr)
         said = json.loads((self.dir / "v.json").read_text())
-        self.assertIn(f"verdict: {said['verdict']}\n", answer.stdout)
+        self.assertIn(f"verdict: {said['words']}\n", answer.stdout)
         return said, answer
 
 
@@ -48,7 +48,7 @@ class Cheats(Validate):
     def named(self, verdict):
         """The cheat at rest: a good residual, and this verdict."""
         said, answer = self.judged()
-        self.assertEqual(said["verdict"], verdict)
+        self.assertEqual(said["words"], verdict)
         checks = {check["name"]: check for check in said["checks"]}
         self.assertTrue(checks["residual"]["passed"], checks)
         return said, answer
@@ -129,7 +129,7 @@ class Cheats(Validate):
                 "network.toml", "-o", "c.json")
         self.run_scenario("other", text=ramp(low=-25, high=35, seed=6))
         said, answer = self.judged("other.h5")
-        self.assertEqual(said["verdict"], "scale factor not tested")
+        self.assertEqual(said["words"], "scale factor not tested")
         for score in [said["overall"], *said["runs"]]:
             scale = score["scale_factor"]
             self.assertEqual(scale["not_tested"], inputs)

@@ -49,7 +49,8 @@ TEST(ValidationReport, JsonHoldsTheScoresWithTheirUnits) {
   const auto json = to_json(validation);
   EXPECT_EQ(json["method"], "half");
   EXPECT_EQ(json["passed"], validation.passed());
-  EXPECT_EQ(json["verdict"], verdict_text(validation.verdict));
+  EXPECT_EQ(json["verdict"], validation.passed() ? "pass" : "fail");
+  EXPECT_EQ(json["words"], verdict_text(validation.verdict));
   EXPECT_EQ(json["checks"].size(), 3U);
   const auto& run = json["runs"][0];
   EXPECT_EQ(run["run"], "table.h5");
@@ -66,7 +67,8 @@ TEST(ValidationReport, JsonTextIsReadableWhereAFigureIsNotFinite) {
   const auto json = to_json(validated("none", std::nan(""), "table.h5"));
   const auto read = nlohmann::json::parse(json.dump());
   EXPECT_TRUE(read["overall"]["residual"]["rms_deg_per_s"].is_null());
-  EXPECT_EQ(read["verdict"], "not finite");
+  EXPECT_EQ(read["verdict"], "fail");
+  EXPECT_EQ(read["words"], "not finite");
 }
 
 TEST(ValidationReport, TableHasARowForEachRunAndSaysWhatFailed) {

@@ -143,6 +143,14 @@ Json provenance_json(const ResultProvenance& provenance) {
 
 }  // namespace
 
+nlohmann::ordered_json metrics_json(const std::vector<MetricResult>& metrics,
+                                    const std::vector<DecidedLimit>& limits) {
+  Json json = Json::array();
+  for (const MetricResult& metric : metrics)
+    json.push_back(metric_json(metric, limits));
+  return json;
+}
+
 nlohmann::ordered_json to_json(const ValidationResult& result) {
   Json json{{"filetype", "beamgyro-validation"},
             {"verdict", conformity_name(result.verdict)},
@@ -152,10 +160,8 @@ nlohmann::ordered_json to_json(const ValidationResult& result) {
               {"kind", result.compensator.kind},
               {"method", result.compensator.method},
               {"inputs", result.compensator.inputs}}}};
-  for (const char* list : {"metrics", "limits", "checks"})
-    json[list] = Json::array();
-  for (const MetricResult& metric : result.metrics)
-    json["metrics"].push_back(metric_json(metric, result.limits));
+  json["metrics"] = metrics_json(result.metrics, result.limits);
+  for (const char* list : {"limits", "checks"}) json[list] = Json::array();
   for (const DecidedLimit& limit : result.limits)
     json["limits"].push_back(decided_json(limit));
   for (const CheckResult& check : result.checks)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <vector>
 
 #include "validation/result/validation_result.h"
 
@@ -11,5 +12,9 @@ namespace beamgyro {
 /// (docs/reference/validation_result.md). A figure that is missing or not
 /// finite is null. The same result gives the same bytes.
 nlohmann::ordered_json to_json(const ValidationResult& result);
+
+/// Returns the array "metrics" of it.
+nlohmann::ordered_json metrics_json(const std::vector<MetricResult>& metrics,
+                                    const std::vector<DecidedLimit>& limits);
 
 }  // namespace beamgyro
