@@ -118,7 +118,8 @@ class Formats(ProgramTest):
                     self.assertIn(f"({cited})", model)
 
     def test_every_shipped_key_is_documented(self):
-        for pattern, name in [("*.toml", "scenario_file"),
+        for pattern, name in [("[!q]*.toml", "scenario_file"),
+                              ("qualification/*.toml", "scenario_file"),
                               ("devices/*.toml", "device_file"),
                               ("models/*.toml", "model_file"),
                               ("population/*.toml", "model_file"),
@@ -135,6 +136,16 @@ class Formats(ProgramTest):
             for key in campaign_keys(table):
                 with self.subTest(f"{path.name}: {key}"):
                     self.assertIn(key, documented)
+
+    def test_every_key_of_the_shipped_qualification_is_documented(self):
+        documented = rows(page("qualification_file"))
+        for path, table in shipped("qualification.toml"):
+            for key, value in table.items():
+                parts = [f"{key}.{part}" for entry in value for part in entry] \
+                    if isinstance(value, list) else [key]
+                for part in parts:
+                    with self.subTest(part):
+                        self.assertIn(part, documented)
 
     def test_every_device_key_without_a_default_is_required(self):
         text = (ROOT / "scenarios/devices/nominal.toml").read_text()

@@ -14,6 +14,11 @@ SCENARIOS = ROOT / "scenarios"
 PROGRAM = pathlib.Path(
     os.environ.get("BEAMGYRO", ROOT / "build/release/beamgyro")).resolve()
 
+# What is no scenario among the files there.
+SHIPPED_SCENARIOS = sorted(
+    path for pattern in ("*.toml", "qualification/*.toml")
+    for path in SCENARIOS.glob(pattern) if path.name != "qualification.toml")
+
 LONELY_USER = 54321  # of no one else
 
 SCENARIO = """\

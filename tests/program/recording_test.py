@@ -10,7 +10,8 @@ import netCDF4
 import numpy as np
 import xarray
 
-from program import PROGRAM, ROOT, SCENARIO, SCENARIOS, ProgramTest
+from program import (PROGRAM, ROOT, SCENARIO, SHIPPED_SCENARIOS,
+                     ProgramTest)
 
 NODES = ["beam", "pzt", "mount", "housing", "board", "sensor"]
 MEASURED = {"output": "V", "rate": "degree/s", "temperature": "degC",
@@ -168,9 +169,8 @@ class Recording(ProgramTest):
             self.assertIn(part, text)
 
     def test_every_shipped_scenario_runs(self):
-        paths = sorted(SCENARIOS.glob("*.toml"))
-        self.assertGreater(len(paths), 5)
-        for path in paths:
+        self.assertGreater(len(SHIPPED_SCENARIOS), 5)
+        for path in SHIPPED_SCENARIOS:
             with self.subTest(path.name):
                 self.assertTrue(path.read_text().startswith("# "))
                 self.ok("run", path, "-o", "out.h5")
