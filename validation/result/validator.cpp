@@ -114,6 +114,14 @@ struct Validator::State {
     if (!argument.starts_with("cmd:")) add_file("compensator", argument);
   }
 
+  Compensator trained_model(const TrainingData& data) const try {
+    return trained_on(data, *model);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format(
+        "{} cannot be trained on the [[training]] runs of {}: {}",
+        request.compensator, request.qualification.string(), error.what()));
+  }
+
   // Throws when a limit is relative to a baseline that there will not be.
   void require_baselines() const {
     if (!qualification.training.empty()) return;
@@ -185,7 +193,7 @@ CompletedValidation Validator::validate(std::size_t threads,
   std::unique_ptr<TestedCompensator> own;
   std::optional<Compensator> trained;
   if (s.model) {
-    trained = trained_on(data, *s.model);
+    trained = s.trained_model(data);
     own = tested(*trained);
   }
   const TestedCompensator& compensator = own ? *own : *s.compensator;
