@@ -10,10 +10,10 @@ install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 add_library(beamgyro_everything INTERFACE)
 set_target_properties(beamgyro_everything PROPERTIES EXPORT_NAME beamgyro)
 target_link_libraries(beamgyro_everything INTERFACE
-  beamgyro_report beamgyro_compensation beamgyro_campaign beamgyro_set)
+  beamgyro_report beamgyro_validation beamgyro_compensation beamgyro_campaign beamgyro_set)
 install(TARGETS beamgyro_everything EXPORT beamgyroTargets)
 
-foreach(room parallel random config dataset sim compensation report)
+foreach(room parallel random config dataset sim compensation validation report)
   install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/beamgyro FILES_MATCHING PATTERN *.h)
 endforeach()
 install(DIRECTORY include/beamgyro DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})  # C headers, under their own names

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "validation/result/population_yield.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace beamgyro::population_yield_test {
+namespace {
+
+// Returns the probability of `low` to `high` successes in `n` trials.
+double probability(std::size_t n, double p, std::size_t low, std::size_t high) {
+  double sum = 0.0;
+  for (std::size_t k = low; k <= high; ++k) {
+    const auto count = static_cast<double>(n), hits = static_cast<double>(k);
+    sum += std::exp(std::lgamma(count + 1) - std::lgamma(hits + 1) -
+                    std::lgamma(count - hits + 1) + hits * std::log(p) +
+                    (count - hits) * std::log1p(-p));
+  }
+  return sum;
+}
+
+}  // namespace
+
+// At each end the observation, or a more extreme one, has probability 2.5 %.
+TEST(ClopperPearson, EndsLeaveATailOfTwoAndAHalfPercent) {
+  for (const auto& [k, n] : {std::pair<std::size_t, std::size_t>{1, 10},
+                             {7, 10},
+                             {95, 100},
+                             {523, 1000}}) {
+    const Interval interval = clopper_pearson(k, n);
+    EXPECT_NEAR(probability(n, interval.low, k, n), 0.025, 1e-9) << k;
+    EXPECT_NEAR(probability(n, interval.high, 0, k), 0.025, 1e-9) << k;
+  }
+}
+
+TEST(ClopperPearson, OfNoneAndOfAllReachesTheEnd) {
+  const Interval none = clopper_pearson(0, 20);
+  EXPECT_EQ(none.low, 0.0);
+  EXPECT_NEAR(none.high, 1 - std::pow(0.025, 1.0 / 20), 1e-12);
+  const Interval all = clopper_pearson(20, 20);
+  EXPECT_NEAR(all.low, std::pow(0.025, 1.0 / 20), 1e-12);
+  EXPECT_EQ(all.high, 1.0);
+}
+
+}  // namespace beamgyro::population_yield_test
