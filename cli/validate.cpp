@@ -152,16 +152,18 @@ void require_no_device_options(const ValidateArguments& arguments) {
 // are no files of this program.
 bool is_judged(const ValidateArguments& arguments) {
   return arguments.specification || !arguments.report.empty() ||
-         !arguments.bundle.empty() || !arguments.compensator.ends_with(".json");
+         !arguments.figures.empty() || !arguments.bundle.empty() ||
+         !arguments.compensator.ends_with(".json");
 }
 
 int judge_on_runs(const ValidateArguments& arguments) {
   if (is_set(arguments.runs))
-    throw std::invalid_argument(fmt::format(
-        "{}: is the directory of a set, on which files of the kind "
-        "COMPENSATOR.json are scored without --spec, --report and --bundle; "
-        "expected recordings",
-        arguments.runs[0]));
+    throw std::invalid_argument(
+        fmt::format("{}: is the directory of a set, on which files of the kind "
+                    "COMPENSATOR.json are scored without --spec, --report, "
+                    "--figures and --bundle; "
+                    "expected recordings",
+                    arguments.runs[0]));
   if (!arguments.set_runs.empty() || !arguments.device.empty())
     throw std::invalid_argument(
         "--run and --device choose from a set, and there is none");
@@ -172,8 +174,9 @@ void require_check_alone(const ValidateArguments& arguments) {
   if (arguments.compensator.empty() && arguments.device.empty() &&
       !arguments.qualification && !arguments.specification &&
       !arguments.campaign && !arguments.devices && arguments.json.empty() &&
-      arguments.report.empty() && arguments.bundle.empty() &&
-      arguments.set_runs.empty() && !arguments.full_scale)
+      arguments.report.empty() && arguments.figures.empty() &&
+      arguments.bundle.empty() && arguments.set_runs.empty() &&
+      !arguments.full_scale)
     return;
   throw std::invalid_argument(fmt::format(
       "--check {}: the bundle says what is validated; expected no more than "
@@ -262,6 +265,11 @@ void add_validate(CommandLine& program) {
   command.reads({{FileKind::kSpecification}});
   command.text({"--report", "DIR", "Writes the page DIR/index.html", "no page"},
                arguments->report);
+  command.text({"--figures", "DIR",
+                "Writes a PNG of every figure of the page to DIR; needs Python "
+                "with matplotlib",
+                "no pictures"},
+               arguments->figures);
   command.text({"--bundle", "DIR",
                 "Writes inputs, result and report to the new directory DIR",
                 "no bundle"},

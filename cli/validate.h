@@ -12,7 +12,7 @@ constexpr int kNotPassed = 3;
 
 /// The words of `validate`.
 struct ValidateArguments {
-  std::string compensator, json, report, bundle, check;
+  std::string compensator, json, report, figures, bundle, check;
   std::vector<std::string> runs;      // recordings, or one set
   std::vector<std::string> device;    // a device file, or numbers of a set
   std::vector<std::string> set_runs;  // names, of a set

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "cli/figure_pictures.h"
 #include "cli/inputs.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
@@ -28,19 +29,13 @@ namespace fs = std::filesystem;
 
 constexpr int kBundleDiffers = 1;
 
-// Returns the qualification that is shipped with this program: in its source
-// tree or where it was installed.
 fs::path shipped_qualification() {
-  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
-  for (const char* place : {"../../scenarios", "../share/beamgyro/scenarios"}) {
-    const fs::path file =
-        (program / place / "qualification.toml").lexically_normal();
-    if (fs::exists(status_of(file))) return file;
-  }
-  throw std::invalid_argument(fmt::format(
-      "--qualification is missing, and {} has no scenarios beside it; expected "
-      "--qualification QUALIFICATION.toml",
-      program.string()));
+  const fs::path file = shipped_file("scenarios/qualification.toml");
+  if (file.empty())
+    throw std::invalid_argument(
+        "--qualification is missing, and this program has no scenarios beside "
+        "it; expected --qualification QUALIFICATION.toml");
+  return file;
 }
 
 void require_campaign(const ValidateArguments& arguments) {
@@ -112,6 +107,11 @@ void require_result_places(const ValidateArguments& arguments,
     fs::create_directories(arguments.report);
     require_output(fs::path(arguments.report) / "index.html", files);
   }
+  if (!arguments.figures.empty()) {
+    require_directory_name(arguments.figures);
+    fs::create_directories(arguments.figures);
+    require_output(fs::path(arguments.figures) / "result.json", files);
+  }
   if (!arguments.json.empty()) require_output(arguments.json, files);
 }
 
@@ -130,6 +130,8 @@ int validate_by_specification(const ValidateArguments& arguments) {
   if (!arguments.bundle.empty())
     write_bundle(arguments.bundle, validator, outputs);
   print_result(outputs[1].text);
+  if (!arguments.figures.empty())
+    draw_figures(outputs[0].text, arguments.figures);
   return verdict == Conformity::kPass ? 0 : kNotPassed;
 }
 

@@ -4,6 +4,7 @@ set(PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/beamgyro)
 
 install(TARGETS beamgyro RUNTIME)
 install(DIRECTORY scenarios specs DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro)
+install(PROGRAMS scripts/validation_figures.py DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro/scripts)
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # Everything at once. The name of the program is taken within this build.

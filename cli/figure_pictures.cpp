@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "cli/figure_pictures.h"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <span>
+#include <stdexcept>
+
+#include "config/file_error.h"
+#include "dataset/files/atomic_file.h"
+#include "validation/external/child_process.h"
+
+namespace beamgyro {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLongestDrawing = 120.0;  // [s]
+
+// The last line that an ended process wrote to its standard error, which in
+// Python names the error.
+std::string last_words(ChildProcess& process) {
+  std::string text;
+  process.error()->read_pieces([&](std::span<const std::byte> piece) {
+    text.append(reinterpret_cast<const char*>(piece.data()), piece.size());
+  });
+  while (text.ends_with('\n')) text.pop_back();
+  return text.substr(text.rfind('\n') + 1);  // npos + 1 is 0
+}
+
+}  // namespace
+
+fs::path shipped_file(const fs::path& name) {
+  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
+  for (const char* place : {"../..", "../share/beamgyro"}) {
+    fs::path file = (program / place / name).lexically_normal();
+    if (fs::exists(status_of(file))) return file;
+  }
+  return {};
+}
+
+void draw_figures(const std::string& result, const fs::path& directory) {
+  const fs::path script = shipped_file("scripts/validation_figures.py");
+  if (script.empty())
+    throw std::runtime_error(
+        "--figures needs scripts/validation_figures.py, which is not beside "
+        "this program");
+  const fs::path json = directory / "result.json";
+  write_text_file(json, result);
+  ChildProcess process({script.string(), json.string()});
+  process.input().reset();
+  const auto end = process.wait(kLongestDrawing);
+  if (!end)
+    throw std::runtime_error(fmt::format("{}: still draws after {:.0f} s",
+                                         script.string(), kLongestDrawing));
+  if (end->status == 0 && end->signal == 0) return;
+  throw std::runtime_error(fmt::format(
+      "{}: {}: {} (it needs Python 3 with matplotlib, python3-matplotlib in "
+      "Debian)",
+      script.string(), end_words(*end), last_words(process)));
+}
+
+}  // namespace beamgyro
