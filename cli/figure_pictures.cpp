@@ -10,6 +10,7 @@
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 #include "validation/external/child_process.h"
+#include "validation/external/error_text.h"
 
 namespace beamgyro {
 namespace {
@@ -18,15 +19,13 @@ namespace fs = std::filesystem;
 
 constexpr double kLongestDrawing = 120.0;  // [s]
 
-// The last line that an ended process wrote to its standard error, which in
-// Python names the error.
-std::string last_words(ChildProcess& process) {
+// What an ended process wrote to its standard error.
+std::string errors_of(ChildProcess& process) {
   std::string text;
   process.error()->read_pieces([&](std::span<const std::byte> piece) {
     text.append(reinterpret_cast<const char*>(piece.data()), piece.size());
   });
-  while (text.ends_with('\n')) text.pop_back();
-  return text.substr(text.rfind('\n') + 1);  // npos + 1 is 0
+  return text;
 }
 
 }  // namespace
@@ -56,9 +55,9 @@ void draw_figures(const std::string& result, const fs::path& directory) {
                                          script.string(), kLongestDrawing));
   if (end->status == 0 && end->signal == 0) return;
   throw std::runtime_error(fmt::format(
-      "{}: {}: {} (it needs Python 3 with matplotlib, python3-matplotlib in "
-      "Debian)",
-      script.string(), end_words(*end), last_words(process)));
+      "{}: {} (it needs Python 3 with matplotlib, python3-matplotlib in "
+      "Debian){}",
+      script.string(), end_words(*end), last_words(errors_of(process))));
 }
 
 }  // namespace beamgyro

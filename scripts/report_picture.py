@@ -18,7 +18,7 @@ from browser import browser  # noqa: E402  (where it is comes first)
 
 MODEL = ROOT / "scenarios/models/recommended.toml"
 DEVICE = ROOT / "scenarios/devices/nominal.toml"
-SPECIFICATION = ROOT / "specs/paper.toml"
+SPECIFICATION = ROOT / "specs/uav.toml"
 WIDTH, HEIGHT = 1000, 1000  # [px]
 
 

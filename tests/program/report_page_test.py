@@ -71,7 +71,7 @@ class ReportPage(unittest.TestCase):
                     self.assertEqual(tab.value(BLANK), [])
 
     def test_is_no_wider_than_the_screen(self):
-        for width in WIDTHS:
+        for width in [320, *WIDTHS, 820, 1000]:
             tab = self.opened(width)
             tab.value("document.querySelectorAll('details')"
                       ".forEach((each) => { each.open = true; })")
