@@ -130,6 +130,17 @@ class Formats(ProgramTest):
                     with self.subTest(f"{path.name}: {key}"):
                         self.assertIn(key, documented)
 
+    def test_every_key_of_the_shipped_specifications_is_documented(self):
+        documented = set(rows(page("specification_file")))
+        for path in sorted((ROOT / "specs").glob("*.toml")):
+            table = tomllib.loads(path.read_text())
+            relative = table.pop("limits_relative_to", {}).values()
+            limits = [table.pop("limits", {}), *relative]
+            keys_here = {*table, *(key for part in limits
+                                   for limit in part.values() for key in limit)}
+            with self.subTest(path.name):
+                self.assertEqual(keys_here - documented, set())
+
     def test_every_key_of_the_shipped_campaigns_is_documented(self):
         documented = rows(page("campaign_file"))
         for path, table in shipped("campaigns/*.toml"):

@@ -18,8 +18,8 @@
 namespace beamgyro {
 namespace {
 
-CheckResult counted(std::size_t count, const std::string& passed,
-                    const std::string& failed) {
+CheckResult count_result(std::size_t count, const std::string& passed,
+                         const std::string& failed) {
   return {.outcome = count == 0 ? CheckOutcome::kPassed : CheckOutcome::kFailed,
           .value = static_cast<double>(count),
           .limit = 0.0,
@@ -54,10 +54,11 @@ CheckResult fault_result(const CheckContext& context,
       return std::ranges::find(kinds, seen.fault) != kinds.end();
     });
   if (runs == 0 && in_altered(context, kinds))
-    return counted(1, "",
-                   "Fails on a recording with rates added to it, which looks "
-                   "like any other to a compensator.");
-  return counted(runs, passed, first_words(context, kinds).value_or(""));
+    return count_result(
+        1, "",
+        "Fails on a recording with rates added to it, which looks "
+        "like any other to a compensator.");
+  return count_result(runs, passed, first_words(context, kinds).value_or(""));
 }
 
 bool was_used(const CheckedCompensator& checked, const CheckedRun& run) {
@@ -97,7 +98,7 @@ CheckResult check_hold_out(const CheckContext& context) {
   std::vector<std::string> used;
   for (const CheckedRun& run : context.checked.runs)
     if (was_used(context.checked, run)) used.push_back(run.name);
-  return counted(
+  return count_result(
       used.size(),
       fmt::format("Training saw none of the {} runs.",
                   context.checked.runs.size()),
@@ -125,8 +126,9 @@ const std::string kTooShort = "every run is shorter than 100 samples.";
 
 CheckResult seen_result(const std::optional<SeenFault>& seen,
                         const std::string& passed) {
-  return counted(seen ? 1 : 0, passed,
-                 seen ? fmt::format("The compensator {}.", seen->words) : "");
+  return count_result(
+      seen ? 1 : 0, passed,
+      seen ? fmt::format("The compensator {}.", seen->words) : "");
 }
 
 }  // namespace
@@ -137,10 +139,11 @@ CheckResult check_causality(const CheckContext& context) {
   if (!given.passed()) return given;
   if (context.checked.provenance != nullptr)
     if (const auto leaked = leak(*context.checked.provenance))
-      return counted(1, "",
-                     fmt::format("{} was fitted and held out at once: what was "
-                                 "chosen by it has seen the answer.",
-                                 *leaked));
+      return count_result(
+          1, "",
+          fmt::format("{} was fitted and held out at once: what was "
+                      "chosen by it has seen the answer.",
+                      *leaked));
   const Recording* run = shortest_run(context);
   if (run == nullptr) return not_tested(kTooShort);
   return seen_result(later_samples_used(*context.checked.compensator, *run),
@@ -167,12 +170,13 @@ CheckResult check_answers(const CheckContext& context) {
 
 CheckResult check_finite(const CheckContext& context) {
   if (context.missing == 0 && context.altered.has_seen(AnswerFault::kNotFinite))
-    return counted(1, "",
-                   "An answer to a recording with rates added to it is not "
-                   "finite.");
-  return counted(context.missing, "Every answer is finite.",
-                 fmt::format("{} of {} answers are not finite.",
-                             context.missing, context.samples));
+    return count_result(
+        1, "",
+        "An answer to a recording with rates added to it is not "
+        "finite.");
+  return count_result(context.missing, "Every answer is finite.",
+                      fmt::format("{} of {} answers are not finite.",
+                                  context.missing, context.samples));
 }
 
 namespace {

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kLeastTemperatures = 5;
 constexpr std::size_t kLeastRates = 11;
-constexpr double kSameTemperature = 2.0;  // [K]
+constexpr double kSameTablePlace = 2.0;  // [K]
 
 std::size_t different_values(std::vector<double> values, double same) {
   std::ranges::sort(values);
@@ -60,7 +60,7 @@ CheckResult check_true_rate(const CheckContext& context) {
     }
     if (!plateaus.empty()) rates = std::max(rates, held_rates(run));
   }
-  const std::size_t seen = different_values(temperatures, kSameTemperature);
+  const std::size_t seen = different_values(temperatures, kSameTablePlace);
   if (judge.passed() && (seen < kLeastTemperatures || rates < kLeastRates))
     return not_tested(fmt::format(
         "{} rates at {} temperatures were recorded, must be {} at {} or more.",

@@ -16,11 +16,11 @@ namespace {
   std::vector<std::string> names;
   for (const Metric& metric : metrics()) names.emplace_back(metric.name);
   const std::string near = suggestion(name, names);
-  limits.fail(name,
-              near.empty()
-                  ? std::string("not a metric; docs/reference/metrics.md "
-                                "lists them")
-                  : fmt::format("not a metric; did you mean '{}'?", near));
+  limits.fail(
+      name,
+      near.empty()
+          ? std::string("not a metric; the table of validate names all of them")
+          : fmt::format("not a metric; did you mean '{}'?", near));
 }
 
 Limit limit_of(const ConfigTable& limits, const std::string& metric,

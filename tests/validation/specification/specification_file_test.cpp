@@ -80,8 +80,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "spec.toml:3:26: limits.residual_rms_deg_per_h: not a metric; "
                 "did you mean 'residual_rms_deg_per_s'?"},
         BadFile{"name = \"a\"\n[limits]\nspeed = { max = 1 }\n",
-                "spec.toml:3:9: limits.speed: not a metric; "
-                "docs/reference/metrics.md lists them"},
+                "spec.toml:3:9: limits.speed: not a metric; the "
+                "table of validate names all of them"},
         BadFile{"name = \"a\"\n[limits]\nscale_factor = 1\n",
                 "spec.toml:3:16: limits.scale_factor: 1 is wrong here; "
                 "expected a table"},
