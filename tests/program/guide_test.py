@@ -41,7 +41,7 @@ def pattern(expected):
 def project(folder):
     """A directory with what the commands of the guides name."""
     shutil.copytree(ROOT / "scenarios", folder / "scenarios")
-    for name in ["examples", "include"]:
+    for name in ["examples", "include", "specs"]:
         (folder / name).symlink_to(ROOT / name)
     program = folder / "build/release/beamgyro"
     program.parent.mkdir(parents=True)

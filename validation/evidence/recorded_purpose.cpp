@@ -72,9 +72,10 @@ RunPurpose purpose_of_rate(const Recording& recording,
   const Holds holds = holds_of(recording.time, rate);
   if (!is_held(holds))
     return is_sine(rate) ? RunPurpose::kSineRate : RunPurpose::kRandomRate;
-  if (holds.values.size() >= 5) return RunPurpose::kRateTable;
-  return holds.longest >= kLongHold ? RunPurpose::kConstantRate
-                                    : RunPurpose::kRateStep;
+  const std::size_t values = holds.values.size();
+  const bool is_long = holds.longest >= kLongHold;
+  if (values >= 7 || (values >= 5 && !is_long)) return RunPurpose::kRateTable;
+  return is_long ? RunPurpose::kConstantRate : RunPurpose::kRateStep;
 }
 
 std::size_t power_ons(const Recording& recording) {

@@ -7,8 +7,9 @@
 namespace beamgyro {
 
 /// Returns what a recording shows, told from its columns:
-/// - a rate that is held at five values or more: kRateTable; at fewer, for five
-///   minutes or more: kConstantRate; else kRateStep;
+/// - a rate that is held at seven values or more, or at five for less than five
+///   minutes each: kRateTable; at fewer, for five minutes: kConstantRate; else
+///   kRateStep;
 /// - a rate that swings at one frequency: kSineRate; any other: kRandomRate;
 /// - at rest, accelerations that are held: kTumble; other motion: kVibration;
 /// - at rest with two power-ons or more: kPowerCycle;

