@@ -11,6 +11,7 @@
 #include "cli/inputs.h"
 #include "cli/process_limits.h"
 #include "cli/progress.h"
+#include "cli/stream.h"
 #include "cli/terminal.h"
 #include "cli/version.h"
 #include "compensation/compensator/compensator_file.h"
@@ -29,6 +30,8 @@ constexpr int kCompensatorFailed = 3;
 
 struct CompensateArguments {
   std::string compensator, run, output;
+  bool stream = false;
+  std::optional<double> rate;  // [Hz]
   LimitArguments limits;
 };
 
@@ -88,6 +91,29 @@ int compensate(const CompensateArguments& arguments) {
   return 0;
 }
 
+int stream_answers(const CompensateArguments& arguments) {
+  const auto stream = open_compensator_stream(
+      arguments.compensator, process_limits(arguments.limits),
+      arguments.rate ? std::optional(1.0 / *arguments.rate) : std::nullopt);
+  return answer_stream(*stream, arguments.compensator);
+}
+
+int compensate_any(const CompensateArguments& arguments) {
+  const bool none_named = arguments.run.empty() && arguments.output.empty();
+  const bool both_named = !arguments.run.empty() && !arguments.output.empty();
+  if (!(arguments.stream ? none_named : both_named))
+    throw std::invalid_argument(
+        arguments.stream
+            ? "--stream reads standard input and writes standard output; "
+              "expected neither RUN.h5 nor -o"
+            : "RUN.h5 or -o is missing; expected beamgyro compensate "
+              "COMPENSATOR RUN.h5 -o OUT.h5, or beamgyro compensate "
+              "COMPENSATOR --stream");
+  if (arguments.stream) return stream_answers(arguments);
+  if (arguments.rate) throw std::invalid_argument("--rate-Hz is for --stream");
+  return compensate(arguments);
+}
+
 }  // namespace
 
 void add_compensate(CommandLine& program) {
@@ -102,17 +128,26 @@ void add_compensate(CommandLine& program) {
        "one rate a line"},
       arguments->compensator);
   command.reads({{FileKind::kCompensator}});
-  command.argument({"RUN.h5", "", "Recording"}, arguments->run);
+  command.argument({"RUN.h5", "", "Recording", "none, with --stream"},
+                   arguments->run);
   command.reads({{FileKind::kRecording}});
-  command.text({"-o,--output", "OUT.h5", "Recording to write"},
-               arguments->output);
+  command.text(
+      {"-o,--output", "OUT.h5", "Recording to write", "none, with --stream"},
+      arguments->output);
+  command.flag({"--stream", "",
+                "Reads samples as CSV on standard input, a line of names "
+                "first, and answers each on standard output at once"},
+               arguments->stream);
+  command.number({"--rate-Hz", "F", "Sample rate of the stream, for a library",
+                  "that of its first two samples"},
+                 arguments->rate, positive());
   add_process_limits(command, arguments->limits);
   command.example("beamgyro compensate cubic.json flight.h5 -o compensated.h5",
                   "Adds the variable compensated_rate");
   command.example(
       "beamgyro compensate \"cmd:python3 mine.py\" flight.h5 -o mine.h5",
       "The same by a program of your own");
-  command.action([arguments] { return compensate(*arguments); });
+  command.action([arguments] { return compensate_any(*arguments); });
 }
 
 }  // namespace beamgyro

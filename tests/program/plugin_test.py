@@ -165,6 +165,90 @@ class Plugins(ProgramTest):
             self.assertFalse((self.dir / "out.h5").exists())
 
 
+class Stream(ProgramTest):
+    """`compensate --stream`."""
+
+    def setUp(self):
+        super().setUp()
+        self.run_scenario("run", text=TWICE)
+        self.ok("run", "run.toml", "-o", "run.csv")
+        self.write("cubic.toml", MODELS["cubic"])
+        self.ok("train", "run.h5", "--model", "cubic.toml", "-o", "cubic.json",
+                "--quiet")
+        subprocess.run(["cc", "-O2", "-shared", "-fPIC", f"-I{ROOT}/include",
+                        str(EXAMPLES / "cubic.c"), "-o", "cubic.so"],
+                       cwd=self.dir, check=True)
+        self.compensators = [
+            "cubic.json", "./cubic.so", f"cmd:{PYTHON} '{EXAMPLES}/cubic.py'"]
+
+    def stream(self, *arguments, text):
+        return subprocess.run(
+            [PROGRAM, "compensate", *arguments, "--stream"], cwd=self.dir,
+            input=text, text=True, capture_output=True, check=False, timeout=60)
+
+    def test_the_answers_are_those_to_the_recording(self):
+        text = (self.dir / "run.csv").read_text()
+        for compensator in self.compensators:
+            self.ok("compensate", compensator, "run.h5", "-o", "out.h5")
+            answer = self.stream(compensator, text=text)
+            self.assertEqual((answer.returncode, answer.stderr), (0, ""))
+            with self.subTest(compensator):
+                np.testing.assert_array_equal(
+                    [float(line) for line in answer.stdout.splitlines()],
+                    rates(self.dir / "out.h5")["compensated_rate"])
+
+    def test_each_sample_is_answered_before_the_next_one_comes(self):
+        flushing = (EXAMPLES / "cubic.py").read_text().replace(
+            "bias)\n", "bias, flush=True)\n")
+        self.write("flushing.py", flushing)
+        for compensator in [*self.compensators[:2],
+                            f"cmd:{PYTHON} -u flushing.py"]:
+            with self.subTest(compensator), subprocess.Popen(
+                    [PROGRAM, "compensate", compensator, "--stream",
+                     "--rate-Hz", "5"], cwd=self.dir, text=True, bufsize=1,
+                    stdin=subprocess.PIPE, stdout=subprocess.PIPE) as program:
+                program.stdin.write("time,temperature [K],rate\n")
+                for k in range(5):
+                    program.stdin.write(f"{k / 5},298.15,{k}\n")
+                    rate = float(program.stdout.readline())
+                    if compensator != "cubic.json":
+                        # The rounding of 298.15 K - 273.15 K in degC.
+                        self.assertAlmostEqual(rate, k - BIAS[3], delta=1e-12)
+                program.stdin.close()
+                self.assertEqual(program.wait(timeout=20), 0)
+
+    def test_what_is_no_sample_is_named_by_its_line(self):
+        names = "time,rate,temperature\n"
+        for text, says in [("rate,temperature\n", "1: no column time"),
+                           (names + "0,1,2\n1,x,2\n", "input:3:3"),
+                           (names + "0,1,2\n0,1,2\n", "3: time 0 does not"),
+                           ("time,temperature\n0,1\n1,2\n", "rate")]:
+            for compensator in self.compensators[:2]:
+                answer = self.stream(compensator, text=text)
+                self.assertEqual(answer.returncode, 2, answer.stderr)
+                self.assertIn(says, answer.stderr)
+
+    def test_a_fault_ends_the_stream_with_status_3(self):
+        text = "time,rate\n" + "".join(f"{k},{k}\n" for k in range(50))
+        for command, says in [("exit 4", "ended with status 4"),
+                              ("true", "fewer answers"),
+                              ("echo what", '"what", which is no number'),
+                              ("yes 1", "more answers than samples"),
+                              ("sleep 60", "hung")]:
+            answer = self.stream(f"cmd:{command}", "--timeout-s", "1",
+                                 text=text)
+            self.assertEqual(answer.returncode, 3, command)
+            self.assertIn(says, answer.stderr)
+
+    def test_a_file_and_a_stream_exclude_each_other(self):
+        self.rejected("compensate", "cubic.json", "run.h5", "--stream",
+                      says="expected neither")
+        self.rejected("compensate", "cubic.json", "run.h5",
+                      says="RUN.h5 or -o is missing")
+        self.rejected("compensate", "cubic.json", "run.h5", "-o", "o.h5",
+                      "--rate-Hz", 5, says="--rate-Hz is for --stream")
+
+
 class Firmware(ExportTest):
     """The exported source is what runs."""
 

@@ -62,13 +62,8 @@ class CsvLanguage : public AnswerLanguage {
 
 class CommandCompensator : public TestedCompensator {
  public:
-  CommandCompensator(const std::string& command, ProcessLimits limits)
-      : limits_(std::move(limits)) {
-    script_ = "ulimit -c 0\n";
-    if (limits_.memory > 0)
-      script_ += fmt::format("ulimit -v {}\n", limits_.memory / 1024);
-    script_ += command;
-  }
+  CommandCompensator(std::vector<std::string> words, ProcessLimits limits)
+      : words_(std::move(words)), limits_(std::move(limits)) {}
 
   std::vector<std::string> inputs() const override {
     std::vector<std::string> names;
@@ -88,7 +83,7 @@ class CommandCompensator : public TestedCompensator {
   void fill(const Recording& run, Answer& answer) const {
     const Stopwatch watch;
     for (const AskedStretch& stretch : asked_stretches(run, answer)) {
-      ChildProcess process({"/bin/sh", "-c", script_});
+      ChildProcess process(words_);
       CsvLanguage language;
       if (!converse(process, language, {stretch}, limits_)) break;
     }
@@ -97,18 +92,30 @@ class CommandCompensator : public TestedCompensator {
     add_fault_of_speed(run, answer);
   }
 
-  std::string script_;
+  std::vector<std::string> words_;
   ProcessLimits limits_;
 };
 
 }  // namespace
 
-std::unique_ptr<TestedCompensator> open_command(const std::string& command,
-                                                const ProcessLimits& limits) {
+AnsweringProcess command_process(const std::string& argument,
+                                 const ProcessLimits& limits) {
+  const std::string command = argument.substr(argument.find(':') + 1);
   if (trimmed(command).empty())
     throw std::invalid_argument(
         "cmd: no command; expected \"cmd:PROGRAM ARGS\"");
-  return std::make_unique<CommandCompensator>(command, limits);
+  std::string script = "ulimit -c 0\n";
+  if (limits.memory > 0)
+    script += fmt::format("ulimit -v {}\n", limits.memory / 1024);
+  return {{"/bin/sh", "-c", script + command},
+          std::make_unique<CsvLanguage>(),
+          false};
+}
+
+std::unique_ptr<TestedCompensator> open_command(const std::string& argument,
+                                                const ProcessLimits& limits) {
+  return std::make_unique<CommandCompensator>(
+      command_process(argument, limits).words, limits);
 }
 
 }  // namespace beamgyro

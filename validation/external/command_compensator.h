@@ -4,16 +4,21 @@
 #include <memory>
 #include <string>
 
+#include "validation/external/process_stream.h"
 #include "validation/external/tested_compensator.h"
 
 namespace beamgyro {
 
+/// Returns how the command of an argument "cmd:PROGRAM ARGS" is run. Throws
+/// std::invalid_argument for an empty command.
+AnsweringProcess command_process(const std::string& argument,
+                                 const ProcessLimits& limits);
+
 /// Returns a command as a compensator. The shell runs it anew at each power-on.
 /// It reads CSV: a line of names, `time` first, then a line for each powered
 /// sample with every measured variable of the recording. It writes a line with
-/// one rate for each sample, at once or later. Throws std::invalid_argument for
-/// an empty command.
-std::unique_ptr<TestedCompensator> open_command(const std::string& command,
+/// one rate for each sample, at once or later. Throws as command_process().
+std::unique_ptr<TestedCompensator> open_command(const std::string& argument,
                                                 const ProcessLimits& limits);
 
 }  // namespace beamgyro

@@ -223,12 +223,9 @@ void Conversation::conclude() {
          fmt::format("hung after its last answer for {:.3g} s", limits_.stall));
     return;
   }
-  const bool ended_well = end->status == 0 && end->signal == 0;
-  if (!ended_well) {
-    const bool no_memory = tells_of_no_memory(error_);
-    fail(no_memory ? AnswerFault::kOutOfMemory : AnswerFault::kCrashed,
-         fmt::format("{}{} at {}{}", no_memory ? "ran out of memory: " : "",
-                     end_words(*end), place_words(), last_words(error_)));
+  if (const auto fault = fault_of_end(*end, error_)) {
+    fail(fault->fault, fmt::format("{} at {}{}", fault->words, place_words(),
+                                   last_words(error_)));
   } else if (!answered_.done()) {
     fail(AnswerFault::kTooFew,
          fmt::format("gave fewer answers than samples: none to {} and what "

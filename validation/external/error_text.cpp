@@ -37,4 +37,13 @@ bool tells_of_no_memory(const std::string& text) {
   return false;
 }
 
+std::optional<EndFault> fault_of_end(const ProcessEnd& end,
+                                     const std::string& error) {
+  if (end.status == 0 && end.signal == 0) return std::nullopt;
+  if (tells_of_no_memory(error))
+    return EndFault{AnswerFault::kOutOfMemory,
+                    "ran out of memory: " + end_words(end)};
+  return EndFault{AnswerFault::kCrashed, end_words(end)};
+}
+
 }  // namespace beamgyro

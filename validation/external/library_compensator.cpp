@@ -22,17 +22,14 @@ namespace {
 
 class HostLanguage : public AnswerLanguage {
  public:
-  explicit HostLanguage(const std::vector<std::string>& names)
-      : names_(names) {}
+  explicit HostLanguage(std::vector<std::string> names)
+      : names_(std::move(names)) {}
 
   void start(const AskedStretch& stretch, std::string& bytes) override {
-    if (stretch.run != run_) {
-      run_ = stretch.run;
-      signals_ = MeasuredSignals(*run_, names_);
-      period_ = usual_step(*run_);
-    }
+    run_ = stretch.run;
+    signals_ = MeasuredSignals(*run_, names_);
     append(static_cast<double>(HostRecord::kReset), bytes);
-    append(period_, bytes);
+    append(usual_step(*run_), bytes);
     for (std::size_t i = 0; i < names_.size(); ++i) append(0.0, bytes);
   }
 
@@ -57,10 +54,9 @@ class HostLanguage : public AnswerLanguage {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
   }
 
-  const std::vector<std::string>& names_;
+  std::vector<std::string> names_;
   const Recording* run_ = nullptr;
   MeasuredSignals signals_;
-  double period_ = 0.0;  // [s]
 };
 
 class LibraryCompensator : public TestedCompensator {
@@ -177,10 +173,8 @@ std::vector<std::string> described(const std::filesystem::path& library,
   return {};
 }
 
-}  // namespace
-
-std::unique_ptr<TestedCompensator> open_library(
-    const std::filesystem::path& library, const ProcessLimits& limits) {
+std::vector<std::string> wanted_signals(const std::filesystem::path& library,
+                                        const ProcessLimits& limits) {
   if (limits.program.empty())
     throw std::logic_error("ProcessLimits::program is not given");
   std::vector<std::string> names = described(library, limits);
@@ -190,8 +184,23 @@ std::unique_ptr<TestedCompensator> open_library(
     throw std::invalid_argument(
         fmt::format("{}: {}", library.string(), error.what()));
   }
-  return std::make_unique<LibraryCompensator>(library, std::move(names),
-                                              limits);
+  return names;
+}
+
+}  // namespace
+
+std::unique_ptr<TestedCompensator> open_library(
+    const std::filesystem::path& library, const ProcessLimits& limits) {
+  return std::make_unique<LibraryCompensator>(
+      library, wanted_signals(library, limits), limits);
+}
+
+AnsweringProcess library_process(const std::filesystem::path& library,
+                                 const ProcessLimits& limits) {
+  return {plugin_host_words(limits.program, library, HostTask::kAnswer,
+                            limits.memory),
+          std::make_unique<HostLanguage>(wanted_signals(library, limits)),
+          true};
 }
 
 }  // namespace beamgyro

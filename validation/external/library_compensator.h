@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "validation/external/process_stream.h"
 #include "validation/external/tested_compensator.h"
 
 namespace beamgyro {
@@ -13,5 +14,9 @@ namespace beamgyro {
 /// name when it is no such library or asks for what is not measured.
 std::unique_ptr<TestedCompensator> open_library(
     const std::filesystem::path& library, const ProcessLimits& limits);
+
+/// Returns how a library is run in a process. Throws as open_library().
+AnsweringProcess library_process(const std::filesystem::path& library,
+                                 const ProcessLimits& limits);
 
 }  // namespace beamgyro

@@ -143,9 +143,9 @@ void limit_memory(std::size_t memory) {
 
 void reset(const Plugin& plugin, void* instance, double period) {
   if (const int status = plugin.reset(instance, period); status != 0)
-    throw std::runtime_error(
-        fmt::format("beamgyro_plugin_reset() returned {} for a period of {:.6g} s",
-                    status, period));
+    throw std::runtime_error(fmt::format(
+        "beamgyro_plugin_reset() returned {} for a period of {:.6g} s", status,
+        period));
 }
 
 void answer_record(const Plugin& plugin, void* instance,

@@ -32,8 +32,7 @@ Answer TestedCompensator::answer(const Recording& run) const {
 
 std::unique_ptr<TestedCompensator> open_tested_compensator(
     const std::string& argument, const ProcessLimits& limits) {
-  if (is_command(argument))
-    return open_command(argument.substr(kCommandPrefix.size()), limits);
+  if (is_command(argument)) return open_command(argument, limits);
   if (is_library(argument)) return open_library(argument, limits);
   return tested(read_compensator(argument));
 }
