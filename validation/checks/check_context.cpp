@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/scale_factor.h"
@@ -129,8 +130,8 @@ std::vector<RunPurpose> thermal_purposes() {
           RunPurpose::kRest};
 }
 
-CheckResult not_tested(const std::string& why) {
-  return {.outcome = CheckOutcome::kNotTested, .words = "Not tested: " + why};
+CheckResult not_tested(std::string why) {
+  return {.outcome = CheckOutcome::kNotTested, .words = std::move(why)};
 }
 
 }  // namespace beamgyro

@@ -115,7 +115,7 @@ CheckResult check_reset(const CheckContext& context);
 CheckResult check_output_stuck(const CheckContext& context);
 CheckResult check_real_time(const CheckContext& context);
 
-/// Returns a result without a figure.
-CheckResult not_tested(const std::string& why);
+/// Returns a result without a figure; `why` is a sentence.
+CheckResult not_tested(std::string why);
 
 }  // namespace beamgyro

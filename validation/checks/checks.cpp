@@ -74,11 +74,11 @@ constexpr std::array kChecks{
 std::string obstacle_to_comparison(const CheckContext& context,
                                    const std::vector<CheckResult>& results) {
   if (!context.answered())
-    return "too many answers are missing; see the checks \"answers\" and "
+    return "Too many answers are missing: see the checks \"answers\" and "
            "\"finite\".";
   for (const CheckResult& result : results)
     if (result.outcome == CheckOutcome::kFailed)
-      return fmt::format("see the check \"{}\" first.", result.name);
+      return fmt::format("See the check \"{}\" first.", result.name);
   return "";
 }
 

@@ -94,7 +94,7 @@ CheckResult check_hold_out(const CheckContext& context) {
   const Provenance* provenance = context.checked.provenance;
   if (provenance == nullptr || !warning_of_no_training(*provenance).empty())
     return not_tested(
-        "the compensator names no recording that it was trained on.");
+        "The compensator names no recording that it was trained on.");
   std::vector<std::string> used;
   for (const CheckedRun& run : context.checked.runs)
     if (was_used(context.checked, run)) used.push_back(run.name);
@@ -122,7 +122,7 @@ const Recording* shortest_run(const CheckContext& context) {
   return shortest;
 }
 
-const std::string kTooShort = "every run is shorter than 100 samples.";
+const std::string kTooShort = "Every run is shorter than 100 samples.";
 
 CheckResult seen_result(const std::optional<SeenFault>& seen,
                         const std::string& passed) {

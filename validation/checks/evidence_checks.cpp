@@ -242,8 +242,8 @@ CheckResult allan_result(const CheckContext& context, const WorstAllan& worst) {
     result.outcome = CheckOutcome::kPassed;
     result.words = found + ": the compensator leaves the noise as it is.";
   } else if (low <= 1.0 + kAllanTolerance && high >= 1.0 - kAllanTolerance) {
-    result.words = "Not tested: " + found +
-                   ". The runs at rest are too short to tell it within 2 %.";
+    result.words =
+        found + ". The runs at rest are too short to tell it within 2 %.";
   } else if (ratio > 1.0) {
     result.outcome = CheckOutcome::kFailed;
     result.words = found + ": the compensator adds noise.";
@@ -265,7 +265,7 @@ CheckResult check_allan_fingerprint(const CheckContext& context) {
   const auto worst = worst_allan(context);
   if (!worst)
     return not_tested(
-        "no run at rest has noise and 200 s of samples, a whole number of them "
+        "No run at rest has noise and 200 s of samples, a whole number of them "
         "each second.");
   return allan_result(context, *worst);
 }
@@ -375,7 +375,7 @@ CheckResult check_rate_correlation(const CheckContext& context) {
       worst = result;
   }
   if (!worst)
-    return not_tested("no run varies its true rate over 640 samples or more.");
+    return not_tested("No run varies its true rate over 640 samples or more.");
   worst->words =
       worst->passed()
           ? "The correction has nothing to do with the true rate."

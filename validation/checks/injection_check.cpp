@@ -138,7 +138,7 @@ CheckResult check_injection(const CheckContext& context) {
              kAddedShare * context.checked.full_scale});
   if (all.count() == 0)
     return not_tested(
-        "no run has an output that follows its rate, so that none could be "
+        "No run has an output that follows its rate, so that none could be "
         "added.");
   if (!all.passed())
     return failed_injection(all, random.value_or(RandomResponse{}));

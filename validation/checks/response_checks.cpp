@@ -40,7 +40,7 @@ GainJudge judged_runs(const CheckContext& context,
 }
 
 const std::string kNoInjection =
-    "no run has an output that follows its rate, so that none could be added.";
+    "No run has an output that follows its rate, so that none could be added.";
 
 /// Adds d(answer)/d(rate) at rates held in turn over a run, by the difference
 /// between two of them.
