@@ -7,13 +7,11 @@
 
 #include "compensation/scoring/allan_deviation.h"
 #include "compensation/scoring/noise_coefficients.h"
+#include "validation/metrics/noisy_means.h"
 #include "validation/page/figure_makers.h"
-#include "validation/page/residual_means.h"
 
 namespace beamgyro {
 namespace {
-
-constexpr double kNormal95OfDeviation = 1.96;  // [-]
 
 /// Overlapping Allan deviations of the residual.
 std::vector<AllanPoint> residual_deviations(const EvidenceRun& run) {
@@ -21,7 +19,7 @@ std::vector<AllanPoint> residual_deviations(const EvidenceRun& run) {
   residual.time = run.recording->time;
   residual.status = run.recording->status;
   residual.columns.push_back(
-      {"residual", "degree/s", "", Role::kCompensated, residuals(run)});
+      {"residual", "degree/s", "", Role::kCompensated, residual_of(run)});
   const EvenSeries series = even_series(residual, "residual");
   return allan_curve(series, octave_taus(series)).overlapping;
 }
@@ -84,10 +82,12 @@ std::vector<Figure> allan_figures(const ComparedEvidence& both) {
       [&](const std::string& role, const EvidenceRun& run) {
         const auto points = residual_deviations(run);
         FigureSeries series{role, role};
-        for (const AllanPoint& point : points)
+        for (const AllanPoint& point : points) {
+          const double factor =
+              std::exp(kNormal975 * relative_uncertainty(point));
           series.add(point.tau, point.deviation,
-                     kNormal95OfDeviation * point.deviation *
-                         relative_uncertainty(point));
+                     {point.deviation / factor, point.deviation * factor});
+        }
         figure.add(std::move(series));
         if (role == "after" && lines.empty() && has_noise_coefficients(points))
           lines = allan_lines(role, points);

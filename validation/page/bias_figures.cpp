@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "validation/metrics/segments.h"
+#include "validation/metrics/soaks.h"
 #include "validation/page/figure_makers.h"
 #include "validation/page/residual_means.h"
 
@@ -29,6 +31,27 @@ std::vector<Figure> with_close_up(Figure whole, const std::string& title) {
   std::vector<Figure> figures = close_up(whole, "after", "_after", title);
   figures.insert(figures.begin(), std::move(whole));
   return figures;
+}
+
+struct SoakMean {
+  double temperature;  // [degC], measured
+  double residual;     // [deg/s]
+  bool rising;         // from the soak before, or else to the next one
+};
+
+std::vector<SoakMean> soak_means(const EvidenceRun& run) {
+  const std::vector<Soak> soaks = soaks_of(*run.recording);
+  std::vector<SampleRange> ranges;
+  for (const Soak& soak : soaks) ranges.push_back(soak.range);
+  const auto segments = segments_of(*run.recording, ranges);
+  const std::vector<double> residual = means_over(segments, residual_of(run));
+  std::vector<SoakMean> means;
+  for (std::size_t k = 0; k < soaks.size(); ++k) {
+    const Soak& reached = soaks[k == 0 && soaks.size() > 1 ? 1 : k];
+    means.push_back({segments[k].temperature, residual[k],
+                     reached.reached != Direction::kDown});
+  }
+  return means;
 }
 
 /// For each block of a ramp whether the temperature rises; a block without a
@@ -91,19 +114,18 @@ FigureAxis temperature_axis() { return {"Measured temperature", "degC"}; }
 
 std::vector<Figure> bias_over_temperature_figures(
     const ComparedEvidence& both) {
-  Figure figure{
-      "bias_over_temperature", "Bias over temperature",
-      "Means over the last ten minutes of each soak. The two directions differ "
-      "by what the temperature sensor does not tell.",
-      temperature_axis(), bias_axis()};
+  Figure figure{"bias_over_temperature", "Bias over temperature",
+                "Means over the last five minutes of each soak. The two "
+                "directions differ "
+                "by what the temperature sensor does not tell.",
+                temperature_axis(), bias_axis()};
   for_both(both, RunPurpose::kSoak,
            [&](const std::string& role, const EvidenceRun& run) {
              std::array<FigureSeries, 2> by_direction = {
                  FigureSeries{direction_name(role, true), role},
                  FigureSeries{direction_name(role, false), role}};
-             for (const SettledSoak& soak : settled_soaks(run))
-               by_direction[soak.rising ? 0 : 1].add(soak.temperature,
-                                                     soak.residual);
+             for (const auto& [temperature, residual, rising] : soak_means(run))
+               by_direction[rising ? 0 : 1].add(temperature, residual);
              for (FigureSeries& series : by_direction)
                figure.add(std::move(series));
            });
@@ -123,8 +145,7 @@ std::vector<Figure> hysteresis_figures(const ComparedEvidence& both) {
              std::array<FigureSeries, 2> by_direction = {
                  FigureSeries{direction_name(name, true), role},
                  FigureSeries{direction_name(name, false), role}};
-             const auto blocks =
-                 residual_means(run, block_for_figure(run, kMinute));
+             const auto blocks = residual_means(run, kMinute);
              const std::vector<bool> rising = rising_blocks(blocks);
              for (std::size_t k = 0; k < blocks.size(); ++k)
                by_direction[rising[k] ? 0 : 1].add(blocks[k].temperature,
@@ -145,8 +166,7 @@ std::vector<Figure> warm_up_figures(const ComparedEvidence& both) {
                 {"Bias less its final value", "deg/s"}};
   for_both(both, RunPurpose::kWarmUp,
            [&](const std::string& role, const EvidenceRun& run) {
-             const auto blocks =
-                 residual_means(run, block_for_figure(run, kWarmUpBlock));
+             const auto blocks = residual_means(run, kWarmUpBlock);
              if (blocks.empty()) return;
              const double final_residual = settled_residual(blocks);
              FigureSeries series{

@@ -68,11 +68,15 @@ void FigureSeries::add(double at, double value) {
   y.push_back(value);
 }
 
-void FigureSeries::add(double at, double value, double half_interval) {
+void FigureSeries::add(double at, double value, const Interval& interval) {
   if (!std::isfinite(at) || !std::isfinite(value)) return;
   add(at, value);
-  low.push_back(value - half_interval);
-  high.push_back(value + half_interval);
+  low.push_back(interval.low);
+  high.push_back(interval.high);
+}
+
+void FigureSeries::add(double at, double value, double half_interval) {
+  add(at, value, Interval{value - half_interval, value + half_interval});
 }
 
 void Figure::add(FigureSeries added) {

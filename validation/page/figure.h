@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "validation/metrics/metric.h"
+
 namespace beamgyro {
 
 struct FigureAxis {
@@ -21,6 +23,7 @@ struct FigureSeries {
   std::string kind = {};                    // as Figure::kind; empty: that
 
   void add(double at, double value);
+  void add(double at, double value, const Interval& interval);
   void add(double at, double value, double half_interval);
 };
 

@@ -15,7 +15,7 @@
 namespace beamgyro {
 namespace {
 
-void check_same_runs(const Evidence& before, const Evidence& after) {
+void check_runs(const Evidence& before, const Evidence& after) {
   const bool same = std::ranges::equal(
       before.runs, after.runs, [](const EvidenceRun& a, const EvidenceRun& b) {
         return a.name == b.name && a.purpose == b.purpose;
@@ -23,6 +23,12 @@ void check_same_runs(const Evidence& before, const Evidence& after) {
   if (!same)
     throw std::invalid_argument(
         "figures need the same runs before and after compensation");
+  for (const Evidence* evidence : {&before, &after})
+    for (const EvidenceRun& run : evidence->runs)
+      if (run.rate.size() != run.recording->time.size())
+        throw std::invalid_argument(
+            fmt::format("{}: {} rates for {} times, must be one each", run.name,
+                        run.rate.size(), run.recording->time.size()));
 }
 
 /// Share [%] of the devices whose value is at most x.
@@ -54,7 +60,7 @@ std::string spoken_name(std::string name, const std::string& unit) {
 
 nlohmann::ordered_json figures_of(const Evidence& before,
                                   const Evidence& after) {
-  check_same_runs(before, after);
+  check_runs(before, after);
   nlohmann::ordered_json figures = nlohmann::ordered_json::array();
   for (const auto& make :
        {bias_over_temperature_figures, hysteresis_figures, warm_up_figures,

@@ -19,7 +19,7 @@ constexpr std::size_t kFigurePoints = 300;
 /// (docs/guide/report.md), of the recorded rate (`before`) and of that of a
 /// compensator (`after`), which have the same runs in the same order. Figures
 /// have six significant digits. Throws std::invalid_argument when the two have
-/// different runs.
+/// different runs, or a run has not one rate for each time.
 nlohmann::ordered_json figures_of(const Evidence& before,
                                   const Evidence& after);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/core.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <map>
@@ -11,8 +11,10 @@
 #include <utility>
 
 #include "compensation/scoring/scale_factor.h"
+#include "validation/metrics/frequency_response.h"
+#include "validation/metrics/noisy_means.h"
+#include "validation/metrics/segments.h"
 #include "validation/page/figure_makers.h"
-#include "validation/page/residual_means.h"
 
 namespace beamgyro {
 namespace {
@@ -20,17 +22,17 @@ namespace {
 constexpr double kMillion = 1e6;      // [ppm]
 constexpr double kOtherTable = 3.0;   // [K], between two rate tables
 constexpr double kLongestHold = 5.0;  // [-], of the median; longer: warm-up
-constexpr double kNormal95 = 1.96;    // [-]
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 constexpr double kBeforeStep = 0.02;  // [s]
 constexpr double kAfterStep = 0.1;    // [s]
 constexpr double kSamplesAfterStep = 50.0;
 
-/// A rate that was held, and the answer to it.
+/// A rate that was held, and what was answered beside it.
 struct TableHold {
-  double begin, end;                               // [s]
   double rate;                                     // [deg/s], true
+  double seconds;                                  // [s], for how long
   double temperature;                              // [degC]
-  double sum = 0.0, squares = 0.0, samples = 0.0;  // of the answer less rate
+  double sum = 0.0, squares = 0.0, samples = 0.0;  // of the residual
 };
 
 /// A table of rates at one temperature.
@@ -42,25 +44,26 @@ struct TableAtTemperature {
 std::vector<TableHold> table_holds(const EvidenceRun& run) {
   const Recording& recording = *run.recording;
   const auto& truth = column_values(recording, "true_rate");
-  const auto& temperature = column_values(recording, "temperature");
-  const std::vector<double> residual = residuals(run);
+  const std::vector<double> residual = residual_of(run);
+  std::vector<SampleRange> ranges;
+  for (const SampleRange& held : held_ranges(recording, std::array{&truth}))
+    if (const SampleRange range = settled(recording, held, kSettlingTime);
+        range.size() > 0)
+      ranges.push_back(range);
   std::vector<TableHold> holds;
-  for (std::size_t k = 0; k < truth.size(); ++k) {
-    const double time = recording.time[k];
-    if (holds.empty() || truth[k] != holds.back().rate)
-      holds.push_back({time, time, truth[k], temperature[k]});
-    TableHold& hold = holds.back();
-    hold.end = time;
-    if (!std::isfinite(residual[k]) || time - hold.begin < kSettlingTime ||
-        (recording.status[k] & kOutputSaturated) != 0)
-      continue;
-    hold.temperature = temperature[k];
-    hold.sum += residual[k];
-    hold.squares += residual[k] * residual[k];
-    hold.samples += 1.0;
+  for (const Segment& segment : segments_of(recording, ranges)) {
+    TableHold hold{truth[segment.samples.begin], segment.length,
+                   segment.temperature};
+    for (std::size_t k = segment.samples.begin; k < segment.samples.end; ++k) {
+      if (!std::isfinite(residual[k]) ||
+          (recording.status[k] & kOutputSaturated) != 0)
+        continue;
+      hold.sum += residual[k];
+      hold.squares += residual[k] * residual[k];
+      hold.samples += 1.0;
+    }
+    if (hold.samples > 0.0) holds.push_back(hold);
   }
-  std::erase_if(holds,
-                [](const TableHold& hold) { return hold.samples < 1.0; });
   return holds;
 }
 
@@ -69,13 +72,13 @@ std::vector<TableAtTemperature> tables_of(const EvidenceRun& run) {
   std::vector<TableHold> holds = table_holds(run);
   if (holds.empty()) return {};
   std::vector<double> lengths;
-  for (const TableHold& hold : holds) lengths.push_back(hold.end - hold.begin);
+  for (const TableHold& hold : holds) lengths.push_back(hold.seconds);
   std::ranges::nth_element(
       lengths, lengths.begin() + static_cast<long>(lengths.size() / 2));
   const double longest = kLongestHold * lengths[lengths.size() / 2];
   std::vector<TableAtTemperature> tables;
   for (const TableHold& hold : holds) {
-    if (hold.end - hold.begin > longest) continue;
+    if (hold.seconds > longest) continue;
     if (tables.empty() ||
         std::abs(hold.temperature - tables.back().temperature) > kOtherTable)
       tables.push_back({hold.temperature});
@@ -119,7 +122,7 @@ TableLine table_line(const TableAtTemperature& table) {
         hold.sum / hold.samples - line.offset - line.slope * held;
     left += departure * departure;
   }
-  line.half_interval = kNormal95 * std::sqrt(left / (n - 2.0) / squares);
+  line.half_interval = kNormal975 * std::sqrt(left / (n - 2.0) / squares);
   return line;
 }
 
@@ -133,46 +136,33 @@ FigureSeries departures(const TableAtTemperature& table, const TableLine& line,
     const double variance =
         std::max(0.0, hold.squares / hold.samples - mean * mean);
     series.add(held, unit * (mean - line.offset - line.slope * held),
-               unit * kNormal95 * std::sqrt(variance / hold.samples));
+               unit * kNormal975 * std::sqrt(variance / hold.samples));
   }
   return series;
 }
 
-/// Frequency of a sine [rad/s] at equal steps, about any mean; nothing for a
-/// signal that is none.
-std::optional<double> sine_frequency(const std::vector<double>& time,
-                                     const std::vector<double>& signal) {
-  double product = 0.0, squares = 0.0;
-  for (std::size_t k = 3; k < signal.size(); ++k) {
-    const double before = signal[k - 2] - signal[k - 3];
-    const double here = signal[k - 1] - signal[k - 2];
-    product += here * (before + signal[k] - signal[k - 1]);
-    squares += here * here;
-  }
-  const double cosine = 0.5 * product / squares;
-  if (!(std::abs(cosine) < 1.0)) return std::nullopt;
-  return std::acos(cosine) / (time[1] - time[0]);
-}
+/// Gain and phase of one rate.
+struct ResponseCurves {
+  FigureSeries gain, phase;
+};
 
-/// Amplitude of e^(i omega t) in the second half of a signal, beside a straight
-/// line.
-std::complex<double> sine_amplitude(const std::vector<double>& time,
-                                    const std::vector<double>& signal,
-                                    double omega) {
-  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d right = Eigen::Vector4d::Zero();
-  const double middle = time[time.size() / 2];
-  const double half = time.back() - middle;
-  for (std::size_t k = time.size() / 2; k < time.size(); ++k) {
-    if (!std::isfinite(signal[k])) continue;
-    const double phase = omega * (time[k] - middle);
-    const Eigen::Vector4d row(1.0, (time[k] - middle) / half, std::cos(phase),
-                              std::sin(phase));
-    normal += row * row.transpose();
-    right += signal[k] * row;
+ResponseCurves response_curves(const Evidence& evidence,
+                               const std::string& role) {
+  ResponseCurves curves{{role, role}, {role, role}};
+  double last = 0.0;  // [rad], of the phase
+  for (const ResponsePoint& point : response_to_true_rate(evidence)) {
+    const double size = std::abs(point.gain);
+    const double half = kNormal975 * point.sigma / size;  // [-], [rad]
+    // The phase goes on from that of the frequency before.
+    const double turn = 2.0 * std::numbers::pi;
+    const double phase = std::arg(point.gain);
+    last = phase + turn * std::round((last - phase) / turn);
+    curves.gain.add(point.frequency, 20.0 * std::log10(size),
+                    20.0 * std::numbers::log10e * half);
+    curves.phase.add(point.frequency, kDegreesPerRadian * last,
+                     kDegreesPerRadian * half);
   }
-  const Eigen::Vector4d fitted = normal.ldlt().solve(right);
-  return {fitted[2], -fitted[3]};
+  return curves;
 }
 
 /// Start of the largest step of the true rate: the first sample after it.
@@ -237,35 +227,24 @@ std::vector<Figure> rate_table_figures(const ComparedEvidence& both) {
 }
 
 std::vector<Figure> frequency_response_figures(const ComparedEvidence& both) {
-  Figure gain{"frequency_response_gain",
-              "Frequency response: gain",
-              "Amplitude of the answer to sine rates over that of the rate.",
-              {"Frequency", "Hz", true},
-              {"Gain", "dB"}};
-  Figure phase{"frequency_response_phase",
-               "Frequency response: phase",
-               "Phase of the answer to sine rates against the rate.",
-               {"Frequency", "Hz", true},
-               {"Phase", "deg"}};
-  std::map<std::string, std::map<double, std::complex<double>>> responses;
-  for_both(both, RunPurpose::kSineRate,
-           [&](const std::string& role, const EvidenceRun& run) {
-             const auto& time = run.recording->time;
-             const auto& truth = column_values(*run.recording, "true_rate");
-             const auto omega = sine_frequency(time, truth);
-             if (!omega) return;
-             responses[role][*omega / (2.0 * std::numbers::pi)] =
-                 sine_amplitude(time, run.rate, *omega) /
-                 sine_amplitude(time, truth, *omega);
-           });
-  for (const std::string role : {"before", "after"}) {
-    FigureSeries gains{role, role}, phases{role, role};
-    for (const auto& [frequency, response] : responses[role]) {
-      gains.add(frequency, 20.0 * std::log10(std::abs(response)));
-      phases.add(frequency, std::arg(response) * 180.0 / std::numbers::pi);
-    }
-    gain.add(std::move(gains));
-    phase.add(std::move(phases));
+  Figure gain{
+      "frequency_response_gain",
+      "Frequency response: gain",
+      "Amplitude of the judged rate over that of the true rate: from sine "
+      "rates, and above the highest of them from a step.",
+      {"Frequency", "Hz", true},
+      {"Gain", "dB"}};
+  Figure phase{
+      "frequency_response_phase",
+      "Frequency response: phase",
+      "Phase of the judged rate against the true rate, of the same runs.",
+      {"Frequency", "Hz", true},
+      {"Phase", "deg"}};
+  for (const auto& [role, evidence] :
+       {std::pair("before", &both.before), std::pair("after", &both.after)}) {
+    ResponseCurves curves = response_curves(*evidence, role);
+    gain.add(std::move(curves.gain));
+    phase.add(std::move(curves.phase));
   }
   return {std::move(gain), std::move(phase)};
 }

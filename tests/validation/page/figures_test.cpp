@@ -168,7 +168,7 @@ TEST(Figures, TheFrequencyResponseHasGainAndPhase) {
     };
     // Half the amplitude and 0.4 rad late, beside a drifting bias.
     given.add(
-        {"sine", RunPurpose::kSineRate, 4.0 / f, 100 * f, soaks({20}),
+        {"sine", RunPurpose::kSineRate, 4.0 + 4.0 / f, 100 * f, soaks({20}),
          sine(0.0),
          [=](double t) { return 0.5 * sine(-0.4)(t) - sine(0.0)(t) + 0.2 * t; },
          none});
