@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Compensators with a known fault, checked on simulated runs.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include "compensation/compensator/training_use.h"
 #include "tests/validation/checks/simulated_runs.h"
+#include "tests/validation/external/tested_run.h"
 #include "validation/metrics/metric.h"
 #include "validation/specification/decision.h"
 #include "validation/specification/specification_file.h"
@@ -52,6 +56,19 @@ TEST(PlantedFaults, ASoundCompensatorPassesEveryCheck) {
   EXPECT_EQ(outcome_of(results), CheckOutcome::kPassed);
 }
 
+TEST(PlantedFaults, TheNumberOfThreadsChangesNothing) {
+  const FunctionCompensator compensator([](const Recording& run) {
+    return compensated_rate(trained("output_and_temperature"), run);
+  });
+  const CheckedCompensator all = checked(compensator);
+  const auto one = run_checks(all, 1), three = run_checks(all, 3);
+  ASSERT_EQ(one.size(), check_definitions().size());
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    EXPECT_EQ(one[k].value, three[k].value) << one[k].name;
+    EXPECT_EQ(one[k].words, three[k].words);
+  }
+}
+
 // Trained at rest on output and temperature, the paper's inputs.
 TEST(PlantedFaults, ANetworkThatEatsTheRate) {
   const auto network = [](const Recording& run) {
@@ -75,6 +92,33 @@ TEST(PlantedFaults, AHighPassFilter) {
   };
   EXPECT_EQ(failed(high_pass),
             (Names{"jacobian", "injection", "true_rate", "shuffled_output"}));
+}
+
+// The same as a program. Only the run at rest: 200,000 lines.
+TEST(PlantedFaults, AHighPassFilterInACommand) {
+  const auto file = std::filesystem::temp_directory_path() /
+                    fmt::format("beamgyro high pass {}.py", ::getpid());
+  std::ofstream(file) << R"(
+import sys
+rate = sys.stdin.readline().strip().split(",").index("rate")
+low = None
+for line in sys.stdin:
+    value = float(line.split(",")[rate])
+    low = value if low is None else low + (value - low) * 0.1 / 100
+    print(value - low)
+)";
+  const auto compensator = open_tested_compensator(
+      fmt::format("cmd:/usr/bin/python3 '{}'", file.string()), test_limits());
+  const SimulatedRun& rest = simulated_runs().back();
+  CheckedCompensator all;
+  all.compensator = compensator.get();
+  all.runs.push_back({.name = rest.name,
+                      .purpose = rest.purpose,
+                      .recording = &rest.recording,
+                      .answer = compensator->answer(rest.recording)});
+  EXPECT_EQ(failed_checks(all),
+            (Names{"jacobian", "injection", "shuffled_output"}));
+  std::filesystem::remove(file);
 }
 
 TEST(PlantedFaults, AScaleFactorThatIsOffByOnePercent) {
