@@ -103,8 +103,9 @@ bool CheckContext::answered() const {
 }
 
 std::ptrdiff_t CheckContext::lag_in(const Recording& run) const {
-  const double lag = random ? random->lag : 0.0;
-  return static_cast<std::ptrdiff_t>(std::round(lag / usual_step(run)));
+  const double step = usual_step(run);
+  if (!random || step == 0.0) return 0;
+  return static_cast<std::ptrdiff_t>(std::round(random->lag / step));
 }
 
 std::vector<std::size_t> CheckContext::runs_of(

@@ -26,6 +26,7 @@ constexpr double kPartOfRate = 0.4;   // [-], of the sampling rate
 /// The frequencies [Hz] that a run can show.
 std::vector<double> sine_frequencies(const Recording& run) {
   const double step = usual_step(run);
+  if (step == 0.0) return {};
   const double duration = run.time.back() - run.time.front();
   std::vector<double> frequencies;
   for (int k = 0;; ++k) {

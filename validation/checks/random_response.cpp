@@ -62,21 +62,21 @@ bool is_powered_at(const Recording& run, std::size_t k) {
 /// The run that is sampled fastest; of several the longest.
 std::size_t fastest_run(const CheckContext& context) {
   const auto& runs = context.checked.runs;
-  const auto worse = [&runs](std::size_t a, std::size_t b) {
-    const Recording &x = *runs[a].recording, &y = *runs[b].recording;
-    const double steps[] = {usual_step(x), usual_step(y)};
-    return steps[0] != steps[1] ? steps[0] > steps[1]
-                                : x.time.size() < y.time.size();
+  const auto is_better = [](const Recording& x, const Recording& y) {
+    const double step = usual_step(x), other = usual_step(y);
+    if (step == 0.0 || other == 0.0) return step > other;
+    return step != other ? step < other : x.time.size() > y.time.size();
   };
   std::size_t best = 0;
   for (std::size_t k = 1; k < runs.size(); ++k)
-    if (worse(best, k)) best = k;
+    if (is_better(*runs[k].recording, *runs[best].recording)) best = k;
   return best;
 }
 
 std::optional<RandomResponse> random_response(const CheckContext& context) {
   const std::size_t number = fastest_run(context);
   const Recording& run = *context.checked.runs[number].recording;
+  if (usual_step(run) == 0.0) return std::nullopt;
   std::vector<double> added(run.time.size(), 0.0);
   const std::size_t last = std::min(added.size(), kLongestRandom);
   for (std::size_t k = 0; k < last; ++k)

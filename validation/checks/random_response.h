@@ -24,11 +24,12 @@ std::optional<AddedAndSeen> seen_of_added(const CheckContext& context,
 /// Returns whether the run has this sample, with power.
 bool is_powered_at(const Recording& run, std::size_t k);
 
-/// Returns the run that is sampled fastest; of several the longest.
+/// Returns the run that is sampled fastest; of several the longest. There must
+/// be a run.
 std::size_t fastest_run(const CheckContext& context);
 
 /// Adds a rate that is new at every sample to the fastest run. Returns nothing
-/// for a run that no rate can be added to.
+/// for a run of one sample, and for one that no rate can be added to.
 std::optional<RandomResponse> random_response(const CheckContext& context);
 
 }  // namespace beamgyro

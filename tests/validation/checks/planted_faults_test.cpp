@@ -185,6 +185,40 @@ TEST(PlantedFaults, NanOnceInAHundredThousandSamples) {
   EXPECT_EQ(result_of(nan, "finite").value, 1.0);
 }
 
+Recording first_samples(const Recording& run, std::size_t samples) {
+  Recording part = run;
+  part.time.resize(samples);
+  part.status.resize(samples);
+  for (Column& column : part.columns) column.values.resize(samples);
+  return part;
+}
+
+TEST(PlantedFaults, RunsThatShowNothingFailNothing) {
+  const FunctionCompensator compensator(sound);
+  for (const std::size_t samples : {0, 1, 2, 3, 50}) {
+    const Recording run =
+        first_samples(simulated_runs().back().recording, samples);
+    CheckedCompensator all;
+    all.compensator = &compensator;
+    if (samples > 0)
+      all.runs.push_back({.name = "short",
+                          .purpose = RunPurpose::kRest,
+                          .recording = &run,
+                          .answer = compensator.answer(run)});
+    const auto results = run_checks(all);
+    EXPECT_EQ(outcome_of(results), CheckOutcome::kNotTested) << samples;
+    for (const CheckResult& result : results)
+      EXPECT_FALSE(result.words.empty()) << result.name;
+  }
+}
+
+TEST(PlantedFaults, NoAnswersAreOneFinding) {
+  const auto silent = [](const Recording& run) {
+    return std::vector<double>(run.time.size(), std::nan(""));
+  };
+  EXPECT_EQ(failed(silent), Names{"finite"});
+}
+
 Provenance provenance_of(const SimulatedRun& run) {
   Provenance provenance;
   provenance.training = {{"train.h5", std::string(64, '0'),
