@@ -6,7 +6,7 @@ import subprocess
 import tempfile
 import unittest
 
-from program import PROGRAM
+from program import PROGRAM, ROOT
 
 BUILD = PROGRAM.parent
 
@@ -63,6 +63,16 @@ class Install(unittest.TestCase):
         specs = self.prefix / "share/beamgyro/specs"
         self.assertEqual(sorted(path.name for path in specs.iterdir()),
                          ["paper.toml", "tactical.toml", "uav.toml"])
+
+    def test_a_plugin_is_compiled_with_the_installed_header(self):
+        self.call("cc", "-shared", "-fPIC", f"-I{self.prefix}/include",
+                  ROOT / "examples/plugins/cubic.c", "-o", "cubic.so")
+        program = self.prefix / "bin/beamgyro"
+        self.call(program, "run", self.scenario("ten_minutes.toml"), "-o",
+                  "run.h5")
+        self.call(program, "compensate", "./cubic.so", "run.h5", "-o",
+                  "out.h5")
+        self.assertIn("recording", self.call(program, "info", "out.h5"))
 
     def test_another_project_finds_and_links_the_libraries(self):
         (self.dir / "user.cpp").write_text(USER)

@@ -27,6 +27,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
+constexpr int kPipeBytes = 1 << 20;
 constexpr pid_t kFreeSlot = 0, kTakenSlot = -1;
 
 // Leaders of process groups, where a signal handler may read them.
@@ -142,6 +143,10 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words) try {
   output_.emplace(std::move(out.reads));
   error_.emplace(std::move(error.reads));
   for (auto* file : {&input_, &output_, &error_}) make_nonblocking(**file);
+  // So that neither side waits for the other to be scheduled; if the system
+  // refuses, the pipes are as they were.
+  for (auto* file : {&input_, &output_})
+    ::fcntl((*file)->descriptor(), F_SETPIPE_SZ, kPipeBytes);
 } catch (const std::system_error& failure) {
   throw std::runtime_error(
       fmt::format("cannot start {}: {}", words[0], failure.code().message()));

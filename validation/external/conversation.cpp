@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -80,6 +81,7 @@ class Conversation {
   void take_answers(bool at_end);
   void check_time();
   void conclude();
+  double taken_time() const;
   std::string place_words() const;
   void fail(AnswerFault fault, std::string words);
 
@@ -89,6 +91,7 @@ class Conversation {
   Place sent_, answered_;
   std::string sending_, received_, error_;
   std::size_t written_ = 0;  // bytes of sending_
+  std::size_t sent_bytes_ = 0;
   Stopwatch whole_, since_progress_;
   bool failed_ = false;
 };
@@ -112,11 +115,13 @@ void Conversation::prepare() {
     sending_.clear();
     written_ = 0;
   }
-  while (!sent_.done() && sending_.size() < kSentBytes) {
+  const bool refills = sending_.empty();
+  while (refills && !sent_.done() && sending_.size() < kSentBytes) {
     if (sent_.at_start()) language_.start(sent_.stretch(), sending_);
     language_.sample(sent_.sample(), sending_);
     sent_.advance();
   }
+  if (refills) sent_bytes_ += sending_.size();
   if (sending_.empty()) process_.input().reset();
 }
 
@@ -199,6 +204,18 @@ std::string Conversation::place_words() const {
              : sample_words(*answered_.stretch().run, answered_.sample());
 }
 
+// Time of the samples that the process has read [s], by their share of bytes:
+// the rest waits here or in the pipe.
+double Conversation::taken_time() const {
+  int waiting = 0;
+  if (!process_.input() ||
+      ::ioctl(process_.input()->descriptor(), FIONREAD, &waiting) != 0)
+    return sent_.time();
+  const double all = static_cast<double>(sent_bytes_);
+  const double left = static_cast<double>(sending_.size() - written_) + waiting;
+  return sent_.time() * (1.0 - left / all);
+}
+
 void Conversation::check_time() {
   if (failed_ || (!process_.output() && !process_.error())) return;
   if (since_progress_.seconds() > limits_.stall) {
@@ -209,7 +226,7 @@ void Conversation::check_time() {
                        place_words(), since_progress_.seconds()));
     else
       conclude();
-  } else if (whole_.seconds() > limits_.stall + sent_.time()) {
+  } else if (whole_.seconds() > limits_.stall + taken_time()) {
     fail(AnswerFault::kTooSlow,
          fmt::format("slower than real time: stopped after {:.3g} s at {}",
                      whole_.seconds(), place_words()));
