@@ -78,7 +78,7 @@ RunPurpose purpose_of_rate(const Recording& recording,
   return is_long ? RunPurpose::kConstantRate : RunPurpose::kRateStep;
 }
 
-std::size_t power_ons(const Recording& recording) {
+std::size_t power_on_count(const Recording& recording) {
   std::size_t count = 0;
   bool was_on = false;
   for (const std::uint8_t status : recording.status) {
@@ -98,7 +98,7 @@ RunPurpose purpose_at_constant_ambient(const Recording& recording) {
 }
 
 RunPurpose purpose_at_rest(const Recording& recording) {
-  if (power_ons(recording) > 1) return RunPurpose::kPowerCycle;
+  if (power_on_count(recording) > 1) return RunPurpose::kPowerCycle;
   if (const Column* ambient =
           find_column(recording, "true_ambient_temperature")) {
     const Holds holds = holds_of(recording.time, ambient->values);

@@ -48,10 +48,12 @@ Reasons reasons_of(const std::vector<DecidedLimit>& limits,
                    const std::vector<CheckResult>& checks) {
   Reasons reasons;
   for (const auto& [limit, decision] : limits) {
-    if (decision.result == Conformity::kFail)
-      reasons.against.push_back(limit.metric);
-    if (decision.result == Conformity::kUndecided)
-      reasons.open.push_back(limit.metric);
+    // A metric may have a limit of its own and some relative to other rates.
+    const auto add = [&name = limit.metric](std::vector<std::string>& names) {
+      if (std::ranges::count(names, name) == 0) names.push_back(name);
+    };
+    if (decision.result == Conformity::kFail) add(reasons.against);
+    if (decision.result == Conformity::kUndecided) add(reasons.open);
   }
   for (const CheckResult& check : checks)
     if (check.outcome == CheckOutcome::kFailed)
@@ -123,11 +125,12 @@ WordedVerdict verdict_of(const std::vector<DecidedLimit>& limits,
     return {
         Conformity::kUndecided,
         fmt::format("The evidence does not tell: {}.", fmt::join(open, ", "))};
+  const auto passed = std::ranges::count_if(checks, &CheckResult::passed);
   return {Conformity::kPass,
           fmt::format("The compensator passes: {} limit{} met, {} check{} "
                       "passed.",
-                      limits.size(), limits.size() == 1 ? "" : "s",
-                      checks.size(), checks.size() == 1 ? "" : "s")};
+                      limits.size(), limits.size() == 1 ? "" : "s", passed,
+                      passed == 1 ? "" : "s")};
 }
 
 CheckedCompensator checked_runs(const DeviceEvidence& found,

@@ -62,6 +62,19 @@ TEST(VerdictOf, WhatIsNotTestedIsUndecided) {
             Conformity::kPass);
 }
 
+TEST(VerdictOf, CountsAndNamesOnce) {
+  EXPECT_EQ(verdict_of({decided("a", Conformity::kPass)},
+                       {check("jacobian", CheckOutcome::kPassed),
+                        check("hold_out", CheckOutcome::kNotTested)})
+                .words,
+            "The compensator passes: 1 limit met, 1 check passed.");
+  EXPECT_EQ(verdict_of({decided("a", Conformity::kFail),
+                        decided("a", Conformity::kFail)},
+                       {})
+                .words,
+            "Not met: a.");
+}
+
 // JSON knows no NaN; a limit is in the unit of its metric or there is none.
 TEST(ResultJson, SaysNullForWhatIsNotThere) {
   ValidationResult result;
