@@ -37,6 +37,8 @@ struct AllanArguments {
   std::string file, json;
   std::optional<std::string> dataset, unit;
   std::optional<double> rate, from, to;
+  std::vector<std::string> kinds;
+  std::string taus = "octave";
 };
 
 /// The signal whose deviations are computed.
@@ -222,6 +224,34 @@ nlohmann::ordered_json series_json(const EvenSeries& series,
           {"left_out", series.left_out}};
 }
 
+/// The kinds asked for, each once.
+std::vector<DeviationKind> kinds_asked_for(const AllanArguments& arguments) {
+  if (arguments.kinds.empty())
+    return {DeviationKind::kAdev, DeviationKind::kOadev};
+  std::vector<DeviationKind> kinds;
+  for (const std::string& name : arguments.kinds) {
+    const DeviationKind kind = deviation_kind(name);
+    if (std::ranges::count(kinds, kind) == 0) kinds.push_back(kind);
+  }
+  return kinds;
+}
+
+TauSpacing spacing_of(const AllanArguments& arguments) {
+  const auto& names = tau_spacing_names();
+  return static_cast<TauSpacing>(std::ranges::find(names, arguments.taus) -
+                                 names.begin());
+}
+
+/// The overlapping deviation at octaves, to which the coefficients are fitted.
+std::vector<AllanPoint> octaves(const EvenSeries& series, TauSpacing spacing,
+                                const std::vector<DeviationCurve>& curves) {
+  const auto found =
+      std::ranges::find(curves, DeviationKind::kOadev, &DeviationCurve::kind);
+  if (spacing == TauSpacing::kOctave && found != curves.end())
+    return found->points;
+  return allan_curve(series, octave_taus(series)).overlapping;
+}
+
 int allan(const AllanArguments& arguments) {
   check_options(arguments);
   if (!arguments.json.empty()) {
@@ -237,14 +267,18 @@ int allan(const AllanArguments& arguments) {
     signal.warnings.push_back(fmt::format(
         "{}: {} of {} samples used; {} missing between them", arguments.file,
         series.samples, series.samples + series.left_out, series.missing));
-  const AllanCurve curve = allan_curve(series, octave_taus(series));
-  std::string text = series_line(series) + allan_table(curve, signal.unit);
-  nlohmann::ordered_json json = to_json(curve);
+  const TauSpacing spacing = spacing_of(arguments);
+  const std::vector<DeviationCurve> curves = deviation_curves(
+      series, kinds_asked_for(arguments), taus_of(series, spacing),
+      [&](double share) { progress->set_share(share); });
+  std::string text = series_line(series) + deviation_table(curves, signal.unit);
+  nlohmann::ordered_json json = to_json(curves);
   json["series"] = series_json(series, signal);
   json["noise"] = nullptr;
   // With fewer points than the coefficients need only the curve is printed.
-  if (has_noise_coefficients(curve.overlapping)) {
-    const NoiseCoefficients found = noise_coefficients(curve.overlapping);
+  const std::vector<AllanPoint> fitted = octaves(series, spacing, curves);
+  if (has_noise_coefficients(fitted)) {
+    const NoiseCoefficients found = noise_coefficients(fitted);
     text += '\n';
     text += noise_table(found, signal.unit);
     json["noise"] = to_json(found, signal.unit);
@@ -264,8 +298,7 @@ void add_allan(CommandLine& program) {
   auto arguments = std::make_shared<AllanArguments>();
   Command& command =
       program.add("allan", kFiles,
-                  "Computes the Allan deviation, plain and overlapping, of a "
-                  "rate");
+                  "Computes Allan deviations and noise coefficients of a rate");
   command.argument({"FILE", "", "RUN.h5 or SERIES.csv"}, arguments->file);
   command.reads({{FileKind::kRecording},
                  {FileKind::kRecordingTable, FileKind::kCharacteristic,
@@ -278,6 +311,16 @@ void add_allan(CommandLine& program) {
   command.number(
       {"--to", "S", "Last time to use, in seconds", "the last sample"},
       arguments->to);
+  command.choices({"--kind", "KIND",
+                   "Deviations to compute, between commas or repeated: adev, "
+                   "oadev, mdev, hdev, ohdev, totdev",
+                   "adev,oadev"},
+                  arguments->kinds, deviation_names());
+  command.choice({"--taus", "octave|decade|all",
+                  "Averaging times: 1, 2, 4, 8 samples and so on; 1, 2, 4, 10, "
+                  "20, 40; or 1, 2, 3",
+                  "octave"},
+                 arguments->taus, tau_spacing_names());
   command.text({"--json", "FILE",
                 "Writes the curve, the coefficients and the samples used to "
                 "FILE",
@@ -294,6 +337,8 @@ void add_allan(CommandLine& program) {
                 "deg/s"},
                arguments->unit);
   command.example("beamgyro allan rest.h5", "The rate of a recording");
+  command.example("beamgyro allan rest.h5 --kind oadev,mdev --taus decade",
+                  "Other deviations");
   command.example("beamgyro allan series.csv --rate-Hz 100 --unit deg/h",
                   "A column of rates without times");
   command.action([arguments] { return allan(*arguments); });

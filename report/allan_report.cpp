@@ -3,10 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 
 namespace beamgyro {
+namespace {
+
+std::string interval_text(const ConfidenceInterval& interval) {
+  return fmt::format("{:.4g} to {:.4g}", interval.low, interval.high);
+}
+
+}  // namespace
 
 std::string series_line(const EvenSeries& series) {
   return fmt::format(
@@ -17,27 +26,40 @@ std::string series_line(const EvenSeries& series) {
       series.missing, series.left_out);
 }
 
-std::string allan_table(const AllanCurve& curve, const std::string& unit) {
-  std::string text =
-      fmt::format("{:>12} {:>14} {:>14} {:>10} {:>8}\n", "tau s",
-                  "adev " + unit, "oadev " + unit, "clusters", "+-%");
-  for (std::size_t i = 0; i < curve.plain.size(); ++i) {
-    const AllanPoint& plain = curve.plain[i];
-    const AllanPoint& overlapping = curve.overlapping[i];
-    const bool known = plain.clusters > 1;
-    fmt::format_to(
-        std::back_inserter(text),
-        "{:>12.6g} {:>14.6g} {:>14.6g} {:>10} {:>8}\n", plain.tau,
-        plain.deviation, overlapping.deviation, plain.clusters,
-        known ? fmt::format("{:.1f}", 100 * relative_uncertainty(overlapping))
-              : "-");
+std::string deviation_table(const std::vector<DeviationCurve>& curves,
+                            const std::string& unit) {
+  std::string text = fmt::format("{:>12}", "tau s");
+  auto out = std::back_inserter(text);
+  std::map<double, std::vector<const AllanPoint*>> rows;
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    fmt::format_to(out, " {:>14}", name_of(curves[c].kind) + " " + unit);
+    for (const AllanPoint& point : curves[c].points) {
+      auto& row = rows[point.tau];
+      row.resize(curves.size());
+      row[c] = &point;
+    }
+  }
+  fmt::format_to(out, " {:>10} {:>25}  noise\n", "clusters",
+                 "95 % of " + name_of(curves.back().kind));
+  for (const auto& [tau, points] : rows) {
+    fmt::format_to(out, "{:>12.6g}", tau);
+    for (const AllanPoint* point : points)
+      text += point != nullptr ? fmt::format(" {:>14.6g}", point->deviation)
+                               : fmt::format(" {:>14}", "-");
+    const AllanPoint& some = **std::ranges::find_if(
+        points, [](const AllanPoint* point) { return point != nullptr; });
+    const AllanPoint* last = points.back();
+    fmt::format_to(out, " {:>10} {:>25}  {}\n", some.clusters,
+                   last != nullptr ? interval_text(last->interval) : "-",
+                   name_of(some.noise));
   }
   return text;
 }
 
 std::string noise_table(const NoiseCoefficients& found,
                         const std::string& unit) {
-  std::string text;
+  std::string text = fmt::format("{:<22}{:>12} {:<15} {}\n", "coefficient", "",
+                                 "unit", "95 %");
   auto out = std::back_inserter(text);
   for (const CoefficientReport& report : reports(found, unit)) {
     const std::string name = fmt::format("{} {}", report.name, report.symbol);
@@ -45,10 +67,15 @@ std::string noise_table(const NoiseCoefficients& found,
       fmt::format_to(out, "{:<22}{:>12}\n", name, "-");
       continue;
     }
-    const auto [value, uncertainty] = *report.per_second;
-    fmt::format_to(out, "{:<22}{:>12.4g} {:<14} {:.4g} {}, +- {:.1f} %\n", name,
-                   value * report.hours_per_second_unit, report.unit_per_hour,
-                   value, report.unit_per_second, 100 * uncertainty / value);
+    const auto& [value, uncertainty, interval] = *report.per_second;
+    const auto line = [&](const std::string& first, double scale,
+                          const std::string& of) {
+      fmt::format_to(
+          out, "{:<22}{:>12.4g} {:<15} {}\n", first, value * scale, of,
+          interval_text({interval.low * scale, interval.high * scale}));
+    };
+    line(name, report.hours_per_second_unit, report.unit_per_hour);
+    line("", 1.0, report.unit_per_second);
   }
   fmt::format_to(out, "{:<22}{:>12.4g} {} at {:g} s{}\n", "lowest deviation",
                  found.lowest.deviation, unit, found.lowest.tau,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "compensation/scoring/allan_deviation.h"
 #include "compensation/scoring/even_series.h"
@@ -12,8 +13,10 @@ namespace beamgyro {
 /// Returns a line about the samples that are used and those that are not.
 std::string series_line(const EvenSeries& series);
 
-/// Returns a table of the deviations in `unit`, a line for each tau.
-std::string allan_table(const AllanCurve& curve, const std::string& unit);
+/// Returns a table of the deviations in `unit`, a line for each tau, with the
+/// 95 % interval of the last curve. "-" is a deviation that there is not.
+std::string deviation_table(const std::vector<DeviationCurve>& curves,
+                            const std::string& unit);
 
 /// Returns the noise coefficients of a series in `unit` and what the fit of
 /// them used, line by line.

@@ -3,23 +3,22 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
+
+#include "compensation/scoring/angle_sums.h"
 
 namespace beamgyro {
 namespace {
 
-using Eigen::ArrayXd;
 using Eigen::Index;
 
 constexpr double kTauTolerance = 1e-6;  // [-]
-constexpr double kLeastCover = 0.5;     // [-], of the samples of a mean
-// Differences summed at a time: what they read stays in the cache.
-constexpr Index kBlock = 4096;
 
 [[noreturn]] void fail_series(const std::string& message) {
   throw std::invalid_argument(message);
@@ -57,129 +56,107 @@ double mean_of(const EvenSeries& series) {
   return sum / count;
 }
 
-/// Of the differences Y_{k+m} - Y_k at one tau.
-struct Differences {
-  double squares = 0.0;
-  double shares = 0.0;  // sum of 1/n_k + 1/n_{k+m}
-  double count = 0.0;
-};
-
-/// The sums of a stretch up to each place, of which differences are means. The
-/// mean rate is taken off: it cancels, and without it the sums stay small.
-class Stretch {
- public:
-  Stretch(const std::vector<double>& rates, double mean) {
-    const auto places = static_cast<Index>(rates.size());
-    sum_ = ArrayXd::Zero(places + 1);
-    double sum = 0.0;
-    bool whole = true;
-    for (Index k = 0; k < places; ++k) {
-      const double rate = rates[static_cast<std::size_t>(k)];
-      whole = whole && !std::isnan(rate);
-      if (!std::isnan(rate)) sum += rate - mean;
-      sum_(k + 1) = sum;
-    }
-    if (whole) return;
-    count_ = ArrayXd::Zero(places + 1);
-    for (Index k = 0; k < places; ++k)
-      count_(k + 1) =
-          count_(k) + (std::isnan(rates[static_cast<std::size_t>(k)]) ? 0 : 1);
-  }
-
-  /// Adds the differences that start at every `stride`-th place.
-  void add(Index m, Index stride, Differences& total) const {
-    if (sum_.size() < 2 * m + 1) return;
-    const Index starts = (sum_.size() - 2 * m - 1) / stride + 1;
-    if (count_.size() > 0)
-      add_with_gaps(m, stride, starts, total);
-    else
-      add_whole(m, stride, starts, total);
-  }
-
-  /// Adds the squares of differences of samples `lag` apart.
-  void add_lag(Index lag, double& squares, double& pairs) const {
-    for (Index k = 0; k + lag + 1 < sum_.size(); ++k) {
-      if (!has(k) || !has(k + lag)) continue;
-      const double difference = sample(k + lag) - sample(k);
-      squares += difference * difference;
-      pairs += 1.0;
-    }
-  }
-
- private:
-  bool has(Index k) const {
-    return count_.size() == 0 || count_(k + 1) > count_(k);
-  }
-  double sample(Index k) const { return sum_(k + 1) - sum_(k); }
-
-  void add_whole(Index m, Index stride, Index starts,
-                 Differences& total) const {
-    using Strided =
-        Eigen::Map<const ArrayXd, Eigen::Unaligned, Eigen::InnerStride<>>;
-    const auto length = static_cast<double>(m);
-    double squares = 0.0;
-    for (Index begin = 0; begin < starts; begin += kBlock) {
-      const Index size = std::min(kBlock, starts - begin);
-      const auto sums = [&](Index shift) {
-        return sum_.segment(begin + shift, size);
-      };
-      const auto strided = [&](Index shift) {
-        return Strided(sum_.data() + begin * stride + shift, size,
-                       Eigen::InnerStride<>(stride));
-      };
-      squares +=
-          stride == 1
-              ? (sums(2 * m) - 2.0 * sums(m) + sums(0)).square().sum()
-              : (strided(2 * m) - 2.0 * strided(m) + strided(0)).square().sum();
-    }
-    total.squares += squares / (length * length);
-    total.shares += static_cast<double>(starts) * 2.0 / length;
-    total.count += static_cast<double>(starts);
-  }
-
-  void add_with_gaps(Index m, Index stride, Index starts,
-                     Differences& total) const {
-    const double least = kLeastCover * static_cast<double>(m);
-    for (Index i = 0; i < starts; ++i) {
-      const Index k = i * stride;
-      const double before = count_(k + m) - count_(k);
-      const double after = count_(k + 2 * m) - count_(k + m);
-      if (before < least || after < least) continue;
-      const double first = sum_(k + m) - sum_(k);
-      const double second = sum_(k + 2 * m) - sum_(k + m);
-      const double share = 1.0 / (before * after);
-      const double difference = (second * before - first * after) * share;
-      total.squares += difference * difference;
-      total.shares += (before + after) * share;
-      total.count += 1.0;
-    }
-  }
-
-  ArrayXd sum_;
-  ArrayXd count_;  // of samples up to each place; empty without a gap
-};
-
-/// W of allan_curve().
-double white_variance(const std::vector<Stretch>& stretches) {
+/// W of deviation_curves().
+double white_variance(const std::vector<AngleSums>& stretches) {
   double least = std::numeric_limits<double>::infinity();
   for (const Index lag : {1, 2}) {
     double squares = 0.0, pairs = 0.0;
-    for (const Stretch& stretch : stretches)
+    for (const AngleSums& stretch : stretches)
       stretch.add_lag(lag, squares, pairs);
     if (pairs > 0.0) least = std::min(least, squares / pairs / 2.0);
   }
   return std::isfinite(least) ? least : 0.0;
 }
 
-AllanPoint point_of(const Differences& found, Index m, double interval,
-                    double white, std::size_t clusters) {
-  const auto length = static_cast<double>(m);
-  const double raw = found.squares / (2.0 * found.count);
-  const double excess = white * (found.shares / found.count - 2.0 / length) / 2;
-  const double variance = raw - std::max(excess, 0.0);
-  return {length * interval, variance >= 0.0 ? std::sqrt(variance) : NAN,
-          clusters, variance > 0.0 ? raw / variance : 1.0};
-}
+/// Deviations of one series, from the shortest tau on.
+class SeriesDeviations {
+ public:
+  explicit SeriesDeviations(const EvenSeries& series)
+      : interval_(series.interval) {
+    const double mean = mean_of(series);
+    for (const auto& rates : series.stretches)
+      stretches_.emplace_back(rates, mean);
+    if (series.missing > 0) white_ = white_variance(stretches_);
+  }
+
+  /// Adds to each curve its point at m samples.
+  void add(Index m, std::vector<DeviationCurve>& curves) {
+    const RateDifferences plain = sums(DeviationKind::kAdev, m);
+    const RateDifferences overlapping = sums(DeviationKind::kOadev, m);
+    if (plain.count == 0.0 || !(variance_of(plain, 2, m) >= 0.0) ||
+        !(variance_of(overlapping, 2, m) >= 0.0))
+      return;
+    find_noise(m);
+    const auto clusters = static_cast<std::size_t>(plain.count) + 1;
+    for (auto& [kind, points] : curves) {
+      const RateDifferences found = kind == DeviationKind::kAdev ? plain
+                                    : kind == DeviationKind::kOadev
+                                        ? overlapping
+                                        : sums(kind, m);
+      if (found.count > 0.0 && variance_of(found, order_of(kind), m) >= 0.0)
+        points.push_back(point(kind, found, m, clusters));
+    }
+  }
+
+ private:
+  RateDifferences sums(DeviationKind kind, Index m) const {
+    RateDifferences total;
+    for (const AngleSums& stretch : stretches_) stretch.add(kind, m, total);
+    return total;
+  }
+
+  /// Of white noise in a mean square difference, in place of 1.
+  static double norm(int order) { return order == 3 ? 6.0 : 2.0; }
+
+  double variance_of(const RateDifferences& found, int order, Index m) const {
+    const double raw = found.squares / (norm(order) * found.count);
+    const double excess =
+        white_ *
+        (found.shares / found.count - norm(order) / static_cast<double>(m)) /
+        norm(order);
+    return raw - std::max(excess, 0.0);
+  }
+
+  void find_noise(Index m) {
+    std::vector<std::vector<double>> averages;
+    for (const AngleSums& stretch : stretches_)
+      averages.push_back(stretch.averages(m));
+    noise_ = noise_type(std::move(averages), noise_);
+  }
+
+  AllanPoint point(DeviationKind kind, const RateDifferences& found, Index m,
+                   std::size_t clusters) const {
+    const int order = order_of(kind);
+    const double variance = variance_of(found, order, m);
+    AllanPoint point{static_cast<double>(m) * interval_, std::sqrt(variance),
+                     clusters};
+    if (variance > 0.0)
+      point.gap_noise = found.squares / (norm(order) * found.count) / variance;
+    point.noise = noise_;
+    // The mean of the means of records, each weighted with its differences.
+    const auto length = static_cast<double>(m);
+    double inverse = 0.0, ratio = 0.0, all = 0.0;
+    for (const auto& [samples, records] : found.records) {
+      const auto places = static_cast<double>(samples);
+      const double differences = places - order * length + 1.0;
+      inverse += records * differences * differences /
+                 equivalent_freedom(kind, noise_, length, places);
+      ratio +=
+          records * differences * expected_ratio(kind, noise_, length, places);
+      all += records * differences;
+    }
+    point.freedom = all * all / inverse * found.count / found.complete /
+                    (point.gap_noise * point.gap_noise);
+    point.interval = confidence_interval(
+        point.deviation / std::sqrt(ratio / all), point.freedom);
+    return point;
+  }
+
+  std::vector<AngleSums> stretches_;
+  double interval_;
+  double white_ = 0.0;  // W of deviation_curves()
+  NoiseType noise_ = NoiseType::kWhite;
+};
 
 EvenSeries whole_series(std::span<const double> rates, double interval) {
   if (!(std::isfinite(interval) && interval > 0.0))
@@ -204,7 +181,10 @@ nlohmann::ordered_json list(const std::vector<AllanPoint>& points) {
   for (const AllanPoint& point : points) {
     all.push_back({{"tau_s", point.tau},
                    {"deviation", point.deviation},
-                   {"clusters", point.clusters}});
+                   {"clusters", point.clusters},
+                   {"interval", {point.interval.low, point.interval.high}},
+                   {"freedom", point.freedom},
+                   {"noise", name_of(point.noise)}});
   }
   return all;
 }
@@ -228,31 +208,45 @@ std::vector<double> octave_taus(const EvenSeries& series) {
   return octave_taus(longest_stretch(series), series.interval);
 }
 
-AllanCurve allan_curve(const EvenSeries& series, std::span<const double> taus) {
-  const double mean = mean_of(series);
-  std::vector<Stretch> stretches;
-  for (const auto& rates : series.stretches)
-    stretches.emplace_back(rates, mean);
-  const double white = series.missing > 0 ? white_variance(stretches) : 0.0;
-  AllanCurve curve;
-  for (const double tau : taus) {
-    const Index m = samples_of(tau, series.interval, longest_stretch(series));
-    Differences plain, overlapping;
-    for (const Stretch& stretch : stretches) {
-      stretch.add(m, m, plain);
-      stretch.add(m, 1, overlapping);
-    }
-    if (plain.count == 0.0) continue;
-    const auto clusters = static_cast<std::size_t>(plain.count) + 1;
-    const AllanPoint first =
-        point_of(plain, m, series.interval, white, clusters);
-    const AllanPoint second =
-        point_of(overlapping, m, series.interval, white, clusters);
-    if (std::isnan(first.deviation) || std::isnan(second.deviation)) continue;
-    curve.plain.push_back(first);
-    curve.overlapping.push_back(second);
+const std::vector<std::string>& tau_spacing_names() {
+  static const std::vector<std::string> names{"octave", "decade", "all"};
+  return names;
+}
+
+std::vector<double> taus_of(const EvenSeries& series, TauSpacing spacing) {
+  if (spacing == TauSpacing::kOctave) return octave_taus(series);
+  const std::size_t most = longest_stretch(series) / 2;
+  std::vector<double> taus;
+  const auto add = [&](std::size_t m) {
+    if (m <= most) taus.push_back(static_cast<double>(m) * series.interval);
+  };
+  if (spacing == TauSpacing::kAll)
+    for (std::size_t m = 1; m <= most; ++m) add(m);
+  else
+    for (std::size_t decade = 1; decade <= most; decade *= 10)
+      for (const std::size_t step : {1, 2, 4}) add(step * decade);
+  return taus;
+}
+
+std::vector<DeviationCurve> deviation_curves(
+    const EvenSeries& series, std::span<const DeviationKind> kinds,
+    std::span<const double> taus, const std::function<void(double)>& advance) {
+  const std::size_t longest = longest_stretch(series);
+  std::vector<DeviationCurve> curves;
+  for (const DeviationKind kind : kinds) curves.push_back({kind, {}});
+  SeriesDeviations deviations(series);
+  for (std::size_t i = 0; i < taus.size(); ++i) {
+    deviations.add(samples_of(taus[i], series.interval, longest), curves);
+    if (advance)
+      advance(static_cast<double>(i + 1) / static_cast<double>(taus.size()));
   }
-  return curve;
+  return curves;
+}
+
+AllanCurve allan_curve(const EvenSeries& series, std::span<const double> taus) {
+  auto curves = deviation_curves(
+      series, std::array{DeviationKind::kAdev, DeviationKind::kOadev}, taus);
+  return {std::move(curves[0].points), std::move(curves[1].points)};
 }
 
 std::vector<AllanPoint> adev(std::span<const double> rates, double interval,
@@ -286,10 +280,9 @@ SampleRange longest_gapless_range(const Recording& recording,
   return longest;
 }
 
-nlohmann::ordered_json to_json(const AllanCurve& curve) {
+nlohmann::ordered_json to_json(const std::vector<DeviationCurve>& curves) {
   nlohmann::ordered_json json;
-  json["adev"] = list(curve.plain);
-  json["oadev"] = list(curve.overlapping);
+  for (const auto& [kind, points] : curves) json[name_of(kind)] = list(points);
   return json;
 }
 

@@ -13,7 +13,8 @@ namespace beamgyro {
 
 struct CoefficientEstimate {
   double value;
-  double uncertainty;  // 1-sigma
+  double uncertainty;             // 1-sigma
+  ConfidenceInterval interval{};  // of 95 %
 };
 
 /// A tau that the fit does not use.
@@ -62,6 +63,13 @@ struct NoiseCoefficients {
 ///
 /// So a term must differ from 0 by three standard errors, and a tau that is
 /// left out must deviate by as much; at most half of the taus are left out.
+///
+/// The uncertainty of a coefficient is that of a weighted fit to deviations
+/// that are not independent: the covariances of the squared deviations are
+/// those of overlapping differences of noise with the terms found
+/// (difference_covariance.h), with 4 f^2 added for each deviation. The interval
+/// is of chi-squared with the degrees of freedom of that uncertainty.
+///
 /// Taus with an uncertainty above 25 % (fewer than nine clusters) are not
 /// fitted, and there are at least two taus more than terms.
 ///
@@ -85,7 +93,7 @@ struct CoefficientReport {
 std::vector<CoefficientReport> reports(const NoiseCoefficients& coefficients,
                                        const std::string& unit);
 
-/// {"N": {"per_second": {"value", "unit"}, "per_hour": {...},
+/// {"N": {"per_second": {"value", "interval", "unit"}, "per_hour": {...},
 /// "relative_uncertainty"}, ..., "lowest", "fit"}
 /// (docs/reference/allan_deviation.md).
 nlohmann::ordered_json to_json(const NoiseCoefficients& coefficients,

@@ -159,5 +159,70 @@ class Allan(ProgramTest):
                       says="states its unit, deg/s")
 
 
+class Kinds(ProgramTest):
+    def white(self):
+        rate = normals(4)[:1 << 12] * N * HERTZ**0.5
+        self.write("s.csv", rows([rate], ["rate"]))
+        return ["s.csv", "--rate-Hz", HERTZ, "--unit", "deg/s"]
+
+    def found(self, *arguments):
+        text = self.ok("allan", *self.white(), *arguments, "--json", "a.json")
+        return text, json.loads((self.dir / "a.json").read_text())
+
+    def test_the_kinds_asked_for_are_printed_and_written(self):
+        kinds = ["adev", "oadev", "mdev", "hdev", "ohdev", "totdev"]
+        text, answer = self.found("--kind", ",".join(kinds))
+        self.assertEqual([key for key in answer if key.endswith("dev")],
+                         kinds)
+        for kind in kinds:
+            self.assertIn(f"{kind} deg/s", text)
+            for point in answer[kind]:
+                low, high = point["interval"]
+                self.assertLess(low, point["deviation"])
+                self.assertLess(point["deviation"], high)
+            # Of white noise mdev falls to 1/sqrt(2) of the others.
+            law = N / point["tau_s"]**0.5
+            self.assertLess(low / law, 1)
+            self.assertGreater(high / law, 0.7)
+        self.assertIn("95 % of totdev", text)
+        again, _ = self.found("--kind", "hdev", "--kind", "hdev")
+        self.assertEqual(again.count("hdev deg/s"), 1)
+
+    def test_taus_are_octaves_decades_or_all(self):
+        _, octave = self.found()
+        _, decade = self.found("--taus", "decade")
+        _, every = self.found("--taus", "all", "--kind", "oadev")
+        taus = [round(point["tau_s"] * HERTZ) for point in decade["adev"]]
+        self.assertEqual(taus, [1, 2, 4, 10, 20, 40, 100, 200, 400, 1000,
+                                2000])
+        self.assertEqual(len(every["oadev"]), 2048)
+        self.assertEqual(len(octave["oadev"]), 12)
+        # The coefficients are those of the octaves.
+        self.assertEqual(octave["noise"], decade["noise"])
+        self.assertEqual(octave["noise"], every["noise"])
+        self.assertNotIn("adev", every)
+
+    def test_coefficients_have_intervals_in_both_units(self):
+        text, answer = self.found()
+        found = answer["noise"]["N"]
+        low, high = found["per_second"]["interval"]
+        self.assertLess(low, N)
+        self.assertGreater(high, N)
+        for one, other in zip(found["per_second"]["interval"],
+                              found["per_hour"]["interval"]):
+            self.assertAlmostEqual(60 * one, other, places=12)
+        self.assertIn(f"{60 * low:.4g} to {60 * high:.4g}", text)
+        self.assertIn(f"{low:.4g} to {high:.4g}", text)
+
+    def test_unknown_words_are_refused_with_a_suggestion(self):
+        for option, word, meant in [("--kind", "oadv", "oadev"),
+                                    ("--kind", "adev,mdv", "mdev"),
+                                    ("--taus", "octaves", "octave")]:
+            with self.subTest(word):
+                self.rejected("allan", *self.white(), option, word,
+                              says=[option, "not known; expected",
+                                    f'did you mean "{meant}"?'])
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include "random/random_stream.h"
+#include "tests/compensation/scoring/noise_samples.h"
 
 namespace beamgyro::noise_coefficients_test {
 namespace {
@@ -332,9 +334,74 @@ TEST(NoiseCoefficients, ATauThatFitsNoTermDoesNotDecide) {
   EXPECT_GT(found.angle_random_walk->uncertainty, 0.002 * 0.01);
 }
 
+using Find = std::optional<CoefficientEstimate> NoiseCoefficients::*;
+
+/// Of a hundred records of noise at `truth` at least ninety have it within
+/// their 95 % intervals, which are no more than twice as wide as the scatter
+/// asks for.
+template <typename Make>
+void expect_coverage(Find coefficient, double truth, Make rates) {
+  constexpr std::uint32_t kRecords = 100;
+  int covered = 0, found = 0;
+  double squares = 0.0, uncertainties = 0.0;
+  for (std::uint32_t run = 0; run < kRecords; ++run) {
+    const NoiseSamples samples(2048, 0.1, run);
+    const auto of_run = found_in(beamgyro::series_of(rates(samples), 0.1));
+    const auto& estimate = of_run.*coefficient;
+    if (!estimate) continue;
+    ++found;
+    covered +=
+        estimate->interval.low <= truth && truth <= estimate->interval.high;
+    squares += std::pow(estimate->value - truth, 2);
+    uncertainties += std::pow(estimate->uncertainty, 2);
+  }
+  EXPECT_GE(found, 98);
+  EXPECT_GE(covered, 0.9 * found);
+  EXPECT_LE(uncertainties, 4.0 * squares);
+}
+
+TEST(NoiseCoefficients, HaveIntervalsThatHoldTheTruth) {
+  const auto times = [](std::vector<double> rates, double factor) {
+    for (double& rate : rates) rate *= factor;
+    return rates;
+  };
+  {
+    SCOPED_TRACE("quantisation");
+    expect_coverage(
+        &NoiseCoefficients::angle_quantisation, 0.5,
+        [&](const auto& s) { return times(s.quantisation(), 0.5); });
+  }
+  {
+    SCOPED_TRACE("white");
+    expect_coverage(&NoiseCoefficients::angle_random_walk, 0.5,
+                    [&](const auto& s) { return times(s.white(), 0.5); });
+  }
+  {
+    SCOPED_TRACE("flicker");
+    expect_coverage(&NoiseCoefficients::bias_instability, 0.5,
+                    [&](const auto& s) { return times(s.flicker(), 0.5); });
+  }
+  {
+    SCOPED_TRACE("random walk");
+    expect_coverage(&NoiseCoefficients::rate_random_walk, 0.5,
+                    [&](const auto& s) { return times(s.random_walk(), 0.5); });
+  }
+  {
+    SCOPED_TRACE("ramp");
+    expect_coverage(&NoiseCoefficients::rate_ramp, 0.2, [&](const auto& s) {
+      return sum(s.white(), times(s.ramp(), 0.2));
+    });
+  }
+  {
+    SCOPED_TRACE("white noise on flicker");
+    expect_coverage(&NoiseCoefficients::bias_instability, 1.0,
+                    [&](const auto& s) { return sum(s.white(), s.flicker()); });
+  }
+}
+
 TEST(NoiseCoefficients, AreReportedInSecondsAndInHours) {
   NoiseCoefficients coefficients;
-  coefficients.angle_random_walk = {{0.01, 0.0001}};
+  coefficients.angle_random_walk = {{0.01, 0.0001, {0.0098, 0.0102}}};
   coefficients.bias_instability = {{0.002, 0.0001}};
   coefficients.rate_ramp = {{1e-6, 1e-8}};
   const auto rates = to_json(coefficients, "deg/s");
@@ -346,6 +413,8 @@ TEST(NoiseCoefficients, AreReportedInSecondsAndInHours) {
   EXPECT_DOUBLE_EQ(rates["B"]["per_hour"]["value"], 7.2);
   EXPECT_DOUBLE_EQ(rates["R"]["per_hour"]["value"], 12.96);
   EXPECT_EQ(rates["R"]["per_hour"]["unit"], "deg/h/h");
+  EXPECT_DOUBLE_EQ(rates["N"]["per_second"]["interval"][0], 0.0098);
+  EXPECT_DOUBLE_EQ(rates["N"]["per_hour"]["interval"][1], 0.612);
   EXPECT_TRUE(rates["K"].is_null());
   const auto volts = to_json(coefficients, "V");
   EXPECT_EQ(volts["N"]["per_hour"]["unit"], "V sqrt(h)");
