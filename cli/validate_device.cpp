@@ -3,7 +3,9 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "cli/figure_pictures.h"
@@ -63,6 +65,15 @@ ValidationRequest request_of(const ValidateArguments& arguments) {
   return request;
 }
 
+// Returns the largest value that a specification allows a metric, if it does.
+std::optional<double> largest_allowed(const ValidationResult& result,
+                                      std::string_view metric) {
+  for (const auto& [limit, decision] : result.limits)
+    if (limit.metric == metric && limit.relative_to.empty() && limit.most)
+      return limit.most;
+  return std::nullopt;
+}
+
 // Returns what --json writes and the page shows.
 nlohmann::ordered_json json_of(const CompletedValidation& validation) {
   nlohmann::ordered_json json = to_json(validation.result);
@@ -72,7 +83,8 @@ nlohmann::ordered_json json_of(const CompletedValidation& validation) {
   for (const PopulationMetric& metric : validation.result.population->metrics)
     json["figures"].push_back(population_figure(
         {std::string(metric.metric->name), std::string(metric.metric->unit),
-         metric.before, metric.after}));
+         metric.before, metric.after,
+         largest_allowed(validation.result, metric.metric->name)}));
   return json;
 }
 

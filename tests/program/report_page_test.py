@@ -8,7 +8,7 @@ import tempfile
 import unittest
 
 from browser import CHROMIUM, browser
-from program import SCENARIOS, ProgramTest
+from program import ROOT, SCENARIOS, ProgramTest
 
 WIDTHS = [1280, 390]  # [px], of a desktop and of a phone
 NAME = "<img src=x onerror=alert(1)><!--.toml"  # what a file may be called
@@ -41,8 +41,9 @@ class ReportPage(unittest.TestCase):
         test = ProgramTest()
         test.dir = cls.dir
         answer = test.beamgyro("validate", NAME, "--device",
-                               SCENARIOS / "devices/nominal.toml", "--report",
-                               "report", "--json", "result.json")
+                               SCENARIOS / "devices/nominal.toml", "--spec",
+                               ROOT / "specs/uav.toml", "--report", "report",
+                               "--json", "result.json")
         assert answer.returncode in (0, 3), answer.stderr
         cls.page = cls.dir / "report/index.html"
         cls.result = json.loads((cls.dir / "result.json").read_text())

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -81,6 +82,7 @@ nlohmann::ordered_json population_figure(const PopulationFigure& population) {
                             devices, name),
                 {name, population.unit},
                 {"Share of the devices", "%"}};
+  figure.x.label[0] = static_cast<char>(std::toupper(figure.x.label[0]));
   FigureSeries before = share_of_devices("before", population.before);
   FigureSeries after = share_of_devices("after", population.after);
   // Values of one sign that differ much are told apart by their ratios.

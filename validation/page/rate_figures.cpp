@@ -23,6 +23,7 @@ constexpr double kMillion = 1e6;      // [ppm]
 constexpr double kOtherTable = 3.0;   // [K], between two rate tables
 constexpr double kLongestHold = 5.0;  // [-], of the median; longer: warm-up
 constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+constexpr double kLeastGain = 0.01;   // [-], -40 dB
 constexpr double kBeforeStep = 0.02;  // [s]
 constexpr double kAfterStep = 0.1;    // [s]
 constexpr double kSamplesAfterStep = 50.0;
@@ -153,6 +154,7 @@ ResponseCurves response_curves(const Evidence& evidence,
   for (const ResponsePoint& point : response_to_true_rate(evidence)) {
     const double size = std::abs(point.gain);
     const double half = kNormal975 * point.sigma / size;  // [-], [rad]
+    if (size < kLeastGain) break;  // noise and resolution from there on
     // The phase goes on from that of the frequency before.
     const double turn = 2.0 * std::numbers::pi;
     const double phase = std::arg(point.gain);
@@ -231,7 +233,7 @@ std::vector<Figure> frequency_response_figures(const ComparedEvidence& both) {
       "frequency_response_gain",
       "Frequency response: gain",
       "Amplitude of the judged rate over that of the true rate: from sine "
-      "rates, and above the highest of them from a step.",
+      "rates, and above the highest of them from a step, down to -40 dB.",
       {"Frequency", "Hz", true},
       {"Gain", "dB"}};
   Figure phase{

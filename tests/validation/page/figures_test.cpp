@@ -11,6 +11,7 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "random/random_stream.h"
@@ -183,6 +184,21 @@ TEST(Figures, TheFrequencyResponseHasGainAndPhase) {
   }
 }
 
+TEST(Figures, AResponseEndsAtAHundredthOfTheRate) {
+  GivenEvidence given;
+  for (const auto& [f, gain] : {std::pair(1.0, 0.5), std::pair(2.0, 0.005)}) {
+    const Signal sine = [f = f](double t) {
+      return std::sin(2.0 * kPi * f * t);
+    };
+    given.add({"sine", RunPurpose::kSineRate, 8, 100, soaks({20}), sine,
+               [=, gain = gain](double t) { return (gain - 1.0) * sine(t); },
+               none});
+  }
+  const auto series = given.figure("frequency_response_gain")["series"];
+  EXPECT_EQ(series[0]["x"].size(), 1u);
+  EXPECT_EQ(series[1]["x"].size(), 2u);
+}
+
 TEST(Figures, AStepIsShownAroundItself) {
   GivenEvidence given;
   const auto step = [](double after) {
@@ -264,7 +280,7 @@ TEST(Figures, AYieldRisesToTheShareOfDevicesThatHaveAFigure) {
   after = {0.1, std::numeric_limits<double>::quiet_NaN(), 0.3, 0.2};
   const auto figure =
       population_figure({"bias_pp_deg_per_s", "deg/s", before, after, 0.25});
-  EXPECT_EQ(figure["x"]["label"], "bias pp");
+  EXPECT_EQ(figure["x"]["label"], "Bias pp");
   EXPECT_EQ(figure["x"]["scale"], "log");
   EXPECT_LE(figure["series"][0]["x"].size(), kFigurePoints + 1);
   EXPECT_EQ(figure["series"][0]["y"].back(), 100.0);
