@@ -151,9 +151,9 @@ void require_no_device_options(const ValidateArguments& arguments) {
 // alone: when a specification or a page is asked for, and for compensators that
 // are no files of this program.
 bool is_judged(const ValidateArguments& arguments) {
-  return arguments.specification || !arguments.report.empty() ||
-         !arguments.figures.empty() || !arguments.bundle.empty() ||
-         !arguments.compensator.ends_with(".json");
+  return arguments.specification || arguments.workbench ||
+         !arguments.report.empty() || !arguments.figures.empty() ||
+         !arguments.bundle.empty() || !arguments.compensator.ends_with(".json");
 }
 
 int judge_on_runs(const ValidateArguments& arguments) {
@@ -173,10 +173,10 @@ int judge_on_runs(const ValidateArguments& arguments) {
 void require_check_alone(const ValidateArguments& arguments) {
   if (arguments.compensator.empty() && arguments.device.empty() &&
       !arguments.qualification && !arguments.specification &&
-      !arguments.campaign && !arguments.devices && arguments.json.empty() &&
-      arguments.report.empty() && arguments.figures.empty() &&
-      arguments.bundle.empty() && arguments.set_runs.empty() &&
-      !arguments.full_scale)
+      !arguments.workbench && !arguments.campaign && !arguments.devices &&
+      arguments.json.empty() && arguments.report.empty() &&
+      arguments.figures.empty() && arguments.bundle.empty() &&
+      arguments.set_runs.empty() && !arguments.full_scale)
     return;
   throw std::invalid_argument(fmt::format(
       "--check {}: the bundle says what is validated; expected no more than "
@@ -263,6 +263,12 @@ void add_validate(CommandLine& program) {
                 "less drift than without a compensator"},
                arguments->specification);
   command.reads({{FileKind::kSpecification}});
+  command.text({"--workbench", "COMPENSATOR.json",
+                "Also tells the difference from this compensator, that "
+                "firmware was exported from",
+                "no comparison"},
+               arguments->workbench);
+  command.reads({{FileKind::kCompensator}});
   command.text({"--report", "DIR", "Writes the page DIR/index.html", "no page"},
                arguments->report);
   command.text({"--figures", "DIR",
@@ -293,6 +299,7 @@ void add_validate(CommandLine& program) {
   command.group("Part of a set");
   command.list({"--run", "NAME", "Run to score; may be repeated", "all runs"},
                arguments->set_runs);
+  add_process_limits(command, arguments->limits);
   command.example("beamgyro validate cubic.json soak.h5 rates.h5",
                   "Prints a table and a verdict");
   command.example(

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/process_limits.h"
+
 namespace beamgyro {
 
 /// Exit status of a validation that ran and was not passed.
@@ -17,8 +19,9 @@ struct ValidateArguments {
   std::vector<std::string> device;    // a device file, or numbers of a set
   std::vector<std::string> set_runs;  // names, of a set
   std::optional<double> full_scale;   // [deg/s]
-  std::optional<std::string> qualification, campaign, specification;
+  std::optional<std::string> qualification, campaign, specification, workbench;
   std::optional<long> devices, jobs;
+  LimitArguments limits;
 };
 
 /// Judges a compensator by every metric, check and limit, on a simulated device

@@ -52,7 +52,7 @@ ValidationRequest request_of(const ValidateArguments& arguments) {
   request.devices = arguments.devices;
   request.program_version = kProgramVersion;
   request.git_revision = kGitRevision;
-  request.limits.program = "/proc/self/exe";
+  request.limits = process_limits(arguments.limits);
   request.runs.assign(arguments.runs.begin(), arguments.runs.end());
   if (arguments.runs.empty()) {
     request.device = arguments.device.at(0);
@@ -61,6 +61,7 @@ ValidationRequest request_of(const ValidateArguments& arguments) {
                                 : shipped_qualification();
   }
   if (arguments.specification) request.specification = *arguments.specification;
+  if (arguments.workbench) request.workbench = *arguments.workbench;
   if (arguments.campaign) request.campaign = *arguments.campaign;
   return request;
 }
@@ -153,7 +154,7 @@ int check_bundle(const ValidateArguments& arguments) {
   if (different.empty()) {
     bundle.request.program_version = kProgramVersion;
     bundle.request.git_revision = kGitRevision;
-    bundle.request.limits.program = "/proc/self/exe";
+    bundle.request.limits = process_limits();
     const Validator validator(std::move(bundle.request));
     Conformity verdict{};
     different = different_outputs(arguments.check,

@@ -112,6 +112,16 @@ std::string evidence_words(const ResultProvenance& provenance) {
   return fmt::format("{} recording{}", runs, runs == 1 ? "" : "s");
 }
 
+std::string workbench_line(const JudgedCompensator& compensator) {
+  if (!compensator.workbench) return "";
+  const WorkbenchDifference& found = *compensator.workbench;
+  return wrapped(
+      fmt::format("difference from {}: at most {:.2g} deg/s, rms {:.2g} deg/s "
+                  "of {} answers",
+                  found.name, found.largest, found.rms, found.samples),
+      2);
+}
+
 std::string heading(const ValidationResult& result) {
   std::string verdict(conformity_name(result.verdict));
   std::ranges::transform(verdict, verdict.begin(), [](char c) {
@@ -121,7 +131,8 @@ std::string heading(const ValidationResult& result) {
          wrapped(fmt::format("{} on {}; {}", result.compensator.name,
                              evidence_words(result.provenance),
                              result.provenance.specification),
-                 2);
+                 2) +
+         workbench_line(result.compensator);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Compensators that are not ours: libraries and commands, in `compensate`."""
 
+import json
 import os
 import pathlib
 import signal
@@ -272,6 +273,29 @@ class Firmware(ExportTest):
                     workbench["compensated_rate"], atol=1e-4, rtol=0)
                 self.assertTrue(
                     (firmware["status"] & 1 == 1).any())
+
+    def test_a_verdict_tells_the_difference_from_the_workbench(self):
+        folder = self.export("cubic")
+        self.compile(folder, "-O2", "-ffp-contract=off", "-shared", "-fPIC",
+                     "net.c", "net_plugin.c", "-o", "net.so")
+        answer = self.beamgyro("validate", "./cubic/net.so", "held_out.h5",
+                               "--workbench", "cubic.json", "--json", "v.json")
+        self.assertIn(answer.returncode, [0, 3], answer.stderr)
+        self.assertIn("difference from cubic.json: at most", answer.stdout)
+        told = json.loads((self.dir / "v.json").read_text())["compensator"]
+        self.ok("compensate", "./cubic/net.so", "held_out.h5", "-o", "a.h5")
+        self.ok("compensate", "cubic.json", "held_out.h5", "-o", "b.h5")
+        difference = np.abs(rates(self.dir / "a.h5")["compensated_rate"]
+                            - rates(self.dir / "b.h5")["compensated_rate"])
+        difference = difference[np.isfinite(difference)]
+        self.assertEqual(told["workbench"], "cubic.json")
+        self.assertEqual(told["workbench_difference_largest_deg_per_s"],
+                         difference.max())
+        # Sums of squares in another order.
+        self.assertAlmostEqual(
+            told["workbench_difference_rms_deg_per_s"]
+            / np.sqrt(np.mean(difference ** 2)), 1, delta=1e-9)
+        self.assertGreater(difference.max(), 0)
 
     @unittest.skipIf(missing(), missing())
     def test_the_image_of_a_cortex_m4_answers_as_the_library(self):

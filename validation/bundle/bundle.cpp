@@ -103,6 +103,7 @@ Json request_json(const ValidationRequest& request, const CopyNames& names) {
       {"full_scale_deg_per_s",
        request.full_scale ? Json(*request.full_scale) : Json()},
       {"specification", optional_name("specification", request.specification)},
+      {"workbench", optional_name("workbench", request.workbench)},
       {"campaign", optional_name("campaign", request.campaign)},
       {"devices", request.devices ? Json(*request.devices) : Json()}};
 }
@@ -126,6 +127,7 @@ ValidationRequest request_from(const fs::path& directory,
     request.runs.push_back(directory / run);
   request.full_scale = node.at("full_scale_deg_per_s").optional_number();
   request.specification = optional_path(directory, node.at("specification"));
+  request.workbench = optional_path(directory, node.at("workbench"));
   request.campaign = optional_path(directory, node.at("campaign"));
   if (const JsonNode devices = node.at("devices"); !devices.is_null())
     request.devices = devices.integer(1, 4'000'000'000);

@@ -160,6 +160,12 @@ nlohmann::ordered_json to_json(const ValidationResult& result) {
               {"kind", result.compensator.kind},
               {"method", result.compensator.method},
               {"inputs", result.compensator.inputs}}}};
+  if (const auto& workbench = result.compensator.workbench) {
+    Json& compensator = json["compensator"];
+    compensator["workbench"] = workbench->name;
+    compensator["workbench_difference_largest_deg_per_s"] = workbench->largest;
+    compensator["workbench_difference_rms_deg_per_s"] = workbench->rms;
+  }
   json["metrics"] = metrics_json(result.metrics, result.limits);
   for (const char* list : {"limits", "checks"}) json[list] = Json::array();
   for (const DecidedLimit& limit : result.limits)

@@ -41,12 +41,21 @@ struct ResultFile {
   std::string sha256;
 };
 
+/// The difference from the compensator that firmware was exported from, over
+/// all samples that both answer.
+struct WorkbenchDifference {
+  std::string name;                 // of its file
+  double largest = 0.0, rms = 0.0;  // [deg/s]
+  std::size_t samples = 0;
+};
+
 /// What was judged.
 struct JudgedCompensator {
   std::string name;         // of the file without its ending, or the command
   std::string kind;         // "compensator", "library", "command", "model"
   std::string method = {};  // "cubic, ..." where it is known
   std::vector<std::string> inputs = {};  // the measured variables that it reads
+  std::optional<WorkbenchDifference> workbench = {};
 };
 
 /// A figure of merit of each device of a population; NaN where a device has

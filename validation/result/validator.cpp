@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "dataset/files/sha256.h"
 #include "sim/scenario/run_warnings.h"
 #include "sim/scenario/simulation_input.h"
+#include "validation/external/answer_checks.h"
 #include "validation/external/file_compensator.h"
 #include "validation/qualification/qualification_file.h"
 #include "validation/result/judgement.h"
@@ -73,6 +75,7 @@ struct Validator::State {
   std::unique_ptr<TestedCompensator> compensator;
   std::optional<Compensator> file;
   std::optional<ModelSpec> model;
+  std::optional<Compensator> workbench;
 
   std::vector<InputFile> inputs;
 
@@ -87,6 +90,31 @@ struct Validator::State {
     add_file("device", *request.device);
     for (const auto& path : qualification.files)
       add_file("qualification", path);
+  }
+
+  void open_workbench() {
+    if (!request.workbench) return;
+    workbench = read_compensator(*request.workbench);
+    add_file("workbench", *request.workbench);
+  }
+
+  std::optional<WorkbenchDifference> difference_from_workbench(
+      const DeviceEvidence& evidence) const {
+    if (!workbench) return std::nullopt;
+    WorkbenchDifference all{.name = request.workbench->filename().string()};
+    double squares = 0.0;
+    for (std::size_t k = 0; k < evidence.runs.size(); ++k) {
+      const AnswerDifference one = difference_of(
+          evidence.answers[k],
+          {.rate = compensated_rate(*workbench, evidence.runs[k])});
+      const auto samples = static_cast<double>(one.samples);
+      all.largest = std::max(all.largest, one.largest);
+      all.samples += one.samples;
+      squares += samples * one.rms * one.rms;
+    }
+    if (all.samples > 0)
+      all.rms = std::sqrt(squares / static_cast<double>(all.samples));
+    return all;
   }
 
   void open_compensator() {
@@ -164,6 +192,7 @@ Validator::Validator(ValidationRequest request)
   if (asked.device) s.read_device();
   s.specification = asked_specification(asked);
   s.open_compensator();
+  s.open_workbench();
   for (const auto& path : asked.runs) s.add_file("runs", path);
   if (asked.specification) s.add_file("specification", *asked.specification);
   if (asked.campaign) {
@@ -217,7 +246,8 @@ CompletedValidation Validator::validate(std::size_t threads,
   result.provenance = s.provenance();
   result.compensator = {
       tested_name(s.request.compensator), kind_of(s.request.compensator),
-      known != nullptr ? known->provenance.method : "", compensator.inputs()};
+      known != nullptr ? known->provenance.method : "", compensator.inputs(),
+      s.difference_from_workbench(done.evidence)};
   judge({s.specification, s.qualification.metric_runs, compensator,
          known != nullptr ? &known->provenance : nullptr},
         done.evidence, threads, result);

@@ -25,6 +25,8 @@ struct ValidationRequest {
   std::vector<std::filesystem::path> runs = {};
   std::optional<double> full_scale = {};  // [deg/s], of recordings
   std::optional<std::filesystem::path> specification = {};
+  // A compensator file that the answers are compared with.
+  std::optional<std::filesystem::path> workbench = {};
   std::optional<std::filesystem::path> campaign = {};  // for a yield
   std::optional<long> devices = {};                    // of the campaign
   std::string program_version = {}, git_revision = {};
