@@ -268,6 +268,17 @@ class Bundles(Qualified):
             path.unlink()
         self.check(0)
 
+    def test_the_bundle_of_a_command_runs_it_again(self):
+        self.write("same.py", "import sys\nrate = sys.stdin.readline()"
+                   ".strip().split(',').index('rate')\n"
+                   "for line in sys.stdin:\n"
+                   "    print(line.split(',')[rate].strip())\n")
+        answer = self.bundle(model="cmd:/usr/bin/python3 same.py")
+        self.assertIn("residual_rms_deg_per_s: 1 [", answer.stdout)
+        self.check(0)
+        (self.dir / "same.py").write_text("print(0)\n")
+        self.assertIn("result.json", self.check(1))
+
     def test_a_directory_that_is_not_empty_is_not_taken(self):
         self.bundle()
         self.rejected("validate", "cubic.toml", "--device", "device.toml",

@@ -47,10 +47,11 @@ void add_fault_of_speed(const Recording& run, Answer& answer) {
   if (answer.seconds <= duration || has_fault(answer, AnswerFault::kTimedOut) ||
       has_fault(answer, AnswerFault::kTooSlow))
     return;
+  // Without the time it took, so that the same inputs give the same words.
   answer.faults.push_back(
       {AnswerFault::kTooSlow, 0,
-       fmt::format("slower than real time: {:.3g} s for a run of {:.3g} s",
-                   answer.seconds, duration)});
+       fmt::format("slower than real time, {:.3g} s a sample",
+                   duration / static_cast<double>(run.time.size()))});
 }
 
 }  // namespace beamgyro

@@ -38,7 +38,9 @@ struct Answer {
   std::vector<double> rate;  // [deg/s], one per time; NaN where none came
   std::vector<SeenFault> faults = {};
   std::size_t clamped = 0;  // samples outside what training saw, where known
-  double seconds = 0.0;     // of wall clock, with the start of its processes
+  // Of wall clock, with the start of its processes; without it for a command
+  // that would be slower than real time with it.
+  double seconds = 0.0;
 };
 
 /// What a compensator may use that runs in a process of its own.
