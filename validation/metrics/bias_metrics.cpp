@@ -28,7 +28,8 @@ NoisyMeans block_means(const std::vector<const EvidenceRun*>& runs) {
 
 std::optional<Estimate> residual_figure(const Evidence& evidence,
                                         double ResidualScores::*figure,
-                                        Shrinkage shrinkage, double least) {
+                                        Shrinkage shrinkage, double least,
+                                        Growth growth = Growth::kSmooth) {
   const NoisyMeans means = block_means(quiet_runs(evidence));
   if (means.values.empty()) return std::nullopt;
   return estimate_beneath_noise(
@@ -36,7 +37,7 @@ std::optional<Estimate> residual_figure(const Evidence& evidence,
       [figure](std::span<const double> r) {
         return residual_scores(r).*figure;
       },
-      shrinkage, least);
+      shrinkage, least, growth);
 }
 
 }  // namespace
@@ -66,12 +67,12 @@ std::optional<Estimate> residual_rms(const Evidence& evidence) {
 
 std::optional<Estimate> residual_max(const Evidence& evidence) {
   return residual_figure(evidence, &ResidualScores::largest, Shrinkage::kToZero,
-                         0.0);
+                         0.0, Growth::kExtreme);
 }
 
 std::optional<Estimate> residual_pp(const Evidence& evidence) {
   return residual_figure(evidence, &ResidualScores::peak_to_peak,
-                         Shrinkage::kToMean, 0.0);
+                         Shrinkage::kToMean, 0.0, Growth::kExtreme);
 }
 
 std::optional<Estimate> normalised_residual(const Evidence& evidence) {

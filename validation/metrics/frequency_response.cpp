@@ -18,6 +18,7 @@ constexpr double kBeforeJump = 0.05;  // [s], mean before the step
 constexpr double kAfterJump = 0.5;    // [s], at most
 constexpr double kEndOfJump = 0.2;    // [-], of the time after the step
 constexpr double kLeastJump = 0.1;    // [deg/s]
+constexpr int kRefinements = 3;
 constexpr int kPerOctave = 24;
 constexpr double kLowestOfStep = 1.0;  // [Hz]
 constexpr double kHighest = 0.8;       // [-], of the Nyquist frequency
@@ -67,6 +68,20 @@ SineFit fit_sine(std::span<const double> time, std::span<const double> signal,
   return {{found(2), -found(3)}, values - terms * found};
 }
 
+/// How far a sine is from a frequency [Hz], by the phases of its two halves.
+double frequency_error(std::span<const double> time,
+                       std::span<const double> signal, double frequency) {
+  const std::size_t half = time.size() / 2;
+  const double omega = 2.0 * std::numbers::pi * frequency;
+  const auto phase = [&](std::size_t from) {
+    const SineFit fit =
+        fit_sine(time.subspan(from, half), signal.subspan(from, half), omega);
+    return std::arg(fit.amplitude * std::polar(1.0, -omega * time[from]));
+  };
+  return std::remainder(phase(half) - phase(0), 2.0 * std::numbers::pi) /
+         (2.0 * std::numbers::pi * (time[half] - time[0]));
+}
+
 std::complex<double> amplitude_at(const Eigen::VectorXd& left,
                                   std::span<const double> time, double omega) {
   std::complex<double> sum = 0.0;
@@ -113,7 +128,12 @@ std::optional<ResponsePoint> sine_response(const Recording& recording,
   const auto& truth = column_values(recording, "true_rate");
   SampleRange range = settled_samples(recording);
   if (range.size() < 8) return std::nullopt;
-  const double frequency = true_sine_frequency(recording, truth, range);
+  double frequency = true_sine_frequency(recording, truth, range);
+  if (!(frequency > 0.0)) return std::nullopt;
+  for (int i = 0; i < kRefinements; ++i)
+    frequency += frequency_error(
+        std::span(recording.time).subspan(range.begin, range.size()),
+        std::span(truth).subspan(range.begin, range.size()), frequency);
   const double step = usual_step(recording);
   const double all = static_cast<double>(range.size()) * step;
   // Half a step more than whole periods are in the range.
@@ -224,7 +244,8 @@ std::vector<ResponsePoint> response_to_true_rate(const Evidence& evidence) {
 
 std::optional<Crossing> first_crossing(std::span<const ResponsePoint> points,
                                        std::span<const double> values,
-                                       std::span<const double> sigmas) {
+                                       std::span<const double> sigmas,
+                                       double common_sigma) {
   for (std::size_t i = 1; i < points.size(); ++i) {
     if (!(values[i - 1] >= 0.0 && values[i] < 0.0)) continue;
     const double share = values[i - 1] / (values[i - 1] - values[i]);
@@ -234,8 +255,8 @@ std::optional<Crossing> first_crossing(std::span<const ResponsePoint> points,
         points[i - 1].frequency * std::exp(share * octaves);
     const double slope =
         (values[i - 1] - values[i]) / (octaves * frequency);  // per Hz
-    const double sigma =
-        std::hypot((1.0 - share) * sigmas[i - 1], share * sigmas[i]);
+    const double sigma = std::hypot((1.0 - share) * sigmas[i - 1],
+                                    share * sigmas[i], common_sigma);
     return Crossing{frequency, sigma / slope,
                     std::min(points[i - 1].freedom, points[i].freedom)};
   }

@@ -51,10 +51,12 @@ struct Crossing {
 };
 
 /// Returns the first crossing of level zero by `values`, which have the
-/// standard deviations `sigmas`, one for each point, linear over the logarithm
-/// of the frequency. Returns nothing when there is none.
+/// standard deviations `sigmas`, one for each point, and `common_sigma`, of
+/// what they share, linear over the logarithm of the frequency. Returns nothing
+/// when there is none.
 std::optional<Crossing> first_crossing(std::span<const ResponsePoint> points,
                                        std::span<const double> values,
-                                       std::span<const double> sigmas);
+                                       std::span<const double> sigmas,
+                                       double common_sigma);
 
 }  // namespace beamgyro

@@ -130,9 +130,15 @@ std::optional<Estimate> acceleration_term(const Evidence& evidence,
     const std::vector<double> residual = residual_of(*run);
     means.add(recording, ranges, residual, residual);
     const bool with_square = purpose == RunPurpose::kVibration;
-    Terms terms{Eigen::MatrixXd(static_cast<Eigen::Index>(ranges.size()),
-                                with_square ? 4 : 3),
-                hats(means.segments, kDrift)};
+    const auto rows = static_cast<Eigen::Index>(ranges.size());
+    const Eigen::MatrixXd drift = hats(means.segments, kDrift);
+    Terms terms{Eigen::MatrixXd(rows, with_square ? 4 : 3),
+                Eigen::MatrixXd(rows, drift.cols() + 2)};
+    terms.drift.leftCols(drift.cols()) = drift;
+    put_column(terms.drift, drift.cols(), means.segments,
+               column_or_zero(recording, "true_cross_rate_x", 1.0));
+    put_column(terms.drift, drift.cols() + 1, means.segments,
+               column_or_zero(recording, "true_cross_rate_y", 1.0));
     for (Eigen::Index axis = 0; axis < 3; ++axis)
       put_column(terms.searched, axis, means.segments,
                  a.axes[static_cast<std::size_t>(axis)]);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "validation/metrics/random_purposes.h"
 
@@ -10,8 +11,9 @@ namespace beamgyro {
 namespace {
 
 constexpr std::size_t kManySegments = 500;
-constexpr std::uint32_t kDraws = 200;
-constexpr std::uint32_t kFewDraws = 60;  // with many segments
+constexpr std::uint32_t kDraws = 120;
+constexpr double kFirstNoise = 1.0 + std::numbers::sqrt2;  // 1/(sqrt(2) - 1)
+constexpr std::uint32_t kFewDraws = 60;                    // with many segments
 
 using Draws = std::vector<std::vector<double>>;
 
@@ -82,13 +84,15 @@ std::vector<double> shrunken(const NoisyMeans& means, const Draws& draws,
   std::vector<double> base = means.values;
   if (shrinkage == Shrinkage::kNone) return base;
   const std::vector<std::size_t> ends = group_ends(means, shrinkage);
-  double noise = 0.0;
+  std::vector<double> noise;  // sums of squares
   for (const std::vector<double>& draw : draws)
-    noise += sum_of_squares(draw, centres_of(draw, ends, shrinkage));
-  noise /= static_cast<double>(draws.size());
+    noise.push_back(sum_of_squares(draw, centres_of(draw, ends, shrinkage)));
+  const double usual = mean_of(noise);
+  const double most = usual + kNormal975 * std::sqrt(mean_square(noise, usual));
   const std::vector<double> centres = centres_of(base, ends, shrinkage);
   const double all = sum_of_squares(base, centres);
-  const double kept = all > noise ? std::sqrt(1.0 - noise / all) : 0.0;
+  // As small a sum may well be noise alone.
+  const double kept = all > most ? std::sqrt(1.0 - usual / all) : 0.0;
   for (std::size_t i = 0; i < base.size(); ++i)
     base[i] = centres[i] + kept * (base[i] - centres[i]);
   return base;
@@ -138,7 +142,7 @@ bool NoisyMeans::without_noise() const {
 
 Estimate estimate_beneath_noise(const NoisyMeans& means,
                                 const Statistic& statistic, Shrinkage shrinkage,
-                                double least) {
+                                double least, Growth growth) {
   const double value = statistic(means.values);
   if (means.without_noise() || !std::isfinite(value))
     return {value, Interval{value, value}};
@@ -149,8 +153,10 @@ Estimate estimate_beneath_noise(const NoisyMeans& means,
   for (double& error : errors) error -= exact;
   const double shift = mean_of(errors);
   const double half = kNormal975 * std::sqrt(mean_square(errors, shift));
+  const double first =
+      growth == Growth::kExtreme ? std::max(shift, kFirstNoise * shift) : shift;
   return {value,
-          Interval{std::min(value, std::max(least, value - shift - half)),
+          Interval{std::min(value, std::max(least, value - first - half)),
                    std::max(value, value - shift + half)}};
 }
 

@@ -37,6 +37,10 @@ using Statistic = std::function<double(std::span<const double> means)>;
 /// since their power-on, by the share of their variance that is noise.
 enum class Shrinkage { kNone, kToZero, kToMean, kToPowerOn };
 
+/// How noise enlarges a figure. An extreme one grows most by the first noise,
+/// which chooses the extreme, and less by what is added to that.
+enum class Growth { kSmooth, kExtreme };
+
 /// Returns a figure of the means and the 95 % interval of what it would be
 /// without the noise. The error of the figure is drawn: noise is added to the
 /// shrunken means, and e is by how much that changes the figure. The interval
@@ -44,11 +48,14 @@ enum class Shrinkage { kNone, kToZero, kToMean, kToPowerOn };
 ///
 ///   value - mean(e) -+ 1.96 sigma(e),
 ///
-/// widened to contain the value, and cut off below `least`. It has no width if
-/// there is no noise.
+/// widened to contain the value, and cut off below `least`. For an extreme
+/// figure the lower end is value - 1/(sqrt(2) - 1) mean(e) - 1.96 sigma(e): as
+/// much as the first noise adds where all means are equal. The interval has no
+/// width if there is no noise.
 Estimate estimate_beneath_noise(const NoisyMeans& means,
                                 const Statistic& statistic, Shrinkage shrinkage,
-                                double least = -HUGE_VAL);
+                                double least = -HUGE_VAL,
+                                Growth growth = Growth::kSmooth);
 
 /// The same for a figure that measures the noise itself, so that its truth is
 /// the root of the mean square over many draws; e are logarithms of ratios.

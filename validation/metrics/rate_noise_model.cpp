@@ -2,7 +2,9 @@
 #include "validation/metrics/rate_noise_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 
 #include "compensation/scoring/stated_values.h"
 #include "sim/signal/flicker.h"
@@ -11,10 +13,11 @@ namespace beamgyro {
 namespace {
 
 constexpr double kThirdDifferences = 20.0;  // [-], variance, of white noise
-constexpr double kMedianSize = 0.6744897501960817;  // [-], of a unit normal
-constexpr double kShortMean = 1.0;                  // [s]
-constexpr double kLongMean = 60.0;                  // [s]
+constexpr double kMedianSize = 0.6744897501960817;     // [-], of a unit normal
+constexpr double kShortMean = 1.0;                     // [s]
+constexpr std::array kLongMeans = {15.0, 30.0, 60.0};  // [s]
 constexpr std::size_t kLeastDifferences = 16;
+constexpr double kChance = 6.0;     // over the root of a number of differences
 constexpr double kForgotten = 8.0;  // [-], decay rate times length of a segment
 
 /// Covariance of the means of n samples of a process of variance one and
@@ -77,6 +80,18 @@ std::size_t samples_in(double length, double step) {
              : 1;
 }
 
+/// Returns whether the gyro neither turns nor is accelerated, so that steps of
+/// the residual are not taken for noise.
+bool is_still(const Recording& recording) {
+  const auto& truth = column_values(recording, "true_rate");
+  return std::ranges::adjacent_find(truth, std::not_equal_to<>()) ==
+             truth.end() &&
+         std::ranges::none_of(recording.columns, [](const Column& column) {
+           return column.name.starts_with("true_acceleration") ||
+                  column.name.starts_with("true_cross_rate");
+         });
+}
+
 }  // namespace
 
 std::optional<NoiseLevels> stated_noise(const Recording& recording) {
@@ -106,25 +121,34 @@ NoiseLevels seen_noise(const Recording& recording,
     const double expected = std::pow(stated->angle_random_walk, 2) * white +
                             std::pow(stated->bias_instability, 2) *
                                 flicker_differences(seen.n, step);
-    const double scale =
-        expected > 0.0 ? std::min(1.0, std::sqrt(seen.variance / expected))
-                       : 1.0;
-    const double above = std::max(0.0, seen.variance - expected) / white;
+    // What is within chance is taken for the stated size.
+    const double chance =
+        std::min(0.5, kChance / std::sqrt(static_cast<double>(seen.count + 1)));
+    const double ratio = expected > 0.0 ? seen.variance / expected : 1.0;
+    const double scale = ratio < 1.0 - chance ? std::sqrt(ratio) : 1.0;
+    const double above = expected > 0.0 && ratio <= 1.0 + chance
+                             ? 0.0
+                             : std::max(0.0, seen.variance - expected) / white;
     return {std::hypot(scale * stated->angle_random_walk, std::sqrt(above)),
             scale * stated->bias_instability, scale * stated->rate_random_walk,
             scale * stated->turn_on};
   }
   NoiseLevels levels{.angle_random_walk = std::sqrt(seen.variance / white)};
-  const std::size_t many = samples_in(kLongMean, step);
-  const ThirdDifferences slow = third_differences(recording, residual, many);
-  const double by_white = seen.variance * seen.n / slow.n;
-  const double chance =
-      slow.count < kLeastDifferences
-          ? HUGE_VAL
-          : 4.0 * by_white / std::sqrt(static_cast<double>(slow.count));
-  if (many > n && slow.variance - by_white > chance)
-    levels.bias_instability = std::sqrt((slow.variance - by_white) /
-                                        flicker_differences(slow.n, step));
+  if (!is_still(recording)) return levels;
+  double flicker = HUGE_VAL;  // square of B
+  for (const double length : kLongMeans) {
+    const std::size_t many = samples_in(length, step);
+    const ThirdDifferences slow = third_differences(recording, residual, many);
+    if (many <= n || slow.count < kLeastDifferences) return levels;
+    const double by_white = seen.variance * seen.n / slow.n;
+    const double chance =
+        4.0 * by_white / std::sqrt(static_cast<double>(slow.count));
+    const double above = slow.variance - by_white;
+    flicker = std::min(flicker, above > chance
+                                    ? above / flicker_differences(slow.n, step)
+                                    : 0.0);
+  }
+  levels.bias_instability = std::sqrt(flicker);
   return levels;
 }
 
@@ -141,6 +165,7 @@ SegmentNoise::SegmentNoise(const NoiseLevels& levels,
          flicker_decay_rate(poles_) * shortest < kForgotten)
     ++poles_;
   const double pole = flicker_pole_variance(levels.bias_instability);
+  pole_sigma_ = std::sqrt(pole);
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const Segment& segment = segments[i];
     const auto n = static_cast<double>(segment.samples.size());
@@ -152,17 +177,22 @@ SegmentNoise::SegmentNoise(const NoiseLevels& levels,
     const double since =
         i == 0 ? segment.time : segment.time - segments[i - 1].time;
     for (std::size_t k = 0; k < kFlickerPoles; ++k) {
-      const double rate = flicker_decay_rate(k);
-      const double variance =
-          pole * covariance_of_means(std::exp(-rate * step), n, 0);
-      if (k < poles_) {
-        const double rho = i == 0 ? 0.0 : std::exp(-rate * since);
-        flicker_.push_back(
-            {rho, std::sqrt(1.0 - rho * rho), std::sqrt(variance)});
-        all += variance;
-      } else {
-        white += variance;
-      }
+      const double rho = std::exp(-flicker_decay_rate(k) * step);
+      const double variance = covariance_of_means(rho, n, 0);
+      (k < poles_ ? all : white) += pole * variance;
+      if (k >= poles_) continue;
+      const double gap = i == 0 ? HUGE_VAL
+                                : since - 0.5 * (segment.length - step) -
+                                      0.5 * (segments[i - 1].length - step);
+      const double kept = std::exp(-flicker_decay_rate(k) * gap);
+      const double mean = (1.0 - std::pow(rho, n)) / (n * (1.0 - rho));
+      const double carried = std::pow(rho, n - 1.0);
+      const double spread = std::sqrt(std::max(0.0, variance - mean * mean));
+      const double shared =
+          spread > 0.0 ? mean * (1.0 - carried) / spread : 0.0;
+      const double rest = 1.0 - carried * carried - shared * shared;
+      flicker_.push_back({kept, std::sqrt(1.0 - kept * kept), mean, spread,
+                          carried, shared, std::sqrt(std::max(0.0, rest))});
     }
     steps_.push_back({std::sqrt(white),
                       levels.rate_random_walk * std::sqrt(std::max(0.0, since)),
@@ -174,8 +204,9 @@ SegmentNoise::SegmentNoise(const NoiseLevels& levels,
 void SegmentNoise::draw(RandomStream& random, std::span<double> means) const {
   std::ranges::fill(means, 0.0);
   if (none_) return;
-  std::vector<double> normal(poles_ + 3);
+  std::vector<double> normal(3 * poles_ + 3);
   std::vector<double> state(poles_, 0.0);
+  const std::size_t others = 3 * poles_;
   double walk = 0.0;
   double offset = 0.0;
   for (std::size_t i = 0; i < means.size(); ++i) {
@@ -183,13 +214,16 @@ void SegmentNoise::draw(RandomStream& random, std::span<double> means) const {
     const Step& step = steps_[i];
     double flicker = 0.0;
     for (std::size_t k = 0; k < poles_; ++k) {
-      const SharedFlicker& shared = flicker_[i * poles_ + k];
-      state[k] = shared.correlation * state[k] + shared.fresh * normal[k];
-      flicker += shared.part * state[k];
+      const PoleStep& pole = flicker_[i * poles_ + k];
+      const double first = pole.kept * state[k] + pole.fresh * normal[3 * k];
+      flicker += pole.mean * first + pole.spread * normal[3 * k + 1];
+      state[k] = pole.carried * first + pole.shared * normal[3 * k + 1] +
+                 pole.rest * normal[3 * k + 2];
     }
-    walk += step.walk * normal[poles_];
-    if (step.powered_on) offset = turn_on_ * normal[poles_ + 2];
-    means[i] = flicker + walk + offset + step.white * normal[poles_ + 1];
+    flicker *= pole_sigma_;
+    walk += step.walk * normal[others];
+    if (step.powered_on) offset = turn_on_ * normal[others + 2];
+    means[i] = flicker + walk + offset + step.white * normal[others + 1];
   }
 }
 

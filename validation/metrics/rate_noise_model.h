@@ -30,7 +30,9 @@ std::optional<NoiseLevels> stated_noise(const Recording& recording);
 /// see a smooth drift: their median size is that of white noise and flicker.
 /// - If the device states its noise, all of it is scaled to that size; what is
 ///   above it is white.
-/// - Otherwise the third differences of means over 60 s tell the flicker.
+/// - Otherwise those of means over 15, 30 and 60 s tell the flicker, the least
+///   of the three, since a drift shows more in the longer ones. In a run that
+///   turns or is accelerated only the white noise is told.
 /// A residual without noise has none, whatever the device states.
 NoiseLevels seen_noise(const Recording& recording,
                        std::span<const double> residual);
@@ -54,17 +56,21 @@ class SegmentNoise {
     double walk;      // [deg/s], 1-sigma of the walk since the segment before
     bool powered_on;  // since the segment before
   };
-  struct SharedFlicker {
-    double correlation;  // [-], with the segment before
-    double fresh;        // [-], sqrt(1 - correlation^2)
-    double part;         // [deg/s], 1-sigma of the mean
+  // One slow pole over one segment, of unit variance: its value s at the first
+  // sample, its mean I and its value e at the last one.
+  struct PoleStep {
+    double kept, fresh;   // s = kept e_before + fresh n
+    double mean, spread;  // I = mean s + spread n'
+    double carried;       // e = carried s + shared n' + rest n''
+    double shared, rest;
   };
   double turn_on_ = 0.0;  // [deg/s]
   bool none_ = true;
   std::size_t poles_ = 0;
   std::vector<Step> steps_;
-  std::vector<SharedFlicker> flicker_;  // by segment, then pole
-  std::vector<double> deviations_;      // [deg/s]
+  double pole_sigma_ = 0.0;         // [deg/s]
+  std::vector<PoleStep> flicker_;   // by segment, then pole
+  std::vector<double> deviations_;  // [deg/s]
 };
 
 }  // namespace beamgyro

@@ -26,8 +26,9 @@ Estimate with_t_interval(double value, double sigma, double freedom) {
 
 std::optional<Estimate> crossing_of(std::span<const ResponsePoint> points,
                                     std::span<const double> values,
-                                    std::span<const double> sigmas) {
-  const auto found = first_crossing(points, values, sigmas);
+                                    std::span<const double> sigmas,
+                                    double common_sigma) {
+  const auto found = first_crossing(points, values, sigmas, common_sigma);
   if (!found) return std::nullopt;
   return with_t_interval(found->frequency, found->sigma, found->freedom);
 }
@@ -144,7 +145,7 @@ std::optional<Estimate> bandwidth(const Evidence& evidence) {
                      kHalfPower);
     sigmas.push_back(decibels * point.sigma / std::abs(point.gain));
   }
-  return crossing_of(points, values, sigmas);
+  return crossing_of(points, values, sigmas, sigmas[0]);
 }
 
 std::optional<Estimate> phase_lag_90(const Evidence& evidence) {
@@ -154,7 +155,7 @@ std::optional<Estimate> phase_lag_90(const Evidence& evidence) {
   for (double& value : values) value += kQuarterTurn;
   for (const ResponsePoint& point : points)
     sigmas.push_back(point.sigma / std::abs(point.gain));
-  return crossing_of(points, values, sigmas);
+  return crossing_of(points, values, sigmas, 0.0);
 }
 
 std::optional<Estimate> added_delay(const Evidence& evidence) {

@@ -128,6 +128,7 @@ double white_noise_of_correction(const EvidenceRun& run) {
   Recording bare;  // without a device that states the noise of the rate
   bare.time = run.recording->time;
   bare.status = run.recording->status;
+  bare.columns = {*find_column(*run.recording, "true_rate")};
   return seen_noise(bare, correction).angle_random_walk;
 }
 

@@ -19,7 +19,7 @@ constexpr std::size_t kLeastCycles = 3;
 constexpr double kZeroing = 10.0;  // [s], the user's zero, and each mean
 constexpr std::uint32_t kWarmUpDraws = 200;
 
-std::vector<const EvidenceRun*> power_ons(const Evidence& evidence) {
+std::vector<const EvidenceRun*> runs_from_power_on(const Evidence& evidence) {
   return runs_for(evidence, {RunPurpose::kWarmUp, RunPurpose::kPowerCycle});
 }
 
@@ -30,13 +30,17 @@ double mean_between(std::span<const double> values, std::size_t begin,
   return sum / static_cast<double>(end - begin);
 }
 
-/// |B(t) - B_end| of a warm-up, smoothed over 5 % of the time from power-on.
+/// Blocks at the end of a warm-up whose mean is B_end.
+std::size_t end_blocks(std::size_t blocks) {
+  return std::max<std::size_t>(
+      1, static_cast<std::size_t>(
+             std::round(kEndShare * static_cast<double>(blocks))));
+}
+
+/// B(t) - B_end of a warm-up, smoothed over 5 % of the time from power-on.
 std::vector<double> distances(std::span<const double> blocks) {
   const std::size_t n = blocks.size();
-  const auto end = std::max<std::size_t>(
-      1,
-      static_cast<std::size_t>(std::round(kEndShare * static_cast<double>(n))));
-  const double settled = mean_between(blocks, n - end, n);
+  const double settled = mean_between(blocks, n - end_blocks(n), n);
   std::vector<double> d;
   for (std::size_t i = 0; i < n; ++i) {
     const auto reach =
@@ -61,12 +65,28 @@ double last_crossing(std::span<const Segment> blocks, std::span<const double> d,
   return 0.0;
 }
 
+/// |B(0) - B_end| [deg/s]: the first two means of 10 s, carried on to power-on.
+double whole_change(const Recording& recording,
+                    std::span<const double> residual,
+                    std::span<const Segment> blocks,
+                    std::span<const double> values) {
+  const std::size_t n = values.size();
+  const double settled = mean_between(values, n - end_blocks(n), n);
+  const auto zeroing = static_cast<std::size_t>(
+      std::max(1.0, std::round(kZeroing / usual_step(recording))));
+  const std::size_t first = blocks[0].samples.begin;
+  const double early = mean_between(residual, first, first + zeroing);
+  const double later =
+      mean_between(residual, first + zeroing, first + 2 * zeroing);
+  return std::abs(1.5 * early - 0.5 * later - settled);
+}
+
 /// Warm-up time of one power-on.
 Estimate warm_up_of(std::span<const Segment> blocks,
-                    std::span<const double> values, const SegmentNoise& noise) {
+                    std::span<const double> values, const SegmentNoise& noise,
+                    double change) {
   const std::vector<double> d = distances(values);
-  // The noise of d, and the change, that of the first block carried on to
-  // power-on.
+  // The noise of d.
   std::vector<double> sigma(d.size(), 0.0);
   if (!noise.none()) {
     std::vector<double> drawn(d.size());
@@ -78,7 +98,6 @@ Estimate warm_up_of(std::span<const Segment> blocks,
     }
     for (double& s : sigma) s = std::sqrt(s / kWarmUpDraws);
   }
-  const double change = std::abs(1.5 * d[0] - 0.5 * d[1]);
   std::vector<double> band, wide, narrow;
   for (const double s : sigma) {
     band.push_back(std::max(kWarmUpBand * change, kNoiseBand * s));
@@ -91,8 +110,8 @@ Estimate warm_up_of(std::span<const Segment> blocks,
 }
 
 /// The later of two times.
-std::optional<Estimate> later(const std::optional<Estimate>& a,
-                              const Estimate& b) {
+std::optional<Estimate> longest_of(const std::optional<Estimate>& a,
+                                   const Estimate& b) {
   if (!a) return b;
   return Estimate{std::max(a->value, b.value),
                   Interval{std::max(a->interval->low, b.interval->low),
@@ -104,7 +123,7 @@ NoisyMeans power_on_means(const Evidence& evidence, double length,
                           std::size_t& of_each) {
   NoisyMeans means;
   of_each = static_cast<std::size_t>(std::round(length / kZeroing)) + 1;
-  for (const EvidenceRun* run : power_ons(evidence)) {
+  for (const EvidenceRun* run : runs_from_power_on(evidence)) {
     const Recording& recording = *run->recording;
     const auto blocks =
         segments_of(recording, score_blocks(recording, kZeroing));
@@ -201,8 +220,10 @@ std::optional<Estimate> warm_up_time(const Evidence& evidence) {
       if (!std::ranges::all_of(values,
                                [](double v) { return std::isfinite(v); }))
         return Estimate{NAN};
-      longest = later(longest,
-                      warm_up_of(blocks, values, SegmentNoise(levels, blocks)));
+      longest = longest_of(
+          longest,
+          warm_up_of(blocks, values, SegmentNoise(levels, blocks),
+                     whole_change(*run->recording, residual, blocks, values)));
     }
   }
   return longest;

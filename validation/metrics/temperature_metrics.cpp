@@ -11,7 +11,7 @@
 namespace beamgyro::evaluation {
 namespace {
 
-constexpr double kSameTemperature = 0.5;    // [K], of soaks
+constexpr double kSameSoakTemperature = 0.5;  // [K]
 constexpr double kLeastSlope = 0.05;        // [K/min], of a ramp
 constexpr double kSameSlope = 0.1;          // [-], of ramps
 constexpr std::size_t kLeastLegBlocks = 5;  // blocks of a ramp
@@ -35,7 +35,8 @@ Soaks all_soaks(const Evidence& evidence) {
 }
 
 std::optional<Estimate> soak_figure(const Evidence& evidence,
-                                    double ResidualScores::*figure) {
+                                    double ResidualScores::*figure,
+                                    Growth growth) {
   const Soaks all = all_soaks(evidence);
   if (all.soaks.size() < 2) return std::nullopt;
   return estimate_beneath_noise(
@@ -43,7 +44,7 @@ std::optional<Estimate> soak_figure(const Evidence& evidence,
       [figure](std::span<const double> b) {
         return residual_scores(b).*figure;
       },
-      Shrinkage::kToMean, 0.0);
+      Shrinkage::kToMean, 0.0, growth);
 }
 
 /// A mean, and the line between two others that it is compared with.
@@ -135,7 +136,8 @@ void compare(const Leg& up, const Leg& down, std::span<const Segment> blocks,
 
 std::optional<Estimate> ramp_figure(
     const Evidence& evidence,
-    double (*figure)(const std::vector<Comparison>&, std::span<const double>)) {
+    double (*figure)(const std::vector<Comparison>&, std::span<const double>),
+    Growth growth) {
   NoisyMeans means;
   std::vector<Leg> legs;
   for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kRamp})) {
@@ -155,17 +157,17 @@ std::optional<Estimate> ramp_figure(
   if (comparisons.empty()) return std::nullopt;
   return estimate_beneath_noise(
       means, [&](std::span<const double> b) { return figure(comparisons, b); },
-      Shrinkage::kToMean, 0.0);
+      Shrinkage::kToMean, 0.0, growth);
 }
 
 }  // namespace
 
 std::optional<Estimate> bias_pp(const Evidence& evidence) {
-  return soak_figure(evidence, &ResidualScores::peak_to_peak);
+  return soak_figure(evidence, &ResidualScores::peak_to_peak, Growth::kExtreme);
 }
 
 std::optional<Estimate> bias_sigma(const Evidence& evidence) {
-  return soak_figure(evidence, &ResidualScores::sigma);
+  return soak_figure(evidence, &ResidualScores::sigma, Growth::kSmooth);
 }
 
 std::optional<Estimate> bias_sensitivity(const Evidence& evidence) {
@@ -202,7 +204,7 @@ std::optional<Estimate> bias_sensitivity_max(const Evidence& evidence) {
   for (const std::size_t j : order) {
     if (groups.empty() ||
         segments[j].temperature - segments[groups.back()[0]].temperature >
-            kSameTemperature)
+            kSameSoakTemperature)
       groups.emplace_back();
     groups.back().push_back(j);
   }
@@ -228,7 +230,7 @@ std::optional<Estimate> bias_sensitivity_max(const Evidence& evidence) {
                                           mean_of_group(g - 1, temperature))));
         return largest;
       },
-      Shrinkage::kToMean, 0.0);
+      Shrinkage::kToMean, 0.0, Growth::kExtreme);
 }
 
 std::optional<Estimate> soak_hysteresis_max(const Evidence& evidence) {
@@ -238,8 +240,7 @@ std::optional<Estimate> soak_hysteresis_max(const Evidence& evidence) {
     for (std::size_t j = 0; j < all.soaks.size(); ++j)
       if (all.soaks[i].reached == Direction::kUp &&
           all.soaks[j].reached == Direction::kDown &&
-          std::abs(all.soaks[i].ambient - all.soaks[j].ambient) <
-              kSameTemperature)
+          std::abs(all.soaks[i].ambient - all.soaks[j].ambient) < kSameSoakTemperature)
         comparisons.push_back({i, j, j, 0.0});
   if (comparisons.empty()) return std::nullopt;
   return estimate_beneath_noise(
@@ -247,15 +248,15 @@ std::optional<Estimate> soak_hysteresis_max(const Evidence& evidence) {
       [&](std::span<const double> b) {
         return largest_difference(comparisons, b);
       },
-      Shrinkage::kToMean, 0.0);
+      Shrinkage::kToMean, 0.0, Growth::kExtreme);
 }
 
 std::optional<Estimate> hysteresis_max(const Evidence& evidence) {
-  return ramp_figure(evidence, &largest_difference);
+  return ramp_figure(evidence, &largest_difference, Growth::kExtreme);
 }
 
 std::optional<Estimate> hysteresis_rms(const Evidence& evidence) {
-  return ramp_figure(evidence, &rms_difference);
+  return ramp_figure(evidence, &rms_difference, Growth::kSmooth);
 }
 
 }  // namespace beamgyro::evaluation

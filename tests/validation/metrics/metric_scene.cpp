@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "tests/validation/metrics/metric_scene.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/signal/noise.h"
+
+namespace beamgyro {
+namespace {
+
+std::vector<double>& rate_of(Recording& recording) {
+  for (Column& column : recording.columns)
+    if (column.name == "rate") return column.values;
+  throw std::logic_error("no rate");
+}
+
+/// Noise of the simulator, in deg/s: its law is the same in every unit.
+void add_noise(const NoiseLevels& levels, std::uint64_t seed,
+               std::uint32_t number, Recording& recording) {
+  const NoiseParameters parameters{levels.angle_random_walk,
+                                   levels.bias_instability,
+                                   levels.rate_random_walk, levels.turn_on};
+  const double step = recording.time[1] - recording.time[0];
+  std::vector<double>& rate = rate_of(recording);
+  RateNoise(parameters, 1.0 / step, seed, 0, number).add_next(rate);
+  const auto stretches = powered_stretches(recording);
+  const std::vector<double> offsets =
+      turn_on_offsets(parameters, stretches.size(), seed, 0, number);
+  for (std::size_t i = 0; i < stretches.size(); ++i)
+    for (std::size_t k = stretches[i].begin; k < stretches[i].end; ++k)
+      rate[k] += offsets[i];
+  recording.device_text = fmt::format(
+      "[noise]\nangle_random_walk_deg_per_sqrt_s = {}\n"
+      "bias_instability_deg_per_s = {}\n"
+      "rate_random_walk_deg_per_s_per_sqrt_s = {}\nturn_on_deg_per_s = {}\n",
+      levels.angle_random_walk, levels.bias_instability,
+      levels.rate_random_walk, levels.turn_on);
+  recording.scenario_text = "[noise]\nenabled = true\n";
+}
+
+}  // namespace
+
+EvidenceRun& Scene::add(const SceneRun& run, const NoiseLevels& noise,
+                        std::uint64_t seed) {
+  Recording recording = run.signals.recording();
+  recording.fidelity = "quasistatic";
+  for (const auto& [name, signal] : run.truths) {
+    std::vector<double> values;
+    for (const double t : recording.time) values.push_back(signal(t));
+    recording.columns.push_back({name, "", name, Role::kTruth, values});
+  }
+  if (noise != NoiseLevels{})
+    add_noise(noise, seed, static_cast<std::uint32_t>(recordings_.size()),
+              recording);
+  return add(run.purpose, std::move(recording));
+}
+
+EvidenceRun& Scene::add(RunPurpose purpose, Recording recording) {
+  recordings_.push_back(std::make_unique<Recording>(std::move(recording)));
+  return evidence.runs.emplace_back(EvidenceRun{
+      fmt::format("run {}", recordings_.size()), purpose,
+      recordings_.back().get(), column_values(*recordings_.back(), "rate")});
+}
+
+Estimate evaluated(const std::string& metric, const Evidence& evidence) {
+  const Metric* found = find_metric(metric);
+  if (found == nullptr) {
+    ADD_FAILURE() << "no metric " << metric;
+    return {};
+  }
+  const std::optional<Estimate> value = found->evaluate(evidence);
+  EXPECT_TRUE(value.has_value()) << metric << " is not shown";
+  return value.value_or(Estimate{});
+}
+
+SignalOfTime soak_temperatures(std::vector<double> temperatures, double hold) {
+  return [temperatures = std::move(temperatures), hold](double t) {
+    constexpr double kSlope = 300.0;  // [s]
+    const double place = t / (hold + kSlope);
+    const auto j =
+        std::min(static_cast<std::size_t>(place), temperatures.size() - 1);
+    const double left = t - static_cast<double>(j) * (hold + kSlope) - hold;
+    if (left <= 0.0 || j + 1 == temperatures.size()) return temperatures[j];
+    return temperatures[j] +
+           left / kSlope * (temperatures[j + 1] - temperatures[j]);
+  };
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/compensation/recorded_run.h"
+#include "validation/metrics/metric.h"
+#include "validation/metrics/rate_noise_model.h"
+
+namespace beamgyro {
+
+/// A run of a gyro whose signals are known, with noise that its device states.
+struct SceneRun {
+  RunPurpose purpose = RunPurpose::kRest;
+  RecordedRun signals = {};
+  // true_* columns beside the rate.
+  std::map<std::string, SignalOfTime> truths = {};
+};
+
+/// Runs that metrics are evaluated on; the judged rate is the recorded one.
+class Scene {
+ public:
+  /// Adds a run with noise from the streams of `seed`. Without noise the
+  /// recording has no device file.
+  EvidenceRun& add(const SceneRun& run, const NoiseLevels& noise = {},
+                   std::uint64_t seed = 0);
+  EvidenceRun& add(RunPurpose purpose, Recording recording);
+
+  Evidence evidence;
+
+ private:
+  std::vector<std::unique_ptr<Recording>> recordings_;
+};
+
+/// The noise of the nominal device.
+inline constexpr NoiseLevels kNominalNoise = {0.01, 0.01, 2e-4, 0.03};
+
+/// Evaluates a metric by its name. Fails the test when there is none.
+Estimate evaluated(const std::string& metric, const Evidence& evidence);
+
+/// Soaks of `hold` [s] at each temperature, joined by slopes of 300 s.
+SignalOfTime soak_temperatures(std::vector<double> temperatures, double hold);
+
+}  // namespace beamgyro
