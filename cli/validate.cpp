@@ -25,6 +25,7 @@
 #include "parallel/work_queue.h"
 #include "report/validation_report.h"
 #include "validation/external/file_compensator.h"
+#include "validation/metrics/metric.h"
 #include "validation/result/judgement.h"
 #include "validation/result/recorded_evidence.h"
 #include "validation/result/result_json.h"
@@ -204,6 +205,10 @@ void require_device(const ValidateArguments& arguments) {
 }
 
 int validate_any(const ValidateArguments& arguments) {
+  if (arguments.list_metrics) {
+    print_result(metric_list());
+    return 0;
+  }
   if (!arguments.check.empty()) {
     require_check_alone(arguments);
     return check_bundle(arguments);
@@ -296,6 +301,12 @@ void add_validate(CommandLine& program) {
                 "the status is 1 when one differs",
                 "no check"},
                arguments->check);
+  command.flag({"--list-metrics", "",
+                "Prints name, unit, clause of IEEE 1431, purposes of runs and "
+                "definition of every metric, with tabs between, and does "
+                "nothing else",
+                "judges a compensator"},
+               arguments->list_metrics);
   command.group("Part of a set");
   command.list({"--run", "NAME", "Run to score; may be repeated", "all runs"},
                arguments->set_runs);

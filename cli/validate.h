@@ -22,6 +22,7 @@ struct ValidateArguments {
   std::optional<std::string> qualification, campaign, specification, workbench;
   std::optional<long> devices, jobs;
   LimitArguments limits;
+  bool list_metrics = false;
 };
 
 /// Judges a compensator by every metric, check and limit, on a simulated device

@@ -8,6 +8,7 @@
 #include "sim/campaign/random_purposes.h"
 #include "sim/scenario/random_purposes.h"
 #include "sim/signal/random_purposes.h"
+#include "validation/metrics/random_purposes.h"
 
 namespace beamgyro::random_purposes_test {
 namespace {
@@ -19,7 +20,7 @@ TEST(RandomPurposes, AreAllDifferentAndWhatTheyWere) {
       kInitialWeightsStream,  kSampleOrderStream,       kDeviceDrawStream,
       kMechanicalNoiseStream, kCrossRateXStream,        kCrossRateYStream,
       kAccelerationXStream,   kAccelerationYStream,     kAccelerationZStream,
-      kSobolScrambleStream};
+      kSobolScrambleStream,   kIntervalStream};
   std::uint32_t number = 0;
   for (const RandomPurpose purpose : all)
     EXPECT_EQ(static_cast<std::uint32_t>(purpose), number++);

@@ -17,7 +17,10 @@ constexpr double kMedianSize = 0.6744897501960817;     // [-], of a unit normal
 constexpr double kShortMean = 1.0;                     // [s]
 constexpr std::array kLongMeans = {15.0, 30.0, 60.0};  // [s]
 constexpr std::size_t kLeastDifferences = 16;
-constexpr double kChance = 6.0;     // over the root of a number of differences
+constexpr double kChanceOfVariance =
+    6.0;  // over the root of a number of differences
+// Every second pole of the bank, with twice its variance, stands for two.
+constexpr std::size_t kDrawnPoles = (kFlickerPoles + 1) / 2;
 constexpr double kForgotten = 8.0;  // [-], decay rate times length of a segment
 
 /// Covariance of the means of n samples of a process of variance one and
@@ -123,7 +126,8 @@ NoiseLevels seen_noise(const Recording& recording,
                                 flicker_differences(seen.n, step);
     // What is within chance is taken for the stated size.
     const double chance =
-        std::min(0.5, kChance / std::sqrt(static_cast<double>(seen.count + 1)));
+        std::min(0.5, kChanceOfVariance /
+                          std::sqrt(static_cast<double>(seen.count + 1)));
     const double ratio = expected > 0.0 ? seen.variance / expected : 1.0;
     const double scale = ratio < 1.0 - chance ? std::sqrt(ratio) : 1.0;
     const double above = expected > 0.0 && ratio <= 1.0 + chance
@@ -161,10 +165,10 @@ SegmentNoise::SegmentNoise(const NoiseLevels& levels,
   }
   const double shortest =
       std::ranges::min(segments, {}, &Segment::length).length;  // [s]
-  while (poles_ < kFlickerPoles &&
-         flicker_decay_rate(poles_) * shortest < kForgotten)
+  while (poles_ < kDrawnPoles &&
+         flicker_decay_rate(2 * poles_) * shortest < kForgotten)
     ++poles_;
-  const double pole = flicker_pole_variance(levels.bias_instability);
+  const double pole = 2.0 * flicker_pole_variance(levels.bias_instability);
   pole_sigma_ = std::sqrt(pole);
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const Segment& segment = segments[i];
@@ -176,23 +180,25 @@ SegmentNoise::SegmentNoise(const NoiseLevels& levels,
         std::pow(levels.rate_random_walk, 2) * std::max(0.0, segment.time);
     const double since =
         i == 0 ? segment.time : segment.time - segments[i - 1].time;
-    for (std::size_t k = 0; k < kFlickerPoles; ++k) {
-      const double rho = std::exp(-flicker_decay_rate(k) * step);
+    for (std::size_t k = 0; k < kDrawnPoles; ++k) {
+      const double rate = flicker_decay_rate(2 * k);
+      const double rho = std::exp(-rate * step);
       const double variance = covariance_of_means(rho, n, 0);
       (k < poles_ ? all : white) += pole * variance;
       if (k >= poles_) continue;
       const double gap = i == 0 ? HUGE_VAL
                                 : since - 0.5 * (segment.length - step) -
                                       0.5 * (segments[i - 1].length - step);
-      const double kept = std::exp(-flicker_decay_rate(k) * gap);
+      const double kept = std::exp(-rate * gap);
       const double mean = (1.0 - std::pow(rho, n)) / (n * (1.0 - rho));
-      const double carried = std::pow(rho, n - 1.0);
-      const double spread = std::sqrt(std::max(0.0, variance - mean * mean));
+      const double carried = kept * std::pow(rho, n - 1.0);
+      const double spread =
+          std::sqrt(std::max(0.0, variance - std::pow(mean * kept, 2)));
       const double shared =
-          spread > 0.0 ? mean * (1.0 - carried) / spread : 0.0;
+          spread > 0.0 ? mean * (1.0 - kept * carried) / spread : 0.0;
       const double rest = 1.0 - carried * carried - shared * shared;
-      flicker_.push_back({kept, std::sqrt(1.0 - kept * kept), mean, spread,
-                          carried, shared, std::sqrt(std::max(0.0, rest))});
+      flicker_.push_back({mean * kept, spread, carried, shared,
+                          std::sqrt(std::max(0.0, rest))});
     }
     steps_.push_back({std::sqrt(white),
                       levels.rate_random_walk * std::sqrt(std::max(0.0, since)),
@@ -204,9 +210,9 @@ SegmentNoise::SegmentNoise(const NoiseLevels& levels,
 void SegmentNoise::draw(RandomStream& random, std::span<double> means) const {
   std::ranges::fill(means, 0.0);
   if (none_) return;
-  std::vector<double> normal(3 * poles_ + 3);
+  std::vector<double> normal(2 * poles_ + 3);
   std::vector<double> state(poles_, 0.0);
-  const std::size_t others = 3 * poles_;
+  const std::size_t others = 2 * poles_;
   double walk = 0.0;
   double offset = 0.0;
   for (std::size_t i = 0; i < means.size(); ++i) {
@@ -215,10 +221,9 @@ void SegmentNoise::draw(RandomStream& random, std::span<double> means) const {
     double flicker = 0.0;
     for (std::size_t k = 0; k < poles_; ++k) {
       const PoleStep& pole = flicker_[i * poles_ + k];
-      const double first = pole.kept * state[k] + pole.fresh * normal[3 * k];
-      flicker += pole.mean * first + pole.spread * normal[3 * k + 1];
-      state[k] = pole.carried * first + pole.shared * normal[3 * k + 1] +
-                 pole.rest * normal[3 * k + 2];
+      flicker += pole.mean * state[k] + pole.spread * normal[2 * k];
+      state[k] = pole.carried * state[k] + pole.shared * normal[2 * k] +
+                 pole.rest * normal[2 * k + 1];
     }
     flicker *= pole_sigma_;
     walk += step.walk * normal[others];

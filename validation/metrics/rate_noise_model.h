@@ -56,13 +56,11 @@ class SegmentNoise {
     double walk;      // [deg/s], 1-sigma of the walk since the segment before
     bool powered_on;  // since the segment before
   };
-  // One slow pole over one segment, of unit variance: its value s at the first
-  // sample, its mean I and its value e at the last one.
+  // One slow pole over one segment, of unit variance, after its value e at the
+  // last sample of the segment before: its mean and its value at the last one.
   struct PoleStep {
-    double kept, fresh;   // s = kept e_before + fresh n
-    double mean, spread;  // I = mean s + spread n'
-    double carried;       // e = carried s + shared n' + rest n''
-    double shared, rest;
+    double mean, spread;           // mean = mean e + spread n
+    double carried, shared, rest;  // e' = carried e + shared n + rest n'
   };
   double turn_on_ = 0.0;  // [deg/s]
   bool none_ = true;

@@ -12,9 +12,9 @@ namespace beamgyro::evaluation {
 namespace {
 
 constexpr double kSameSoakTemperature = 0.5;  // [K]
-constexpr double kLeastSlope = 0.05;        // [K/min], of a ramp
-constexpr double kSameSlope = 0.1;          // [-], of ramps
-constexpr std::size_t kLeastLegBlocks = 5;  // blocks of a ramp
+constexpr double kLeastSlope = 0.05;          // [K/min], of a ramp
+constexpr double kSameSlope = 0.1;            // [-], of ramps
+constexpr std::size_t kLeastLegBlocks = 5;    // blocks of a ramp
 
 struct Soaks {
   NoisyMeans means;
@@ -240,7 +240,8 @@ std::optional<Estimate> soak_hysteresis_max(const Evidence& evidence) {
     for (std::size_t j = 0; j < all.soaks.size(); ++j)
       if (all.soaks[i].reached == Direction::kUp &&
           all.soaks[j].reached == Direction::kDown &&
-          std::abs(all.soaks[i].ambient - all.soaks[j].ambient) < kSameSoakTemperature)
+          std::abs(all.soaks[i].ambient - all.soaks[j].ambient) <
+              kSameSoakTemperature)
         comparisons.push_back({i, j, j, 0.0});
   if (comparisons.empty()) return std::nullopt;
   return estimate_beneath_noise(
