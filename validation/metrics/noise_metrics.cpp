@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <array>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numbers>
@@ -9,7 +8,7 @@
 #include "compensation/scoring/noise_coefficients.h"
 #include "compensation/scoring/score.h"
 #include "validation/metrics/evaluations.h"
-#include "validation/metrics/noisy_means.h"
+#include "validation/metrics/segments.h"
 
 namespace beamgyro::evaluation {
 namespace {
@@ -60,9 +59,9 @@ std::optional<Estimate> coefficient(
   const auto all = coefficients(evidence);
   if (!all || !((*all).*term)) return std::nullopt;
   const CoefficientEstimate found = *((*all).*term);
-  const double value = per_hour * found.value;
-  const double factor = std::exp(kNormal975 * found.uncertainty / found.value);
-  return Estimate{value, Interval{value / factor, value * factor}};
+  return Estimate{
+      per_hour * found.value,
+      Interval{per_hour * found.interval.low, per_hour * found.interval.high}};
 }
 
 /// Sums of squared differences of neighbouring means of 1 s, of each piece.
@@ -147,14 +146,12 @@ std::optional<Estimate> quantisation(const Evidence& evidence) {
 std::optional<Estimate> lowest_allan_deviation(const Evidence& evidence) {
   const auto all = coefficients(evidence);
   if (!all) return std::nullopt;
-  const double value = kHour * all->lowest.deviation /
-                       std::sqrt(2.0 * std::numbers::ln2 / std::numbers::pi);
-  // A deviation of relative uncertainty u has 1 / (2 u^2) degrees of freedom.
-  const double freedom = 0.5 / std::pow(relative_uncertainty(all->lowest), 2);
-  const boost::math::chi_squared chance(freedom);
+  const AllanPoint& lowest = all->lowest;
+  const double unit =
+      kHour / std::sqrt(2.0 * std::numbers::ln2 / std::numbers::pi);
   return Estimate{
-      value, Interval{value * std::sqrt(freedom / quantile(chance, 0.975)),
-                      value * std::sqrt(freedom / quantile(chance, 0.025))}};
+      unit * lowest.deviation,
+      Interval{unit * lowest.interval.low, unit * lowest.interval.high}};
 }
 
 std::optional<Estimate> white_noise_ratio(const Evidence& evidence) {
