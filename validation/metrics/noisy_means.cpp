@@ -11,7 +11,7 @@ namespace beamgyro {
 namespace {
 
 constexpr std::size_t kManySegments = 500;
-constexpr std::uint32_t kDraws = 160;
+constexpr std::uint32_t kDraws = 300;
 constexpr double kFirstNoise = 1.0 + std::numbers::sqrt2;  // 1/(sqrt(2) - 1)
 constexpr std::uint32_t kFewDraws = 60;                    // with many segments
 
