@@ -130,7 +130,7 @@ class QualificationReader {
   [[noreturn]] static void reject_unused(const ConfigTable& table,
                                          const Overrides& overrides) {
     const ConfigTable changes = table.table("overrides");
-    const std::vector<std::string> asked = overrides.keys_asked();
+    const std::vector<std::string> asked = overrides.known_keys();
     for (const std::string& key : changes.keys())
       if (std::ranges::count(asked, key) == 0)
         changes.fail(key, fmt::format("the scenario takes no such key{}",
