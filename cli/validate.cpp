@@ -146,6 +146,12 @@ void require_no_device_options(const ValidateArguments& arguments) {
           "--device {}: of a set, a number is expected; a device file is for a "
           "call without {}",
           word, arguments.runs[0]));
+  const auto number = std::ranges::find_if(arguments.runs, is_number);
+  if (!arguments.device.empty() && number != arguments.runs.end())
+    throw std::invalid_argument(fmt::format(
+        "{0}: no recording; expected one number after each --device: --device "
+        "{1} --device {0}",
+        *number, arguments.device.back()));
 }
 
 // Whether the recordings are judged by metrics and checks, and not scored

@@ -181,8 +181,16 @@ class InSample(TrainSet):
                                             "--device", device), [True])
             # Nor is another run of it a device never seen.
             self.assertEqual(self.in_sample("cubic.json", "--run", "check",
-                                            "--device", device, tests[0]),
+                                            "--device", device,
+                                            "--device", tests[0]),
                              [device < tests[0], device > tests[0]])
+
+    def test_each_device_to_score_has_an_option_of_its_own(self):
+        self.train("cubic.toml", "cubic.json", "--run", "sweep")
+        answer = self.beamgyro("validate", "cubic.json", "set", "--device",
+                               3, 5)
+        self.assertEqual(answer.returncode, 2)
+        self.assertIn("--device 3 --device 5", answer.stderr)
 
     def test_another_run_of_the_one_device_trained_on_is_unseen(self):
         device = self.devices(TEST)[0]

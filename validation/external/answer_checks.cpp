@@ -132,7 +132,7 @@ std::optional<SeenFault> later_samples_used(
 }
 
 double real_time_factor(const Answer& answer, const Recording& run) {
-  return answer.seconds / duration_of(run);
+  return answer.seconds / duration_with_last_sample(run);
 }
 
 AnswerDifference difference_of(const Answer& one, const Answer& other) {

@@ -37,13 +37,13 @@ void add_fault_of_values(const Recording& run, Answer& answer) {
                    powered)});
 }
 
-double duration_of(const Recording& run) {
+double duration_with_last_sample(const Recording& run) {
   if (run.time.empty()) return 0.0;
   return run.time.back() - run.time.front() + usual_step(run);
 }
 
 void add_fault_of_speed(const Recording& run, Answer& answer) {
-  const double duration = duration_of(run);
+  const double duration = duration_with_last_sample(run);
   if (answer.seconds <= duration || has_fault(answer, AnswerFault::kTimedOut) ||
       has_fault(answer, AnswerFault::kTooSlow))
     return;

@@ -33,6 +33,6 @@ void add_fault_of_values(const Recording& run, Answer& answer);
 void add_fault_of_speed(const Recording& run, Answer& answer);
 
 /// Returns the time from the first to the last sample, with the usual step [s].
-double duration_of(const Recording& run);
+double duration_with_last_sample(const Recording& run);
 
 }  // namespace beamgyro
