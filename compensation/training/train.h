@@ -36,7 +36,6 @@ struct TrainResult {
 ///   constant. It judges by cross-validation, or else by the groups of the
 ///   held-out runs, or else by folds_of() the rows.
 ///
-///
 /// Throws as training_rows(), and std::invalid_argument when
 /// - there is no run, or a run is both trained on and held out;
 /// - a network has neither held-out runs nor cross-validation;

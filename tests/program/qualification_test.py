@@ -173,6 +173,49 @@ class Verdicts(Qualified):
             self.assertEqual(one["after"], other["after"], one["name"])
 
 
+    def test_a_model_learns_the_scale_factor_from_runs_that_turn(self):
+        table = """
+[[run]]
+name = "table"
+purpose = "rate_table"
+scenario = "ramp.toml"
+[run.overrides]
+"ambient.points" = [[0, -20]]
+"rate.steps" = [[0, 0], [800.5, -80], [1400.5, -40], [2000.5, 0], [2600.5, 40], [3200.5, 80]]
+seed = 31
+"""
+        turning = """
+[[training]]
+name = "turning"
+scenario = "ramp.toml"
+scale_factor = true
+[training.overrides]
+"ambient.points" = [[0, -20]]
+"rate.steps" = [[0, 100], [1500.5, -100]]
+seed = 32
+"""
+        found = {}
+        for name, runs in (("without", table), ("with", table + turning)):
+            self.write("q.toml", SHORT + runs)
+            for model, addition in (("cubic", ""), ("both",
+                                                    "[scale_factor]\n")):
+                if (name, model) == ("without", "both"):
+                    continue  # has nothing to learn it from
+                self.write("m.toml", CUBIC + addition)
+                said, _ = self.validate(model="m.toml")
+                found[name, model] = {one["name"]: one
+                                      for one in said["metrics"]}
+        # Models and baselines that know no scale factor are as without it.
+        self.assertEqual(found["with", "cubic"], found["without", "cubic"])
+        for metric, one in found["with", "both"].items():
+            self.assertEqual(one["baselines"],
+                             found["with", "cubic"][metric]["baselines"])
+        error = {key: one["scale_factor_error_ppm"]["after"]["value"]
+                 for key, one in found.items()}
+        self.assertGreater(error["with", "cubic"], 1000)
+        self.assertLess(error["with", "both"], 400)
+
+
 class Populations(Qualified):
     def test_every_device_is_decided_on(self):
         self.write("spec.toml", SPECIFICATION.replace("0.1,", "5,"))
@@ -355,6 +398,11 @@ class WrongFiles(Qualified):
                    'scenario = "ramp.toml"\nheld_out = true\n'
                    '[training.overrides]\nseed = 5\n')
         self.refused(["training", "held out"])
+
+    def test_a_run_is_not_held_out_and_for_the_scale_factor(self):
+        self.write("q.toml", SHORT.replace(
+            "held_out = true", "held_out = true\nscale_factor = true"))
+        self.refused(["training[1].scale_factor", "held_out"])
 
     def test_nothing_to_train_on(self):
         self.write("q.toml", SHORT[:SHORT.index("[[training]]")])

@@ -73,6 +73,9 @@ std::span<const CheckDefinition> check_definitions();
 std::vector<CheckResult> run_checks(const CheckedCompensator& checked,
                                     std::size_t threads = 1);
 
+/// Whether a check that was not tested leaves a verdict as it is.
+bool may_be_untested(const CheckResult& result);
+
 /// Returns kFailed if one check failed, else kNotTested if one that must be
 /// tested was not, else kPassed.
 CheckOutcome outcome_of(const std::vector<CheckResult>& results);

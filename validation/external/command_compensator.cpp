@@ -87,7 +87,8 @@ class CommandCompensator : public TestedCompensator {
     for (const AskedStretch& stretch : stretches)
       if (!ask(stretch)) break;
     answer.seconds = watch.seconds();
-    if (answer.seconds > duration_with_last_sample(run) && answer.faults.empty())
+    if (answer.seconds > duration_with_last_sample(run) &&
+        answer.faults.empty())
       answer.seconds -=
           static_cast<double>(stretches.size()) * start_of(stretches[0]);
     add_fault_of_values(run, answer);

@@ -62,7 +62,9 @@ Estimate delay_of(std::span<const ResponsePoint> points) {
     weights += weight;
     freedom = std::min(freedom, points[i].freedom);
   }
-  return with_t_interval(sum / weights, exact ? 0.0 : 1.0 / std::sqrt(weights),
+  // What rounding leaves of equal phases is no delay.
+  const double delay = std::abs(sum / weights) < 1e-12 ? 0.0 : sum / weights;
+  return with_t_interval(delay, exact ? 0.0 : 1.0 / std::sqrt(weights),
                          freedom);
 }
 

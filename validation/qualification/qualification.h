@@ -32,6 +32,7 @@ struct Qualification {
   std::vector<QualificationRun> runs;
   std::vector<QualificationRun> training;  // fitted
   std::vector<QualificationRun> held_out;  // a network stops early on them
+  std::vector<QualificationRun> turning;   // fitted for the scale factor
   MetricRuns metric_runs;
   std::string text;                          // byte for byte as read
   std::vector<std::filesystem::path> files;  // all that were read

@@ -68,12 +68,21 @@ class QualificationReader {
       root_.fail("run", "there is none; expected at least one [[run]]");
     for (const ConfigTable& table : root_.tables("training")) {
       const bool is_held_out = table.flag_or("held_out", false);
-      (is_held_out ? result_.held_out : result_.training)
+      const bool is_turning = table.flag_or("scale_factor", false);
+      if (is_held_out && is_turning)
+        table.fail("scale_factor",
+                   "a run that is held out is not fitted; expected one of "
+                   "held_out and scale_factor");
+      (is_held_out  ? result_.held_out
+       : is_turning ? result_.turning
+                    : result_.training)
           .push_back(read_run(table));
     }
-    if (result_.training.empty() && !result_.held_out.empty())
+    if (result_.training.empty() &&
+        !(result_.held_out.empty() && result_.turning.empty()))
       root_.fail("training",
-                 "every run is held out; expected one that is trained on");
+                 "every run is held out or for the scale factor; expected one "
+                 "that is trained on");
     if (const auto table = root_.optional_table("metrics"))
       for (const std::string& key : table->keys()) read_metric(*table, key);
     document_.reject_unknown_keys();

@@ -119,16 +119,22 @@ bool is_network(const ModelSpec& model) {
 TrainingData training_data(const Qualification& qualification,
                            const QualifiedDevice& device,
                            const ModelSpec* model, std::size_t threads) {
-  TrainingData data{training_runs(qualification.training, device, threads), {}};
-  if (model != nullptr && is_network(*model))
+  TrainingData data{
+      training_runs(qualification.training, device, threads), {}, {}};
+  if (model == nullptr) return data;
+  if (is_network(*model))
     data.held_out = training_runs(qualification.held_out, device, threads);
+  if (model->scale_factor_bin_K)
+    data.turning = training_runs(qualification.turning, device, threads);
   return data;
 }
 
 Compensator trained_on(const TrainingData& data, const ModelSpec& model) {
   const std::vector<TrainingRun> none;
-  return train(model, data.training, is_network(model) ? data.held_out : none,
-               0)
+  std::vector<TrainingRun> fitted = data.training;
+  if (model.scale_factor_bin_K)
+    fitted.insert(fitted.end(), data.turning.begin(), data.turning.end());
+  return train(model, fitted, is_network(model) ? data.held_out : none, 0)
       .compensator;
 }
 

@@ -46,17 +46,19 @@ using ProgressOfWork = std::function<void(double share)>;
 /// The runs of a device that are trained on.
 struct TrainingData {
   std::vector<TrainingRun> training, held_out;
+  std::vector<TrainingRun> turning;  // for models that correct scale factors
 };
 
 /// Simulates the training runs of a qualification; the held-out ones only if
-/// `model` is a network, null for the baselines alone. A run is known by the
+/// `model` is a network, those for the scale factor only if it corrects that.
+/// `model` is null for the baselines alone. A run is known by the
 /// SHA-256 of its measured variables.
 TrainingData training_data(const Qualification& qualification,
                            const QualifiedDevice& device,
                            const ModelSpec* model, std::size_t threads);
 
-/// Trains a model on them with seed 0. A model that is no network is not told
-/// of the held-out runs. Throws as train().
+/// Trains a model on them with seed 0: on the turning runs if it corrects the
+/// scale factor, with the held-out runs if it is a network. Throws as train().
 Compensator trained_on(const TrainingData& data, const ModelSpec& model);
 
 /// A method whose answers stand beside those of a compensator.

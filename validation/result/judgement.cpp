@@ -60,7 +60,7 @@ Reasons reasons_of(const std::vector<DecidedLimit>& limits,
       reasons.against.push_back(check.name);
   if (reasons.against.empty() && outcome_of(checks) == CheckOutcome::kNotTested)
     for (const CheckResult& check : checks)
-      if (check.outcome == CheckOutcome::kNotTested)
+      if (check.outcome == CheckOutcome::kNotTested && !may_be_untested(check))
         reasons.open.push_back(check.name);
   return reasons;
 }

@@ -177,7 +177,7 @@ struct Validator::State {
       p.files.push_back(
           {group, path.filename().string(), sha256_of_file(path)});
     for (const auto* runs : {&qualification.runs, &qualification.training,
-                             &qualification.held_out})
+                             &qualification.held_out, &qualification.turning})
       for (const QualificationRun& run : *runs)
         p.seeds.emplace_back(run.name, run.scenario.seed);
     return p;

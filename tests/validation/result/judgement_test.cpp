@@ -62,6 +62,14 @@ TEST(VerdictOf, WhatIsNotTestedIsUndecided) {
             Conformity::kPass);
 }
 
+TEST(VerdictOf, NamesNoCheckThatMayBeUntested) {
+  const WordedVerdict verdict =
+      verdict_of({decided("a", Conformity::kPass)},
+                 {check("jacobian", CheckOutcome::kNotTested),
+                  check("hold_out", CheckOutcome::kNotTested)});
+  EXPECT_EQ(verdict.words, "The evidence does not tell: jacobian.");
+}
+
 TEST(VerdictOf, CountsAndNamesOnce) {
   EXPECT_EQ(verdict_of({decided("a", Conformity::kPass)},
                        {check("jacobian", CheckOutcome::kPassed),
