@@ -185,11 +185,11 @@ def fit(folder, method, title, name):
 def deviations(folder, name):
     found = json.loads((folder / f"allan/{name}.json").read_text())
     points = [point for point in found["oadev"] if point["clusters"] >= 4]
-    tau, deviation, clusters = (
+    tau, deviation, interval = (
         np.array([point[key] for point in points])
-        for key in ["tau_s", "deviation", "clusters"])
+        for key in ["tau_s", "deviation", "interval"])
     noise = found["noise"] or {}
-    return tau, deviation, deviation / np.sqrt(2 * (clusters - 1)), {
+    return tau, deviation, interval.T, {
         symbol: noise[symbol]["per_second"]["value"] for symbol in "NBK"
         if noise.get(symbol) and noise[symbol].get("per_second")}
 
@@ -224,11 +224,11 @@ def allan(folder):
     figure, (axes, cheat) = pyplot.subplots(
         2, 1, sharex=True, figsize=(7.2, 6.4), height_ratios=[3, 1])
     tau, raw, _, terms = deviations(folder, "raw")
-    _, kept, spread, _ = deviations(folder, "recommended")
+    _, kept, (low, high), _ = deviations(folder, "recommended")
     axes.plot(tau, raw, color=GREY, lw=5, label="no compensation")
     axes.plot(tau, kept, "o-", ms=3.5, lw=1.2, color=BLUE,
-              label="recommended network, ±1σ")
-    axes.fill_between(tau, kept - spread, kept + spread, color=PALE, lw=0)
+              label="recommended network, 95 %")
+    axes.fill_between(tau, low, high, color=PALE, lw=0)
     axes.set(xscale="log", yscale="log", ylim=(raw.min() / 4, raw.max() * 1.4),
              ylabel="overlapping Allan deviation [°/s]")
     mark_terms(axes, tau, terms)

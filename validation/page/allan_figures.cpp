@@ -7,7 +7,6 @@
 
 #include "compensation/scoring/allan_deviation.h"
 #include "compensation/scoring/noise_coefficients.h"
-#include "validation/metrics/noisy_means.h"
 #include "validation/page/figure_makers.h"
 
 namespace beamgyro {
@@ -69,25 +68,24 @@ std::vector<FigureSeries> allan_lines(const std::string& role,
 }  // namespace
 
 std::vector<Figure> allan_figures(const ComparedEvidence& both) {
-  Figure figure{"allan",
-                "Allan deviation",
-                "Overlapping Allan deviation at rest, with the terms that are "
-                "fitted to the compensated rate. Whiskers: 95 %.",
-                {"Averaging time", "s", true},
-                {"Allan deviation", "deg/s", true},
-                "points"};
+  Figure figure{
+      "allan",
+      "Allan deviation",
+      "Overlapping Allan deviation at rest, with the terms that are "
+      "fitted to the compensated rate. Whiskers: 95 %, by the type of "
+      "noise that each deviation shows.",
+      {"Averaging time", "s", true},
+      {"Allan deviation", "deg/s", true},
+      "points"};
   std::vector<FigureSeries> lines;
   for_both(
       both, RunPurpose::kRest,
       [&](const std::string& role, const EvidenceRun& run) {
         const auto points = residual_deviations(run);
         FigureSeries series{role, role};
-        for (const AllanPoint& point : points) {
-          const double factor =
-              std::exp(kNormal975 * relative_uncertainty(point));
+        for (const AllanPoint& point : points)
           series.add(point.tau, point.deviation,
-                     {point.deviation / factor, point.deviation * factor});
-        }
+                     {point.interval.low, point.interval.high});
         figure.add(std::move(series));
         if (role == "after" && lines.empty() && has_noise_coefficients(points))
           lines = allan_lines(role, points);

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "compensation/scoring/allan_deviation.h"
 #include "random/random_stream.h"
 #include "validation/page/page.h"
 
@@ -234,6 +235,15 @@ TEST(Figures, AnAllanDeviationOfWhiteNoiseLiesOnItsLine) {
     // N of 36,000 samples has a 1-sigma of about 0.5 %.
     EXPECT_NEAR(line["y"][k], kWalk / std::sqrt(line["x"][k].get<double>()),
                 0.02 * line["y"][k].get<double>());
+  // Whiskers are the intervals of the deviations.
+  const auto& rate = given.before.runs[0].rate;
+  const auto points = oadev(rate, 0.1, octave_taus(rate.size(), 0.1));
+  ASSERT_EQ(series[0]["x"].size(), points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto& [low, high] = points[k].interval;
+    EXPECT_NEAR(series[0]["low"][k], low, kSixDigits * low);
+    EXPECT_NEAR(series[0]["high"][k], high, kSixDigits * high);
+  }
 }
 
 TEST(Figures, TheHistogramHoldsEveryMinute) {
