@@ -10,8 +10,11 @@
 #include <memory>
 
 #include "compensation/compensator/training_use.h"
+#include "random/random_stream.h"
+#include "tests/compensation/recorded_run.h"
 #include "tests/validation/checks/simulated_runs.h"
 #include "tests/validation/external/tested_run.h"
+#include "validation/checks/check_context.h"
 #include "validation/metrics/metric.h"
 #include "validation/specification/decision.h"
 #include "validation/specification/specification_file.h"
@@ -297,11 +300,56 @@ TEST(PlantedFaults, APerfectCompensatorPassesEverything) {
   EXPECT_EQ(outcome_of(results), CheckOutcome::kPassed);
 }
 
-// Faults of the bias leave the rate alone: no check fails, a metric does.
-
 std::vector<double> identity(const Recording& run) {
   return column_values(run, "rate");
 }
+
+// A gyro whose output filter weakens and delays fast rates and whose scale
+// factor is off, beside a drift and noise.
+Recording fast_random_rates(std::uint32_t seed) {
+  RandomStream random(seed, 4, 0, RandomPurpose{0});
+  RecordedRun signals;
+  signals.duration = 120;
+  signals.step = 0.01;
+  Recording run = signals.recording();
+  std::vector<double> rate, truth;
+  double filtered = 0.0, smooth = 0.0;
+  for (const double t : run.time) {
+    smooth += 0.5 * (20.0 * random.normal() - smooth);  // up to about 10 Hz
+    filtered += 0.6 * (smooth - filtered);
+    truth.push_back(smooth);
+    rate.push_back(1.01 * filtered + 0.2 + 1e-3 * t + 0.1 * random.normal());
+  }
+  for (Column& column : run.columns) {
+    if (column.name == "rate") column.values = rate;
+    if (column.name == "true_rate") column.values = truth;
+  }
+  return run;
+}
+
+TEST(PlantedFaults, APerfectCompensatorIsNeverSaidToFollowFastRates) {
+  for (std::uint32_t seed = 1; seed <= 30; ++seed) {
+    const Recording run = fast_random_rates(seed);
+    const auto correlation = [&](double share) {
+      CheckedRun checked_run{.name = "random",
+                             .purpose = RunPurpose::kRandomRate,
+                             .recording = &run};
+      for (const double truth : column_values(run, "true_rate"))
+        checked_run.answer.rate.push_back(share * truth);
+      const FunctionCompensator compensator(identity);
+      CheckedCompensator all;
+      all.compensator = &compensator;
+      all.runs.push_back(checked_run);
+      return check_rate_correlation(CheckContext(all, 1));
+    };
+    const CheckResult perfect_result = correlation(1.0);
+    EXPECT_TRUE(perfect_result.passed())
+        << seed << ": " << perfect_result.words;
+    EXPECT_EQ(correlation(0.99).outcome, CheckOutcome::kFailed) << seed;
+  }
+}
+
+// Faults of the bias leave the rate alone: no check fails, a metric does.
 
 std::vector<double> twice(const Recording& run) {
   std::vector<double> answers = sound(run);
