@@ -169,8 +169,9 @@ TEST_F(CommandCompensator, NonsenseIsQuoted) {
             AnswerFault::kNotANumber);
 }
 
-TEST_F(CommandCompensator, OneNaNIsFound) {
-  const SeenFault nan = only_fault(*program("print('nan' if k == 700 else r)"));
+TEST_F(CommandCompensator, OneNaNOfAHundredThousandAnswersIsFound) {
+  const SeenFault nan = only_fault(*program("print('nan' if k == 700 else r)"),
+                                   tested_run(1000.0));
   EXPECT_EQ(nan.fault, AnswerFault::kNotFinite);
   EXPECT_EQ(nan.sample, 700u);
   EXPECT_EQ(fault_of(*program("print('-inf')")), AnswerFault::kNotFinite);

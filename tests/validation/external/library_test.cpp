@@ -103,9 +103,9 @@ TEST(LibraryCompensator, TooMuchMemoryIsRefused) {
   EXPECT_EQ(by_and_by.fault, AnswerFault::kOutOfMemory) << by_and_by.words;
 }
 
-TEST(LibraryCompensator, OneNaNIsFound) {
+TEST(LibraryCompensator, OneNaNOfAHundredThousandAnswersIsFound) {
   const auto library = faulty_plugin("ANSWERS_NAN");
-  const SeenFault nan = only_fault(*library);
+  const SeenFault nan = only_fault(*library, tested_run(1000.0));
   EXPECT_EQ(nan.fault, AnswerFault::kNotFinite);
   EXPECT_EQ(nan.sample, kFaultySample);
   expect_none_by_comparison(*library);

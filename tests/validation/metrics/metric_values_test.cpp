@@ -471,10 +471,11 @@ TEST(MetricValues, APerfectRateLeavesNothingWhateverTheDeviceStates) {
   }
 }
 
-TEST(MetricValues, AMissingAnswerIsNoNumber) {
+TEST(MetricValues, OneMissingAnswerOfAHundredThousandIsNoNumber) {
   Scene scene;
-  EvidenceRun& run = scene.add({kRest, {.duration = 4000}}, kNominalNoise, 2);
-  run.rate[100] = std::numeric_limits<double>::quiet_NaN();
+  EvidenceRun& run = scene.add({kRest, {.duration = 50000}}, kNominalNoise, 2);
+  ASSERT_EQ(run.rate.size(), 100000u);
+  run.rate[31415] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(std::isnan(evaluated("bias_deg_per_s", scene.evidence).value));
   EXPECT_TRUE(
       std::isnan(evaluated("residual_max_deg_per_s", scene.evidence).value));
