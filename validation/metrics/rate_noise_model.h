@@ -50,8 +50,11 @@ class SegmentNoise {
   /// Writes the noise [deg/s] of every segment, drawn from `random`.
   void draw(RandomStream& random, std::span<double> means) const;
 
+  bool operator==(const SegmentNoise&) const = default;
+
  private:
   struct Step {
+    bool operator==(const Step&) const = default;
     double white;     // [deg/s], 1-sigma of all that neighbours do not share
     double walk;      // [deg/s], 1-sigma of the walk since the segment before
     bool powered_on;  // since the segment before
@@ -59,6 +62,7 @@ class SegmentNoise {
   // One slow pole over one segment, of unit variance, after its value e at the
   // last sample of the segment before: its mean and its value at the last one.
   struct PoleStep {
+    bool operator==(const PoleStep&) const = default;
     double mean, spread;           // mean = mean e + spread n
     double carried, shared, rest;  // e' = carried e + shared n + rest n'
   };

@@ -277,6 +277,61 @@ TEST(MetricCoverage, NoiseCoefficients) {
       scenes_of(make, {.angle_random_walk = 0.005, .bias_instability = 0.02}));
 }
 
+TEST(MetricCoverage, RateRamp) {
+  const double ramp = 5e-5;  // [deg/s2]
+  expect_coverage("rate_ramp_deg_per_h_per_h", ramp * 3600 * 3600,
+                  scenes_of(
+                      [ramp](const NoiseLevels& noise, std::uint64_t seed) {
+                        Scene scene;
+                        scene.add(
+                            {kRest,
+                             {.duration = 7200,
+                              .step = 0.5,
+                              .bias = [ramp](double t) { return ramp * t; }}},
+                            noise, seed);
+                        return scene;
+                      },
+                      {.angle_random_walk = 0.01, .bias_instability = 0.005}));
+}
+
+// The angle is rounded to steps of sqrt(12) Q.
+TEST(MetricCoverage, Quantisation) {
+  const double Q = 0.03;  // [deg]
+  const double step = Q * std::sqrt(12.0);
+  std::vector<Scene> scenes;
+  for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+    Scene scene;
+    EvidenceRun& run = scene.add({kRest, {.duration = 1800, .step = 0.5}},
+                                 {.angle_random_walk = 0.05}, seed);
+    double angle = 0.0, rounded = 0.0;
+    for (double& value : run.rate) {
+      angle += 0.5 * value;
+      const double next = step * std::round(angle / step);
+      value = (next - rounded) / 0.5;
+      rounded = next;
+    }
+    scenes.push_back(std::move(scene));
+  }
+  expect_coverage("quantisation_deg", Q, scenes);
+}
+
+// The lowest deviation of the noise itself, N sqrt(1/tau) at 2 K^-1 N: of
+// octaves of 0.5 s that at 8 s.
+TEST(MetricCoverage, LowestAllanDeviation) {
+  const double N = 0.01, K = 2e-3;
+  const double variance = N * N / 8 + K * K * 8 / 3;
+  expect_coverage(
+      "lowest_allan_deviation_deg_per_h",
+      3600 * std::sqrt(variance / (2 * std::numbers::ln2 / pi)),
+      scenes_of(
+          [](const NoiseLevels& noise, std::uint64_t seed) {
+            Scene scene;
+            scene.add({kRest, {.duration = 1800, .step = 0.5}}, noise, seed);
+            return scene;
+          },
+          {.angle_random_walk = N, .rate_random_walk = K}));
+}
+
 constexpr double kGravity = 9.80665;  // [m/s2]
 
 TEST(MetricCoverage, Tumble) {
