@@ -29,7 +29,7 @@ NoisyMeans block_means(const std::vector<const EvidenceRun*>& runs) {
 std::optional<Estimate> residual_figure(const Evidence& evidence,
                                         double ResidualScores::*figure,
                                         Shrinkage shrinkage, double least,
-                                        Growth growth = Growth::kSmooth) {
+                                        Growth growth) {
   const NoisyMeans means = block_means(quiet_runs(evidence));
   if (means.values.empty()) return std::nullopt;
   return estimate_beneath_noise(
@@ -52,17 +52,17 @@ std::optional<Estimate> bias(const Evidence& evidence) {
 
 std::optional<Estimate> residual_mean(const Evidence& evidence) {
   return residual_figure(evidence, &ResidualScores::mean, Shrinkage::kNone,
-                         -HUGE_VAL);
+                         -HUGE_VAL, Growth::kSmooth);
 }
 
 std::optional<Estimate> residual_sigma(const Evidence& evidence) {
   return residual_figure(evidence, &ResidualScores::sigma, Shrinkage::kToMean,
-                         0.0);
+                         0.0, Growth::kSquare);
 }
 
 std::optional<Estimate> residual_rms(const Evidence& evidence) {
   return residual_figure(evidence, &ResidualScores::rms, Shrinkage::kToZero,
-                         0.0);
+                         0.0, Growth::kSquare);
 }
 
 std::optional<Estimate> residual_max(const Evidence& evidence) {

@@ -242,7 +242,7 @@ std::optional<Estimate> cross_axis(const Evidence& evidence) {
           }
           return most;
         },
-        Shrinkage::kNone, 0.0);
+        Shrinkage::kNone, 0.0, Growth::kLargest);
     if (!largest || found.value > largest->value) largest = found;
   }
   return largest;

@@ -14,14 +14,21 @@ constexpr std::size_t kManySegments = 500;
 constexpr std::uint32_t kDraws = 300;
 constexpr double kFirstNoise = 1.0 + std::numbers::sqrt2;  // 1/(sqrt(2) - 1)
 constexpr std::uint32_t kFewDraws = 60;                    // with many segments
+constexpr double kSmallNoise = 1e-4;  // [-], too little to choose another one
 
 using Draws = std::vector<std::vector<double>>;
 
-Draws draws_of(const NoisyMeans& means) {
+/// Draws of the noise. The last ones are kept, since most metrics are of the
+/// same means as the one before.
+const Draws& draws_of(const NoisyMeans& means) {
+  thread_local std::vector<SegmentNoise> noise;
+  thread_local Draws draws;
+  if (means.noise == noise) return draws;
+  draws.clear();
   const bool many = means.values.size() > kManySegments;
-  Draws draws;
   for (std::uint32_t d = 0; d < (many ? kFewDraws : kDraws); ++d)
     draws.push_back(means.drawn_noise(d));
+  noise = means.noise;
   return draws;
 }
 
@@ -110,6 +117,29 @@ std::vector<double> figures_with(const Draws& draws,
   return figures;
 }
 
+/// Half the 95 % interval of a figure whose choice of means the noise leaves as
+/// it is.
+double half_without_choice(const NoisyMeans& means, const Draws& draws,
+                           const Statistic& statistic) {
+  Draws small = draws;
+  for (std::vector<double>& draw : small)
+    for (double& noise : draw) noise *= kSmallNoise;
+  const std::vector<double> figures =
+      figures_with(small, means.values, statistic);
+  return kNormal975 / kSmallNoise *
+         std::sqrt(mean_square(figures, mean_of(figures)));
+}
+
+/// The interval about a figure by its errors, as the header says.
+Interval interval_by_errors(double figure, std::span<const double> errors,
+                            Growth growth) {
+  const double shift = mean_of(errors);
+  const double half = kNormal975 * std::sqrt(mean_square(errors, shift));
+  const double first =
+      growth == Growth::kExtreme ? std::max(shift, kFirstNoise * shift) : shift;
+  return {figure - first - half, figure - shift + half};
+}
+
 }  // namespace
 
 void NoisyMeans::add(const Recording& recording,
@@ -146,18 +176,28 @@ Estimate estimate_beneath_noise(const NoisyMeans& means,
   const double value = statistic(means.values);
   if (means.without_noise() || !std::isfinite(value))
     return {value, Interval{value, value}};
-  const Draws draws = draws_of(means);
+  const Draws& draws = draws_of(means);
   const std::vector<double> base = shrunken(means, draws, shrinkage);
-  const double exact = statistic(base);
-  std::vector<double> errors = figures_with(draws, base, statistic);
+  const bool squared = growth == Growth::kSquare;
+  const Statistic measure = [&](std::span<const double> b) {
+    const double figure = statistic(b);
+    return squared ? figure * figure : figure;
+  };
+  const double exact = measure(base);
+  std::vector<double> errors = figures_with(draws, base, measure);
   for (double& error : errors) error -= exact;
-  const double shift = mean_of(errors);
-  const double half = kNormal975 * std::sqrt(mean_square(errors, shift));
-  const double first =
-      growth == Growth::kExtreme ? std::max(shift, kFirstNoise * shift) : shift;
-  return {value,
-          Interval{std::min(value, std::max(least, value - first - half)),
-                   std::max(value, value - shift + half)}};
+  auto [low, high] = interval_by_errors(measure(means.values), errors, growth);
+  if (squared) {
+    low = std::sqrt(std::max(low, 0.0));
+    high = std::sqrt(std::max(high, 0.0));
+  }
+  if (growth == Growth::kLargest || growth == Growth::kExtreme) {
+    const double half = half_without_choice(means, draws, statistic);
+    high = std::max(high, value + half);
+    if (growth == Growth::kLargest) low = std::min(low, value - half);
+  }
+  return {value, Interval{std::min(value, std::max(least, low)),
+                          std::max(value, high)}};
 }
 
 Estimate estimate_of_noise(const NoisyMeans& means,
@@ -165,7 +205,7 @@ Estimate estimate_of_noise(const NoisyMeans& means,
   const double value = statistic(means.values);
   if (means.without_noise() || !(value > 0.0) || !std::isfinite(value))
     return {value, Interval{value, value}};
-  const Draws draws = draws_of(means);
+  const Draws& draws = draws_of(means);
   const std::vector<double> nothing(means.values.size(), 0.0);
   const double noise =
       mean_square(figures_with(draws, nothing, statistic), 0.0);

@@ -37,21 +37,31 @@ using Statistic = std::function<double(std::span<const double> means)>;
 /// since their power-on, by the share of their variance that is noise.
 enum class Shrinkage { kNone, kToZero, kToMean, kToPowerOn };
 
-/// How noise enlarges a figure. An extreme one grows most by the first noise,
-/// which chooses the extreme, and less by what is added to that.
-enum class Growth { kSmooth, kExtreme };
+/// How noise enlarges a figure.
+enum class Growth {
+  kSmooth,   // its error is added to it
+  kSquare,   // a root of a mean square: the error is added to its square
+  kLargest,  // the largest of few
+  // The largest of many: it grows most by the first noise, which chooses the
+  // extreme, and less by what is added to that.
+  kExtreme,
+};
 
 /// Returns a figure of the means and the 95 % interval of what it would be
 /// without the noise. The error of the figure is drawn: noise is added to the
-/// shrunken means, and e is by how much that changes the figure. The interval
-/// is
+/// shrunken means, and e is by how much that changes the figure, or its square.
+/// The interval is
 ///
 ///   value - mean(e) -+ 1.96 sigma(e),
 ///
-/// widened to contain the value, and cut off below `least`. For an extreme
-/// figure the lower end is value - 1/(sqrt(2) - 1) mean(e) - 1.96 sigma(e): as
-/// much as the first noise adds where all means are equal. The interval has no
-/// width if there is no noise.
+/// widened to contain the value, and cut off below `least`.
+/// - The largest of several is never less than the one that is largest without
+///   noise, which may be larger than the value by its own noise alone: the
+///   upper end is at least value + 1.96 sigma of that, with all others as they
+///   are. Of the largest of few so is the lower end.
+/// - For an extreme figure the lower end is value - 1/(sqrt(2) - 1) mean(e) -
+///   1.96 sigma(e): as much as the first noise adds where all means are equal.
+/// The interval has no width if there is no noise.
 Estimate estimate_beneath_noise(const NoisyMeans& means,
                                 const Statistic& statistic, Shrinkage shrinkage,
                                 double least = -HUGE_VAL,

@@ -106,7 +106,7 @@ RateTables rate_tables_of(const Evidence& evidence) {
 std::optional<Estimate> table_figure(
     const Evidence& evidence,
     const std::function<double(const std::vector<Linearity>&)>& figure,
-    double least) {
+    double least, Growth growth) {
   const RateTables all = rate_tables_of(evidence);
   if (all.tables.empty()) return std::nullopt;
   return estimate_beneath_noise(
@@ -117,7 +117,7 @@ std::optional<Estimate> table_figure(
           found.push_back(linearity_of(held_rates_of(table, means)));
         return figure(found);
       },
-      Shrinkage::kNone, least);
+      Shrinkage::kNone, least, growth);
 }
 
 /// White noise of the difference of judged and recorded rate.
@@ -163,7 +163,7 @@ std::optional<Estimate> scale_factor(const Evidence& evidence) {
         for (const Linearity& table : tables) sum += table.slope;
         return sum / static_cast<double>(tables.size());
       },
-      -HUGE_VAL);
+      -HUGE_VAL, Growth::kSmooth);
 }
 
 std::optional<Estimate> scale_factor_error(const Evidence& evidence) {
@@ -175,7 +175,7 @@ std::optional<Estimate> scale_factor_error(const Evidence& evidence) {
           largest = std::max(largest, kPpm * std::abs(table.slope - 1.0));
         return largest;
       },
-      0.0);
+      0.0, Growth::kLargest);
 }
 
 std::optional<Estimate> scale_factor_nonlinearity(const Evidence& evidence) {
@@ -185,7 +185,7 @@ std::optional<Estimate> scale_factor_nonlinearity(const Evidence& evidence) {
         return std::ranges::max(tables, {}, &Linearity::nonlinearity)
             .nonlinearity;
       },
-      0.0);
+      0.0, Growth::kLargest);
 }
 
 std::optional<Estimate> scale_factor_asymmetry(const Evidence& evidence) {
@@ -198,7 +198,7 @@ std::optional<Estimate> scale_factor_asymmetry(const Evidence& evidence) {
                                 })
             .asymmetry;
       },
-      -HUGE_VAL);
+      -HUGE_VAL, Growth::kLargest);
 }
 
 std::optional<Estimate> scale_factor_temperature_sensitivity(

@@ -161,7 +161,7 @@ std::optional<Estimate> worst_power_on(
           worst = std::max(worst, figure(b.subspan(i, of_each)));
         return worst;
       },
-      Shrinkage::kToPowerOn, 0.0);
+      Shrinkage::kToPowerOn, 0.0, Growth::kLargest);
 }
 
 double largest_departure(std::span<const double> b) {

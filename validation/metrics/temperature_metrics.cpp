@@ -167,7 +167,7 @@ std::optional<Estimate> bias_pp(const Evidence& evidence) {
 }
 
 std::optional<Estimate> bias_sigma(const Evidence& evidence) {
-  return soak_figure(evidence, &ResidualScores::sigma, Growth::kSmooth);
+  return soak_figure(evidence, &ResidualScores::sigma, Growth::kSquare);
 }
 
 std::optional<Estimate> bias_sensitivity(const Evidence& evidence) {
@@ -257,7 +257,7 @@ std::optional<Estimate> hysteresis_max(const Evidence& evidence) {
 }
 
 std::optional<Estimate> hysteresis_rms(const Evidence& evidence) {
-  return ramp_figure(evidence, &rms_difference, Growth::kSmooth);
+  return ramp_figure(evidence, &rms_difference, Growth::kSquare);
 }
 
 }  // namespace beamgyro::evaluation

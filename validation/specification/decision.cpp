@@ -78,12 +78,22 @@ struct Side {
   double towards, away;  // guard bands when within and when beyond
 };
 
+/// The part of an interval of 95 % towards the limit, for another risk. A bias
+/// that the interval takes out does not grow with it: less risk adds a multiple
+/// of the larger part, which has not lost by that.
+double guard_band(double towards, double other, double widening) {
+  return widening > 1.0 ? towards + (widening - 1.0) * std::max(towards, other)
+                        : widening * towards;
+}
+
 Side side_of(const Estimate& found, double limit, double sign,
              double widening) {
   const Interval interval =
       found.interval.value_or(Interval{found.value, found.value});
-  const double above = widening * std::max(interval.high - found.value, 0.0);
-  const double below = widening * std::max(found.value - interval.low, 0.0);
+  const double high = std::max(interval.high - found.value, 0.0);
+  const double low = std::max(found.value - interval.low, 0.0);
+  const double above = guard_band(high, low, widening);
+  const double below = guard_band(low, high, widening);
   return {sign * (limit - found.value), sign > 0.0 ? above : below,
           sign > 0.0 ? below : above};
 }

@@ -46,8 +46,10 @@ struct Decision {
 
 /// Decides on a limit. `after` is the metric of the compensated rate,
 /// `reference` that of the rate that limit.relative_to names. With z(p) the
-/// normal quantile the guard band is the half of the 95 % interval towards the
-/// limit, times z(1 - risk) / z(0.975).
+/// normal quantile the guard band is the part of the 95 % interval towards the
+/// limit, times w = z(1 - risk) / z(0.975). For w above 1 it is that part and
+/// w - 1 times the larger of the two, since a figure that noise enlarges has an
+/// interval that reaches little or nothing above it.
 /// - A value without an interval is decided without a guard band.
 /// - No value, or one that is not finite, is undecided.
 /// - A quotient has an interval whose ends lie, in logarithms, as far from it
