@@ -15,6 +15,7 @@ constexpr std::uint32_t kDraws = 300;
 constexpr double kFirstNoise = 1.0 + std::numbers::sqrt2;  // 1/(sqrt(2) - 1)
 constexpr std::uint32_t kFewDraws = 60;                    // with many segments
 constexpr double kSmallNoise = 1e-4;  // [-], too little to choose another one
+constexpr double kRounding = 1e-9;    // [-], of a figure, over kSmallNoise
 
 using Draws = std::vector<std::vector<double>>;
 
@@ -126,8 +127,10 @@ double half_without_choice(const NoisyMeans& means, const Draws& draws,
     for (double& noise : draw) noise *= kSmallNoise;
   const std::vector<double> figures =
       figures_with(small, means.values, statistic);
-  return kNormal975 / kSmallNoise *
-         std::sqrt(mean_square(figures, mean_of(figures)));
+  const double mean = mean_of(figures);
+  const double half =
+      kNormal975 / kSmallNoise * std::sqrt(mean_square(figures, mean));
+  return half > kRounding * std::abs(mean) ? half : 0.0;
 }
 
 /// The interval about a figure by its errors, as the header says.

@@ -7,6 +7,7 @@
 
 #include "compensation/scoring/allan_deviation.h"
 #include "compensation/scoring/noise_coefficients.h"
+#include "validation/metrics/segments.h"
 #include "validation/page/figure_makers.h"
 
 namespace beamgyro {

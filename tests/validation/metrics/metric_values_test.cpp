@@ -449,14 +449,12 @@ TEST(MetricValues, RectificationAndCrossAxis) {
 TEST(MetricValues, APerfectRateLeavesNothingWhateverTheDeviceStates) {
   Scene scene;
   const auto T = soak_temperatures({-20, 0, 20}, 900);
-  EvidenceRun& soak =
-      scene.add({kSoak, {.duration = 3300, .step = 5, .temperature = T}},
-                kNominalNoise, 1);
-  EvidenceRun& rest = scene.add({kRest, {.duration = 4000}}, kNominalNoise, 2);
-  EvidenceRun& start =
-      scene.add({kWarmUp, {.duration = 1200}}, kNominalNoise, 3);
-  for (EvidenceRun* run : {&soak, &rest, &start})
-    run->rate = column_values(*run->recording, "true_rate");
+  scene.add({kSoak, {.duration = 3300, .step = 5, .temperature = T}},
+            kNominalNoise, 1);
+  scene.add({kRest, {.duration = 4000}}, kNominalNoise, 2);
+  scene.add({kWarmUp, {.duration = 1200}}, kNominalNoise, 3);
+  for (EvidenceRun& run : scene.evidence.runs)
+    run.rate = column_values(*run.recording, "true_rate");
   for (const char* name :
        {"bias_deg_per_s", "bias_pp_deg_per_s", "residual_mean_deg_per_s",
         "residual_rms_deg_per_s", "residual_max_deg_per_s",
