@@ -80,6 +80,7 @@ class Conversation {
   bool read_some(std::optional<OpenFile>& file, std::string& into);
   void take_answers(bool at_end);
   void check_time();
+  void close_pipes();
   void conclude();
   double taken_time() const;
   std::string place_words() const;
@@ -93,7 +94,7 @@ class Conversation {
   std::size_t written_ = 0;  // bytes of sending_
   std::size_t sent_bytes_ = 0;
   Stopwatch whole_, since_progress_;
-  bool failed_ = false;
+  bool failed_ = false, ended_ = false;
 };
 
 bool Conversation::run() {
@@ -216,16 +217,29 @@ double Conversation::taken_time() const {
   return sent_.time() * (1.0 - left / all);
 }
 
+void Conversation::close_pipes() {
+  process_.output().reset();
+  process_.error().reset();
+}
+
 void Conversation::check_time() {
   if (failed_ || (!process_.output() && !process_.error())) return;
+  // A process that it left behind may hold the pipes open. What it wrote before
+  // its end is read once more.
+  if (answered_.done() && process_.wait(0.0)) {
+    if (ended_) close_pipes();
+    ended_ = true;
+    return;
+  }
   if (since_progress_.seconds() > limits_.stall) {
-    if (!process_.wait(0.0))
+    if (!process_.wait(0.0)) {
       fail(AnswerFault::kTimedOut,
            fmt::format("hung at {}: took no sample and gave no answer for "
                        "{:.3g} s",
                        place_words(), since_progress_.seconds()));
-    else
-      conclude();
+    } else {
+      close_pipes();
+    }
   } else if (whole_.seconds() > limits_.stall + taken_time()) {
     fail(AnswerFault::kTooSlow,
          fmt::format("slower than real time: stopped after {:.3g} s at {}",

@@ -136,6 +136,14 @@ TEST_F(CommandCompensator, AHangIsStoppedWithAllItsProcesses) {
   EXPECT_EQ(errno, ECHILD);
 }
 
+TEST_F(CommandCompensator, AProcessLeftBehindHoldsNothingUp) {
+  constexpr const char* kLeave =
+      "import subprocess; subprocess.Popen(['sleep', '1000'])";
+  expect_right_answers(*program("print(repr(r))", kLeave));
+  EXPECT_EQ(fault_of(*program("k == 700 or print(r)", kLeave)),
+            AnswerFault::kTooFew);
+}
+
 TEST_F(CommandCompensator, TooMuchMemoryIsRefused) {
   ProcessLimits limits = test_limits();
   limits.memory = std::size_t{512} << 20;
