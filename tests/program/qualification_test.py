@@ -2,6 +2,7 @@
 """`validate --device`: qualifications, populations, bundles, wrong input."""
 
 import json
+import shutil
 import unittest
 
 from program import CUBIC, ROOT, SCENARIO, SCENARIOS, ProgramTest, ramp
@@ -172,6 +173,33 @@ class Verdicts(Qualified):
             self.assertEqual(one["before"], other["before"], one["name"])
             self.assertEqual(one["after"], other["after"], one["name"])
 
+
+    def test_a_compensator_without_an_answer_is_judged(self):
+        self.write("q.toml", SHORT + """
+[[run]]
+name = "rest"
+purpose = "rest"
+scenario = "warm_up.toml"
+[run.overrides]
+seed = 41
+""")
+        for command in ("cmd:false", "cmd:cat >/dev/null", "cmd:yes nan"):
+            said, answer = self.validate("--report", "page", model=command,
+                                         status=3)
+            with self.subTest(command):
+                self.assertEqual(said["verdict"], "fail")
+                failed, passed = (
+                    [check["name"] for check in said["checks"]
+                     if check["passed"] is state] for state in (False, True))
+                self.assertIn("answers", failed)
+                self.assertNotIn("reset", passed)
+                self.assertNotIn("real_time", passed)
+                for metric in said["metrics"]:
+                    if metric["name"] != "turn_on_time_s":
+                        value = (metric["after"] or {}).get("value")
+                        self.assertIsNone(value, metric["name"])
+                self.assertTrue((self.dir / "page/index.html").exists())
+            shutil.rmtree(self.dir / "page")
 
     def test_a_model_learns_the_scale_factor_from_runs_that_turn(self):
         table = """

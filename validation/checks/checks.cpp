@@ -70,12 +70,13 @@ constexpr std::array kChecks{
              Stage::kConduct},
     CheckRow{{"real_time", ""}, check_real_time, Stage::kFaults}};
 
+constexpr const char* kTooFewAnswers =
+    "Too many answers are missing: see the checks \"answers\" and \"finite\".";
+
 /// Returns why answers cannot be compared, or an empty text when they can.
 std::string obstacle_to_comparison(const CheckContext& context,
                                    const std::vector<CheckResult>& results) {
-  if (!context.answered())
-    return "Too many answers are missing: see the checks \"answers\" and "
-           "\"finite\".";
+  if (!context.answered()) return kTooFewAnswers;
   for (const CheckResult& result : results)
     if (result.outcome == CheckOutcome::kFailed)
       return fmt::format("See the check \"{}\" first.", result.name);
@@ -105,7 +106,7 @@ std::vector<CheckResult> run_checks(const CheckedCompensator& checked,
       results[k].name = kChecks[k].definition.name;
     }
   };
-  run_stage(Stage::kReset, "");
+  run_stage(Stage::kReset, context.answered() ? "" : kTooFewAnswers);
   run_stage(Stage::kConduct, obstacle_to_comparison(context, results));
   const std::string obstacle = obstacle_to_comparison(context, results);
   if (obstacle.empty()) context.random = random_response(context);

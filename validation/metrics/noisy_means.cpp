@@ -143,6 +143,12 @@ Interval interval_by_errors(double figure, std::span<const double> errors,
   return {figure - first - half, figure - shift + half};
 }
 
+// A largest value, for one, passes over what is not a number.
+bool lacks_answers(const NoisyMeans& means) {
+  return !std::ranges::all_of(means.values,
+                              [](double v) { return std::isfinite(v); });
+}
+
 }  // namespace
 
 void NoisyMeans::add(const Recording& recording,
@@ -176,6 +182,7 @@ bool NoisyMeans::without_noise() const {
 Estimate estimate_beneath_noise(const NoisyMeans& means,
                                 const Statistic& statistic, Shrinkage shrinkage,
                                 double least, Growth growth) {
+  if (lacks_answers(means)) return {NAN};
   const double value = statistic(means.values);
   if (means.without_noise() || !std::isfinite(value))
     return {value, Interval{value, value}};
@@ -205,6 +212,7 @@ Estimate estimate_beneath_noise(const NoisyMeans& means,
 
 Estimate estimate_of_noise(const NoisyMeans& means,
                            const Statistic& statistic) {
+  if (lacks_answers(means)) return {NAN};
   const double value = statistic(means.values);
   if (means.without_noise() || !(value > 0.0) || !std::isfinite(value))
     return {value, Interval{value, value}};

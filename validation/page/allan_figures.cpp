@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -13,8 +14,10 @@
 namespace beamgyro {
 namespace {
 
-/// Overlapping Allan deviations of the residual.
+/// Overlapping Allan deviations of the residual, none without answers.
 std::vector<AllanPoint> residual_deviations(const EvidenceRun& run) {
+  if (std::ranges::none_of(run.rate, [](double r) { return std::isfinite(r); }))
+    return {};
   Recording residual;
   residual.time = run.recording->time;
   residual.status = run.recording->status;
