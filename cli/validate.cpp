@@ -52,11 +52,7 @@ int validate_on_set(const ValidateArguments& arguments,
     require_output(arguments.json, inputs_of(arguments));
     require_json_name(arguments.json);
   }
-  std::vector<long> devices;
-  for (const std::string& word : arguments.device)
-    devices.push_back(whole_number("--device", word, 0, kLastDevice));
-  SetSelection selection{{}, arguments.set_runs, device_numbers(devices)};
-  if (devices.empty()) selection.part = SetPartNumber::kTest;
+  const SetSelection selection = set_selection(arguments);
   const RunSource source = runs_of_set(arguments.runs[0], selection);
   std::optional<Progress> progress("validating " + arguments.compensator);
   const std::vector<DeviceScore> scores =
@@ -84,9 +80,11 @@ int validate_on_set(const ValidateArguments& arguments,
 
 nlohmann::ordered_json metrics_on_runs(const ValidateArguments& arguments,
                                        const Compensator& compensator) {
+  const std::vector<std::filesystem::path> runs(arguments.runs.begin(),
+                                                arguments.runs.end());
+  const auto own = tested(compensator);
   const DeviceEvidence found = recorded_evidence(
-      {arguments.runs.begin(), arguments.runs.end()}, *tested(compensator),
-      &compensator, arguments.full_scale, thread_count(0));
+      runs, {*own, &compensator, arguments.full_scale}, thread_count(0));
   return metrics_json(metric_results(found, {}, {}, thread_count(0)), {});
 }
 
@@ -164,16 +162,14 @@ bool is_judged(const ValidateArguments& arguments) {
 }
 
 int judge_on_runs(const ValidateArguments& arguments) {
-  if (is_set(arguments.runs))
-    throw std::invalid_argument(
-        fmt::format("{}: is the directory of a set, on which files of the kind "
-                    "COMPENSATOR.json are scored without --spec, --report, "
-                    "--figures and --bundle; "
-                    "expected recordings",
-                    arguments.runs[0]));
-  if (!arguments.set_runs.empty() || !arguments.device.empty())
+  const bool is_of_set = is_set(arguments.runs);
+  if (!is_of_set && (!arguments.set_runs.empty() || !arguments.device.empty()))
     throw std::invalid_argument(
         "--run and --device choose from a set, and there is none");
+  if (is_of_set && !arguments.bundle.empty())
+    throw std::invalid_argument(fmt::format(
+        "--bundle: {} is a set, which no bundle takes; expected recordings",
+        arguments.runs[0]));
   return validate_by_specification(arguments);
 }
 
@@ -234,6 +230,15 @@ int validate_any(const ValidateArguments& arguments) {
 }
 
 }  // namespace
+
+SetSelection set_selection(const ValidateArguments& arguments) {
+  std::vector<long> devices;
+  for (const std::string& word : arguments.device)
+    devices.push_back(whole_number("--device", word, 0, kLastDevice));
+  SetSelection selection{{}, arguments.set_runs, device_numbers(devices)};
+  if (devices.empty()) selection.part = SetPartNumber::kTest;
+  return selection;
+}
 
 void add_validate(CommandLine& program) {
   auto arguments = std::make_shared<ValidateArguments>();

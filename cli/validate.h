@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/process_limits.h"
+#include "compensation/rows/set_runs.h"
 
 namespace beamgyro {
 
@@ -25,8 +26,11 @@ struct ValidateArguments {
   bool list_metrics = false;
 };
 
-/// Judges a compensator by every metric, check and limit, on a simulated device
-/// or on recordings.
+/// Returns what is chosen from a set: the test devices, or those named.
+SetSelection set_selection(const ValidateArguments& arguments);
+
+/// Judges a compensator by every metric, check and limit, on a simulated
+/// device, on recordings or on the devices of a set.
 int validate_by_specification(const ValidateArguments& arguments);
 
 /// Makes the result of a bundle again. The status is 0 when every byte is the

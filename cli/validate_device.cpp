@@ -53,7 +53,12 @@ ValidationRequest request_of(const ValidateArguments& arguments) {
   request.program_version = kProgramVersion;
   request.git_revision = kGitRevision;
   request.limits = process_limits(arguments.limits);
-  request.runs.assign(arguments.runs.begin(), arguments.runs.end());
+  if (is_set(arguments.runs)) {
+    request.set = arguments.runs[0];
+    request.selection = set_selection(arguments);
+  } else {
+    request.runs.assign(arguments.runs.begin(), arguments.runs.end());
+  }
   if (arguments.runs.empty()) {
     request.device = arguments.device.at(0);
     request.qualification = arguments.qualification

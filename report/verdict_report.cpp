@@ -103,10 +103,12 @@ std::string yield_lines(const PopulationYield& population) {
       2);
 }
 
-// "nominal.toml, qualification.toml", or "3 recordings".
-std::string evidence_words(const ResultProvenance& provenance) {
+// "nominal.toml, qualification.toml", the name of a set, or "3 recordings".
+std::string evidence_words(const ValidationResult& result) {
+  const ResultProvenance& provenance = result.provenance;
   if (!provenance.device.empty())
     return provenance.device + ", " + provenance.qualification;
+  if (result.population) return result.population->campaign;
   const auto runs = std::ranges::count(provenance.files, std::string("runs"),
                                        &ResultFile::group);
   return fmt::format("{} recording{}", runs, runs == 1 ? "" : "s");
@@ -129,7 +131,7 @@ std::string heading(const ValidationResult& result) {
   });
   return wrapped(fmt::format("{}: {}", verdict, result.words), 2) +
          wrapped(fmt::format("{} on {}; {}", result.compensator.name,
-                             evidence_words(result.provenance),
+                             evidence_words(result),
                              result.provenance.specification),
                  2) +
          workbench_line(result.compensator);

@@ -47,6 +47,9 @@ struct RunSource {
   /// exception for a run that cannot be read names the file.
   std::function<void(const Visitor&)> for_each;
   std::optional<SetPart> set = {};  // nothing for runs in files of their own
+  /// The same in another order: the runs of a device follow each other. Of sets
+  /// only.
+  std::function<void(const Visitor&)> for_each_by_device = {};
 };
 
 /// Returns a source of runs in memory, which must outlive the source.

@@ -5,7 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <deque>
 #include <set>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -21,6 +23,7 @@ struct FileMembers {
   std::filesystem::path directory;
   std::string file, run;
   std::vector<std::uint32_t> positions;
+  std::size_t group = 0;  // files of the same devices have one number
 };
 
 template <class T>
@@ -64,12 +67,42 @@ bool is_selected(const SetSelection& selection, std::uint32_t device,
          (selection.devices.empty() || holds(selection.devices, device));
 }
 
+void visit_device(const FileMembers& members, const ShardFile& shard,
+                  std::uint32_t position, const RunSource::Visitor& visit) {
+  const auto device = fmt::format("{}", shard.head().first_device + position);
+  visit({fmt::format("{}, device {}", members.file, device), "",
+         shard.recording(position), device, members.run});
+}
+
 void visit_file(const FileMembers& members, const RunSource::Visitor& visit) {
   const ShardFile shard(members.directory, members.file);
-  for (const std::uint32_t position : members.positions) {
-    const auto device = fmt::format("{}", shard.head().first_device + position);
-    visit({fmt::format("{}, device {}", members.file, device), "",
-           shard.recording(position), device, members.run});
+  for (const std::uint32_t position : members.positions)
+    visit_device(members, shard, position, visit);
+}
+
+// Visits the runs of some devices, which are in a file each.
+void visit_files_by_device(std::span<const FileMembers> files,
+                           const RunSource::Visitor& visit) {
+  std::deque<ShardFile> shards;  // stay where they are
+  std::set<std::uint32_t> positions;
+  for (const FileMembers& members : files) {
+    shards.emplace_back(members.directory, members.file);
+    positions.insert(members.positions.begin(), members.positions.end());
+  }
+  for (const std::uint32_t position : positions)
+    for (std::size_t k = 0; k < files.size(); ++k)
+      if (holds(files[k].positions, position))
+        visit_device(files[k], shards[k], position, visit);
+}
+
+void visit_by_device(const std::vector<FileMembers>& files,
+                     const RunSource::Visitor& visit) {
+  for (auto begin = files.begin(); begin != files.end();) {
+    const auto end = std::find_if(begin, files.end(), [&](const auto& members) {
+      return members.group != begin->group;
+    });
+    visit_files_by_device({begin, end}, visit);
+    begin = end;
   }
 }
 
@@ -86,7 +119,8 @@ RunSource runs_of_set(const std::filesystem::path& directory,
   for (const ManifestEntry& entry : manifest.entries) {
     const std::string& run = runs[entry.index % runs.size()];
     if (!selection.runs.empty() && !holds(selection.runs, run)) continue;
-    FileMembers members{directory, entry.file, run, {}};
+    FileMembers members{
+        directory, entry.file, run, {}, entry.index / runs.size()};
     const ShardFile shard(directory / entry.file,
                           open_listed(directory, entry));
     for (std::uint32_t k = 0; k < shard.devices(); ++k) {
@@ -109,6 +143,9 @@ RunSource runs_of_set(const std::filesystem::path& directory,
               manifest.head->seed,
               selection.runs.empty() ? runs : selection.runs,
               {devices.begin(), devices.end()}};
+  source.for_each_by_device = [files](const RunSource::Visitor& visit) {
+    visit_by_device(files, visit);
+  };
   source.for_each = [files =
                          std::move(files)](const RunSource::Visitor& visit) {
     for (const FileMembers& members : files) visit_file(members, visit);

@@ -189,6 +189,67 @@ class InSample(TrainSet):
                                             "--device", tests[0]),
                              [device < tests[0], device > tests[0]])
 
+    def judged(self, name, *arguments):
+        answer = self.beamgyro("validate", name, "set", "--json", "v.json",
+                               *arguments)
+        self.assertIn(answer.returncode, (0, 3), answer.stderr)
+        return json.loads((self.dir / "v.json").read_text()), answer
+
+    def test_every_device_is_judged_by_a_specification(self):
+        self.train("cubic.toml", "cubic.json")
+        limit = "residual_rms_deg_per_s = {{ max = {}, source = 'a test' }}"
+        self.write("spec.toml",
+                   f"name = 's'\n[limits]\n{limit.format(0.5)}\n")
+        said, answer = self.judged("cubic.json", "--spec", "spec.toml")
+        tests = self.devices(TEST)
+        self.assertEqual([one["device"] for one in
+                          said["population"]["verdicts"]],
+                         [str(number) for number in tests])
+        self.assertIn(f"of {len(tests)} devices pass", said["words"])
+        (rms,) = said["population"]["metrics"]
+        # The same figure as of the device alone, and on any number of threads.
+        one, _ = self.judged("cubic.json", "--spec", "spec.toml", "--device",
+                             tests[1])
+        self.assertEqual(one["population"]["metrics"][0]["after"],
+                         rms["after"][1:2])
+        again, _ = self.judged("cubic.json", "--spec", "spec.toml", "--jobs", 1)
+        self.assertEqual(again, said)
+        # The verdict is that of the worst device.
+        worst = max(rms["after"])
+        self.write("spec.toml", "name = 's'\n[limits]\n"
+                   f"{limit.format(0.2 * worst)}\n")
+        said, answer = self.judged("cubic.json", "--spec", "spec.toml")
+        self.assertEqual((said["verdict"], answer.returncode), ("fail", 3))
+
+    def test_a_device_that_was_trained_on_fails_the_check(self):
+        self.train("cubic.toml", "cubic.json", "--run", "sweep")
+        self.write("spec.toml", "name = 's'\n[limits]\nresidual_rms_deg_per_s"
+                   " = { max = 100, source = 'a test' }\n")
+        for part, outcome in ((TRAIN, False), (VALIDATION, False),
+                              (TEST, True)):
+            said, _ = self.judged("cubic.json", "--spec", "spec.toml", "--run",
+                                  "check", "--device", self.devices(part)[0])
+            checks = {one["name"]: one["passed"] for one in said["checks"]}
+            self.assertIs(checks["hold_out"], outcome)
+
+    def test_a_command_is_judged_on_a_set(self):
+        self.write("same.py", "import sys\n"
+                   "rate = sys.stdin.readline().strip().split(',')"
+                   ".index('rate')\n"
+                   "for line in sys.stdin:\n"
+                   "    print(line.split(',')[rate])\n")
+        said, _ = self.judged("cmd:/usr/bin/python3 same.py", "--run", "check")
+        for metric in said["metrics"]:
+            if metric["name"].startswith("residual"):
+                self.assertEqual(metric["after"]["value"],
+                                 metric["before"]["value"])
+
+    def test_no_bundle_takes_a_set(self):
+        self.train("cubic.toml", "cubic.json")
+        self.rejected("validate", "cubic.json", "set", "--bundle", "b",
+                      says=["--bundle", "is a set", "recordings"])
+        self.assertFalse((self.dir / "b").exists())
+
     def test_each_device_to_score_has_an_option_of_its_own(self):
         self.train("cubic.toml", "cubic.json", "--run", "sweep")
         answer = self.beamgyro("validate", "cubic.json", "set", "--device",

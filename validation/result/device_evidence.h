@@ -25,8 +25,9 @@ struct Baseline {
 struct ReadRun {
   std::string name;
   RunPurpose purpose = RunPurpose::kSoak;
-  double from = 0.0;        // [s]
-  std::string sha256 = {};  // of its file, if it has one
+  double from = 0.0;                      // [s]
+  std::string sha256 = {};                // of its file, if it has one
+  std::string device = {}, set_run = {};  // of a set: whose run, and which one
 };
 
 /// Everything that a qualification shows of one device: its runs, the recorded

@@ -141,7 +141,8 @@ CheckedCompensator checked_runs(const DeviceEvidence& found,
   for (std::size_t k = 0; k < found.runs.size(); ++k)
     checked.runs.push_back({found.read[k].name, found.read[k].purpose,
                             &found.runs[k], found.answers[k],
-                            found.read[k].sha256});
+                            found.read[k].sha256, found.read[k].device,
+                            found.read[k].set_run});
   return checked;
 }
 
@@ -151,6 +152,7 @@ void judge(const JudgedBy& by, const DeviceEvidence& found, std::size_t threads,
   result.limits = decided_limits(by.specification, result.metrics);
   CheckedCompensator checked = checked_runs(found, by.compensator);
   checked.provenance = by.provenance;
+  checked.set = by.set;
   result.checks = run_checks(checked, threads);
   WordedVerdict verdict = verdict_of(result.limits, result.checks);
   result.verdict = verdict.verdict;

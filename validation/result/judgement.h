@@ -43,6 +43,7 @@ struct JudgedBy {
   const MetricRuns& metric_runs;
   const TestedCompensator& compensator;
   const Provenance* provenance;  // of its training, where it is known
+  const SetPart* set = nullptr;  // of the runs, where they are of one
 };
 
 /// Evaluates every metric, decides on the limits, runs the checks and writes

@@ -23,42 +23,64 @@ Recording read_any(const std::filesystem::path& path) {
              : read_recording(path);
 }
 
-ReadRun named_run(const std::filesystem::path& path,
-                  const Recording& recording) try {
+// Returns what a recording shows, under a name.
+ReadRun named_run(const std::string& name, const Recording& recording) try {
   const RunPurpose purpose = recorded_purpose(recording);
-  return {path.filename().string(), purpose,
-          purpose == RunPurpose::kRest ? kRestBegins : 0.0,
-          sha256_of_file(path)};
+  return {name, purpose, purpose == RunPurpose::kRest ? kRestBegins : 0.0};
 } catch (const std::invalid_argument& error) {
-  throw std::invalid_argument(
-      fmt::format("{}: {}", path.string(), error.what()));
+  throw std::invalid_argument(fmt::format("{}: {}", name, error.what()));
+}
+
+DeviceEvidence evidence_of(std::vector<ReadRun> read,
+                           std::vector<Recording> recordings,
+                           const RecordedAnswering& by, std::size_t threads) {
+  std::optional<double> full_scale = by.full_scale;
+  for (const Recording& recording : recordings)
+    if (!full_scale) full_scale = stated_full_scale(recording);
+  Answering answering{.compensator = by.compensator,
+                      .baselines = {},
+                      .full_scale = full_scale.value_or(kFullScale),
+                      .tells_clamped = by.known != nullptr};
+  if (by.known != nullptr)
+    answering.baselines.push_back(
+        {"cubic", [known = by.known](const Recording& run) {
+           return baseline_rate(*known, run);
+         }});
+  return answered_evidence(std::move(read), std::move(recordings), answering,
+                           threads);
 }
 
 }  // namespace
 
 DeviceEvidence recorded_evidence(const std::vector<std::filesystem::path>& runs,
-                                 const TestedCompensator& compensator,
-                                 const Compensator* known,
-                                 std::optional<double> full_scale,
+                                 const RecordedAnswering& answering,
                                  std::size_t threads) {
   std::vector<ReadRun> read(runs.size());
   std::vector<Recording> recordings(runs.size());
   for_each_task(runs.size(), threads, [&](std::size_t k, std::size_t) {
     recordings[k] = read_any(runs[k]);
-    read[k] = named_run(runs[k], recordings[k]);
+    read[k] = named_run(runs[k].string(), recordings[k]);
+    read[k].name = runs[k].filename().string();
+    read[k].sha256 = sha256_of_file(runs[k]);
   });
-  for (const Recording& recording : recordings)
-    if (!full_scale) full_scale = stated_full_scale(recording);
-  Answering answering{.compensator = compensator,
-                      .baselines = {},
-                      .full_scale = full_scale.value_or(kFullScale),
-                      .tells_clamped = known != nullptr};
-  if (known != nullptr)
-    answering.baselines.push_back({"cubic", [known](const Recording& run) {
-                                     return baseline_rate(*known, run);
-                                   }});
-  return answered_evidence(std::move(read), std::move(recordings), answering,
-                           threads);
+  return evidence_of(std::move(read), std::move(recordings), answering,
+                     threads);
+}
+
+DeviceEvidence recorded_evidence(std::vector<TrainingRun> runs,
+                                 const RecordedAnswering& answering,
+                                 std::size_t threads) {
+  std::vector<ReadRun> read;
+  std::vector<Recording> recordings;
+  for (TrainingRun& run : runs) {
+    read.push_back(named_run(run.name, run.recording));
+    read.back().name = run.run;
+    read.back().device = run.device;
+    read.back().set_run = run.run;
+    recordings.push_back(std::move(run.recording));
+  }
+  return evidence_of(std::move(read), std::move(recordings), answering,
+                     threads);
 }
 
 }  // namespace beamgyro

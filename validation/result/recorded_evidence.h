@@ -7,22 +7,33 @@
 #include <vector>
 
 #include "compensation/compensator/compensator.h"
+#include "compensation/rows/run_source.h"
 #include "validation/external/tested_compensator.h"
 #include "validation/result/device_evidence.h"
 
 namespace beamgyro {
 
+/// Who answers recordings, and how.
+struct RecordedAnswering {
+  const TestedCompensator& compensator;
+  // What is known of it, null for a library or a command. The baseline "cubic"
+  // is the one in its file.
+  const Compensator* known = nullptr;
+  // [deg/s]; without, that of the first recording which tells it, or kFullScale
+  std::optional<double> full_scale = {};
+};
+
 /// Reads recordings (.h5 or .csv) and answers them. Each shows its
-/// recorded_purpose(); one at rest is read from kRestBegins on. The baseline
-/// "cubic" is the one in the file of the compensator, `known`, which is null
-/// for a library or a command. Without `full_scale` [deg/s] it is that of the
-/// first recording which tells it, else kFullScale. Throws
+/// recorded_purpose(); one at rest is read from kRestBegins on. Throws
 /// std::invalid_argument that names a recording which cannot be read, or has no
 /// true_rate.
 DeviceEvidence recorded_evidence(const std::vector<std::filesystem::path>& runs,
-                                 const TestedCompensator& compensator,
-                                 const Compensator* known,
-                                 std::optional<double> full_scale,
+                                 const RecordedAnswering& answering,
+                                 std::size_t threads);
+
+/// The same of runs of one device of a set.
+DeviceEvidence recorded_evidence(std::vector<TrainingRun> runs,
+                                 const RecordedAnswering& answering,
                                  std::size_t threads);
 
 }  // namespace beamgyro

@@ -113,9 +113,11 @@ Json yield_json(const PopulationYield& population) {
             {"yield", number_or_null(population.share())},
             {"interval", interval_json(population.interval)}};
   Json& devices = json["verdicts"] = Json::array();
-  for (const DeviceVerdict& device : population.devices)
+  for (const DeviceVerdict& device : population.devices) {
     devices.push_back({{"verdict", conformity_name(device.verdict)},
                        {"words", device.words}});
+    if (!device.number.empty()) devices.back()["device"] = device.number;
+  }
   Json& metrics = json["metrics"] = Json::array();
   for (const PopulationMetric& metric : population.metrics)
     metrics.push_back({{"name", metric.metric->name},

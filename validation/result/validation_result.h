@@ -68,12 +68,13 @@ struct PopulationMetric {
 /// The answer for one device of a population.
 struct DeviceVerdict {
   Conformity verdict = Conformity::kUndecided;
-  std::string words = {};  // the first reason against it
+  std::string words = {};   // the first reason against it
+  std::string number = {};  // of the device, if it is not its place in the list
 };
 
-/// The share of a population that passes.
+/// The share of a population, or of the devices of a set, that passes.
 struct PopulationYield {
-  std::string campaign;
+  std::string campaign;                // or the name of the set
   bool trained_on_each = false;        // or one compensator for all
   std::vector<DeviceVerdict> devices;  // by number
   std::size_t passed = 0, failed = 0, undecided = 0;

@@ -10,6 +10,7 @@
 
 #include "compensation/compensator/compensator_file.h"
 #include "dataset/files/sha256.h"
+#include "dataset/set/manifest.h"
 #include "sim/scenario/run_warnings.h"
 #include "sim/scenario/simulation_input.h"
 #include "validation/external/answer_checks.h"
@@ -18,6 +19,7 @@
 #include "validation/result/judgement.h"
 #include "validation/result/population_yield.h"
 #include "validation/result/recorded_evidence.h"
+#include "validation/result/set_verdicts.h"
 
 namespace beamgyro {
 namespace {
@@ -76,6 +78,7 @@ struct Validator::State {
   std::optional<Compensator> file;
   std::optional<ModelSpec> model;
   std::optional<Compensator> workbench;
+  std::optional<RunSource> set;
 
   std::vector<InputFile> inputs;
 
@@ -90,6 +93,13 @@ struct Validator::State {
     add_file("device", *request.device);
     for (const auto& path : qualification.files)
       add_file("qualification", path);
+  }
+
+  // The manifest tells every file of a set.
+  void open_set() {
+    if (!request.set) return;
+    set = runs_of_set(*request.set, request.selection);
+    add_file("runs", *request.set / kManifestName);
   }
 
   void open_workbench() {
@@ -193,6 +203,7 @@ Validator::Validator(ValidationRequest request)
   s.specification = asked_specification(asked);
   s.open_compensator();
   s.open_workbench();
+  s.open_set();
   for (const auto& path : asked.runs) s.add_file("runs", path);
   if (asked.specification) s.add_file("specification", *asked.specification);
   if (asked.campaign) {
@@ -239,18 +250,26 @@ CompletedValidation Validator::validate(std::size_t threads,
                         });
     result.warnings =
         warnings_about(s.qualification, s.device.device, done.evidence);
+  } else if (s.set) {
+    SetVerdicts found =
+        set_verdicts(*s.set, {compensator, known, s.request.full_scale},
+                     s.specification, threads, progress);
+    result = std::move(found.shown);
+    result.population = std::move(found.devices);
+    done.evidence = std::move(found.evidence);
   } else {
-    done.evidence = recorded_evidence(s.request.runs, compensator, known,
-                                      s.request.full_scale, threads);
+    done.evidence = recorded_evidence(
+        s.request.runs, {compensator, known, s.request.full_scale}, threads);
   }
   result.provenance = s.provenance();
   result.compensator = {
       tested_name(s.request.compensator), kind_of(s.request.compensator),
       known != nullptr ? known->provenance.method : "", compensator.inputs(),
       s.difference_from_workbench(done.evidence)};
-  judge({s.specification, s.qualification.metric_runs, compensator,
-         known != nullptr ? &known->provenance : nullptr},
-        done.evidence, threads, result);
+  if (!s.set)
+    judge({s.specification, s.qualification.metric_runs, compensator,
+           known != nullptr ? &known->provenance : nullptr},
+          done.evidence, threads, result);
   if (s.campaign)
     result.population =
         population_yield({&*s.campaign, &s.qualification, &s.specification,

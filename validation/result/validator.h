@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "compensation/rows/set_runs.h"
 #include "validation/external/tested_compensator.h"
 #include "validation/result/device_evidence.h"
 #include "validation/result/validation_result.h"
@@ -23,6 +24,9 @@ struct ValidationRequest {
   std::optional<std::filesystem::path> device = {};
   std::filesystem::path qualification = {};
   std::vector<std::filesystem::path> runs = {};
+  // Or the directory of a set, and what is chosen from it.
+  std::optional<std::filesystem::path> set = {};
+  SetSelection selection = {};
   std::optional<double> full_scale = {};  // [deg/s], of recordings
   std::optional<std::filesystem::path> specification = {};
   // A compensator file that the answers are compared with.
@@ -63,7 +67,9 @@ class Validator {
 
   /// Simulates the qualification for the device, or reads the recordings, and
   /// judges the compensator; does so with the devices of the campaign, if there
-  /// is one. The result does not depend on the number of threads.
+  /// is one. Of a set every device is judged; the verdict is the worst of them,
+  /// and the result that of the first device with it. The result does not
+  /// depend on the number of threads.
   CompletedValidation validate(std::size_t threads,
                                const ProgressOfWork& progress = {}) const;
 

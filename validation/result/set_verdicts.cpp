@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "validation/result/set_verdicts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "validation/result/judgement.h"
+#include "validation/result/population_yield.h"
+
+namespace beamgyro {
+namespace {
+
+bool is_worse(Conformity one, Conformity other) {
+  return one != other && worst_of(std::array{one, other}) == one;
+}
+
+class SetJudge {
+ public:
+  SetJudge(const RunSource& set, const RecordedAnswering& answering,
+           const SpecificationFile& specification, std::size_t threads)
+      : set_(*set.set),
+        answering_(answering),
+        specification_(specification),
+        threads_(threads) {
+    found_.devices.campaign = set_.name;
+    for (const Limit& limit : specification.limits)
+      if (const Metric* metric = find_metric(limit.metric);
+          std::ranges::none_of(found_.devices.metrics, [&](const auto& one) {
+            return one.metric == metric;
+          }))
+        found_.devices.metrics.push_back({metric, {}, {}});
+  }
+
+  // Judges the device whose runs these are.
+  void add(std::vector<TrainingRun> runs) {
+    const std::string device = runs.front().device;
+    DeviceEvidence evidence =
+        recorded_evidence(std::move(runs), answering_, threads_);
+    ValidationResult result;
+    const Compensator* known = answering_.known;
+    judge({specification_,
+           {},
+           answering_.compensator,
+           known != nullptr ? &known->provenance : nullptr,
+           &set_},
+          evidence, threads_, result);
+    found_.devices.devices.push_back({result.verdict, result.words, device});
+    for (PopulationMetric& metric : found_.devices.metrics)
+      add_figures(result, metric);
+    if (found_.devices.devices.size() > 1 &&
+        !is_worse(result.verdict, found_.shown.verdict))
+      return;
+    shown_device_ = device;
+    found_.shown = std::move(result);
+    found_.evidence = std::move(evidence);
+  }
+
+  SetVerdicts finish() {
+    PopulationYield& all = found_.devices;
+    const auto number_of = [&](Conformity verdict) {
+      return static_cast<std::size_t>(
+          std::ranges::count(all.devices, verdict, &DeviceVerdict::verdict));
+    };
+    all.passed = number_of(Conformity::kPass);
+    all.failed = number_of(Conformity::kFail);
+    all.undecided = number_of(Conformity::kUndecided);
+    all.interval = clopper_pearson(all.passed, all.devices.size());
+    found_.shown.words =
+        fmt::format("{} of {} devices pass. Device {}: {}", all.passed,
+                    all.devices.size(), shown_device_, found_.shown.words);
+    return std::move(found_);
+  }
+
+ private:
+  static void add_figures(const ValidationResult& result,
+                          PopulationMetric& metric) {
+    const auto figure = [](const std::optional<Estimate>& estimate) {
+      return estimate ? estimate->value : NAN;
+    };
+    for (const MetricResult& one : result.metrics) {
+      if (one.metric != metric.metric) continue;
+      metric.before.push_back(figure(one.before));
+      metric.after.push_back(figure(one.after));
+    }
+  }
+
+  const SetPart& set_;
+  const RecordedAnswering& answering_;
+  const SpecificationFile& specification_;
+  std::size_t threads_;
+  SetVerdicts found_;
+  std::string shown_device_;
+};
+
+}  // namespace
+
+SetVerdicts set_verdicts(const RunSource& set,
+                         const RecordedAnswering& answering,
+                         const SpecificationFile& specification,
+                         std::size_t threads, const ProgressOfWork& progress) {
+  if (set.count == 0) throw std::invalid_argument("no run of the set to judge");
+  SetJudge judge(set, answering, specification, threads);
+  std::vector<TrainingRun> runs;
+  std::size_t seen = 0;
+  set.for_each_by_device([&](const TrainingRun& run) {
+    if (!runs.empty() && runs.front().device != run.device) {
+      judge.add(std::exchange(runs, {}));
+      if (progress)
+        progress(static_cast<double>(seen) / static_cast<double>(set.count));
+    }
+    runs.push_back(run);
+    ++seen;
+  });
+  judge.add(std::move(runs));
+  return judge.finish();
+}
+
+}  // namespace beamgyro

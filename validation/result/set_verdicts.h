@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+
+#include "compensation/rows/run_source.h"
+#include "validation/result/recorded_evidence.h"
+#include "validation/result/validation_result.h"
+#include "validation/specification/specification_file.h"
+
+namespace beamgyro {
+
+/// The verdict on the devices of a set.
+struct SetVerdicts {
+  PopulationYield devices;
+  // Of the first device with the worst verdict; its words name it.
+  ValidationResult shown;
+  DeviceEvidence evidence;
+};
+
+/// Judges a compensator on every device of a set, one after the other, with the
+/// runs of one device in memory. A device passes when every limit and check is
+/// met. Throws as recorded_evidence(), and std::invalid_argument without runs.
+SetVerdicts set_verdicts(const RunSource& set,
+                         const RecordedAnswering& answering,
+                         const SpecificationFile& specification,
+                         std::size_t threads,
+                         const ProgressOfWork& progress = {});
+
+}  // namespace beamgyro
