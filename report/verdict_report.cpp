@@ -2,6 +2,7 @@
 #include "report/verdict_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <string_view>
@@ -67,12 +68,32 @@ std::string metric_table(const ValidationResult& result) {
   return text;
 }
 
-std::string limit_line(const DecidedLimit& decided) {
+// Why a limit could not be decided on.
+std::string why_without_value(const ValidationResult& result,
+                              const Limit& limit) {
+  const auto found = std::ranges::find_if(result.metrics, [&](const auto& one) {
+    return one.metric->name == limit.metric;
+  });
+  if (found == result.metrics.end() || found->after) return "no number";
+  std::vector<std::string_view> purposes;
+  for (const RunPurpose purpose : found->metric->reads)
+    purposes.push_back(purpose_name(purpose));
+  return fmt::format("not shown by a run for {}", fmt::join(purposes, ", "));
+}
+
+std::string limit_line(const ValidationResult& result,
+                       const DecidedLimit& decided) {
   const auto& [limit, decision] = decided;
   std::string value = figure(decision.compared);
   if (decision.compared && decision.compared->interval)
     value += fmt::format(" [{:.3g}, {:.3g}]", decision.compared->interval->low,
                          decision.compared->interval->high);
+  if (!decision.compared)
+    return wrapped(
+        fmt::format("{:<10}{}: {}, {}", conformity_name(decision.result),
+                    limit.metric, why_without_value(result, limit),
+                    text_of(limit)),
+        10);
   return wrapped(fmt::format("{:<10}{}: {}, {}, margin {}",
                              conformity_name(decision.result), limit.metric,
                              value, text_of(limit), figure(decision.margin)),
@@ -141,7 +162,8 @@ std::string heading(const ValidationResult& result) {
 
 std::string verdict_report(const ValidationResult& result) {
   std::string text = heading(result) + '\n' + metric_table(result) + '\n';
-  for (const DecidedLimit& limit : result.limits) text += limit_line(limit);
+  for (const DecidedLimit& limit : result.limits)
+    text += limit_line(result, limit);
   text += '\n';
   for (const CheckResult& check : result.checks) text += check_line(check);
   if (result.population) text += '\n' + yield_lines(*result.population);

@@ -243,7 +243,9 @@ CheckResult allan_result(const CheckContext& context, const WorstAllan& worst) {
     result.words = found + ": the compensator leaves the noise as it is.";
   } else if (low <= 1.0 + kAllanTolerance && high >= 1.0 - kAllanTolerance) {
     result.words =
-        found + ". The runs at rest are too short to tell it within 2 %.";
+        found +
+        ". The runs at rest are too short, or their noise is too small, to "
+        "tell it within 2 %.";
   } else if (ratio > 1.0) {
     result.outcome = CheckOutcome::kFailed;
     result.words = found + ": the compensator adds noise.";

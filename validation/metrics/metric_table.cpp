@@ -219,7 +219,7 @@ std::vector<Metric> made_table() {
        "angle_random_walk_deg_per_sqrt_h.",
        {kRest},
        &evaluation::quantisation},
-      {"lowest_allan_deviation_deg_per_h",
+      {"bias_instability_bound_deg_per_h",
        "deg/h",
        "12.11",
        "Lowest overlapping Allan deviation over sqrt(2 ln 2/pi) = "

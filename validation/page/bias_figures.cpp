@@ -114,11 +114,12 @@ FigureAxis temperature_axis() { return {"Measured temperature", "degC"}; }
 
 std::vector<Figure> bias_over_temperature_figures(
     const ComparedEvidence& both) {
-  Figure figure{"bias_over_temperature", "Bias over temperature",
-                "Means over the last five minutes of each soak. The two "
-                "directions differ "
-                "by what the temperature sensor does not tell.",
-                temperature_axis(), bias_axis()};
+  Figure figure{
+      "bias_over_temperature", "Bias over temperature",
+      "Means over the last five minutes of each soak. The two "
+      "directions differ "
+      "by what the temperature sensor does not tell, and by slow noise.",
+      temperature_axis(), bias_axis()};
   for_both(both, RunPurpose::kSoak,
            [&](const std::string& role, const EvidenceRun& run) {
              std::array<FigureSeries, 2> by_direction = {

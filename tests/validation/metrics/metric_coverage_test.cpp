@@ -321,7 +321,7 @@ TEST(MetricCoverage, LowestAllanDeviation) {
   const double N = 0.01, K = 2e-3;
   const double variance = N * N / 8 + K * K * 8 / 3;
   expect_coverage(
-      "lowest_allan_deviation_deg_per_h",
+      "bias_instability_bound_deg_per_h",
       3600 * std::sqrt(variance / (2 * std::numbers::ln2 / pi)),
       scenes_of(
           [](const NoiseLevels& noise, std::uint64_t seed) {
