@@ -58,7 +58,7 @@ std::vector<DeviceScore> score_devices(const Compensator& compensator,
     throw std::invalid_argument("no run of the set to score");
   std::vector<DeviceScore> scores;
   runs.for_each([&](const TrainingRun& run) {
-    Validation validation =
+    const Validation validation =
         validate(compensator, run.name,
                  {{run.name, &run.recording, run.sha256}}, specification);
     const Score& score = validation.overall;
@@ -68,15 +68,12 @@ std::vector<DeviceScore> score_devices(const Compensator& compensator,
                        score.raw.rms,
                        score.baseline ? score.baseline->rms : HUGE_VAL,
                        score.constant.rms};
-    device.clamped = clamped_samples(compensator, run.recording);
-    device.in_sample = validation.runs[0].in_sample;
-    if (!device.in_sample && runs.set &&
-        was_used_in_training(compensator.provenance, *runs.set, run)) {
-      device.in_sample = true;
-      add_hold_out_check(1, 1, validation);
-    }
     device.verdict = validation.verdict;
     device.passed = validation.passed();
+    device.clamped = clamped_samples(compensator, run.recording);
+    device.in_sample = validation.runs[0].in_sample ||
+                       (runs.set && was_used_in_training(compensator.provenance,
+                                                         *runs.set, run));
     device.worse_than = better_fits(score);
     if (score.replayed) device.not_tested = score.replayed->untested;
     scores.push_back(std::move(device));

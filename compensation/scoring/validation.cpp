@@ -169,8 +169,6 @@ std::string verdict_text(Verdict verdict) {
       return "scale factor not tested";
     case Verdict::kRemovesNoDrift:
       return "removes no drift";
-    case Verdict::kScoredOnTraining:
-      return "scored on its training";
   }
   throw std::logic_error("verdict: not one of the enumerators");
 }
@@ -191,16 +189,6 @@ std::vector<std::string> better_fits(const Score& score) {
 
 bool Validation::passed() const {
   return std::ranges::all_of(checks, &Check::passed);
-}
-
-void add_hold_out_check(std::size_t seen, std::size_t runs,
-                        Validation& validation) {
-  validation.checks.push_back(
-      {"hold_out", seen == 0,
-       fmt::format("{} of {} runs were used in training, must be none", seen,
-                   runs)});
-  if (seen > 0 && validation.verdict == Verdict::kKeepsRate)
-    validation.verdict = Verdict::kScoredOnTraining;
 }
 
 Validation validate(const std::string& method,
@@ -307,8 +295,6 @@ Validation validate(const Compensator& compensator, const std::string& method,
           warning_of_no_training(compensator.provenance);
       !warning.empty())
     validation.warnings.push_back(warning);
-  else
-    add_hold_out_check(seen, runs.size(), validation);
   if (seen > 0)
     validation.warnings.push_back(fmt::format(
         "{} of {} runs were used in training: these scores are in-sample and "

@@ -26,7 +26,6 @@ enum class Verdict {
   kBendsScaleFactor,     // "bends the scale factor"
   kScaleFactorUntested,  // "scale factor not tested"
   kRemovesNoDrift,       // "removes no drift"
-  kScoredOnTraining,     // "scored on its training"
 };
 
 std::string verdict_text(Verdict verdict);
@@ -42,18 +41,12 @@ struct Validation {
   bool corrects_scale_factor = false;
   std::vector<Score> runs;
   Score overall;
-  std::vector<Check> checks;  // "finite", "scale factor", "residual",
-                              // "hold_out" where the training is known
+  std::vector<Check> checks;  // "finite", "scale factor", "residual"
   Verdict verdict = Verdict::kNotFinite;
   std::vector<std::string> warnings;  // of in-sample runs, of clamping
 
   bool passed() const;  // every check
 };
-
-/// Adds the check that none of the `runs` was used in training, where `seen` of
-/// them were; a compensator that passes all else is then judged by it.
-void add_hold_out_check(std::size_t seen, std::size_t runs,
-                        Validation& validation);
 
 /// Returns which of "constant" and "cubic", fitted to the scored runs
 /// themselves, leave less than the compensator.
@@ -68,8 +61,6 @@ std::vector<std::string> better_fits(const Score& score);
 ///   neither a replay nor a recorded rate tells what the compensator does.
 /// - removes no drift: the rms of the residual is not below that of the raw
 ///   rate.
-/// - scored on its training: a run was used in training, as far as a
-///   compensator's file tells.
 /// - keeps the rate.
 ///
 /// The scale factors judged are those within kSmallRate and over every rate: of

@@ -193,11 +193,6 @@ class InSample(Validate):
         self.assertEqual(any("in-sample" in text for text in said["warnings"]),
                          score["in_sample"])
         self.assertEqual("in-sample" in answer.stderr, score["in_sample"])
-        checks = {check["name"]: check["passed"] for check in said["checks"]}
-        self.assertEqual(checks["hold_out"], not score["in_sample"])
-        if score["in_sample"]:
-            self.assertEqual(answer.returncode, 3)
-            self.assertNotEqual(said["verdict"], "pass")
         return score["in_sample"]
 
     def test_a_training_run_is_known_by_what_was_measured(self):
