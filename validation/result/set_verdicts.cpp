@@ -16,7 +16,7 @@
 namespace beamgyro {
 namespace {
 
-bool is_worse(Conformity one, Conformity other) {
+bool is_more_severe(Conformity one, Conformity other) {
   return one != other && worst_of(std::array{one, other}) == one;
 }
 
@@ -54,7 +54,7 @@ class SetJudge {
     for (PopulationMetric& metric : found_.devices.metrics)
       add_figures(result, metric);
     if (found_.devices.devices.size() > 1 &&
-        !is_worse(result.verdict, found_.shown.verdict))
+        !is_more_severe(result.verdict, found_.shown.verdict))
       return;
     shown_device_ = device;
     found_.shown = std::move(result);
