@@ -19,7 +19,9 @@
 namespace beamgyro {
 namespace {
 
-constexpr double kLargestRecording = 5e7;  // samples, 12 GB at work
+constexpr double kHour = 3600;               // [s]
+constexpr Range kAge{0, 1e6, false, false};  // [h], 114 years
+constexpr double kLargestRecording = 5e7;    // samples, 12 GB at work
 
 const ProfileUnit kAmbient{"temperature_degC", 1, kZeroCelsius,
                            kMaterialTemperatures};
@@ -209,6 +211,7 @@ Scenario read_scenario(const ConfigDocument& document,
   }
   scenario.seed = static_cast<std::uint64_t>(
       root.integer("seed", 0, std::numeric_limits<long>::max()));
+  scenario.age = root.table_or_empty("age").number_or("hours", 0, kAge) * kHour;
   scenario.powered = read_power(root.table_or_empty("power"));
   scenario.ambient =
       read_ambient(root.table("ambient"), folder, scenario.soak_ends);

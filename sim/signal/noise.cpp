@@ -30,9 +30,10 @@ void check_noise(const NoiseParameters& p) {
 
 RateNoise::RateNoise(const NoiseParameters& parameters, double output_rate,
                      std::uint64_t seed, std::uint32_t device,
-                     std::uint32_t run)
+                     std::uint32_t run, double age)
     : white_sigma_(parameters.angle_random_walk * std::sqrt(output_rate)),
       walk_sigma_(parameters.rate_random_walk / std::sqrt(output_rate)),
+      walk_(parameters.rate_random_walk * walk_since_trim(age, seed, device)),
       white_stream_(seed, device, run, kWhiteNoiseStream),
       walk_stream_(seed, device, run, kRateRandomWalkStream) {
   check_noise(parameters);
@@ -64,6 +65,35 @@ void RateNoise::add_next(std::span<double> rate) {
     }
     rate = rate.subspan(count);
   }
+}
+
+double walk_since_trim(double age, std::uint64_t seed, std::uint32_t device) {
+  constexpr double kLongest = 0x1p32, kShortest = 1;  // [s]
+  if (!(age >= 0 && age <= kLongest))
+    throw std::invalid_argument(
+        fmt::format("age is {} s, must be 0 to {}", age, kLongest));
+  if (age == 0) return 0;
+  // The interval that holds `age`, the path at its ends, and its number: the
+  // halves of number i are 2 i and 2 i + 1.
+  const auto normal = [&](std::uint32_t number) {
+    return RandomStream(seed, device, number, kWalkSinceTrimStream).normal();
+  };
+  double start = 0, length = kLongest;
+  double first = 0, last = std::sqrt(kLongest) * normal(0);
+  for (std::uint32_t number = 1; length > kShortest;) {
+    const double middle =
+        0.5 * (first + last) + 0.5 * std::sqrt(length) * normal(number);
+    length /= 2;
+    number *= 2;
+    if (age >= start + length) {
+      start += length;
+      first = middle;
+      number += 1;
+    } else {
+      last = middle;
+    }
+  }
+  return first + (last - first) * ((age - start) / length);
 }
 
 std::vector<double> turn_on_offsets(const NoiseParameters& parameters,

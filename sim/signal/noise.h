@@ -25,14 +25,17 @@ struct NoiseParameters {
 /// sample at the times m / output_rate:
 ///   white    variance N^2 x output_rate,
 ///   flicker  see FlickerFilter, stationary from the start,
-///   walk     0 at the first sample, steps of variance K^2 / output_rate.
+///   walk     K walk_since_trim() at the first sample, steps of variance
+///            K^2 / output_rate. It goes on through power-off.
 /// The noise does not depend on how a run is cut into calls.
 class RateNoise {
  public:
-  /// Throws std::invalid_argument for a parameter below 0, an output rate [Hz]
-  /// not above 0, or one not finite.
+  /// `age` [s] is the time since the trim at the first sample. Throws
+  /// std::invalid_argument for a parameter below 0, an output rate [Hz] not
+  /// above 0, or one not finite, and as walk_since_trim().
   RateNoise(const NoiseParameters& parameters, double output_rate,
-            std::uint64_t seed, std::uint32_t device, std::uint32_t run);
+            std::uint64_t seed, std::uint32_t device, std::uint32_t run,
+            double age = 0);
 
   /// Adds the noise of the next rate.size() samples.
   void add_next(std::span<double> rate);
@@ -45,6 +48,13 @@ class RateNoise {
   RandomStream walk_stream_;
   std::optional<FlickerNoise> flicker_;  // none when B = 0
 };
+
+/// Returns the Wiener path W(age) [sqrt(s)] of a device, W(0) = 0: values at
+/// two ages differ by a normal of their distance as variance, in every run and
+/// in every order. Drawn by halving intervals of the path (Levy) down to 1 s,
+/// with straight lines between. Throws std::invalid_argument for an age [s]
+/// outside 0 .. 2^32.
+double walk_since_trim(double age, std::uint64_t seed, std::uint32_t device);
 
 /// Turn-on offsets [rad/s] of the first `cycles` power cycles of a run,
 /// independent normals of sigma parameters.turn_on; cycle i gets the same value

@@ -13,5 +13,6 @@ inline constexpr RandomPurpose kFlickerStream{1};
 inline constexpr RandomPurpose kRateRandomWalkStream{2};
 inline constexpr RandomPurpose kTurnOnStream{3};
 inline constexpr RandomPurpose kTemperatureSensorStream{4};
+inline constexpr RandomPurpose kWalkSinceTrimStream{17};
 
 }  // namespace beamgyro

@@ -20,7 +20,9 @@ TEST(RandomPurposes, AreAllDifferentAndWhatTheyWere) {
       kInitialWeightsStream,  kSampleOrderStream,       kDeviceDrawStream,
       kMechanicalNoiseStream, kCrossRateXStream,        kCrossRateYStream,
       kAccelerationXStream,   kAccelerationYStream,     kAccelerationZStream,
-      kSobolScrambleStream,   kIntervalStream};
+      kSobolScrambleStream,
+      kIntervalStream,
+      kWalkSinceTrimStream};
   std::uint32_t number = 0;
   for (const RandomPurpose purpose : all)
     EXPECT_EQ(static_cast<std::uint32_t>(purpose), number++);

@@ -56,6 +56,11 @@ TEST(ScenarioFile, WithoutRateAndPowerItRestsAndIsOnFromTheStart) {
   EXPECT_EQ(scenario.powered[0].off, std::numeric_limits<double>::infinity());
   EXPECT_TRUE(scenario.noise_enabled);
   EXPECT_FALSE(scenario.stirred);
+  EXPECT_EQ(scenario.age, 0);
+}
+
+TEST(ScenarioFile, TheAgeIsInHours) {
+  EXPECT_EQ(scenario_from("[age]\nhours = 1000\n").age, 3.6e6);
 }
 
 TEST(ScenarioFile, CountsSamplesAsDurationTimesRate) {
@@ -119,6 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScenario{kAmbient, "[power]\non_s=[0, 10]\n", "one off"},
         BadScenario{kAmbient, "[power]\non_s=[5]\noff_s=[2]\n", "in turn"},
         BadScenario{kAmbient, "[noise]\nenabled=1\n", "noise.enabled"},
+        BadScenario{kAmbient, "[age]\nhours=-1\n", "age.hours"},
         BadScenario{kAmbient, "[chamber]\nstirred=\"yes\"\n",
                     "chamber.stirred"},
         BadScenario{kAmbient, "[chamber]\nstired=true\n", "stirred"}));

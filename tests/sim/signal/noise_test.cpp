@@ -92,6 +92,43 @@ TEST(RateNoise, RateRandomWalkStartsAtZeroWithStepsOfItsVariance) {
   EXPECT_NEAR(variance / (kK * kK / kRate), 1.0, 3.0 * std::sqrt(2.0 / steps));
 }
 
+TEST(RateNoise, AnAgedUnitStartsFromItsWalkSinceTheTrim) {
+  constexpr double kAge = 3.6e6;  // [s]
+  std::vector<double> aged(1000, 0.0);
+  RateNoise({.rate_random_walk = kK}, 10.0, 11, 5, 3, kAge).add_next(aged);
+  std::vector<double> fresh(1000, 0.0);
+  RateNoise({.rate_random_walk = kK}, 10.0, 11, 5, 3).add_next(fresh);
+  const double start = kK * walk_since_trim(kAge, 11, 5);
+  EXPECT_EQ(aged[0], start);
+  EXPECT_NE(start, 0.0);
+  for (std::size_t i = 0; i < aged.size(); ++i)  // within rounding of the sums
+    EXPECT_NEAR(aged[i], start + fresh[i], 1e-12 * std::abs(start)) << i;
+}
+
+TEST(WalkSinceTrim, HasTheVarianceOfTheTimeBetweenAnyTwoAges) {
+  constexpr std::uint32_t kDevices = 20000;
+  constexpr double kAges[] = {0.0, 40.0, 3600.0, 3.6e6, 3.1e7, 3.2e9};
+  for (std::size_t i = 1; i < std::size(kAges); ++i) {
+    double grown = 0.0, overlap = 0.0;
+    for (std::uint32_t device = 0; device < kDevices; ++device) {
+      const double before = walk_since_trim(kAges[i - 1], 7, device);
+      const double step = walk_since_trim(kAges[i], 7, device) - before;
+      grown += step * step / kDevices;
+      overlap += step * before / kDevices;
+    }
+    const double time = kAges[i] - kAges[i - 1];
+    EXPECT_NEAR(grown / time, 1.0, 3.0 * std::sqrt(2.0 / kDevices)) << i;
+    EXPECT_NEAR(overlap, 0.0, 3.0 * std::sqrt(time * kAges[i - 1] / kDevices));
+  }
+}
+
+TEST(WalkSinceTrim, RejectsAnAgeThatIsNone) {
+  EXPECT_EQ(walk_since_trim(0.0, 7, 3), 0.0);
+  EXPECT_THROW(walk_since_trim(-1.0, 7, 3), std::invalid_argument);
+  EXPECT_THROW(walk_since_trim(NAN, 7, 3), std::invalid_argument);
+  EXPECT_THROW(walk_since_trim(1e10, 7, 3), std::invalid_argument);
+}
+
 TEST(RateNoise, PartsAreIndependentAndAddUp) {
   const auto all = noise(kAll, 10.0, 1000);
   const auto white = noise({.angle_random_walk = kN}, 10.0, 1000);
