@@ -84,7 +84,7 @@ void CarrierOde::rate(double t, const CaseMotion& motion,
   dydt(kFeedback2) = wf * (y(kFeedback1) - y(kFeedback2));
   dydt(kFeedback2 + 1) = wf * (y(kFeedback1 + 1) - y(kFeedback2 + 1));
   dydt(kPllIntegral) = loops_.pll_integral * drive.phase_error();
-  dydt(kAgcIntegral) = loops_.agc_integral * drive.amplitude_error();
+  dydt(kAgcIntegral) = drive.integral_rate;
 
   const Complex charge = readout_(0) * x(0) + readout_(1) * x(1) +
                          loops_.feedthrough * drive.voltage * carrier.real();

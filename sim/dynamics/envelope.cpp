@@ -114,7 +114,7 @@ void EnvelopeOde::rate(const EnvelopeInputs& inputs, const State& y,
   dydt(kFeedback2) = wf * (m.i1 - m.i2);
   dydt(kFeedback2 + 1) = wf * (m.q1 - m.q2);
   dydt(kPllIntegral) = loops_.pll_integral * m.drive.phase_error();
-  dydt(kAgcIntegral) = loops_.agc_integral * m.drive.amplitude_error();
+  dydt(kAgcIntegral) = m.drive.integral_rate;
 
   const Complex charge = now.couplings.readout * m.U;
   const Complex r = (charge + loops_.feedthrough * m.drive.voltage) * now.turn /

@@ -33,7 +33,7 @@ void add_amplitude_column(Matrix& J, Index column, const Vector2cd& slope) {
 // Slopes of what the loops make by one of the states i_1 .. eta.
 struct DriveSlope {
   double phase_error = 0, frequency = 0, amplitude_error = 0;
-  double voltage = 0, voltage_rate = 0;
+  double integral_rate = 0, voltage = 0, voltage_rate = 0;
 };
 
 // By i_1, q_1, i_2, q_2, xi, eta.
@@ -62,6 +62,8 @@ std::array<DriveSlope, 6> drive_slopes(const LoopElectronics& loops,
   by[5].voltage = 1;
   for (DriveSlope& s : by) {
     s.frequency += loops.pll_proportional * s.phase_error;
+    s.integral_rate = loops.agc_integral * s.amplitude_error;
+    if (m.drive.limited) s.integral_rate -= loops.agc_tracking * s.voltage;
     const double scale = m.drive.limited ? 0 : loops.nominal_voltage;
     s.voltage *= scale;
     s.voltage_rate *= scale;
@@ -123,7 +125,7 @@ void EnvelopeOde::add_loop_slopes(const EnvelopeCoefficients& now,
                              per_V_rate * by.voltage_rate);
     add_column(slope, kReadout1, column, readout_per_V * by.voltage);
     slope(kPllIntegral, column) += loops_.pll_integral * by.phase_error;
-    slope(kAgcIntegral, column) += loops_.agc_integral * by.amplitude_error;
+    slope(kAgcIntegral, column) += by.integral_rate;
     ++column;
   }
 }

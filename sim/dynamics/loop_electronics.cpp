@@ -42,6 +42,7 @@ LoopElectronics loop_electronics(const Gyro& gyro) {
       .pll_integral = drive.pll_integral_corner * drive.pll_integral_corner,
       .agc_proportional = tau * drive.agc_bandwidth,
       .agc_integral = tau * drive.agc_bandwidth * drive.agc_integral_corner,
+      .agc_tracking = drive.agc_integral_corner,
       .rebalance = readout.mode == ReadoutMode::kForceRebalance,
       .rebalance_integral = readout.rebalance_bandwidth,
       .charge_axis = gyro.rate_axis,
@@ -72,6 +73,11 @@ DriveSignals drive_signals(const LoopElectronics& loops, double i2, double q2,
                         (loops.agc_proportional * s.amplitude_error() + eta);
   s.voltage = std::clamp(wanted, -loops.voltage_limit, loops.voltage_limit);
   s.limited = s.voltage != wanted;
+  s.integral_rate = loops.agc_integral * s.amplitude_error();
+  if (s.limited) {
+    s.integral_rate +=
+        loops.agc_tracking * (s.voltage - wanted) / loops.nominal_voltage;
+  }
   return s;
 }
 

@@ -13,7 +13,12 @@ namespace beamgyro {
 ///
 ///   a = sqrt(i^2 + q^2),  delta = g(a) (atan2(i, q) - phi_pll)
 ///   theta' = w_nom + K_p delta + xi,         xi' = K_i delta
-///   V_D = V_0 (K_pA e_A + eta), |V_D| <= V_max,  eta' = K_iA e_A,  e_A = 1 - a
+///   V = V_0 (K_pA e_A + eta),  e_A = 1 - a,  V_D = V within +-V_max
+///   eta' = K_iA e_A + (V_D - V)/(V_0 T_w)
+///
+/// While the voltage stands at its limit the second term of eta' takes the
+/// integral to where it would have to be (back-calculation), so that the loop
+/// works again as soon as the limit allows. T_w = K_pA/K_iA.
 ///
 /// g rises smoothly from 0 at kDetectionStart to 1 at kDetectionEnd, because a
 /// phase detector needs a signal and a beam at rest has no phase.
@@ -40,6 +45,7 @@ struct LoopElectronics {
   double pll_integral;        // K_i [1/s2]
   double agc_proportional;    // K_pA
   double agc_integral;        // K_iA [1/s]
+  double agc_tracking;        // 1/T_w [1/s]
 
   bool rebalance;
   double rebalance_integral;                        // k_I [1/s]
@@ -67,9 +73,10 @@ struct DriveSignals {
   double amplitude;  // a
   double phase;      // atan2(i_2, q_2) - phi_pll [rad]
   Detection detection;
-  double frequency;  // theta' [rad/s]
-  double voltage;    // V_D [V]
-  bool limited;      // |V_D| stands at V_max
+  double frequency;      // theta' [rad/s]
+  double voltage;        // V_D [V]
+  double integral_rate;  // eta' [1/s]
+  bool limited;          // |V_D| stands at V_max
 
   double phase_error() const { return detection.gain * phase; }  // delta
   double amplitude_error() const { return 1 - amplitude; }       // e_A

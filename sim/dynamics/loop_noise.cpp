@@ -30,8 +30,8 @@ Eigen::Matrix<double, 2, 4> real_row(const Vector2cd& row) {
 Eigen::VectorXd settled_state(const Gyro& gyro, const EnvelopeOde& ode,
                               const CaseMotion& motion, double T_beam,
                               double T_board) {
-  const StaticSolution s =
-      static_solution(gyro, modal_at(gyro, T_beam), motion);
+  const ModalParameters modal = modal_at(gyro, T_beam);
+  const StaticSolution s = static_solution(gyro, modal, motion);
   const LoopElectronics& loops = ode.loops();
   Eigen::VectorXd y = ode.at_rest(T_beam);
   y(kEnvelopeNodes + Index{kBoard}) = T_board;
@@ -41,7 +41,11 @@ Eigen::VectorXd settled_state(const Gyro& gyro, const EnvelopeOde& ode,
   };
   put(kAmplitude, s.amplitude(0) / gyro.device.drive.amplitude);
   put(kAmplitude + 2, s.amplitude(1) / gyro.device.drive.amplitude);
-  const Complex feedback(std::sin(loops.pll_phase), std::cos(loops.pll_phase));
+  Complex feedback(std::sin(loops.pll_phase), std::cos(loops.pll_phase));
+  if (!s.amplitude_locked) {
+    feedback *= std::abs(charge_of(modal.coupling[kFeedback], s.amplitude)) /
+                loops.feedback_scale;
+  }
   put(kFeedback1, feedback);
   put(kFeedback2, feedback);
   y(kPllIntegral) = s.drive_frequency - loops.nominal_frequency;

@@ -38,35 +38,39 @@ class Envelope : public testing::TestWithParam<std::string> {
   }
 };
 
+// With the drive at its limit in the glass transition of the bond, too.
 TEST_P(Envelope, JacobianAgreesWithDifferences) {
-  const EnvelopeInputs inputs = turning(2.0);
-  Eigen::VectorXd y = settled(gyro, ode, inputs.motion, 281.3);
-  // Off the settled state, so that no slope is zero by accident.
-  for (Eigen::Index i = 0; i < kEnvelopeNodes; ++i)
-    y(i) += 0.02 * std::sin(3.0 * static_cast<double>(i) + 1);
-  y(kEnvelopeNodes + 0) = 283.07;
-  y(kEnvelopeNodes + 4) = 290.2;
-  const Eigen::Index n = ode.size();
-  Eigen::MatrixXd J(n, n);
-  ode.jacobian(inputs, y, J);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const double h = 1e-4 * std::max(1.0, 0.02 * std::abs(y(j)));
-    Eigen::VectorXd up(n), down(n), up2(n), down2(n);
-    const auto at = [&](double step, Eigen::VectorXd& dydt) {
-      Eigen::VectorXd moved = y;
-      moved(j) += step;
-      ode.rate(inputs, moved, dydt);
-    };
-    at(h, up), at(-h, down), at(2 * h, up2), at(-2 * h, down2);
-    const Eigen::VectorXd slope = (8 * (up - down) - (up2 - down2)) / (12 * h);
-    const double scale = slope.cwiseAbs().maxCoeff();
-    EXPECT_LE((J.col(j) - slope).cwiseAbs().maxCoeff(), 1e-6 * scale)
-        << "column " << j;
+  for (const double T : {281.3, 368.2}) {
+    const EnvelopeInputs inputs = turning(2.0);
+    Eigen::VectorXd y = settled(gyro, ode, inputs.motion, T);
+    // Off the settled state, so that no slope is zero by accident.
+    for (Eigen::Index i = 0; i < kEnvelopeNodes; ++i)
+      y(i) += 0.02 * std::sin(3.0 * static_cast<double>(i) + 1);
+    y(kEnvelopeNodes + 0) = T + 1.77;
+    y(kEnvelopeNodes + 4) = 290.2;
+    const Eigen::Index n = ode.size();
+    Eigen::MatrixXd J(n, n);
+    ode.jacobian(inputs, y, J);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const double h = 1e-4 * std::max(1.0, 0.02 * std::abs(y(j)));
+      Eigen::VectorXd up(n), down(n), up2(n), down2(n);
+      const auto at = [&](double step, Eigen::VectorXd& dydt) {
+        Eigen::VectorXd moved = y;
+        moved(j) += step;
+        ode.rate(inputs, moved, dydt);
+      };
+      at(h, up), at(-h, down), at(2 * h, up2), at(-2 * h, down2);
+      const Eigen::VectorXd slope =
+          (8 * (up - down) - (up2 - down2)) / (12 * h);
+      const double scale = slope.cwiseAbs().maxCoeff();
+      EXPECT_LE((J.col(j) - slope).cwiseAbs().maxCoeff(), 1e-6 * scale)
+          << "column " << j << " at " << T;
+    }
   }
 }
 
 TEST_P(Envelope, V20FixedPointIsTheAlgebraicSolution) {
-  for (const double T : {240.0, 298.15, 320.0}) {
+  for (const double T : {240.0, 298.15, 320.0, 368.15}) {
     for (const double rate : {0.0, 1.0}) {
       const EnvelopeInputs inputs = turning(rate);
       const Eigen::VectorXd y = settled(gyro, ode, inputs.motion, T);
