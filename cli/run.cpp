@@ -13,6 +13,7 @@
 #include "dataset/files/atomic_file.h"
 #include "dataset/netcdf/recording_file.h"
 #include "sim/scenario/carrier_run.h"
+#include "sim/scenario/drive_lock.h"
 #include "sim/scenario/run_warnings.h"
 #include "sim/scenario/simulation.h"
 #include "sim/scenario/simulation_input.h"
@@ -25,6 +26,7 @@ struct RunArguments {
   std::vector<std::string> overrides;
   std::optional<long> seed;
   bool yes = false;
+  bool stop_on_unlock = false;
 };
 
 // A run that will take longer needs --yes [s].
@@ -58,6 +60,7 @@ int run(const RunArguments& arguments) {
   RunWarnings warnings(input.scenario, input.device);
   const Gyro gyro = make_gyro(input.device);
   simulate(input.scenario, gyro, {}, [&](Recording&& block) {
+    if (arguments.stop_on_unlock) require_lock(input.scenario, block);
     if (!file) {
       block.program_version = kProgramVersion;
       block.git_revision = kGitRevision;
@@ -96,6 +99,10 @@ void add_run(CommandLine& program) {
   command.flag({"--yes", "",
                 "Starts a carrier run even if it will take more than an hour"},
                arguments->yes);
+  command.flag({"--stop-on-unlock", "",
+                "Fails where the drive loop is not locked one second after a "
+                "power-on or later"},
+               arguments->stop_on_unlock);
   command.group("Changes of the scenario");
   command.texts({"--set", "KEY=VALUE",
                  "Replaces a key of the scenario or of its device; may be "

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "sim/numerics/simulation_failure.h"
-#include "sim/scenario/run_warnings.h"
 #include "sim/scenario/simulation.h"
 
 namespace beamgyro {
@@ -93,8 +92,7 @@ Recording ShardMaker::recorded(const PreparedDevice& device,
 }
 
 // Values that are not finite or that their storage cannot hold are a failure of
-// the device, too. Where its temperatures left the range of the materials, that
-// is the cause.
+// the device, too.
 EncodedDevice ShardMaker::encoded(const ShardBuilder& file,
                                   std::uint32_t position,
                                   const PreparedDevice& device,
@@ -105,10 +103,7 @@ EncodedDevice ShardMaker::encoded(const ShardBuilder& file,
     try {
       if (row.failure.empty()) return file.encode(position, row, &recording);
     } catch (const UnstorableSamples& error) {
-      RunWarnings warnings(*run.scenario, *device.drawn.device);
-      warnings.add(recording);
-      const std::string heat = warnings.heat_text();
-      row.failure = heat.empty() ? first_line(error.what()) : heat;
+      row.failure = first_line(error.what());
       row.device_status = kNotFinite;
     }
   }

@@ -110,7 +110,9 @@ const std::vector<ModalTable::Cubic>& ModalTable::cell(std::size_t i) {
 }
 
 ModalTable::Point ModalTable::at(double T) {
-  const double place = (T - kColdestBeam) / kModalGrid;
+  constexpr double kRoundoff = 1e-6;  // of an integration at the end [K]
+  double place = (T - kColdestBeam) / kModalGrid;
+  if (place < 0 && T > kColdestBeam - kRoundoff) place = 0;
   if (!(place >= 0) || !(place < static_cast<double>(cells_.size()))) {
     throw SimulationFailure(
         fmt::format("beam temperature {:.2f} degC is outside the model's "

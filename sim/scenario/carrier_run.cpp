@@ -18,6 +18,7 @@
 #include "sim/scenario/motion.h"
 #include "sim/scenario/run_temperatures.h"
 #include "sim/scenario/sensing_noise.h"
+#include "sim/scenario/unpowered_bias.h"
 
 namespace beamgyro {
 namespace {
@@ -127,18 +128,7 @@ class CarrierTrajectory {
       rk_->advance_to(end - window_);
     }
     time_ = end;
-    if (end == border && piece_ + 1 < pieces_.size()) {
-      require_lock();
-      begin(piece_ + 1);
-    }
-  }
-
-  void require_lock() const {
-    if (!lock_is_due(scenario_, time_)) return;
-    const VectorXd& y = rk_->state();
-    require_locked(drive_signals(ode_.loops(), y(kFeedback2), y(kFeedback2 + 1),
-                                 y(kPllIntegral), y(kAgcIntegral)),
-                   time_, temperatures_.at(kBeam, time_));
+    if (end == border && piece_ + 1 < pieces_.size()) begin(piece_ + 1);
   }
 
   const Scenario& scenario_;
@@ -224,6 +214,7 @@ void simulate_carrier(const Scenario& given, const Gyro& gyro,
   std::optional<CarrierTrajectory> twin;
   if (!motion.rate_is_zero())
     twin.emplace(scenario, gyro, motion, temperatures, true);
+  UnpoweredBias unpowered_bias(scenario, gyro, motion);
   RunRecorder recorder(scenario, gyro.device, key);
   std::optional<SensingNoise> noise;
   if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
@@ -237,6 +228,7 @@ void simulate_carrier(const Scenario& given, const Gyro& gyro,
         grid.times(k, std::min(block_size, grid.count - k));
     RunSamples samples = samples_at(block, gyro, temperatures, trajectory,
                                     twin ? &*twin : nullptr);
+    unpowered_bias.fill_next(samples);
     motion.sample(samples);
     if (noise) noise->add_next(samples);
     on_block(recorder.block(std::move(samples)));

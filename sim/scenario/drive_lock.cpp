@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/units.h"
 #include "sim/numerics/simulation_failure.h"
 
 namespace beamgyro {
@@ -18,12 +17,14 @@ bool is_locked(const DriveSignals& drive) {
 }
 
 bool lock_is_due(const Scenario& scenario, double t) {
-  return std::any_of(scenario.powered.begin(), scenario.powered.end(),
-                     [&](const PowerInterval& interval) {
-                       return is_same_time(t, interval.on + kLockTime) &&
-                              t < interval.off &&
-                              !is_same_time(t, interval.off);
-                     });
+  const auto after =
+      std::upper_bound(scenario.powered.begin(), scenario.powered.end(), t,
+                       [](double time, const PowerInterval& powered) {
+                         return time < powered.on;
+                       });
+  if (after == scenario.powered.begin()) return false;
+  const PowerInterval& last = *(after - 1);
+  return t < last.off && t - last.on >= kLockTime;
 }
 
 std::vector<Border> power_borders(const Scenario& scenario) {
@@ -36,14 +37,18 @@ std::vector<Border> power_borders(const Scenario& scenario) {
   return borders;
 }
 
-void require_locked(const DriveSignals& drive, double t, double beam) {
-  if (is_locked(drive)) return;
-  throw SimulationFailure(fmt::format(
-      "drive loop: not locked {:g} s after power-on at {:g} s, beam at {:.2f} "
-      "degC: amplitude {:.3g} % of its set value, phase off by {:.2g} rad, "
-      "drive at {:.3g} V{}; the device does not oscillate as it should",
-      kLockTime, t - kLockTime, beam - kZeroCelsius, 100 * drive.amplitude,
-      drive.phase, drive.voltage, drive.limited ? ", its limit" : ""));
+void require_lock(const Scenario& scenario, const Recording& block) {
+  for (std::size_t k = 0; k < block.time.size(); ++k) {
+    const double t = block.time[k];
+    if ((block.status[k] & kLoopNotLocked) == 0 || !lock_is_due(scenario, t))
+      continue;
+    throw SimulationFailure(
+        fmt::format("drive loop: not locked at {:g} s, beam at {:.2f} degC, "
+                    "drive at {:.4g} "
+                    "V; the run stops there, as asked for",
+                    t, column_values(block, "true_beam_temperature")[k],
+                    column_values(block, "drive_voltage")[k]));
+  }
 }
 
 }  // namespace beamgyro

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "dataset/recording/recording.h"
 #include "sim/dynamics/loop_electronics.h"
 #include "sim/scenario/scenario.h"
 
@@ -14,16 +15,16 @@ inline constexpr double kPhaseErrorLocked = 0.02;      // [rad]
 /// its limit.
 bool is_locked(const DriveSignals& drive);
 
-/// Returns whether the loops must have locked at `t` [s]: kLockTime after a
-/// power-on.
+/// Returns whether the loops of a sound device are locked at `t` [s]: the power
+/// has been on for kLockTime.
 bool lock_is_due(const Scenario& scenario, double t);
 
-/// Returns the times at which the power switches and those at which locking is
-/// due.
+/// Returns the times at which the power switches and, without a jump, those at
+/// which locking is due. There the steps of a start-up end.
 std::vector<Border> power_borders(const Scenario& scenario);
 
-/// Throws SimulationFailure unless the loops have locked. The message has the
-/// time `t` [s], the temperature `beam` [K] and the state of the loops.
-void require_locked(const DriveSignals& drive, double t, double beam);
+/// Throws SimulationFailure at the first sample of a block that is not locked
+/// although that is due. The message has its time, temperature and voltage.
+void require_lock(const Scenario& scenario, const Recording& block);
 
 }  // namespace beamgyro

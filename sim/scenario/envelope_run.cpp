@@ -10,6 +10,7 @@
 #include "sim/scenario/envelope_trajectory.h"
 #include "sim/scenario/motion.h"
 #include "sim/scenario/sensing_noise.h"
+#include "sim/scenario/unpowered_bias.h"
 
 namespace beamgyro {
 
@@ -25,6 +26,7 @@ void simulate_envelope(const Scenario& given, const Gyro& gyro,
   EnvelopeTrajectory trajectory(scenario, gyro, motion, false);
   std::optional<EnvelopeTrajectory> twin;
   if (!motion.rate_is_zero()) twin.emplace(scenario, gyro, motion, true);
+  UnpoweredBias unpowered_bias(scenario, gyro, motion);
   RunRecorder recorder(scenario, gyro.device, key);
   std::optional<SensingNoise> noise;
   if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
@@ -35,6 +37,7 @@ void simulate_envelope(const Scenario& given, const Gyro& gyro,
         grid.times(k, std::min(kBlockSamples, grid.count - k));
     RunSamples samples = trajectory.advance(block);
     samples.bias = twin ? twin->advance(block).output : samples.output;
+    unpowered_bias.fill_next(samples);
     motion.sample(samples);
     if (noise) noise->add_next(samples);
     on_block(recorder.block(std::move(samples)));

@@ -12,7 +12,7 @@ namespace beamgyro {
 /// (EnvelopeOde). A twin at rate 0 gives `true_bias`. Noise, saturation and ADC
 /// follow as in every run. At each power-on the gyro starts at rest. `on_block`
 /// receives the recording block by block, so memory does not grow with the run.
-/// Throws SimulationFailure when the drive loop does not lock.
+/// Throws as MaterialLimits and the integrator.
 void simulate_envelope(const Scenario& scenario, const Gyro& gyro,
                        const RunKey& key, const BlockSink& on_block);
 void simulate_envelope(const Scenario& scenario, const Device& device,

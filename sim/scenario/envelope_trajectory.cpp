@@ -60,6 +60,10 @@ RunSamples samples_of_states(
   return s;
 }
 
+NodeVector nodes_of(const VectorXd& y) {
+  return y.segment<kThermalNodeCount>(kEnvelopeNodes);
+}
+
 // Whether the motion bends so often that an explicit method is the faster one.
 bool needs_explicit_method(const Scenario& scenario, const Motion& motion) {
   constexpr double kBends = 50;  // [1/s]
@@ -68,7 +72,7 @@ bool needs_explicit_method(const Scenario& scenario, const Motion& motion) {
   return static_cast<double>(pieces - 1) > kBends * scenario.duration;
 }
 
-// Where any input bends or jumps, or locking is due.
+// Where any input bends or jumps, or the start-up has ended.
 std::vector<Border> borders_of(const Scenario& scenario, const Motion& motion) {
   std::vector<Border> borders = motion.borders();
   for (const auto& more : {power_borders(scenario), scenario.ambient.borders()})
@@ -124,6 +128,7 @@ EnvelopeTrajectory::EnvelopeTrajectory(const Scenario& scenario,
       gyro_(gyro),
       motion_(motion),
       at_rest_(at_rest),
+      limits_(scenario, gyro.device.thermal),
       ode_(gyro, drive_heating(gyro)),
       pieces_(pieces_until(scenario.duration, borders_of(scenario, motion))) {
   const auto rhs = [this](double t, const auto& y, auto dydt) {
@@ -178,14 +183,6 @@ void EnvelopeTrajectory::begin(std::size_t piece) {
   }
 }
 
-void EnvelopeTrajectory::require_lock() const {
-  if (!lock_is_due(scenario_, time())) return;
-  const VectorXd& y = state();
-  require_locked(drive_signals(ode_.loops(), y(kFeedback2), y(kFeedback2 + 1),
-                               y(kPllIntegral), y(kAgcIntegral)),
-                 time(), y(kEnvelopeNodes + Index{kBeam}));
-}
-
 double EnvelopeTrajectory::time() const {
   return explicit_ ? explicit_->time() : multistep_->time();
 }
@@ -205,13 +202,17 @@ long EnvelopeTrajectory::rhs_evaluations() const {
 
 void EnvelopeTrajectory::advance_to(double t_end, Sampler& sampler) {
   if (multistep_) {
-    multistep_->advance_to(t_end,
-                           [&](const OdeStep& step) { sampler.take(step); });
+    multistep_->advance_to(t_end, [&](const OdeStep& step) {
+      limits_.check(step.end, nodes_of(step.at(step.end)));
+      sampler.take(step);
+    });
     return;
   }
   while (!sampler.complete() && sampler.next_time() < t_end) {
     const double t = sampler.next_time();
-    sampler.take_until(t, explicit_->advance_to(t));
+    const VectorXd& y = explicit_->advance_to(t);
+    limits_.check(t, nodes_of(y));
+    sampler.take_until(t, y);
   }
   explicit_->advance_to(t_end);
 }
@@ -222,10 +223,7 @@ RunSamples EnvelopeTrajectory::advance(std::span<const double> times) {
     const Piece& piece = pieces_[piece_];
     const double end = std::min(piece.end, times.back());
     advance_to(end, sampler);
-    if (end == piece.end && piece_ + 1 < pieces_.size()) {
-      require_lock();
-      begin(piece_ + 1);
-    }
+    if (end == piece.end && piece_ + 1 < pieces_.size()) begin(piece_ + 1);
     sampler.take_until(time(), state());
   }
   RunSamples samples =

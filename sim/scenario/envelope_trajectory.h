@@ -9,6 +9,7 @@
 #include "sim/dynamics/envelope.h"
 #include "sim/numerics/cvode.h"
 #include "sim/numerics/explicit_rk.h"
+#include "sim/scenario/material_limits.h"
 #include "sim/scenario/motion.h"
 #include "sim/scenario/run_recorder.h"
 #include "sim/scenario/scenario.h"
@@ -33,9 +34,8 @@ class EnvelopeTrajectory {
                      double tolerance = 1e-8);
 
   /// Returns the signals of the gyro at increasing `times` [s], which must
-  /// follow those of the call before. Bias and motion are left empty. Throws
-  /// SimulationFailure when the loops have not locked kLockTime after a
-  /// power-on, and as Cvode.
+  /// follow those of the call before. Bias and motion are left empty. Throws as
+  /// MaterialLimits and Cvode.
   RunSamples advance(std::span<const double> times);
 
   long steps() const;
@@ -46,7 +46,6 @@ class EnvelopeTrajectory {
 
   EnvelopeInputs inputs(double t) const;
   void begin(std::size_t piece);
-  void require_lock() const;
   void advance_to(double t_end, Sampler& sampler);
   double time() const;
   const Eigen::VectorXd& state() const;
@@ -55,6 +54,7 @@ class EnvelopeTrajectory {
   const Gyro& gyro_;
   const Motion& motion_;
   bool at_rest_;
+  MaterialLimits limits_;
   EnvelopeOde ode_;
   std::vector<Piece> pieces_;
   std::size_t piece_ = 0;

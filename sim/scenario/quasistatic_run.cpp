@@ -14,9 +14,10 @@
 #include "sim/dynamics/mechanical_noise.h"
 #include "sim/dynamics/static_map.h"
 #include "sim/scenario/aligned_borders.h"
+#include "sim/scenario/filtered_motion.h"
+#include "sim/scenario/material_limits.h"
 #include "sim/scenario/motion.h"
 #include "sim/scenario/run_temperatures.h"
-#include "sim/scenario/square_acceleration.h"
 #include "sim/signal/readout.h"
 #include "sim/thermal/thermal_trajectory.h"
 
@@ -152,52 +153,19 @@ class RateResponse {
 class MotionResponse {
  public:
   MotionResponse(const Gyro& gyro, const Motion& motion, double output_rate)
-      : gyro_(gyro), board_(gyro) {
-    const double corner = gyro.device.readout.corner_frequency;
-    const OutputFilter filter(corner);
-    for (std::size_t i = 0; i < 3; ++i) {
-      rate_[i].filtered = filter.responses(motion.rate()[i], output_rate);
-      acceleration_[i].filtered =
-          filter.responses(motion.acceleration()[i], output_rate);
-    }
-    square_.filtered = filtered_square_acceleration(motion.acceleration(),
-                                                    corner, output_rate);
-  }
+      : gyro_(gyro), board_(gyro), motion_(gyro, motion, output_rate) {}
 
   void operator()(RunSamples& samples) {
-    const std::size_t count = samples.time.size();
-    for (std::size_t i = 0; i < 3; ++i) {
-      rate_[i].next(count);
-      acceleration_[i].next(count);
-    }
-    square_.next(count);
-    for (std::size_t k = 0; k < count; ++k) write(k, samples);
+    motion_.next(samples.time.size());
+    for (std::size_t k = 0; k < samples.time.size(); ++k) write(k, samples);
   }
 
  private:
-  struct Filtered {
-    SampleStream filtered;
-    Samples values;
-
-    void next(std::size_t count) {
-      values.resize(count);
-      filtered(values);
-    }
-  };
-
   void write(std::size_t k, RunSamples& samples) {
     const ModalParameters modal =
         modal_parameters(gyro_.device, gyro_.beam,
                          samples.temperature[kBeam][k], gyro_.stiffness_trim);
-    CaseMotion motion;
-    motion.x = rate_[0].values[k];
-    motion.y = rate_[1].values[k];
-    motion.z = rate_[2].values[k];
-    motion.in_phase =
-        in_phase_rate(gyro_.device.mount,
-                      {acceleration_[0].values[k], acceleration_[1].values[k],
-                       acceleration_[2].values[k]},
-                      square_.values[k]);
+    CaseMotion motion = motion_.at(k);
     const BeamSignal at_rate = beam_signal(gyro_, modal, motion, path_);
     Complex at_rest = at_rate.demodulated;
     if (motion.z != 0) {
@@ -213,8 +181,7 @@ class MotionResponse {
   const Gyro& gyro_;
   Board board_;
   LockPath path_;
-  std::array<Filtered, 3> rate_, acceleration_;
-  Filtered square_;
+  FilteredMotion motion_;
 };
 
 using StaticResponse = std::function<void(RunSamples& samples)>;
@@ -254,6 +221,7 @@ void simulate_quasistatic(const Scenario& given, const Gyro& gyro,
   const Motion motion(scenario, gyro, key);
   const ThermalTrajectory temperatures(ThermalNetwork(gyro.device.thermal),
                                        thermal_load(scenario, gyro), grid);
+  MaterialLimits(scenario, gyro.device.thermal).check(temperatures, grid);
   const StaticResponse respond =
       static_response(gyro, motion, temperatures, grid);
   RunRecorder recorder(scenario, gyro.device, key, sensing_noise(gyro));

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "sim/scenario/material_limits.h"
+
 namespace beamgyro {
 
 ThermalLoad thermal_load(const Scenario& scenario, const Gyro& gyro) {
@@ -26,6 +28,8 @@ RunTemperatures::RunTemperatures(const Scenario& scenario, const Gyro& gyro,
   }
   history_ = simulate_temperatures(ThermalNetwork(gyro.device.thermal),
                                    thermal_load(scenario, gyro), times);
+  MaterialLimits(scenario, gyro.device.thermal)
+      .check(times, history_.temperature);
 }
 
 double RunTemperatures::at(ThermalNode node, double t) const {

@@ -11,7 +11,7 @@ namespace beamgyro {
 ThermalLoad thermal_load(const Scenario& scenario, const Gyro& gyro);
 
 /// The node temperatures over the whole run, with straight lines between the
-/// points of a grid.
+/// points of a grid. Throws as MaterialLimits.
 class RunTemperatures {
  public:
   RunTemperatures(const Scenario& scenario, const Gyro& gyro, double step);

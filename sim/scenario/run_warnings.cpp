@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "config/units.h"
+#include "sim/device/materials.h"
 #include "sim/scenario/aliasing.h"
 #include "sim/scenario/drive_lock.h"
-#include "sim/thermal/material_range.h"
 
 namespace beamgyro {
 namespace {
@@ -54,6 +54,16 @@ std::string power_cause(const Scenario& scenario) {
   return before + (before.empty() || after.empty() ? "" : ", and ") + after;
 }
 
+// Where the coefficients of the ceramic are linear [degC].
+constexpr double kColdestLinear = kColdestCeramic - kZeroCelsius;
+constexpr double kHottestLinear = kHottestCeramic - kZeroCelsius;
+
+bool is_beyond_ceramic(double celsius) {
+  constexpr double kThermalError = 1e-3;  // [K], of a run
+  return celsius < kColdestLinear - kThermalError ||
+         celsius > kHottestLinear + kThermalError;
+}
+
 std::string share(std::size_t count, std::size_t all) {
   return count == all ? fmt::format("all {}", all)
                       : fmt::format("{} of {}", count, all);
@@ -61,54 +71,39 @@ std::string share(std::size_t count, std::size_t all) {
 
 }  // namespace
 
+void RunWarnings::Temperatures::add(double celsius) {
+  lowest = count == 0 ? celsius : std::min(lowest, celsius);
+  highest = count == 0 ? celsius : std::max(highest, celsius);
+  ++count;
+}
+
 void RunWarnings::add(const Recording& block) {
+  const std::vector<double>& beam =
+      column_values(block, "true_beam_temperature");
+  const std::vector<double>& voltage = column_values(block, "drive_voltage");
+  const double limit =
+      device_.drive.voltage_limit - device_.readout.drive_voltage_resolution;
   samples_ += block.status.size();
-  for (const std::uint8_t status : block.status) {
+  for (std::size_t k = 0; k < block.status.size(); ++k) {
+    const std::uint8_t status = block.status[k];
     powered_ += (status & kUnpowered) == 0;
     saturated_ += (status & kOutputSaturated) != 0;
-    unlocked_ += (status & kLoopNotLocked) != 0;
-  }
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    const Column* column = find_column(
-        block, fmt::format("true_{}_temperature", kThermalNodeNames[i]));
-    if (column == nullptr) continue;
-    Node& node = nodes_[i];
-    for (const double value : column->values) {
-      if (value >= kMaterialTemperatures.low &&
-          value <= kMaterialTemperatures.high)
-        continue;
-      ++node.outside;
-      node.lowest = std::min(node.outside == 1 ? value : node.lowest, value);
-      node.highest = std::max(node.outside == 1 ? value : node.highest, value);
-    }
+    if (is_beyond_ceramic(beam[k])) clamped_.add(beam[k]);
+    if ((status & kLoopNotLocked) == 0) continue;
+    ++unlocked_;
+    limited_ += std::abs(voltage[k]) >= limit;
+    if (lock_is_due(scenario_, block.time[k])) lost_.add(beam[k]);
   }
 }
 
 std::string RunWarnings::heat_text() const {
-  std::string nodes;
-  std::size_t worst = 0;
-  double farthest = 0, reached = 0;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    if (nodes_[i].outside == 0) continue;
-    nodes +=
-        fmt::format("{}{}", nodes.empty() ? "" : ", ", kThermalNodeNames[i]);
-    worst = std::max(worst, nodes_[i].outside);
-    for (const double value : {nodes_[i].lowest, nodes_[i].highest}) {
-      const double excess = std::max(value - kMaterialTemperatures.high,
-                                     kMaterialTemperatures.low - value);
-      if (excess > farthest) {
-        farthest = excess;
-        reached = value;
-      }
-    }
-  }
-  if (nodes.empty()) return {};
+  if (clamped_.count == 0) return {};
   return fmt::format(
-      "{} at up to {:.4g} degC in {} samples, beyond {:g} to {:g} degC, {}; "
-      "likely cause: thermal.electronics_power_W = {:g}",
-      nodes, reached, share(worst, samples_), kMaterialTemperatures.low,
-      kMaterialTemperatures.high, kMaterialReason,
-      device_.thermal.electronics_power);
+      "the beam is at {:.4g} to {:.4g} degC in {} samples, beyond {:g} to {:g} "
+      "degC, where the ceramic's coefficients are linear; they keep the values "
+      "of the nearest end",
+      clamped_.lowest, clamped_.highest, share(clamped_.count, samples_),
+      kColdestLinear, kHottestLinear);
 }
 
 std::string RunWarnings::power_text() const {
@@ -126,20 +121,26 @@ std::string RunWarnings::saturation_text() const {
 }
 
 std::string RunWarnings::lock_text() const {
-  if (powered_ == 0 || 2 * unlocked_ < powered_) return {};
-  const std::string cause =
-      scenario_.fidelity == Fidelity::kQuasistatic
-          ? fmt::format(
-                "the drive needs more than drive.voltage_limit_V = {:g}",
-                device_.drive.voltage_limit)
-          : fmt::format(
-                "the loops lock within {:g} s of a power-on, and the "
-                "run has little more",
-                kLockTime);
-  return fmt::format(
-      "in {} powered samples the loops are not locked; likely "
-      "cause: {}",
-      share(unlocked_, powered_), cause);
+  const bool is_lost = lost_.count > 0;
+  if (!is_lost && (powered_ == 0 || 2 * unlocked_ < powered_)) return {};
+  std::string text = fmt::format(
+      "in {} powered samples the loops are not locked; likely cause: ",
+      share(unlocked_, powered_));
+  if (2 * limited_ >= unlocked_) {
+    text +=
+        fmt::format("the drive needs more than drive.voltage_limit_V = {:g}",
+                    device_.drive.voltage_limit);
+  } else if (is_lost) {
+    text += "the drive loop does not hold amplitude and phase of this device";
+  } else {
+    text += fmt::format(
+        "the loops lock within {:g} s of a power-on, and the run has little "
+        "more",
+        kLockTime);
+  }
+  if (!is_lost) return text;
+  return text + fmt::format(" with the beam at {:.4g} to {:.4g} degC",
+                            lost_.lowest, lost_.highest);
 }
 
 std::vector<std::string> RunWarnings::texts() const {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -14,9 +13,11 @@ namespace beamgyro {
 
 /// What the user of a run should know and no error says. Each warning is one
 /// sentence with counts and the likely cause:
-/// - a node of the thermal network leaves kMaterialTemperatures;
+/// - the beam leaves the temperatures at which the ceramic's coefficients are
+///   linear;
 /// - no sample is powered;
-/// - half or more of the powered samples are saturated, or not locked;
+/// - half or more of the powered samples are saturated, or not locked, or one
+///   is not locked later than kLockTime after its power-on;
 /// - the samples do not show a motion (aliasing_warnings());
 /// - soaks end after duration_s.
 class RunWarnings {
@@ -31,15 +32,16 @@ class RunWarnings {
   /// Returns the warnings about the blocks so far and about the scenario.
   std::vector<std::string> texts() const;
 
-  /// Returns the one about temperatures, or nothing.
-  std::string heat_text() const;
-
  private:
-  struct Node {
-    std::size_t outside = 0;         // samples
-    double lowest = 0, highest = 0;  // of these samples [degC]
+  // Of the beam in some of the samples.
+  struct Temperatures {
+    std::size_t count = 0;
+    double lowest = 0, highest = 0;  // [degC]
+
+    void add(double celsius);
   };
 
+  std::string heat_text() const;
   std::string power_text() const;
   std::string saturation_text() const;
   std::string lock_text() const;
@@ -47,7 +49,9 @@ class RunWarnings {
   const Scenario& scenario_;
   const Device& device_;
   std::size_t samples_ = 0, powered_ = 0, saturated_ = 0, unlocked_ = 0;
-  std::array<Node, kThermalNodeCount> nodes_{};
+  std::size_t limited_ = 0;  // not locked, with the voltage at its limit
+  Temperatures lost_;        // not locked, although that is due
+  Temperatures clamped_;     // beyond the linear range of the ceramic
 };
 
 }  // namespace beamgyro

@@ -73,5 +73,106 @@ TEST(Verification, V56EnvelopeLocksAgainAfterAHotExcursion) {
   EXPECT_NEAR(column_values(run, "true_bias")[last], bias / kDegree, 0.01);
 }
 
+class StartedHot : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Temperatures, StartedHot,
+                         testing::Values(83.0, 90.0, 100.0, 115.0));
+
+// The envelope settles to the static solution with the drive at its limit.
+TEST_P(StartedHot, RunsOnWithItsStatusBit) {
+  const Device device = nominal_device({"readout.adc_bits=32"});
+  const std::string constant =
+      ambient("constant_degC = " + std::to_string(GetParam()));
+  const Recording envelope = run_at(scenario_from("", constant, "3", "20"),
+                                    Fidelity::kEnvelope, device);
+  const Recording slow = run_at(scenario_from("", constant, "3", "20"),
+                                Fidelity::kQuasistatic, device);
+  const std::size_t last = envelope.time.size() - 1;
+  ASSERT_EQ(envelope.time.size(), 60);
+  for (const std::string name : {"true_bias", "quadrature"}) {
+    EXPECT_NEAR(column_values(envelope, name)[last],
+                column_values(slow, name)[last], 0.02)
+        << name;
+  }
+  for (const Recording* run : {&envelope, &slow}) {
+    EXPECT_TRUE(shows(*run, last, kLoopNotLocked));
+    EXPECT_EQ(column_values(*run, "drive_voltage")[last], 5);
+  }
+}
+
+TEST(LossOfLock, OfACarrierRunIsThatOfTheEnvelope) {
+  const Device device = nominal_device({"readout.adc_bits=32"});
+  const Scenario scenario =
+      scenario_from("", ambient("constant_degC = 95"), "1.3", "100");
+  const Recording envelope = run_at(scenario, Fidelity::kEnvelope, device);
+  const Recording carrier = run_at(scenario, Fidelity::kCarrier, device);
+  ASSERT_EQ(carrier.time.size(), 130);
+  EXPECT_TRUE(shows(carrier, 129, kLoopNotLocked));
+  EXPECT_EQ(carrier.status[129], envelope.status[129]);
+  EXPECT_NEAR(column_values(carrier, "true_bias")[129],
+              column_values(envelope, "true_bias")[129], 2e-3);
+}
+
+// Without power a sample has the bias that the gyro would settle to.
+TEST(UnpoweredBias, IsTheSameInEveryFidelity) {
+  const Device device = nominal_device();
+  for (const std::string motion :
+       {"", "[rate]\nconstant_deg_per_s = 5\n",
+        "[cross_rate]\nx = { constant_deg_per_s = 300 }\n"
+        "[acceleration]\nx = { steps = [[0, 0], [3.5, 5]] }\n"}) {
+    const std::string short_power = "[power]\non_s = [2]\noff_s = [2.5]\n";
+    const Scenario scenario =
+        scenario_from(short_power + motion,
+                      ambient("points = [[0, -10], [5, -10.5]]"), "5", "20");
+    const Recording slow = run_at(scenario, Fidelity::kQuasistatic, device);
+    for (const Fidelity fidelity : {Fidelity::kEnvelope, Fidelity::kCarrier}) {
+      const Recording run = run_at(scenario, fidelity, device);
+      for (std::size_t k = 0; k < run.time.size(); ++k) {
+        if (!shows(run, k, kUnpowered)) continue;
+        EXPECT_NEAR(column_values(run, "true_bias")[k],
+                    column_values(slow, "true_bias")[k], 1e-5)
+            << fidelity_name(fidelity) << ' ' << run.time[k] << ' ' << motion;
+      }
+    }
+  }
+}
+
+// The message of a run that is refused, or nothing.
+std::string refusal(const Scenario& scenario, Fidelity fidelity,
+                    const Device& device) {
+  try {
+    run_at(scenario, fidelity, device);
+  } catch (const SimulationFailure& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// The board is the first part that gets too hot: 0.5 s from 100 to 150 degC.
+TEST(MaterialRange, IsOneForEveryFidelity) {
+  const Scenario scenario =
+      scenario_from("", ambient("constant_degC = 100"), "2", "50");
+  const Device device = nominal_device({"thermal.electronics_power_W=600"});
+  for (const Fidelity fidelity :
+       {Fidelity::kQuasistatic, Fidelity::kEnvelope, Fidelity::kCarrier}) {
+    const std::string said = refusal(scenario, fidelity, device);
+    EXPECT_TRUE(said.starts_with("board at 15")) << said;
+    EXPECT_NE(said.find("beyond -100 to 150 degC"), std::string::npos) << said;
+    EXPECT_NE(said.find("thermal.electronics_power_W = 600"),
+              std::string::npos);
+  }
+}
+
+// At both ends of the range the model works in every fidelity.
+TEST(MaterialRange, BelongsToEveryFidelity) {
+  const Device device = nominal_device({"thermal.electronics_power_W=0"});
+  for (const double celsius : {-100.0, 149.9}) {
+    const Scenario scenario = scenario_from(
+        "", ambient("constant_degC = " + std::to_string(celsius)), "1.2", "20");
+    for (const Fidelity fidelity :
+         {Fidelity::kQuasistatic, Fidelity::kEnvelope, Fidelity::kCarrier})
+      EXPECT_EQ(refusal(scenario, fidelity, device), "") << celsius;
+  }
+}
+
 }  // namespace
 }  // namespace beamgyro::loss_of_lock_test

@@ -158,14 +158,26 @@ class BadScenario(ProgramTest):
                 self.run_rejected(SCENARIO + "\n" + lines + "\n", says)
 
     def test_a_drive_that_cannot_hold_its_amplitude(self):
-        for fidelity in ["envelope", "carrier"]:
+        for fidelity in ["quasistatic", "envelope", "carrier"]:
             with self.subTest(fidelity):
-                text = self.changed("quasistatic", fidelity).replace(
+                text = SCENARIO.replace("quasistatic", fidelity).replace(
                     "= 600", "= 2")
                 self.write("s.toml", text)
+                arguments = ["run", "s.toml", "-o", "out.h5", "--set",
+                             "drive.voltage_limit_V=0.4"]
+                self.rejected(*arguments, "--stop-on-unlock", status=1,
+                              says=["not locked at 1", "drive at 0.4 V"])
+                self.ok(*arguments)
+
+    def test_a_board_that_nothing_stands_is_named_with_its_cause(self):
+        for fidelity in ["quasistatic", "envelope", "carrier"]:
+            with self.subTest(fidelity):
+                self.write("s.toml", SCENARIO.replace("quasistatic", fidelity)
+                           .replace("= 600", "= 5"))
                 self.rejected("run", "s.toml", "-o", "out.h5", "--set",
-                              "drive.voltage_limit_V=0.4", status=1,
-                              says=["not locked", "its limit"])
+                              "thermal.electronics_power_W=600", status=1,
+                              says=["board at 1", "-100 to 150 degC",
+                                    "ceramic", "electronics_power_W = 600"])
 
     def test_overrides(self):
         self.write("s.toml", SCENARIO)

@@ -25,13 +25,14 @@ class Run(ProgramTest):
         self.assertTrue(lines[0].startswith("beamgyro: warning: s.toml: "))
         return lines[0]
 
-    def test_a_board_that_nothing_stands_is_named_with_its_cause(self):
-        lines = self.warnings("--set", "thermal.electronics_power_W=600")
-        (line,) = [line for line in lines if "board" in line]
-        self.assertRegex(line, r"board.* at up to \d{4} degC in \d+ of 1200 "
-                               r"samples")
-        for part in ["-100 to 150 degC", "ceramic", "electronics_power_W = 600"]:
-            self.assertIn(part, line)
+    def test_a_beam_beyond_the_linear_range_of_the_ceramic(self):
+        line = self.warning("--set", "ambient.constant_degC=85",
+                            "--set", "drive.voltage_limit_V=50")
+        self.assertRegex(line, r"beam is at 85 to 8\d.* degC in all 1200 "
+                               r"samples, beyond -40 to 80 degC.*ceramic")
+        for celsius in [-40, 70]:
+            self.assertEqual(self.warnings(
+                "--set", f"ambient.constant_degC={celsius}"), [])
 
     def test_a_run_without_power(self):
         line = self.warning("--set", "power.on_s=[700]")
@@ -63,7 +64,19 @@ class Run(ProgramTest):
         line = self.warning("--set", "drive.voltage_limit_V=0.5")
         self.assertIn("in all 1200 powered samples the loops are not locked",
                       line)
+        self.assertIn("with the beam at 25 to 2", line)
         self.assertIn("drive.voltage_limit_V = 0.5", line)
+
+    def test_a_run_that_loses_its_lock_for_a_while(self):
+        text = SCENARIO.replace("quasistatic", "envelope").replace(
+            "constant_degC = 25", "points = [[0, 75], [300, 90]]\n"
+            "[chamber]\nstirred = true")
+        lines = self.warnings("--set", "thermal.electronics_power_W=0",
+                              text=text)
+        (line,) = [line for line in lines if "not locked" in line]
+        self.assertRegex(line, r"in \d{3} of 1200 powered samples the loops are "
+                               r"not locked;.* with the beam at 82\S* to 8")
+        self.assertIn("drive.voltage_limit_V = 5", line)
 
     def test_a_sine_faster_than_half_the_output_rate(self):
         sine = "rate.sine={{amplitude_deg_per_s=10, frequency_Hz={}}}"
@@ -188,7 +201,7 @@ class Run(ProgramTest):
 
 
 class Heat(Set):
-    def test_generate_names_the_heat_that_no_storage_holds(self):
+    def test_generate_names_the_heat_that_no_gyro_stands(self):
         device = (self.dir / "device.toml").read_text()
         hot, replaced = re.subn(r"(?m)^electronics_power_W = .*",
                                 "electronics_power_W = 600", device)
@@ -197,12 +210,12 @@ class Heat(Set):
         rest = (self.dir / "rest.toml").read_text()
         self.write("rest.toml", rest.replace("duration_s = 60",
                                              "duration_s = 600"))
-        self.ok("generate", "campaign.toml", "-o", "set")
+        answer = self.beamgyro("generate", "campaign.toml", "-o", "set")
+        self.assertEqual(answer.returncode, 1)  # every device fails
         manifest = (self.dir / "set/manifest.jsonl").read_text()
         self.assertEqual(len(re.findall(
-            r"board[^\"]* at up to \d{4} degC in \d+ of 1200 samples, "
-            r"[^\"]*electronics_power_W = 600", manifest)), 7)
-        self.assertNotIn("whole number", manifest)
+            r"board at 1\S+ degC at \S+ s, beyond -100 to 150 degC, "
+            r"[^\"]*electronics_power_W = 600", manifest)), 14)
 
 
 class EveryDeviceFails(Set):

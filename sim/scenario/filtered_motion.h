@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "sim/scenario/motion.h"
+#include "sim/signal/output_filter.h"
+
+namespace beamgyro {
+
+/// The motion of the case behind the output filter, sample by sample, for a
+/// static response to it.
+class FilteredMotion {
+ public:
+  /// `gyro` and `motion` must outlive the object.
+  FilteredMotion(const Gyro& gyro, const Motion& motion, double output_rate);
+
+  /// Goes on to the next `count` samples.
+  void next(std::size_t count);
+
+  /// Returns the motion at sample `k` of the present ones.
+  CaseMotion at(std::size_t k) const;
+
+ private:
+  struct Filtered {
+    SampleStream filtered;
+    std::vector<double> values;
+
+    void next(std::size_t count);
+  };
+
+  const MountParameters& mount_;
+  std::array<Filtered, 3> rate_, acceleration_;
+  Filtered square_;
+};
+
+}  // namespace beamgyro

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "sim/scenario/filtered_motion.h"
+
+namespace beamgyro {
+
+/// The bias of samples without power. A gyro without power has no output; its
+/// bias there is the one that it would settle to at its temperatures, which is
+/// what the quasi-static run computes at every sample.
+class UnpoweredBias {
+ public:
+  /// The arguments must outlive the object.
+  UnpoweredBias(const Scenario& scenario, const Gyro& gyro,
+                const Motion& motion);
+
+  /// Replaces the bias of the samples without power. The samples must follow
+  /// those of the call before.
+  void fill_next(RunSamples& samples);
+
+ private:
+  void fill_moving(const std::vector<std::size_t>& unpowered,
+                   RunSamples& samples);
+  void fill_still(const std::vector<std::size_t>& unpowered,
+                  RunSamples& samples) const;
+
+  const Scenario& scenario_;
+  const Gyro& gyro_;
+  LockPath path_;
+  std::optional<FilteredMotion> motion_;  // of axes other than the input axis
+};
+
+}  // namespace beamgyro
