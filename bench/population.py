@@ -69,6 +69,7 @@ BOUNDS = {
              for method in SOAK_METHODS for suffix, _ in NOISE},
     "dynamic": {"recommended_rms_deg_per_s": 0.03,
                 "with_drive_frequency_rms_deg_per_s": 0.01},
+    "channels": {"with_drive_frequency_rms_deg_per_s": 0.01},
     "campaign": {"with_drive_frequency_rms_deg_per_s": 0.01},
     "automatic": {f"{case}_{model}_of_best": automatic_study.BOUND
                   for case, (_, _, models, _) in automatic_study.CASES.items()
@@ -98,6 +99,21 @@ def draw(device):
         "readout.offset_tc_deg_per_s_per_K": normal(0, 0.012),
         "beam.modulus_tc1_per_K": normal(0, 4e-6),
         "mount.glassy_stiffness_share": 6e-4 * np.exp(normal(0, 0.35)),
+    }
+
+
+def draw_channels(device):
+    """Errors of the electronics that measure the loops, likewise."""
+    random = np.random.Generator(np.random.Philox(
+        key=[DEVICE_SEED + 1, device]))
+    normal, uniform = random.normal, random.uniform
+    return {
+        "loop_channels.clock_offset_ppm": uniform(-20, 20),
+        "loop_channels.clock_tc2_ppm_per_K2": normal(-0.034, 0.003),
+        "loop_channels.drive_voltage_gain_error": normal(0, 0.01),
+        "loop_channels.drive_voltage_gain_tc_per_K": normal(0, 50e-6),
+        "loop_channels.quadrature_offset_deg_per_s": normal(0, 0.3),
+        "loop_channels.quadrature_offset_tc_deg_per_s_per_K": normal(0, 0.01),
     }
 
 
@@ -227,11 +243,23 @@ def campaign(unit):
                               CAMPAIGN_HELD_OUT)
 
 
+def channels(unit):
+    """The same as `dynamic`, where electronics measure the drive frequency. The
+    recommended network does not see them: its figures stay."""
+    measured = Unit(unit.program, unit.out / "channels", unit.device,
+                    unit.quick)
+    measured.settings += ["loop_channels.noise=true",
+                          *overrides(draw_channels(unit.device))]
+    return ramps_and_warm_ups(measured, ["with_drive_frequency"],
+                              demo.TRAINING, demo.VALIDATION)
+
+
 # A study takes a unit and returns its figures by name, lower ones being better;
 # a figure that is a text is counted. Another is a function here, with BOUNDS
 # above if devices are to be counted.
 STUDIES = {"drift": drift, "soak": soak, "dynamic": dynamic,
-           "campaign": campaign, "automatic": automatic_study.automatic}
+           "channels": channels, "campaign": campaign,
+           "automatic": automatic_study.automatic}
 
 
 def finished(file):

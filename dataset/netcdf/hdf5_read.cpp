@@ -151,6 +151,21 @@ std::string text_attribute(hid_t object, const std::string& owner,
       [&](void* text) { return H5Aread(attribute, type, text); });
 }
 
+std::string comment_of(hid_t object, const std::string& owner) {
+  constexpr const char* kName = "comment";
+  if (!has_attribute(object, owner, kName)) return {};
+  {
+    const H5Id attribute = open_attribute(object, owner, kName);
+    const H5Id type(H5Aget_type(attribute), H5Tclose, "read a type");
+    const H5Id space(H5Aget_space(attribute), H5Sclose, "read a size");
+    if (H5Tget_class(type) != H5T_STRING ||
+        is_true(H5Tis_variable_str(type), "read a comment") ||
+        H5Sget_simple_extent_npoints(space) != 1)
+      return {};
+  }
+  return text_attribute(object, owner, kName);
+}
+
 std::uint64_t integer_attribute(hid_t file, const char* name) {
   std::uint64_t value = 0;
   read_scalar(file, "the file", name, {H5T_INTEGER, "integer"},

@@ -54,6 +54,9 @@ bool has_attribute(hid_t object, const std::string& owner, const char* name);
 /// Reads a text attribute of fixed length. Variable length is an error.
 std::string text_attribute(hid_t object, const std::string& owner,
                            const char* name);
+/// Reads the attribute `comment`; empty when there is none or another kind of
+/// value than a text of fixed length, as other programs write.
+std::string comment_of(hid_t object, const std::string& owner);
 std::uint64_t integer_attribute(hid_t file, const char* name);
 double number_attribute(hid_t object, const std::string& owner,
                         const char* name);

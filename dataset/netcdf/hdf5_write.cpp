@@ -108,6 +108,7 @@ H5Id make_variable(hid_t file, const VariableAbout& about, hid_t type,
   write_text(variable, "units", about.units);
   write_text(variable, "long_name", about.long_name);
   write_text(variable, "role", role_name(about.role));
+  if (!about.comment.empty()) write_text(variable, "comment", about.comment);
   const std::string_view standard_name = standard_name_of(about.name);
   if (!standard_name.empty())
     write_text(variable, "standard_name", standard_name);

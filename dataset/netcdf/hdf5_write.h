@@ -59,6 +59,7 @@ H5Id space_of(std::span<const hsize_t> lengths);
 struct VariableAbout {
   std::string name, units, long_name;
   Role role = Role::kMeasured;
+  std::string comment = {};  // no attribute when empty
 };
 
 /// Makes a variable. `properties` are those of its creation. `axes` are

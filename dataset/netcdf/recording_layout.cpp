@@ -70,9 +70,9 @@ Hdf5Layout make_variables(hid_t file, const Recording& head,
     }
     if (i == head.columns.size()) break;
     const Column& column = head.columns[i];
-    H5Id variable =
-        maker.make({column.name, column.units, column.long_name, column.role},
-                   H5T_IEEE_F64LE, &time);
+    H5Id variable = maker.make({column.name, column.units, column.long_name,
+                                column.role, column.comment},
+                               H5T_IEEE_F64LE, &time);
     layout.columns.push_back(place_of(variable, column.name));
     variable.close("write " + column.name);
   }

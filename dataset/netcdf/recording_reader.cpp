@@ -85,6 +85,7 @@ Column read_column(hid_t file, const std::string& name, std::size_t samples) {
       text_attribute(variable, name, "long_name"),
       role_of(text_attribute(variable, name, "role"), name),
       read_values<double>(file, name, H5T_FLOAT, H5T_NATIVE_DOUBLE, samples)};
+  column.comment = comment_of(variable, name);
   convert(name, column.units, column.values);
   return column;
 }

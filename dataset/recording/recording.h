@@ -30,6 +30,7 @@ struct Column {
   std::string long_name;
   Role role = Role::kMeasured;
   std::vector<double> values;  // one per time; NaN = measured while unpowered
+  std::string comment = {};    // attribute of the variable; mostly empty
 };
 
 /// One run of one gyro in memory, in the units of the file

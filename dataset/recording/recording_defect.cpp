@@ -56,8 +56,10 @@ std::string defect_of_texts(const Recording& recording) {
     return text.find('\0') != std::string::npos;
   };
   for (const Column& column : recording.columns) {
-    if (holds_nul(column.units) || holds_nul(column.long_name))
-      return fmt::format("{}: a NUL in units or long_name", column.name);
+    if (holds_nul(column.units) || holds_nul(column.long_name) ||
+        holds_nul(column.comment))
+      return fmt::format("{}: a NUL in units, long_name or comment",
+                         column.name);
   }
   for (const std::string* text :
        {&recording.title, &recording.history, &recording.compensator,

@@ -23,6 +23,8 @@ constexpr RecordedSignal kSignals[] = {
     {"true_rate", "degree/s", "rate about the input axis", kTruth},
     {"true_bias", "degree/s", "zero-rate output of the noise-free twin",
      kTruth},
+    {"true_drive_frequency", "Hz", "drive loop frequency without errors",
+     kTruth},
     {"true_cross_rate_x", "degree/s", "rate about the x axis", kTruth},
     {"true_cross_rate_y", "degree/s", "rate about the y axis", kTruth},
     {"true_acceleration_x", "m/s2", "acceleration along the x axis", kTruth},

@@ -107,7 +107,7 @@ class View {
     for (const SetVariable& about : head_.variables) {
       const bool slow = about.slow && head_.slow_step > 1;
       const H5Id variable = make(
-          {about.name, about.units, about.long_name, about.role},
+          {about.name, about.units, about.long_name, about.role, about.comment},
           file_type(about.storage), fill_values(about, 1).data(),
           slow ? slow_length(head_) : head_.time.size(), &axes_[slow ? 2 : 1]);
       write_scaling(variable, about);

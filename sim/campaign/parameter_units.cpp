@@ -17,7 +17,7 @@ const Names kUnits = {
     {"F", "F"},        {"C", "C"},       {"N", "N"},      {"Pa", "Pa"},
     {"W", "W"},        {"J", "J"},       {"kg", "kg"},    {"mol", "mol"},
     {"g", "g"},        {"g2", "g2"},     {"mK", "(m K)"}, {"m2K", "(m2 K)"},
-    {"kgK", "(kg K)"}};
+    {"kgK", "(kg K)"}, {"ppm", "1e-6"},  {"year", "year"}};
 
 // Takes the last part of the key: "K" of "tc_rad_per_K".
 std::string_view take_last(std::string_view& key) {

@@ -90,9 +90,14 @@ SetVariable set_variable(const Campaign& campaign, const Column& column) {
   variable.units = column.units;
   variable.long_name = column.long_name;
   variable.role = column.role;
+  if (!column.comment.empty())
+    variable.comment = "base device: " + column.comment;
   if (column.role == Role::kTruth) {
-    variable.storage = campaign.output().double_precision ? Storage::kFloat64
-                                                          : Storage::kFloat32;
+    // In single precision a frequency of 9 kHz has steps of 1e-3 Hz.
+    variable.storage = campaign.output().double_precision ||
+                               column.name == "true_drive_frequency"
+                           ? Storage::kFloat64
+                           : Storage::kFloat32;
     variable.slow = column.name != "true_rate";
     return variable;
   }
@@ -122,7 +127,10 @@ std::vector<Column> columns_of(const Campaign& campaign, std::size_t run) {
   const MovedAxes& axes = campaign.moved_axes(run);
   set_moving(axes.cross_rate, scenario.cross_rate);
   set_moving(axes.acceleration, scenario.acceleration);
-  return simulated(scenario, make_gyro(campaign.base_device())).columns;
+  Device device = campaign.base_device();
+  if (!device.loop_channels && campaign.is_drawn("loop_channels"))
+    device.loop_channels.emplace();
+  return simulated(scenario, make_gyro(device)).columns;
 }
 
 std::size_t slow_step(const Campaign& campaign, const Scenario& scenario) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "sim/signal/loop_channels.h"
 #include "sim/signal/noise.h"
 #include "sim/signal/temperature_sensor.h"
 #include "sim/thermal/thermal_parameters.h"
@@ -123,6 +124,7 @@ struct Device {
   ThermalParameters thermal;
   NoiseParameters noise;
   TemperatureSensorParameters temperature_sensor;
+  std::optional<LoopChannelParameters> loop_channels;  // none: without errors
 };
 
 /// Calibration temperature T_0 of every expansion and trim [K].

@@ -30,6 +30,9 @@ constexpr Range kPermittivity{1, 1e6};          // [-]
 constexpr Range kActivation{1e3, 1e7};          // [J/mol]
 constexpr Range kCapacitance{1e-15, 1e-3};      // [F]
 constexpr Range kVoltage{0, 1e4, true, false};  // [V]
+constexpr Range kTime{0, 1e9, true, false};     // [s]
+
+constexpr double kPpm = 1e-6;
 
 double kelvin(const ConfigTable& table, std::string_view key) {
   return table.number(key, kCelsius) + kZeroCelsius;
@@ -220,6 +223,32 @@ NoiseParameters read_noise(const ConfigTable& noise) {
       .bias_instability = rate("bias_instability_deg_per_s"),
       .rate_random_walk = rate("rate_random_walk_deg_per_s_per_sqrt_s"),
       .turn_on = rate("turn_on_deg_per_s"),
+      .turn_on_transient =
+          noise.number_or("turn_on_transient_deg_per_s", 0, non_negative()) *
+          kDegree,
+      .turn_on_settling = noise.number_or("turn_on_settling_s", 200, kTime),
+      .turn_on_recovery = noise.number_or("turn_on_recovery_s", 3600, kTime),
+  };
+}
+
+std::optional<LoopChannelParameters> read_loop_channels(
+    const std::optional<ConfigTable>& channels) {
+  if (!channels) return std::nullopt;
+  const auto number = [&](std::string_view key, double most, double unit) {
+    return channels->number_or(key, 0, between(-most, most)) * unit;
+  };
+  return LoopChannelParameters{
+      .noise = channels->flag_or("noise", false),
+      .clock_offset = number("clock_offset_ppm", 1e4, kPpm),
+      .clock_tc2 = number("clock_tc2_ppm_per_K2", 10, kPpm),
+      .clock_ageing = number("clock_ageing_ppm_per_year", 1e3, kPpm),
+      .voltage_gain_error = number("drive_voltage_gain_error", 0.5, 1),
+      .voltage_gain_tc = number("drive_voltage_gain_tc_per_K", 0.01, 1),
+      .quadrature_offset = number("quadrature_offset_deg_per_s", 1e4, kDegree),
+      .quadrature_offset_tc =
+          number("quadrature_offset_tc_deg_per_s_per_K", 1e3, kDegree),
+      .quadrature_offset_tc2 =
+          number("quadrature_offset_tc2_deg_per_s_per_K2", 1e3, kDegree),
   };
 }
 
@@ -246,6 +275,7 @@ Device read_device(const ConfigDocument& document) {
               .resolution = sensor.number("resolution_K", non_negative()),
               .offset = sensor.number("offset_K", between(-100, 100)),
           },
+      .loop_channels = read_loop_channels(root.optional_table("loop_channels")),
   };
 }
 

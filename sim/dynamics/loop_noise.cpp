@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "sim/dynamics/loop_noise.h"
 
+#include <Eigen/LU>
 #include <cmath>
+#include <numbers>
 
 #include "sim/dynamics/complex_form.h"
 #include "sim/dynamics/mechanical_noise.h"
@@ -99,6 +101,38 @@ NoiseSystem loop_noise(const Gyro& gyro, EnvelopeOde& ode, double T_beam,
   system.B.block<2, 2>(kFeedback1, 6) =
       wf * charge / loops.feedback_scale * Matrix2d::Identity();
   return system;
+}
+
+Eigen::Matrix2Xd drive_channels(const LoopElectronics& loops) {
+  const double i = std::sin(loops.pll_phase), q = std::cos(loops.pll_phase);
+  const double V = loops.nominal_voltage, K = loops.agc_proportional;
+  const Index n = loops.rebalance ? kEnvelopeNodes : kRebalance;
+  Eigen::Matrix2Xd channels = Eigen::Matrix2Xd::Zero(2, n);
+  channels.row(0).segment<2>(kFeedback2) << loops.pll_proportional * q,
+      -loops.pll_proportional * i;
+  channels(0, kPllIntegral) = 1;
+  channels.row(0) /= 2 * std::numbers::pi;
+  channels.row(1).segment<2>(kFeedback2) << -V * K * i, -V * K * q;
+  channels(1, kAgcIntegral) = V;
+  return channels;
+}
+
+Eigen::Vector2d drive_noise(const LoopElectronics& loops,
+                            const NoiseSystem& system) {
+  MatrixXd A = system.A;
+  Eigen::Matrix2Xd channels = drive_channels(loops);
+  // Nothing follows eta when the voltage stands at its limit.
+  A(kAgcIntegral, kAgcIntegral) = 0;
+  const bool limited = A.col(kAgcIntegral).isZero(0);
+  A(kAgcIntegral, kAgcIntegral) =
+      limited ? -1 : system.A(kAgcIntegral, kAgcIntegral);
+  if (limited) channels.row(1).setZero();
+  return (channels * A.partialPivLu().solve(system.B)).rowwise().norm();
+}
+
+Eigen::Vector2d drive_noise_rms(const LoopElectronics& loops,
+                                const NoiseSystem& system) {
+  return (drive_channels(loops) * stationary_root(system)).rowwise().norm();
 }
 
 }  // namespace beamgyro

@@ -20,4 +20,19 @@ Eigen::VectorXd settled_state(const Gyro& gyro, const EnvelopeOde& ode,
 NoiseSystem loop_noise(const Gyro& gyro, EnvelopeOde& ode, double T_beam,
                        double T_board);
 
+/// Returns what the drive loop shows of the state z of loop_noise(), the rows
+/// of C in (frequency [Hz], voltage [V]) = C z while it is locked.
+Eigen::Matrix2Xd drive_channels(const LoopElectronics& loops);
+
+/// Returns the white noise of drive frequency [Hz/sqrt(Hz)] and voltage
+/// [V/sqrt(Hz)] well below the bandwidth of the loops, two-sided, so that N^2
+/// times the output rate is the variance of a sample.
+Eigen::Vector2d drive_noise(const LoopElectronics& loops,
+                            const NoiseSystem& system);
+
+/// Returns the rms of drive frequency [Hz] and voltage [V] over the whole
+/// bandwidth.
+Eigen::Vector2d drive_noise_rms(const LoopElectronics& loops,
+                                const NoiseSystem& system);
+
 }  // namespace beamgyro

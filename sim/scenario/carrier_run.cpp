@@ -215,9 +215,10 @@ void simulate_carrier(const Scenario& given, const Gyro& gyro,
   if (!motion.rate_is_zero())
     twin.emplace(scenario, gyro, motion, temperatures, true);
   UnpoweredBias unpowered_bias(scenario, gyro, motion);
-  RunRecorder recorder(scenario, gyro.device, key);
   std::optional<SensingNoise> noise;
   if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
+  RunRecorder recorder(scenario, gyro.device, key,
+                       noise ? noise->rms() : RunNoise{});
   const SampleGrid grid = sample_grid(scenario);
   // Blocks are short, because progress is reported after each.
   const auto block_size =

@@ -27,9 +27,10 @@ void simulate_envelope(const Scenario& given, const Gyro& gyro,
   std::optional<EnvelopeTrajectory> twin;
   if (!motion.rate_is_zero()) twin.emplace(scenario, gyro, motion, true);
   UnpoweredBias unpowered_bias(scenario, gyro, motion);
-  RunRecorder recorder(scenario, gyro.device, key);
   std::optional<SensingNoise> noise;
   if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
+  RunRecorder recorder(scenario, gyro.device, key,
+                       noise ? noise->rms() : RunNoise{});
 
   const SampleGrid grid = sample_grid(scenario);
   for (std::size_t k = 0; k < grid.count; k += kBlockSamples) {

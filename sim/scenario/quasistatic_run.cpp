@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "sim/scenario/material_limits.h"
 #include "sim/scenario/motion.h"
 #include "sim/scenario/run_temperatures.h"
+#include "sim/scenario/sensing_noise.h"
 #include "sim/signal/readout.h"
 #include "sim/thermal/thermal_trajectory.h"
 
@@ -224,7 +226,12 @@ void simulate_quasistatic(const Scenario& given, const Gyro& gyro,
   MaterialLimits(scenario, gyro.device.thermal).check(temperatures, grid);
   const StaticResponse respond =
       static_response(gyro, motion, temperatures, grid);
-  RunRecorder recorder(scenario, gyro.device, key, sensing_noise(gyro));
+  std::optional<SlowDriveNoise> drive_noise;
+  if (has_channel_noise(scenario, gyro.device))
+    drive_noise.emplace(scenario, gyro, key);
+  RunNoise noise = drive_noise ? drive_noise->rms() : RunNoise{};
+  noise.sensing = sensing_noise(gyro);
+  RunRecorder recorder(scenario, gyro.device, key, noise);
   for (std::size_t k = 0; k < grid.count; k += block_samples) {
     const std::size_t count = std::min(block_samples, grid.count - k);
     RunSamples samples;
@@ -240,6 +247,7 @@ void simulate_quasistatic(const Scenario& given, const Gyro& gyro,
     }
     motion.sample(samples);
     respond(samples);
+    if (drive_noise) drive_noise->add_next(samples);
     on_block(recorder.block(std::move(samples)));
   }
 }

@@ -15,5 +15,7 @@ inline constexpr RandomPurpose kCrossRateYStream{11};
 inline constexpr RandomPurpose kAccelerationXStream{12};
 inline constexpr RandomPurpose kAccelerationYStream{13};
 inline constexpr RandomPurpose kAccelerationZStream{14};
+inline constexpr RandomPurpose kDriveFrequencyNoiseStream{20};
+inline constexpr RandomPurpose kDriveVoltageNoiseStream{21};
 
 }  // namespace beamgyro

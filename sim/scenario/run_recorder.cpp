@@ -12,6 +12,7 @@
 
 #include "config/units.h"
 #include "dataset/recording/signals.h"
+#include "sim/signal/random_purposes.h"
 
 namespace beamgyro {
 namespace {
@@ -37,9 +38,29 @@ Samples quantised(Samples values, double factor, double resolution) {
   return values;
 }
 
+// How long the power was off before each cycle [s]: for ever before the first.
+Samples off_times(const std::vector<PowerInterval>& powered) {
+  Samples off = {std::numeric_limits<double>::infinity()};
+  for (std::size_t i = 1; i < powered.size(); ++i)
+    off.push_back(powered[i].on - powered[i - 1].off);
+  return off;
+}
+
+// Says that the noise of a channel hides behind its resolution, where it does.
+std::string comment_on_noise(double rms, double resolution,
+                             std::string_view unit) {
+  if (rms == 0 || rms >= resolution) return {};
+  return fmt::format(
+      "the noise of {:.2g} {} rms at 25 degC is below the resolution of {:g} "
+      "{}",
+      rms, unit, resolution, unit);
+}
+
 // Appends a column, what is measured without power blanked.
-void add(Recording& block, std::string_view name, Samples values) {
+void add(Recording& block, std::string_view name, Samples values,
+         std::string comment = {}) {
   Column column = column_of(name, std::move(values));
+  column.comment = std::move(comment);
   if (column.role == Role::kMeasured)
     for (std::size_t k = 0; k < column.values.size(); ++k)
       if (block.status[k] & kUnpowered) column.values[k] = kNaN;
@@ -49,13 +70,21 @@ void add(Recording& block, std::string_view name, Samples values) {
 }  // namespace
 
 RunRecorder::RunRecorder(const Scenario& scenario, const Device& device,
-                         const RunKey& key, double sensing_noise)
+                         const RunKey& key, const RunNoise& loop_noise)
     : scenario_(scenario),
       device_(device),
-      noise_(with(device.noise, sensing_noise), scenario.output_rate,
+      noise_(with(device.noise, loop_noise.sensing), scenario.output_rate,
              scenario.seed, key.device, key.run, scenario.age),
       turn_on_(turn_on_offsets(device.noise, scenario.powered.size(),
                                scenario.seed, key.device, key.run)),
+      transients_(turn_on_transients(device.noise, off_times(scenario.powered),
+                                     scenario.seed, key.device, key.run)),
+      quadrature_sigma_(
+          std::sqrt(scenario.output_rate) *
+          with(device.noise, loop_noise.sensing).angle_random_walk),
+      quadrature_stream_(scenario.seed, key.device, key.run,
+                         kQuadratureNoiseStream),
+      loop_noise_(loop_noise),
       sensor_(device.temperature_sensor, scenario.noise_enabled, scenario.seed,
               key.device, key.run),
       readout_(device.readout.full_scale, device.readout.adc_bits,
@@ -66,14 +95,10 @@ Recording RunRecorder::block(RunSamples&& samples) {
   block.fidelity = fidelity_name(scenario_.fidelity);
   block.seed = scenario_.seed;
   block.time = std::move(samples.time);
-  if (scenario_.noise_enabled) noise_.add_next(samples.output);
+  if (scenario_.noise_enabled) add_output_noise(block.time, samples.output);
   block.status.assign(block.time.size(), kUnpowered);
-  for (const PoweredSamples& part : powered(block.time)) {
-    for (std::size_t k = part.first; k < part.last; ++k) {
-      block.status[k] = 0;
-      if (scenario_.noise_enabled) samples.output[k] += part.turn_on;
-    }
-  }
+  for (const PoweredSamples& part : powered(block.time))
+    for (std::size_t k = part.first; k < part.last; ++k) block.status[k] = 0;
   add_measured(block, samples);
   add_truth(block, samples);
   return block;
@@ -88,10 +113,23 @@ std::vector<RunRecorder::PoweredSamples> RunRecorder::powered(
         std::lower_bound(times.begin(), times.end(), interval.on);
     const auto last = std::lower_bound(first, times.end(), interval.off);
     parts.push_back({static_cast<std::size_t>(first - times.begin()),
-                     static_cast<std::size_t>(last - times.begin()),
-                     turn_on_[i]});
+                     static_cast<std::size_t>(last - times.begin()), i});
   }
   return parts;
+}
+
+void RunRecorder::add_output_noise(const Samples& times, Samples& output) {
+  noise_.add_next(output);
+  for (const PoweredSamples& part : powered(times)) {
+    const double on = scenario_.powered[part.cycle].on;
+    const double transient = transients_[part.cycle];
+    for (std::size_t k = part.first; k < part.last; ++k) {
+      output[k] += turn_on_[part.cycle];
+      if (transient == 0) continue;
+      output[k] += transient *
+                   std::exp((on - times[k]) / device_.noise.turn_on_settling);
+    }
+  }
 }
 
 void RunRecorder::add_measured(Recording& block, RunSamples& samples) {
@@ -109,6 +147,7 @@ void RunRecorder::add_measured(Recording& block, RunSamples& samples) {
   add(block, "output", std::move(output));
   add(block, "rate", std::move(rate));
   add(block, "temperature", sensor_.readings(samples.temperature[kSensor]));
+  if (device_.loop_channels) return add_loop_channels(block, samples);
   add(block, "drive_frequency",
       quantised(std::move(samples.drive_frequency), 1,
                 readout.drive_frequency_resolution));
@@ -120,9 +159,43 @@ void RunRecorder::add_measured(Recording& block, RunSamples& samples) {
                 readout.quadrature_resolution / kDegree));
 }
 
+void RunRecorder::add_loop_channels(Recording& block,
+                                    const RunSamples& samples) {
+  const ReadoutParameters& readout = device_.readout;
+  const LoopChannelParameters& channels = *device_.loop_channels;
+  const Samples dT =
+      scaled(samples.temperature[kBoard], 1, -kCalibrationTemperature);
+  Samples noise;
+  if (channels.noise && scenario_.noise_enabled) {
+    noise.resize(block.time.size());
+    quadrature_stream_.fill_normal(noise);
+    noise = scaled(std::move(noise), quadrature_sigma_);
+  }
+  add(block, "drive_frequency",
+      quantised(measured_frequency(channels, samples.drive_frequency,
+                                   samples.drive_frequency_noise, dT,
+                                   scaled(block.time, 1, scenario_.age)),
+                1, readout.drive_frequency_resolution),
+      comment_on_noise(loop_noise_.drive_frequency,
+                       readout.drive_frequency_resolution, "Hz"));
+  add(block, "drive_voltage",
+      quantised(measured_voltage(channels, samples.drive_voltage,
+                                 samples.drive_voltage_noise, dT),
+                1, readout.drive_voltage_resolution),
+      comment_on_noise(loop_noise_.drive_voltage,
+                       readout.drive_voltage_resolution, "V"));
+  add(block, "quadrature",
+      quantised(measured_quadrature(channels, samples.quadrature, noise, dT),
+                1 / kDegree, readout.quadrature_resolution / kDegree),
+      comment_on_noise(noise.empty() ? 0 : quadrature_sigma_ / kDegree,
+                       readout.quadrature_resolution / kDegree, "degree/s"));
+}
+
 void RunRecorder::add_truth(Recording& block, RunSamples& samples) const {
   add(block, "true_rate", scaled(std::move(samples.rate), 1 / kDegree));
   add(block, "true_bias", scaled(std::move(samples.bias), 1 / kDegree));
+  if (device_.loop_channels)
+    add(block, "true_drive_frequency", std::move(samples.drive_frequency));
   for (std::size_t i = 0; i < samples.cross_rate.size(); ++i) {
     if (samples.cross_rate[i].empty()) continue;
     add(block, fmt::format("true_cross_rate_{}", kAxes[i]),

@@ -35,6 +35,9 @@ struct RunSamples {
   std::vector<double> bias;                // output of the twin [rad/s]
   std::vector<double> drive_frequency;     // [Hz]
   std::vector<double> drive_voltage;       // [V]
+  // Noise of these two channels; empty without.
+  std::vector<double> drive_frequency_noise;  // [Hz]
+  std::vector<double> drive_voltage_noise;    // [V]
   std::vector<std::uint8_t> locked;
   std::array<std::vector<double>, kThermalNodeCount> temperature;  // [K]
 
@@ -45,38 +48,54 @@ struct RunSamples {
   std::array<std::vector<double>, 3> acceleration;  // [m/s2]
 };
 
+/// Noise that the loops of a run bring to its samples.
+struct RunNoise {
+  /// White noise in front of the output stage [rad/sqrt(s)], for runs that do
+  /// not simulate it.
+  double sensing = 0;
+  /// Rms of drive frequency [Hz] and voltage [V] in the channels; 0: none.
+  double drive_frequency = 0, drive_voltage = 0;
+};
+
 /// Makes recordings from the samples of one run:
-/// - adds noise and turn-on offset to the output;
+/// - adds noise, turn-on offset and turn-on transient to the output;
+/// - adds the errors of the channels of the loops (loop_channels.h);
 /// - applies saturation, ADC, resolutions and the temperature sensor;
 /// - sets measured values without power to NaN, and sets `status`.
 /// The recording does not depend on how the run is cut into blocks.
 class RunRecorder {
  public:
-  /// `device` and `scenario` must outlive the recorder. `sensing_noise`
-  /// [rad/sqrt(s)] is white noise in front of the output stage, for runs that
-  /// do not simulate it.
+  /// `device` and `scenario` must outlive the recorder.
   RunRecorder(const Scenario& scenario, const Device& device, const RunKey& key,
-              double sensing_noise = 0);
+              const RunNoise& loop_noise = {});
 
   /// Returns the recording of the next samples, with every column
   /// (docs/reference/recording.md).
   Recording block(RunSamples&& samples);
 
  private:
+  using Samples = std::vector<double>;
+
   // Range of the powered samples of a block: from `first` to before `last`.
   struct PoweredSamples {
     std::size_t first, last;
-    double turn_on;  // [rad/s]
+    std::size_t cycle;
   };
-  std::vector<PoweredSamples> powered(const std::vector<double>& times) const;
+  std::vector<PoweredSamples> powered(const Samples& times) const;
 
+  void add_output_noise(const Samples& times, Samples& output);
   void add_measured(Recording& block, RunSamples& samples);
+  void add_loop_channels(Recording& block, const RunSamples& samples);
   void add_truth(Recording& block, RunSamples& samples) const;
 
   const Scenario& scenario_;
   const Device& device_;
   RateNoise noise_;
-  std::vector<double> turn_on_;  // of each power cycle [rad/s]
+  std::vector<double> turn_on_;     // of each power cycle [rad/s]
+  std::vector<double> transients_;  // of each power cycle, at power-on [rad/s]
+  double quadrature_sigma_;         // white noise of a sample [rad/s]
+  RandomStream quadrature_stream_;
+  RunNoise loop_noise_;
   TemperatureSensor sensor_;
   Readout readout_;
 };

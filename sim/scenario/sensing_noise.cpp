@@ -9,6 +9,11 @@
 
 namespace beamgyro {
 
+bool has_channel_noise(const Scenario& scenario, const Device& device) {
+  return scenario.noise_enabled && device.loop_channels &&
+         device.loop_channels->noise;
+}
+
 SensingNoise::SensingNoise(const Scenario& scenario, const Gyro& gyro,
                            const RunKey& key)
     : scenario_(scenario),
@@ -17,6 +22,12 @@ SensingNoise::SensingNoise(const Scenario& scenario, const Gyro& gyro,
       key_(key) {}
 
 void SensingNoise::add_next(RunSamples& samples) {
+  const bool channels = has_channel_noise(scenario_, gyro_.device);
+  const Eigen::Matrix2Xd rows = drive_channels(ode_.loops());
+  if (channels) {
+    samples.drive_frequency_noise.assign(samples.time.size(), 0);
+    samples.drive_voltage_noise.assign(samples.time.size(), 0);
+  }
   for (std::size_t k = 0; k < samples.time.size(); ++k) {
     if (!powered_at(scenario_.powered, samples.time[k])) continue;
     const double beam = samples.temperature[kBeam][k];
@@ -37,7 +48,59 @@ void SensingNoise::add_next(RunSamples& samples) {
     }
     samples.output[k] += noise_->state()(kOutput2);
     samples.quadrature[k] -= noise_->state()(kOutput2 + 1);
+    if (!channels) continue;
+    const Eigen::Vector2d drive = rows * noise_->state();
+    samples.drive_frequency_noise[k] = drive(0);
+    if (samples.locked[k]) samples.drive_voltage_noise[k] = drive(1);
   }
+}
+
+RunNoise SensingNoise::rms() {
+  if (!has_channel_noise(scenario_, gyro_.device)) return {};
+  const Eigen::Vector2d rms = drive_noise_rms(
+      ode_.loops(), loop_noise(gyro_, ode_, kCalibrationTemperature,
+                               kCalibrationTemperature));
+  return {.drive_frequency = rms(0), .drive_voltage = rms(1)};
+}
+
+SlowDriveNoise::SlowDriveNoise(const Scenario& scenario, const Gyro& gyro,
+                               const RunKey& key)
+    : scenario_(scenario),
+      gyro_(gyro),
+      ode_(gyro, drive_heating(gyro)),
+      frequency_stream_(scenario.seed, key.device, key.run,
+                        kDriveFrequencyNoiseStream),
+      voltage_stream_(scenario.seed, key.device, key.run,
+                      kDriveVoltageNoiseStream) {}
+
+Eigen::Vector2d SlowDriveNoise::sigma_at(double beam, double board) {
+  return std::sqrt(scenario_.output_rate) *
+         drive_noise(ode_.loops(), loop_noise(gyro_, ode_, beam, board));
+}
+
+void SlowDriveNoise::add_next(RunSamples& samples) {
+  const std::size_t count = samples.time.size();
+  samples.drive_frequency_noise.resize(count);
+  samples.drive_voltage_noise.resize(count);
+  frequency_stream_.fill_normal(samples.drive_frequency_noise);
+  voltage_stream_.fill_normal(samples.drive_voltage_noise);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double beam = samples.temperature[kBeam][k];
+    const double board = samples.temperature[kBoard][k];
+    if (std::abs(beam - beam_) > kNoiseRefresh ||
+        std::abs(board - board_) > kNoiseRefresh) {
+      sigma_ = sigma_at(beam, board);
+      beam_ = beam, board_ = board;
+    }
+    samples.drive_frequency_noise[k] *= sigma_(0);
+    samples.drive_voltage_noise[k] *= samples.locked[k] ? sigma_(1) : 0;
+  }
+}
+
+RunNoise SlowDriveNoise::rms() {
+  const Eigen::Vector2d sigma =
+      sigma_at(kCalibrationTemperature, kCalibrationTemperature);
+  return {.drive_frequency = sigma(0), .drive_voltage = sigma(1)};
 }
 
 }  // namespace beamgyro

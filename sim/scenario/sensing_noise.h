@@ -9,6 +9,9 @@
 
 namespace beamgyro {
 
+/// Returns whether the channels of the drive loop carry noise in this run.
+bool has_channel_noise(const Scenario& scenario, const Device& device);
+
 /// Noise of mechanics and charge amplifiers behind loops and filters
 /// (loop_noise()), exact at the sample times. The coefficients follow the
 /// temperatures in steps of kNoiseRefresh. Without power the state does not
@@ -18,8 +21,13 @@ class SensingNoise {
   /// `scenario` and `gyro` must outlive it.
   SensingNoise(const Scenario& scenario, const Gyro& gyro, const RunKey& key);
 
-  /// Adds the noise to output and quadrature of the next samples.
+  /// Adds the noise to output and quadrature of the next samples and, where
+  /// the channels carry noise, writes that of drive frequency and voltage. A
+  /// voltage at its limit has none.
   void add_next(RunSamples& samples);
+
+  /// Rms of the channels of the drive loop, with beam and board at T_0.
+  RunNoise rms();
 
  private:
   const Scenario& scenario_;
@@ -28,6 +36,31 @@ class SensingNoise {
   RunKey key_;
   std::optional<LinearNoise> noise_;
   double beam_ = 0, board_ = 0;  // of the coefficients [K]
+};
+
+/// Noise of drive frequency and voltage for runs that do not simulate the
+/// loops: white, with the density that SensingNoise has well below their
+/// bandwidth. The density follows the temperatures in steps of kNoiseRefresh.
+class SlowDriveNoise {
+ public:
+  /// `scenario` and `gyro` must outlive it.
+  SlowDriveNoise(const Scenario& scenario, const Gyro& gyro, const RunKey& key);
+
+  /// Writes the noise of the next samples.
+  void add_next(RunSamples& samples);
+
+  /// Rms of a sample, with beam and board at T_0.
+  RunNoise rms();
+
+ private:
+  Eigen::Vector2d sigma_at(double beam, double board);
+
+  const Scenario& scenario_;
+  const Gyro& gyro_;
+  EnvelopeOde ode_;
+  RandomStream frequency_stream_, voltage_stream_;
+  Eigen::Vector2d sigma_ = {0, 0};  // of a sample [Hz] [V]
+  double beam_ = 0, board_ = 0;     // of sigma_ [K]
 };
 
 inline constexpr double kNoiseRefresh = 2.0;  // [K]

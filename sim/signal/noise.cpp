@@ -24,6 +24,7 @@ void check_noise(const NoiseParameters& p) {
   require_non_negative(p.bias_instability, "bias instability", "rad/s");
   require_non_negative(p.rate_random_walk, "rate random walk", "rad/s/sqrt(s)");
   require_non_negative(p.turn_on, "turn-on offset", "rad/s");
+  require_non_negative(p.turn_on_transient, "turn-on transient", "rad/s");
 }
 
 }  // namespace
@@ -105,6 +106,20 @@ std::vector<double> turn_on_offsets(const NoiseParameters& parameters,
   stream.fill_normal(offsets);
   for (double& offset : offsets) offset *= parameters.turn_on;
   return offsets;
+}
+
+std::vector<double> turn_on_transients(const NoiseParameters& parameters,
+                                       std::span<const double> off_times,
+                                       std::uint64_t seed, std::uint32_t device,
+                                       std::uint32_t run) {
+  check_noise(parameters);
+  RandomStream stream(seed, device, run, kTurnOnTransientStream);
+  std::vector<double> transients(off_times.size());
+  stream.fill_normal(transients);
+  for (std::size_t i = 0; i < transients.size(); ++i)
+    transients[i] *= parameters.turn_on_transient *
+                     -std::expm1(-off_times[i] / parameters.turn_on_recovery);
+  return transients;
 }
 
 }  // namespace beamgyro

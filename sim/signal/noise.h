@@ -15,10 +15,13 @@ namespace beamgyro {
 /// Noise of the rate signal, IEEE-952 two-sided conventions: Allan variance
 ///   sigma^2(tau) = N^2 / tau + (2 ln 2 / pi) B^2 + K^2 tau / 3.
 struct NoiseParameters {
-  double angle_random_walk = 0.0;  // N [rad/sqrt(s)]
-  double bias_instability = 0.0;   // B [rad/s]
-  double rate_random_walk = 0.0;   // K [rad/s/sqrt(s)]
-  double turn_on = 0.0;            // one sigma, per power cycle [rad/s]
+  double angle_random_walk = 0.0;    // N [rad/sqrt(s)]
+  double bias_instability = 0.0;     // B [rad/s]
+  double rate_random_walk = 0.0;     // K [rad/s/sqrt(s)]
+  double turn_on = 0.0;              // one sigma, per power cycle [rad/s]
+  double turn_on_transient = 0.0;    // one sigma of A, per power cycle [rad/s]
+  double turn_on_settling = 200.0;   // tau_t of the transient [s]
+  double turn_on_recovery = 3600.0;  // tau_off, while power is off [s]
 };
 
 /// White noise, flicker and rate random walk of one run [rad/s], one value a
@@ -62,5 +65,15 @@ double walk_since_trim(double age, std::uint64_t seed, std::uint32_t device);
 std::vector<double> turn_on_offsets(const NoiseParameters& parameters,
                                     std::size_t cycles, std::uint64_t seed,
                                     std::uint32_t device, std::uint32_t run);
+
+/// Turn-on transients of the first power cycles of a run at power-on [rad/s],
+///   A (1 - e^{-t_off/tau_off}),
+/// with independent normals A of sigma parameters.turn_on_transient and the
+/// time t_off [s] that the power was off before each cycle; it may be infinite.
+/// A time t after power-on e^{-t/tau_t} of it is left. Throws as RateNoise.
+std::vector<double> turn_on_transients(const NoiseParameters& parameters,
+                                       std::span<const double> off_times,
+                                       std::uint64_t seed, std::uint32_t device,
+                                       std::uint32_t run);
 
 }  // namespace beamgyro

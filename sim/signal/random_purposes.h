@@ -14,5 +14,7 @@ inline constexpr RandomPurpose kRateRandomWalkStream{2};
 inline constexpr RandomPurpose kTurnOnStream{3};
 inline constexpr RandomPurpose kTemperatureSensorStream{4};
 inline constexpr RandomPurpose kWalkSinceTrimStream{17};
+inline constexpr RandomPurpose kTurnOnTransientStream{18};
+inline constexpr RandomPurpose kQuadratureNoiseStream{19};
 
 }  // namespace beamgyro

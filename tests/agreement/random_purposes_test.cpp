@@ -14,15 +14,28 @@ namespace beamgyro::random_purposes_test {
 namespace {
 
 TEST(RandomPurposes, AreAllDifferentAndWhatTheyWere) {
-  const RandomPurpose all[] = {
-      kWhiteNoiseStream,      kFlickerStream,           kRateRandomWalkStream,
-      kTurnOnStream,          kTemperatureSensorStream, kRateProfileStream,
-      kInitialWeightsStream,  kSampleOrderStream,       kDeviceDrawStream,
-      kMechanicalNoiseStream, kCrossRateXStream,        kCrossRateYStream,
-      kAccelerationXStream,   kAccelerationYStream,     kAccelerationZStream,
-      kSobolScrambleStream,
-      kIntervalStream,
-      kWalkSinceTrimStream};
+  const RandomPurpose all[] = {kWhiteNoiseStream,
+                               kFlickerStream,
+                               kRateRandomWalkStream,
+                               kTurnOnStream,
+                               kTemperatureSensorStream,
+                               kRateProfileStream,
+                               kInitialWeightsStream,
+                               kSampleOrderStream,
+                               kDeviceDrawStream,
+                               kMechanicalNoiseStream,
+                               kCrossRateXStream,
+                               kCrossRateYStream,
+                               kAccelerationXStream,
+                               kAccelerationYStream,
+                               kAccelerationZStream,
+                               kSobolScrambleStream,
+                               kIntervalStream,
+                               kWalkSinceTrimStream,
+                               kTurnOnTransientStream,
+                               kQuadratureNoiseStream,
+                               kDriveFrequencyNoiseStream,
+                               kDriveVoltageNoiseStream};
   std::uint32_t number = 0;
   for (const RandomPurpose purpose : all)
     EXPECT_EQ(static_cast<std::uint32_t>(purpose), number++);

@@ -190,6 +190,17 @@ class Formats(ProgramTest):
                 "thermal.oven={set_point_degC=65, max_power_W=3, "
                 "proportional_W_per_K=1, integral_time_s=60}")
 
+    def test_optional_noise_and_channel_keys_are_known_to_the_program(self):
+        optional = [key for key, rest in rows(page("device_file")).items()
+                    if key.startswith("loop_channels.")
+                    or key.startswith("noise.turn_on_") and "optional" in rest]
+        self.assertEqual(len(optional), 12)
+        for key in optional:
+            value = "true" if key == "loop_channels.noise" else "0.001"
+            self.ok("characterise", ROOT / "scenarios/devices/nominal.toml",
+                    "-o", "c.csv", "--beam-temperature", 25,
+                    "--set", f"{key}={value}")
+
     def test_scenario_keys_are_known_to_the_program(self):
         scenario = ROOT / "scenarios/warm_up.toml"
         for key in scenario_keys():

@@ -25,6 +25,7 @@ struct SetVariable {
   /// of the type is NaN.
   double scale_factor = 1, add_offset = 0;
   bool slow = false;
+  std::string comment = {};  // attribute; mostly empty
 };
 
 /// A variable over (device), one number for each.

@@ -144,7 +144,7 @@ class ShardBuilder::Image {
     write_status_bits(rows_.back().variable);
     for (const SetVariable& about : head_.variables) {
       rows_.push_back(make_row(
-          {about.name, about.units, about.long_name, about.role},
+          {about.name, about.units, about.long_name, about.role, about.comment},
           file_type(about.storage), about.slow, fill_values(about, 1).data()));
       write_scaling(rows_.back().variable, about);
     }

@@ -113,7 +113,8 @@ class ShardFile::File {
           {about.name, about.units, about.long_name, about.role,
            decoded_values(about, row_bytes(about.name, file_type(about.storage),
                                            width_of(about.storage), position,
-                                           recording.time.size()))});
+                                           recording.time.size())),
+           about.comment});
     }
     recording.fidelity = head_.fidelity;
     recording.seed = head_.seed;
@@ -189,6 +190,7 @@ class ShardFile::File {
                       role_of(text_attribute(variable, name, "role"), name),
                       storage_of(variable, name)};
     about.slow = slow;
+    about.comment = comment_of(variable, name);
     const std::string_view expected = unit_of_variable(name);
     if (!expected.empty() && about.units != expected)
       throw Hdf5Error(fmt::format("{} has the unit '{}'; expected {}", name,

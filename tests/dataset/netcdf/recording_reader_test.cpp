@@ -58,6 +58,7 @@ void expect_same(const Recording& a, const Recording& b) {
     EXPECT_EQ(a.columns[i].units, b.columns[i].units);
     EXPECT_EQ(a.columns[i].long_name, b.columns[i].long_name);
     EXPECT_EQ(a.columns[i].role, b.columns[i].role);
+    EXPECT_EQ(a.columns[i].comment, b.columns[i].comment);
     expect_same_bits(a.columns[i].values, b.columns[i].values);
   }
   EXPECT_EQ(a.fidelity, b.fidelity);
@@ -78,6 +79,7 @@ TEST_F(Hdf5File, ReadsBackWhatWasWritten) {
     Recording recording = sample_recording(samples);
     recording.overrides_text = "beam.length_m=0.038\nseed=3\n";
     recording.scenario_text += std::string(300000, 's');
+    recording.columns[3].comment = "noise hides behind the resolution";
     write_recording(recording, file);
     expect_same(read_recording(file), recording);
   }

@@ -77,8 +77,12 @@ TEST_F(Defect, AMeasuredNanNeedsTheUnpoweredBit) {
 TEST_F(Defect, TextsHoldNoNul) {
   recording.columns[3].units = std::string("H\0z", 3);
   EXPECT_EQ(recording_defect(recording),
-            "drive_frequency: a NUL in units or long_name");
+            "drive_frequency: a NUL in units, long_name or comment");
   recording.columns[3].units = "Hz";
+  recording.columns[3].comment = std::string("a\0b", 3);
+  EXPECT_EQ(recording_defect(recording),
+            "drive_frequency: a NUL in units, long_name or comment");
+  recording.columns[3].comment = "ab";
   recording.scenario_text = std::string("a\0b", 3);
   EXPECT_EQ(recording_defect(recording), "a NUL in the texts of the recording");
 }

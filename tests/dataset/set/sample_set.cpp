@@ -86,6 +86,7 @@ ShardHead sample_head(std::uint32_t devices, std::size_t samples,
       {"true_bias", "degree/s", "bias", Role::kTruth, Storage::kFloat32, 1, 0,
        slow_step != 1},
   };
+  head.variables[1].comment = "noise hides behind the resolution";
   head.parameters = {{"beam_length_m", "m", "length"},
                      {"patches_offset_m_0", "m", "offset"}};
   head.run = "rest";

@@ -40,5 +40,24 @@ TEST(ShardMaking, RefusesAVariableThatWasNotPlanned) {
   }
 }
 
+// The base device has no errors of its channels, so its recording does not show
+// that the others have.
+TEST(ShardMaking, HasTheTrueDriveFrequencyWhereItsErrorsAreDrawn) {
+  const CampaignFolder folder;
+  const Campaign campaign = folder.campaign(with_tolerances(
+      "\"loop_channels.clock_offset_ppm\" = { uniform = { low = 5, high = 9 } "
+      "}\n",
+      "devices_per_file = 10"));
+  const ShardPlan plan(campaign, {"0", "0"});
+  ASSERT_TRUE(plan.has_column(0, "true_drive_frequency"));
+  GenerationCounts counts;
+  EXPECT_EQ(ShardMaker(plan).make(0, counts).failures.size(), 0U);
+  EXPECT_EQ(counts.device_runs, 10U);
+  for (const SetVariable& variable : plan.head_of(0).variables)
+    if (variable.name == "true_drive_frequency")
+      EXPECT_EQ(variable.storage, Storage::kFloat64);
+  EXPECT_EQ(campaign.parameters()[0].units, "1e-6");
+}
+
 }  // namespace
 }  // namespace beamgyro::shard_making_test

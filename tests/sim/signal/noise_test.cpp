@@ -189,6 +189,27 @@ TEST(TurnOnOffsets, HaveTheirSigma) {
   EXPECT_NEAR(variance / (kOn * kOn), 1.0, 3.0 * std::sqrt(2.0 / kCycles));
 }
 
+TEST(TurnOnTransients, RecoverWhileThePowerIsOff) {
+  const NoiseParameters transient = {.turn_on_transient = kOn,
+                                     .turn_on_recovery = 3600.0};
+  const std::vector<double> off = {INFINITY, 0.0, 3600.0, 1e9};
+  const std::vector<double> long_off(4, INFINITY);
+  const auto some = turn_on_transients(transient, off, 1, 2, 3);
+  const auto full = turn_on_transients(transient, long_off, 1, 2, 3);
+  EXPECT_EQ(some[0], full[0]);
+  EXPECT_EQ(some[1], 0.0);
+  EXPECT_NEAR(some[2] / full[2], 1.0 - std::exp(-1.0), 1e-15);
+  EXPECT_EQ(some[3], full[3]);
+}
+
+TEST(TurnOnTransients, HaveTheirSigma) {
+  const std::vector<double> off(20000, INFINITY);
+  double variance = 0.0;
+  for (double a : turn_on_transients({.turn_on_transient = kOn}, off, 1, 0, 0))
+    variance += a * a / 20000;
+  EXPECT_NEAR(variance / (kOn * kOn), 1.0, 3.0 * std::sqrt(2.0 / 20000));
+}
+
 std::string rejection(const NoiseParameters& parameters, double output_rate) {
   try {
     RateNoise(parameters, output_rate, 0, 0, 0);

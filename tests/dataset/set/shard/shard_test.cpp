@@ -116,6 +116,7 @@ TEST_F(Shard, GivesBackItsHead) {
     EXPECT_EQ(found.variables[i].slow, head.variables[i].slow);
     EXPECT_EQ(found.variables[i].scale_factor, head.variables[i].scale_factor);
     EXPECT_EQ(found.variables[i].add_offset, head.variables[i].add_offset);
+    EXPECT_EQ(found.variables[i].comment, head.variables[i].comment);
   }
   ASSERT_EQ(found.parameters.size(), 2u);
   EXPECT_EQ(found.parameters[1].name, "patches_offset_m_0");
