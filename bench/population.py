@@ -61,6 +61,7 @@ CAMPAIGN_HELD_OUT = [
         demo.at(f"warm_up_{t}_{k}", "warm_up_cycles", t, 710 + 10 * k + i)
         for k in range(3) for i, t in enumerate([-15, 20, 45])]]
 NOISE = [("", [NOISE_OFF]), ("_noise", [])]  # scored runs: suffix, settings
+YEAR = ("_year", [NOISE_OFF, "age.hours=8766"])
 
 # Bounds to count the devices within. Percent: what the paper's BP network left
 # of the variance its least squares left.
@@ -114,6 +115,7 @@ def draw_channels(device):
         "loop_channels.drive_voltage_gain_tc_per_K": normal(0, 50e-6),
         "loop_channels.quadrature_offset_deg_per_s": normal(0, 0.3),
         "loop_channels.quadrature_offset_tc_deg_per_s_per_K": normal(0, 0.01),
+        "loop_channels.clock_ageing_ppm_per_year": uniform(-3, 3),
     }
 
 
@@ -209,12 +211,12 @@ def soak(unit):
     return figures
 
 
-def ramps_and_warm_ups(unit, methods, training, held_out):
+def ramps_and_warm_ups(unit, methods, training, held_out, scored=NOISE):
     """Figures of methods on the ramps and warm-ups that no training sees."""
     for method in methods:
         unit.fit(method, training, held_out)
     figures = {}
-    for suffix, settings in NOISE:
+    for suffix, settings in scored:
         unit.simulate(DYNAMIC_TEST, suffix, settings)
         for method in methods:
             scores = {name: score["residual"] for name, score in
@@ -244,14 +246,15 @@ def campaign(unit):
 
 
 def channels(unit):
-    """The same as `dynamic`, where electronics measure the drive frequency. The
-    recommended network does not see them: its figures stay."""
+    """The same as `dynamic`, where electronics measure the drive frequency,
+    and a year after the training. The recommended network does not see them:
+    its figures stay."""
     measured = Unit(unit.program, unit.out / "channels", unit.device,
                     unit.quick)
     measured.settings += ["loop_channels.noise=true",
                           *overrides(draw_channels(unit.device))]
     return ramps_and_warm_ups(measured, ["with_drive_frequency"],
-                              demo.TRAINING, demo.VALIDATION)
+                              demo.TRAINING, demo.VALIDATION, [*NOISE, YEAR])
 
 
 # A study takes a unit and returns its figures by name, lower ones being better;
