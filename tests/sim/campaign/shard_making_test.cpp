@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -53,9 +54,11 @@ TEST(ShardMaking, HasTheTrueDriveFrequencyWhereItsErrorsAreDrawn) {
   GenerationCounts counts;
   EXPECT_EQ(ShardMaker(plan).make(0, counts).failures.size(), 0U);
   EXPECT_EQ(counts.device_runs, 10U);
-  for (const SetVariable& variable : plan.head_of(0).variables)
-    if (variable.name == "true_drive_frequency")
-      EXPECT_EQ(variable.storage, Storage::kFloat64);
+  const ShardHead head = plan.head_of(0);
+  const auto found = std::ranges::find(head.variables, "true_drive_frequency",
+                                       &SetVariable::name);
+  ASSERT_NE(found, head.variables.end());
+  EXPECT_EQ(found->storage, Storage::kFloat64);
   EXPECT_EQ(campaign.parameters()[0].units, "1e-6");
 }
 
