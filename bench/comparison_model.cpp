@@ -140,7 +140,7 @@ json envelope(const Gyro& gyro, const RateProfile& rate) {
     ours = run.advance(times).output;
     evaluations = run.rhs_evaluations();
   });
-  EnvelopeTrajectory tight(scenario, gyro, motion, false, 1e-11);
+  EnvelopeTrajectory tight(scenario, gyro, motion, false, nullptr, 1e-11);
   const RunSamples exact = tight.advance(times);
   std::vector<double> shown;  // without the board's offset
   double error = 0;

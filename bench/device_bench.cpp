@@ -75,7 +75,7 @@ void look_up_static_map(benchmark::State& state) {
     T[k] = 300 + 1e-3 * static_cast<double>(k);
   std::vector<StaticMap::Signals> signals(T.size());
   for (auto _ : state) {
-    map.sample(T, rate, signals);
+    map.sample(T, rate, {}, signals);
     benchmark::DoNotOptimize(signals.data());
   }
   state.counters["per_sample"] =

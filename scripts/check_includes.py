@@ -13,8 +13,8 @@ import sys
 # list, and every room of the lists that ROOMS gives it.
 DATASET = ["dataset/files", "dataset/recording", "dataset/netcdf",
            "dataset/log", "dataset/set/shard", "dataset/set"]
-SIM = ["sim/numerics", "sim/thermal", "sim/signal", "sim/device",
-       "sim/dynamics", "sim/scenario", "sim/campaign"]
+SIM = ["sim/numerics", "sim/thermal", "sim/signal", "sim/memory",
+       "sim/device", "sim/dynamics", "sim/scenario", "sim/campaign"]
 COMPENSATION = [f"compensation/{room}" for room in
                 ("inputs", "firmware", "models", "rows", "network",
                  "methods", "compensator", "scoring", "training", "export")]
@@ -50,6 +50,7 @@ MAY_INCLUDE["dataset/recording"] -= {"dataset/files"}
 MAY_INCLUDE["dataset/log"] -= {"dataset/netcdf"}
 MAY_INCLUDE["dataset/set/shard"] -= {"dataset/log"}
 MAY_INCLUDE["sim/signal"] -= {"sim/thermal"}
+MAY_INCLUDE["sim/memory"] -= {"sim/signal"}
 MAY_INCLUDE["sim/numerics"] = set()
 MAY_INCLUDE["compensation/firmware"] -= {"compensation/inputs"}
 MAY_INCLUDE["compensation/models"] -= {"compensation/inputs"}

@@ -16,9 +16,9 @@ import sys
 
 # The sources that share bundles, as prefixes of paths; the first that fits.
 LIBRARIES = ["dataset/set/", "dataset/", "sim/numerics/", "sim/thermal/",
-             "sim/signal/", "sim/device/", "sim/dynamics/", "sim/scenario/",
-             "sim/campaign/", "compensation/", "config/", "random/",
-             "parallel/", "validation/", "validation/", "report/", "cli/"]
+             "sim/signal/", "sim/memory/", "sim/device/", "sim/dynamics/",
+             "sim/scenario/", "sim/campaign/", "compensation/", "config/",
+             "random/", "parallel/", "validation/", "report/", "cli/"]
 
 # A library sees no header of these.
 UNSEEN = {"config/": ["dataset/", "sim/", "compensation/", "validation/", "report/", "cli/"],

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "sim/memory/memory_parameters.h"
 #include "sim/signal/loop_channels.h"
 #include "sim/signal/noise.h"
 #include "sim/signal/temperature_sensor.h"
@@ -125,6 +126,7 @@ struct Device {
   NoiseParameters noise;
   TemperatureSensorParameters temperature_sensor;
   std::optional<LoopChannelParameters> loop_channels;  // none: without errors
+  MemoryParameters memory = {};
 };
 
 /// Calibration temperature T_0 of every expansion and trim [K].

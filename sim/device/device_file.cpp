@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/units.h"
+#include "sim/memory/memory_file.h"
 #include "sim/thermal/thermal_file.h"
 
 namespace beamgyro {
@@ -276,6 +277,7 @@ Device read_device(const ConfigDocument& document) {
               .offset = sensor.number("offset_K", between(-100, 100)),
           },
       .loop_channels = read_loop_channels(root.optional_table("loop_channels")),
+      .memory = read_memory(root.table_or_empty("memory")),
   };
 }
 

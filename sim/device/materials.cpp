@@ -5,14 +5,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/memory/bond_relaxation.h"
+#include "sim/memory/gas_constant.h"
+
 namespace beamgyro {
 namespace {
 
-constexpr double kGasConstant = 8.314462618;              // [J/(mol K)]
 constexpr double kVacuumPermittivity = 8.8541878128e-12;  // [F/m]
 
 // Cole-Cole variable (i w tau)^a.
-Complex relaxation(double omega, double tau, double exponent) {
+Complex cole_cole(double omega, double tau, double exponent) {
   return std::polar(std::pow(omega * tau, exponent),
                     exponent * std::numbers::pi / 2);
 }
@@ -21,6 +23,18 @@ Complex relaxation(double omega, double tau, double exponent) {
 double ceramic_temperature_difference(double T) {
   return std::clamp(T, kColdestCeramic, kHottestCeramic) -
          kCalibrationTemperature;
+}
+
+// G_b* with the time constant of the alpha relaxation given.
+Complex relaxed_modulus(const BondParameters& bond, double unrelaxed,
+                        double tau_alpha, double T, double omega) {
+  const double tau_beta =
+      arrhenius_time_constant(T, bond.beta_activation, bond.beta_temperature);
+  return unrelaxed -
+         bond.beta_step /
+             (1.0 + cole_cole(omega, tau_beta, bond.beta_exponent)) -
+         bond.alpha_step /
+             (1.0 + cole_cole(omega, tau_alpha, bond.alpha_exponent));
 }
 
 double d31_magnitude(const PatchParameters& patches, double T) {
@@ -85,15 +99,25 @@ double clamped_permittivity(const PatchParameters& patches, double T) {
 }
 
 Complex bond_modulus(const BondParameters& bond, double T, double omega) {
-  const double tau_beta =
-      arrhenius_time_constant(T, bond.beta_activation, bond.beta_temperature);
-  const double tau_alpha =
-      glass_time_constant(T, bond.glass_transition, bond.alpha_low_activation);
-  return bond.shear_modulus -
-         bond.beta_step /
-             (1.0 + relaxation(omega, tau_beta, bond.beta_exponent)) -
-         bond.alpha_step /
-             (1.0 + relaxation(omega, tau_alpha, bond.alpha_exponent));
+  return relaxed_modulus(
+      bond, bond.shear_modulus,
+      glass_time_constant(T, bond.glass_transition, bond.alpha_low_activation),
+      T, omega);
+}
+
+Complex bond_modulus(const BondParameters& bond,
+                     const RelaxationParameters& relaxation, double offset,
+                     double T, double omega) {
+  const double reference =
+      reference_fictive_temperature(T, bond.glass_transition);
+  const double share = (1 - relaxation.nonlinearity) * relaxation.activation /
+                       kGasConstant *
+                       (1 / (reference + offset) - 1 / reference);
+  return relaxed_modulus(
+      bond, bond.shear_modulus * (1 - relaxation.modulus_per_K * offset),
+      glass_time_constant(T, bond.glass_transition, bond.alpha_low_activation) *
+          std::exp(share),
+      T, omega);
 }
 
 Complex shear_lag(Complex q) {
@@ -113,7 +137,7 @@ Complex shear_lag(const PatchParameters& patches, double bond_thickness,
 }
 
 Complex mount_share(const MountParameters& mount, double T, double omega) {
-  const Complex z = relaxation(
+  const Complex z = cole_cole(
       omega,
       glass_time_constant(T, mount.glass_transition, mount.low_activation),
       mount.exponent);

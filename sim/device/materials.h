@@ -4,6 +4,7 @@
 #include <complex>
 
 #include "sim/device/device.h"
+#include "sim/memory/memory_state.h"
 
 namespace beamgyro {
 
@@ -42,6 +43,12 @@ double clamped_permittivity(const PatchParameters& patches, double T);
 /// G_b* [Pa], complex shear modulus of the bond with its beta and alpha
 /// relaxations (Cole-Cole form) (1.3).
 Complex bond_modulus(const BondParameters& bond, double T, double omega);
+
+/// The same of a glass that is `offset` [K] away from the reference glass
+/// (12.2).
+Complex bond_modulus(const BondParameters& bond,
+                     const RelaxationParameters& relaxation, double offset,
+                     double T, double omega);
 
 /// S* = 1 - tanh(q)/q, share of the face strain that reaches a patch through
 /// its bond, q = (l_p/2) sqrt(G_b*/(t_b E_p* t_p)) (1.3).

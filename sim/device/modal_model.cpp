@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
+#include <string>
 
 #include "config/units.h"
 #include "sim/numerics/simulation_failure.h"
+#include "sim/thermal/material_range.h"
 
 namespace beamgyro {
 namespace {
@@ -36,9 +39,18 @@ struct PatchMaterials {
   PerPatch<Complex> S;  // shear_lag()
 };
 
-PatchMaterials patch_materials(const Device& device, double T, double omega) {
+Complex bond_at(const Device& device, double T, double omega,
+                const MemoryState& memory) {
+  if (!device.memory.relaxation || memory.glass_offset == 0)
+    return bond_modulus(device.bond, T, omega);
+  return bond_modulus(device.bond, *device.memory.relaxation,
+                      memory.glass_offset, T, omega);
+}
+
+PatchMaterials patch_materials(const Device& device, double T, double omega,
+                               const MemoryState& memory) {
   PatchMaterials materials{patch_modulus(device.patches, T), {}};
-  const Complex G_b = bond_modulus(device.bond, T, omega);
+  const Complex G_b = bond_at(device, T, omega, memory);
   for (std::size_t p = 0; p < kPatchCount; ++p) {
     const double thickness = device.bond.thickness[p];
     materials.S[p] =
@@ -49,8 +61,32 @@ PatchMaterials patch_materials(const Device& device, double T, double omega) {
   return materials;
 }
 
+std::string memory_text(const MemoryState& memory) {
+  if (memory == MemoryState{}) return "";
+  return fmt::format(
+      " with the bond {:.1f} K off its reference glass, hysteresis at {:.2f} "
+      "of its largest and {:.1f} decades after the trim",
+      memory.glass_offset, memory.hysteresis, memory.decades);
+}
+
+// The device with every property that ages at its value after `decades`.
+Device aged(const Device& device, double decades) {
+  Device old = device;
+  const AgeingParameters& per_decade = *device.memory.ageing;
+  old.patches.youngs_modulus *= 1 + per_decade.patch_modulus * decades;
+  old.patches.d31 *= 1 + per_decade.d31 * decades;
+  old.patches.relative_permittivity *= 1 + per_decade.permittivity * decades;
+  old.patches.mechanical_loss_factor *=
+      1 + per_decade.mechanical_loss * decades;
+  old.bond.shear_modulus *= 1 + per_decade.bond_modulus * decades;
+  old.mount.glassy_stiffness_share *= 1 + per_decade.mount_share * decades;
+  old.memory.ageing.reset();
+  return old;
+}
+
 Matrix2cd stiffness_of(const Device& device, const ProjectedBeam& beam,
-                       const PatchMaterials& materials, double T) {
+                       const PatchMaterials& materials, double T,
+                       const MemoryState& memory) {
   const double omega = beam.timoshenko_frequency;
   const double ax = device.beam.side * (1 + device.beam.side_difference / 2);
   const double ay = device.beam.side * (1 - device.beam.side_difference / 2);
@@ -70,8 +106,16 @@ Matrix2cd stiffness_of(const Device& device, const ProjectedBeam& beam,
   K *= beam.stiffness_scale;
 
   const double K0 = 0.5 * K.trace().real();
-  const double c = std::cos(device.mount.axis_angle);
-  const double s = std::sin(device.mount.axis_angle);
+  double axis = device.mount.axis_angle;
+  if (device.memory.hysteresis) {
+    const HysteresisParameters& hysteresis = *device.memory.hysteresis;
+    axis += hysteresis.mount_axis * memory.hysteresis;
+    const Complex cross =
+        K0 * memory.hysteresis * Complex(hysteresis.stiffness, hysteresis.loss);
+    K(0, 1) += cross;
+    K(1, 0) += cross;
+  }
+  const double c = std::cos(axis), s = std::sin(axis);
   Matrix2d R;
   R << c, -s, s, c;
   K += (K0 * mount_share(device.mount, T, omega)) *
@@ -81,9 +125,11 @@ Matrix2cd stiffness_of(const Device& device, const ProjectedBeam& beam,
   const Matrix2d loss = K.imag();
   if (!(loss(0, 0) > 0 && loss.determinant() > 0)) {
     throw SimulationFailure(fmt::format(
-        "complex stiffness at {:.2f} degC: its loss part is not positive "
-        "definite; a material or mount parameter creates energy",
-        T - kZeroCelsius));
+        "complex stiffness at {:.2f} degC{}: its loss part is not positive "
+        "definite; {} creates energy",
+        T - kZeroCelsius, memory_text(memory),
+        memory == MemoryState{} ? "a material or mount parameter"
+                                : "a parameter of [memory]"));
   }
   return K;
 }
@@ -116,13 +162,14 @@ Vector2d patch_position(const Device& device, Patch patch) {
 Matrix2cd complex_stiffness(const Device& device, const ProjectedBeam& beam,
                             double T) {
   return stiffness_of(device, beam,
-                      patch_materials(device, T, beam.timoshenko_frequency), T);
+                      patch_materials(device, T, beam.timoshenko_frequency, {}),
+                      T, {});
 }
 
 Vector2cd patch_coupling(const Device& device, const ProjectedBeam& beam,
                          Patch patch, double T) {
   return coupling_of(device, beam,
-                     patch_materials(device, T, beam.timoshenko_frequency),
+                     patch_materials(device, T, beam.timoshenko_frequency, {}),
                      patch, T);
 }
 
@@ -138,10 +185,14 @@ double patch_capacitance(const PatchParameters& patches, double T) {
 
 ModalParameters modal_parameters(const Device& device,
                                  const ProjectedBeam& beam, double T,
-                                 double stiffness_trim) {
+                                 double stiffness_trim,
+                                 const MemoryState& memory) {
+  if (device.memory.ageing && memory.decades != 0)
+    return modal_parameters(aged(device, memory.decades), beam, T,
+                            stiffness_trim, memory);
   const PatchMaterials materials =
-      patch_materials(device, T, beam.timoshenko_frequency);
-  const Matrix2cd K = stiffness_of(device, beam, materials, T);
+      patch_materials(device, T, beam.timoshenko_frequency, memory);
+  const Matrix2cd K = stiffness_of(device, beam, materials, T, memory);
   ModalParameters modal;
   modal.temperature = T;
   modal.mass = beam.mass;
@@ -165,6 +216,34 @@ ModalParameters modal_parameters(const Device& device,
         coupling_of(device, beam, materials, static_cast<Patch>(i), T);
   }
   return modal;
+}
+
+void require_passive_memory(const Device& device, const ProjectedBeam& beam) {
+  // The loss part is linear in the hysteresis but for the mount's axis, and
+  // each ageing property is linear in the decades: their extremes are the
+  // worst. A quench leaves the bond less than 10 K above its reference, and
+  // decades of storage or a fast rise at most 40 K below.
+  constexpr std::array<double, 3> kGlassOffsets = {0, -40, 10};  // [K]
+  constexpr double kOldest = 6;  // decades: 57 years at 150 degC
+  constexpr double kStep = 10;   // [K]
+  const MemoryParameters& memory = device.memory;
+  if (!memory.any()) return;
+  std::vector<double> decades = {0};
+  if (memory.ageing)
+    decades = {std::log10(memory.ageing->start /
+                          (memory.ageing->start + memory.ageing->trim_age)),
+               kOldest};
+  const double turned = memory.hysteresis ? 1 : 0;
+  for (double T = kMaterialTemperatures.low; T <= kMaterialTemperatures.high;
+       T += kStep) {
+    for (const double glass : kGlassOffsets) {
+      for (const double h : {-turned, turned}) {
+        for (const double a : decades)
+          modal_parameters(device, beam, T + kZeroCelsius, 0, {glass, h, a});
+      }
+      if (!memory.relaxation) break;
+    }
+  }
 }
 
 }  // namespace beamgyro

@@ -38,9 +38,18 @@ Eigen::Vector2cd patch_coupling(const Device& device, const ProjectedBeam& beam,
 double patch_capacitance(const PatchParameters& patches, double T);
 
 /// All of (2.1) at beam temperature T [K]; `stiffness_trim` is k_trim of (1.3).
+/// `memory` acts on the materials by the effects that the device has: the glass
+/// of the bond (12.2), hysteresis of K*_xy and of the mount's axis (12.4), age
+/// (12.5). Without it the result is that of the unit at its trim.
 ModalParameters modal_parameters(const Device& device,
                                  const ProjectedBeam& beam, double T,
-                                 double stiffness_trim);
+                                 double stiffness_trim,
+                                 const MemoryState& memory = {});
+
+/// Throws SimulationFailure when a memory effect of the device makes the loss
+/// part of K* indefinite at a temperature, a state of the bond, a sign of the
+/// hysteresis or an age that a history can bring about.
+void require_passive_memory(const Device& device, const ProjectedBeam& beam);
 
 /// Beam temperatures [K] where modal_parameters() may have a kink, in no order:
 /// glass transitions and the ends of the ceramic's linear range. It is analytic

@@ -27,8 +27,9 @@ CarrierOde::CarrierOde(const Gyro& gyro)
   set_temperatures(kCalibrationTemperature, kCalibrationTemperature);
 }
 
-void CarrierOde::set_temperatures(double beam, double board) {
-  const ModalChannels modal = table_.at(beam).value;
+void CarrierOde::set_temperatures(double beam, double board,
+                                  const ModalChannels& memory) {
+  const ModalChannels modal = table_.at(beam).value + memory;
   stiffness_ = stiffness_of(modal);
   damping_ = damping_of(modal);
   const auto along = [&](Patch patch) -> Vector2cd {

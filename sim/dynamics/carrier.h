@@ -30,7 +30,9 @@ class CarrierOde {
  public:
   explicit CarrierOde(const Gyro& gyro);
 
-  void set_temperatures(double beam, double board);  // [K]
+  /// [K]; `memory` is what a unit with memory adds to its coefficients.
+  void set_temperatures(double beam, double board,
+                        const ModalChannels& memory = ModalChannels::Zero());
 
   /// Starts a new window of time at `elapsed` [s] of the present one. A state
   /// vector at that time stays valid as the state at time 0 of the new window.

@@ -15,9 +15,11 @@ using State = Eigen::Ref<const Eigen::VectorXd>;
 
 }  // namespace
 
-EnvelopeOde::EnvelopeOde(const Gyro& gyro, const DriveHeating& heating)
+EnvelopeOde::EnvelopeOde(const Gyro& gyro, const DriveHeating& heating,
+                         const ModalMemory* memory)
     : loops_(loop_electronics(gyro)),
       table_(gyro),
+      memory_(memory),
       thermal_(ThermalNetwork(gyro.device.thermal), heating.mechanical,
                heating.dielectric),
       phase_tc_(gyro.device.readout.phase_tc),
@@ -30,6 +32,13 @@ Eigen::VectorXd EnvelopeOde::at_rest(double temperature) const {
   Eigen::VectorXd y = Eigen::VectorXd::Zero(size());
   y.segment<kThermalNodeCount>(kEnvelopeNodes).setConstant(temperature);
   return y;
+}
+
+ModalTable::Point EnvelopeOde::modal_at(double time, double beam_temperature) {
+  ModalTable::Point modal = table_.at(beam_temperature);
+  if (memory_ != nullptr)
+    modal.value += memory_->at(time, beam_temperature, memory_interval_);
+  return modal;
 }
 
 EnvelopeCouplings EnvelopeOde::couplings(const ModalChannels& modal) const {
@@ -97,8 +106,8 @@ void EnvelopeOde::rate(const EnvelopeInputs& inputs, const State& y,
     dydt.head<kEnvelopeNodes>().setZero();
     return;
   }
-  const EnvelopeCoefficients now =
-      coefficients(table_.at(nodes(kBeam)).value, inputs.motion, nodes(kBoard));
+  const EnvelopeCoefficients now = coefficients(
+      modal_at(inputs.time, nodes(kBeam)).value, inputs.motion, nodes(kBoard));
   const EnvelopeMoment m = moment(now, y);
   const EnvelopePlant plant(now.stiffness, now.velocity, m.drive.frequency);
   const Vector2cd dU = plant.from_amplitude() * m.U +

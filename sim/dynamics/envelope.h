@@ -6,6 +6,7 @@
 
 #include "sim/dynamics/envelope_moment.h"
 #include "sim/dynamics/envelope_plant.h"
+#include "sim/dynamics/modal_memory.h"
 #include "sim/thermal/thermal_ode.h"
 
 namespace beamgyro {
@@ -32,6 +33,7 @@ struct EnvelopeInputs {
   CaseMotion motion;
   ThermalSurroundings surroundings;
   bool powered = false;
+  double time = 0;  // of a unit with memory, since the run began [s]
 };
 
 /// The differential equation of the envelope run: the amplitudes of both modes
@@ -42,7 +44,9 @@ struct EnvelopeInputs {
 /// threads at once.
 class EnvelopeOde {
  public:
-  EnvelopeOde(const Gyro& gyro, const DriveHeating& heating);
+  /// `memory`, which must outlive the object, is null for a unit without.
+  EnvelopeOde(const Gyro& gyro, const DriveHeating& heating,
+              const ModalMemory* memory = nullptr);
 
   Eigen::Index size() const { return kEnvelopeNodes + thermal_.size(); }
 
@@ -62,6 +66,7 @@ class EnvelopeOde {
   const LoopElectronics& loops() const { return loops_; }
 
  private:
+  ModalTable::Point modal_at(double time, double beam_temperature);
   EnvelopeCouplings couplings(const ModalChannels& modal) const;
   EnvelopeCoefficients coefficients(const ModalChannels& modal,
                                     const CaseMotion& motion,
@@ -85,6 +90,8 @@ class EnvelopeOde {
 
   LoopElectronics loops_;
   ModalTable table_;
+  const ModalMemory* memory_;
+  std::size_t memory_interval_ = 0;
   ThermalOde thermal_;
   double phase_tc_, phase_tc2_;
   double angular_gain_;

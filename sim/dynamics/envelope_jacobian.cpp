@@ -80,7 +80,7 @@ void EnvelopeOde::jacobian(const EnvelopeInputs& inputs, const State& y,
   thermal_.jacobian(inputs.surroundings, inputs.powered, nodes,
                     slope.bottomRightCorner(thermal_.size(), thermal_.size()));
   if (!inputs.powered) return;
-  const ModalTable::Point modal = table_.at(nodes(kBeam));
+  const ModalTable::Point modal = modal_at(inputs.time, nodes(kBeam));
   const EnvelopeCoefficients now =
       coefficients(modal.value, inputs.motion, nodes(kBoard));
   const EnvelopeMoment m = moment(now, y);

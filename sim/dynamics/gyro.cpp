@@ -77,6 +77,7 @@ Complex zero_rate_terms(const Gyro& gyro, const ModalParameters& modal) {
 
 Gyro make_gyro(const Device& device) {
   Gyro gyro = untrimmed_gyro(device);
+  require_passive_memory(device, gyro.beam);
   gyro.stiffness_trim = trimmed_stiffness(gyro);
   const ModalParameters modal = modal_parameters(
       device, gyro.beam, kCalibrationTemperature, gyro.stiffness_trim);

@@ -42,26 +42,31 @@ ModalTable::ModalTable(const Gyro& gyro) : gyro_(gyro) {
   cells_.resize(cells);
 }
 
-ModalChannels ModalTable::exact(double T) const {
+ModalChannels modal_channels(const Gyro& gyro, double T,
+                             const MemoryState& memory) {
   const ModalParameters modal =
-      modal_parameters(gyro_.device, gyro_.beam, T, gyro_.stiffness_trim);
+      modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim, memory);
   ModalChannels c;
   c.head<kCouplings>() << modal.stiffness(0, 0), modal.stiffness(0, 1),
       modal.stiffness(1, 1), modal.damping(0, 0), modal.damping(0, 1),
       modal.damping(1, 1);
-  for (std::size_t p = 0; p < direction_.size(); ++p) {
+  for (std::size_t p = 0; p < modal.coupling.size(); ++p) {
+    const Eigen::Vector2d direction =
+        patch_position(gyro.device, static_cast<Patch>(p)).normalized();
     const Complex along =
-        direction_[p].cast<Complex>().transpose() * modal.coupling[p];
+        direction.cast<Complex>().transpose() * modal.coupling[p];
     const auto i = kCouplings + 2 * static_cast<Eigen::Index>(p);
     c(i) = along.real();
     c(i + 1) = along.imag();
   }
-  return c / mass_;
+  return c / gyro.beam.mass;
 }
 
 // Through both ends and the inner Chebyshev-Lobatto points at 1/4 and 3/4.
 ModalTable::Cubic ModalTable::cubic(double left, double right) const {
-  const auto at = [&](double s) { return exact(std::lerp(left, right, s)); };
+  const auto at = [&](double s) {
+    return modal_channels(gyro_, std::lerp(left, right, s));
+  };
   const ModalChannels a = at(0), b = at(0.25), c = at(0.75), d = at(1);
   return {a, (-19 * a + 24 * b - 8 * c + 3 * d) / 3,
           (32 * a - 56 * b + 40 * c - 16 * d) / 3,
@@ -73,7 +78,7 @@ ModalTable::Cubic ModalTable::cubic(double left, double right) const {
 bool ModalTable::accurate(const Cubic& cubic, double left, double right) const {
   constexpr double kForce = 1e-13, kCoupling = 1e-9;  // relative
   for (const double s : {0.1, 0.5, 0.9}) {
-    const ModalChannels want = exact(std::lerp(left, right, s));
+    const ModalChannels want = modal_channels(gyro_, std::lerp(left, right, s));
     const ModalChannels error =
         (cubic[0] + s * (cubic[1] + s * (cubic[2] + s * cubic[3])) - want)
             .abs();

@@ -32,6 +32,10 @@ Eigen::Matrix2d damping_of(const ModalChannels& channels);    // C/m [1/s]
 /// Returns Theta_p/m [N/(V kg)] along the direction of the patch.
 std::complex<double> coupling_of(const ModalChannels& channels, Patch patch);
 
+/// Returns the exact coefficients at beam temperature T [K].
+ModalChannels modal_channels(const Gyro& gyro, double T,
+                             const MemoryState& memory = {});
+
 /// The modal parameters of one gyro over beam temperature, tabulated on demand
 /// by continuous cubics on cells of kModalGrid. A cell is cut where the glass
 /// transition of bond or mount causes a kink. The error in the zero-rate output
@@ -57,7 +61,6 @@ class ModalTable {
   // Coefficients of the powers 0 .. 3 of the position within one of equal parts
   // of a cell.
   using Cubic = std::array<ModalChannels, 4>;
-  ModalChannels exact(double T) const;
   Cubic cubic(double left, double right) const;
   bool accurate(const Cubic& cubic, double left, double right) const;
   const std::vector<Cubic>& cell(std::size_t i);

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "sim/dynamics/gyro.h"
+#include "sim/memory/memory_trajectory.h"
 
 namespace beamgyro {
 
@@ -15,6 +18,13 @@ namespace beamgyro {
 /// Chebyshev polynomials in temperature, times one Chebyshev polynomial in
 /// rate. Pieces end at the kinks of the materials and are halved until the
 /// table agrees with the exact solution (2.10).
+///
+/// For a unit with memory the table has up to three more dimensions, T_f -
+/// T_f,ref, hysteresis and age, over the range of each that the run visits;
+/// that of T_f - T_f,ref is the range within the piece. Each takes as few
+/// Chebyshev polynomials as the tolerance allows: two, a straight line, do for
+/// the hysteresis and for the age over a run of days, and for the glass of a
+/// unit that stays below T_g.
 class StaticMap {
  public:
   /// Tabulates temperatures in [low, high] [K] and rates up to +-`rate_limit`
@@ -23,17 +33,26 @@ class StaticMap {
   StaticMap(const Gyro& gyro, double low, double high, double rate_limit,
             double tolerance = 1.7e-8);
 
+  /// Returns the range of the memory states while the beam is within two
+  /// temperatures [K].
+  using MemoryBounds = std::function<MemoryRange(double low, double high)>;
+
+  /// The same for a unit with memory; the default tolerance is 1e-5 deg/s.
+  StaticMap(const Gyro& gyro, double low, double high, double rate_limit,
+            MemoryBounds bounds, double tolerance = 1.7e-7);
+
   struct Signals {
     BeamSignal at_rate;
     std::complex<double> at_rest;  // demodulated, twin at rate 0 [rad/s]
   };
   /// Returns the response at T [K], which must lie in the tabulated range (to
   /// 1e-6 K), and at a rate [rad/s] below the limit.
-  Signals at(double T, double rate) const;
+  Signals at(double T, double rate, const MemoryState& memory = {}) const;
 
-  /// Writes at() of every pair of T and rate. The three spans have the same
-  /// length.
+  /// Writes at() of every T, rate and memory state. The spans have the same
+  /// length, but that of the states may be empty for a unit without memory.
   void sample(std::span<const double> T, std::span<const double> rate,
+              std::span<const MemoryState> memory,
               std::span<Signals> signals) const;
 
   int pieces() const { return static_cast<int>(pieces_.size()); }
@@ -48,15 +67,37 @@ class StaticMap {
   using Lanes = Eigen::Array<double, Eigen::Dynamic, kColumns, 0, kBlock,
                              kColumns == Eigen::Dynamic ? kMaxRates : kColumns>;
 
-  struct Piece {
-    double low, high;              // [K]
-    Eigen::MatrixXd coefficients;  // (channel x rate degree) x temperature node
+  static constexpr int kMemoryAxes = 3, kMaxMemoryNodes = 12;
+  using MemoryPoint = std::array<double, kMemoryAxes>;
+
+  // The memory states of a piece: nodes along each axis, 1 where the state does
+  // not change.
+  struct MemoryBox {
+    MemoryPoint middle{}, half{};
+    std::array<int, kMemoryAxes> nodes = {1, 1, 1};
+
+    int size() const { return nodes[0] * nodes[1] * nodes[2]; }
+    MemoryState state(const MemoryPoint& place) const;  // -1 .. 1 each
+    MemoryState node_state(int index) const;
+    Eigen::MatrixXd transform() const;
   };
+  struct Piece {
+    double low, high;  // [K]
+    // (channel x rate degree x memory polynomial) x temperature node
+    Eigen::MatrixXd coefficients;
+    MemoryBox memory = {};
+    std::vector<int> terms = {};  // of each row; empty: all of them
+  };
+  class MemoryResponse;
   struct Channels {  // one row a sample
     Lanes<kChannels> at_rate, at_rest;
   };
 
-  ModalParameters modal(double T) const;
+  void tabulate(double low, double high);
+  MemoryBox memory_box(double low, double high);
+  int needed_memory_nodes(double low, double high, MemoryBox box, int axis);
+  void prune(Piece& piece) const;
+  ModalParameters modal(double T, const MemoryState& memory) const;
   Eigen::Vector4d exact(const ModalParameters& modal, double rate,
                         double guess = 0);
   std::optional<Piece> fitted(double low, double high);
@@ -64,11 +105,16 @@ class StaticMap {
   void refine(double low, double high);
   int needed_rate_degree(double low, double high);
   Channels channels(const Piece& piece, std::span<const double> T,
-                    std::span<const double> rate) const;
+                    std::span<const double> rate,
+                    std::span<const MemoryState> memory) const;
+  Lanes<Eigen::Dynamic> memory_basis(const MemoryBox& box, int axis,
+                                     std::span<const MemoryState> memory) const;
   BeamSignal limited(const Eigen::Vector4d& channels) const;
   const Piece& piece_at(double T) const;
 
   Gyro gyro_;
+  MemoryBounds bounds_;
+  std::array<int, kMemoryAxes> memory_nodes_ = {1, 1, 1};  // of all pieces
   LockPath path_;
   double rate_limit_, tolerance_;
   double voltage_limit_;

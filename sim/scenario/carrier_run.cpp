@@ -16,6 +16,7 @@
 #include "sim/scenario/aligned_borders.h"
 #include "sim/scenario/drive_lock.h"
 #include "sim/scenario/motion.h"
+#include "sim/scenario/run_memory.h"
 #include "sim/scenario/run_temperatures.h"
 #include "sim/scenario/sensing_noise.h"
 #include "sim/scenario/unpowered_bias.h"
@@ -51,10 +52,11 @@ class CarrierTrajectory {
  public:
   CarrierTrajectory(const Scenario& scenario, const Gyro& gyro,
                     const Motion& motion, const RunTemperatures& temperatures,
-                    bool at_rest)
+                    const ModalMemory* memory, bool at_rest)
       : scenario_(scenario),
         motion_(motion),
         temperatures_(temperatures),
+        memory_(memory),
         at_rest_(at_rest),
         angular_gain_(gyro.beam.angular_gain),
         ode_(gyro) {
@@ -123,17 +125,29 @@ class CarrierTrajectory {
     if (powered_) {
       if (time_ - window_ >= kWindow) start_window(rk_->state());
       const double middle = 0.5 * (time_ + end);
-      ode_.set_temperatures(temperatures_.at(kBeam, middle),
-                            temperatures_.at(kBoard, middle));
+      set_temperatures(middle);
       rk_->advance_to(end - window_);
     }
     time_ = end;
     if (end == border && piece_ + 1 < pieces_.size()) begin(piece_ + 1);
   }
 
+  void set_temperatures(double t) {
+    const double beam = temperatures_.at(kBeam, t);
+    const double board = temperatures_.at(kBoard, t);
+    if (memory_ == nullptr) {
+      ode_.set_temperatures(beam, board);
+    } else {
+      ode_.set_temperatures(beam, board,
+                            memory_->at(t, beam, memory_interval_));
+    }
+  }
+
   const Scenario& scenario_;
   const Motion& motion_;
   const RunTemperatures& temperatures_;
+  const ModalMemory* memory_;
+  std::size_t memory_interval_ = 0;
   bool at_rest_;
   double angular_gain_;
   CarrierOde ode_;
@@ -210,11 +224,17 @@ void simulate_carrier(const Scenario& given, const Gyro& gyro,
   require_rate(scenario, gyro);
   const Motion motion(scenario, gyro, key);
   const RunTemperatures temperatures(scenario, gyro, kThermalStep);
-  CarrierTrajectory trajectory(scenario, gyro, motion, temperatures, false);
+  const std::unique_ptr<MemoryTrajectory> memory =
+      memory_of_run(scenario, gyro);
+  std::optional<ModalMemory> remembered;
+  if (memory) remembered.emplace(gyro, *memory);
+  const ModalMemory* added = remembered ? &*remembered : nullptr;
+  CarrierTrajectory trajectory(scenario, gyro, motion, temperatures, added,
+                               false);
   std::optional<CarrierTrajectory> twin;
   if (!motion.rate_is_zero())
-    twin.emplace(scenario, gyro, motion, temperatures, true);
-  UnpoweredBias unpowered_bias(scenario, gyro, motion);
+    twin.emplace(scenario, gyro, motion, temperatures, added, true);
+  UnpoweredBias unpowered_bias(scenario, gyro, motion, memory.get());
   std::optional<SensingNoise> noise;
   if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
   RunRecorder recorder(scenario, gyro.device, key,
@@ -229,6 +249,10 @@ void simulate_carrier(const Scenario& given, const Gyro& gyro,
         grid.times(k, std::min(block_size, grid.count - k));
     RunSamples samples = samples_at(block, gyro, temperatures, trajectory,
                                     twin ? &*twin : nullptr);
+    if (memory) {
+      samples.memory.resize(block.size());
+      memory->sample(block, samples.temperature[kBeam], samples.memory);
+    }
     unpowered_bias.fill_next(samples);
     motion.sample(samples);
     if (noise) noise->add_next(samples);

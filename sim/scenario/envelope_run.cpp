@@ -2,6 +2,7 @@
 #include "sim/scenario/envelope_run.h"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "sim/scenario/aligned_borders.h"
 #include "sim/scenario/envelope_trajectory.h"
 #include "sim/scenario/motion.h"
+#include "sim/scenario/run_memory.h"
 #include "sim/scenario/sensing_noise.h"
 #include "sim/scenario/unpowered_bias.h"
 
@@ -23,10 +25,15 @@ void simulate_envelope(const Scenario& given, const Gyro& gyro,
                        const RunKey& key, const BlockSink& on_block) {
   const Scenario scenario = with_aligned_borders(given);
   const Motion motion(scenario, gyro, key);
-  EnvelopeTrajectory trajectory(scenario, gyro, motion, false);
+  const std::unique_ptr<MemoryTrajectory> memory =
+      memory_of_run(scenario, gyro);
+  std::optional<ModalMemory> remembered;
+  if (memory) remembered.emplace(gyro, *memory);
+  const ModalMemory* added = remembered ? &*remembered : nullptr;
+  EnvelopeTrajectory trajectory(scenario, gyro, motion, false, added);
   std::optional<EnvelopeTrajectory> twin;
-  if (!motion.rate_is_zero()) twin.emplace(scenario, gyro, motion, true);
-  UnpoweredBias unpowered_bias(scenario, gyro, motion);
+  if (!motion.rate_is_zero()) twin.emplace(scenario, gyro, motion, true, added);
+  UnpoweredBias unpowered_bias(scenario, gyro, motion, memory.get());
   std::optional<SensingNoise> noise;
   if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
   RunRecorder recorder(scenario, gyro.device, key,
@@ -38,6 +45,10 @@ void simulate_envelope(const Scenario& given, const Gyro& gyro,
         grid.times(k, std::min(kBlockSamples, grid.count - k));
     RunSamples samples = trajectory.advance(block);
     samples.bias = twin ? twin->advance(block).output : samples.output;
+    if (memory) {
+      samples.memory.resize(block.size());
+      memory->sample(block, samples.temperature[kBeam], samples.memory);
+    }
     unpowered_bias.fill_next(samples);
     motion.sample(samples);
     if (noise) noise->add_next(samples);

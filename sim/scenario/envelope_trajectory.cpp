@@ -123,13 +123,14 @@ class EnvelopeTrajectory::Sampler {
 
 EnvelopeTrajectory::EnvelopeTrajectory(const Scenario& scenario,
                                        const Gyro& gyro, const Motion& motion,
-                                       bool at_rest, double tolerance)
+                                       bool at_rest, const ModalMemory* memory,
+                                       double tolerance)
     : scenario_(scenario),
       gyro_(gyro),
       motion_(motion),
       at_rest_(at_rest),
       limits_(scenario, gyro.device.thermal),
-      ode_(gyro, drive_heating(gyro)),
+      ode_(gyro, drive_heating(gyro), memory),
       pieces_(pieces_until(scenario.duration, borders_of(scenario, motion))) {
   const auto rhs = [this](double t, const auto& y, auto dydt) {
     ode_.rate(inputs(t), y, dydt);
@@ -158,7 +159,8 @@ EnvelopeTrajectory::EnvelopeTrajectory(const Scenario& scenario,
 EnvelopeInputs EnvelopeTrajectory::inputs(double t) const {
   return {.motion = at_rest_ ? segment_->at_rest(t) : segment_->at(t),
           .surroundings = {ambient_.at(t), scenario_.stirred},
-          .powered = powered_};
+          .powered = powered_,
+          .time = t};
 }
 
 void EnvelopeTrajectory::begin(std::size_t piece) {

@@ -31,6 +31,7 @@ class EnvelopeTrajectory {
   /// a step in the output [rad/s], other states in proportion.
   EnvelopeTrajectory(const Scenario& scenario, const Gyro& gyro,
                      const Motion& motion, bool at_rest,
+                     const ModalMemory* memory = nullptr,
                      double tolerance = 1e-8);
 
   /// Returns the signals of the gyro at increasing `times` [s], which must

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -18,6 +19,7 @@
 #include "sim/scenario/filtered_motion.h"
 #include "sim/scenario/material_limits.h"
 #include "sim/scenario/motion.h"
+#include "sim/scenario/run_memory.h"
 #include "sim/scenario/run_temperatures.h"
 #include "sim/scenario/sensing_noise.h"
 #include "sim/signal/readout.h"
@@ -114,11 +116,13 @@ class FilteredRate {
 class RateResponse {
  public:
   RateResponse(const Gyro& gyro, const Motion& motion,
-               const ThermalTrajectory& temperatures, const SampleGrid& grid)
+               const ThermalTrajectory& temperatures,
+               const MemoryTrajectory* memory, const SampleGrid& grid)
       : board_(gyro),
         filter_(gyro.device.readout.corner_frequency),
         filtered_(motion, filter_, grid),
-        map_(map_of(gyro, temperatures.range(kBeam), filtered_.fastest())) {}
+        map_(map_of(gyro, temperatures.range(kBeam), memory,
+                    filtered_.fastest())) {}
 
   void operator()(RunSamples& samples) {
     const Samples& beam = samples.temperature[kBeam];
@@ -127,9 +131,9 @@ class RateResponse {
     std::array<StaticMap::Signals, 256> signals;
     for (std::size_t k = 0; k < rate_.size(); k += signals.size()) {
       const std::size_t count = std::min(signals.size(), rate_.size() - k);
-      map_.sample(std::span(beam).subspan(k, count),
-                  std::span(rate_).subspan(k, count),
-                  std::span(signals).first(count));
+      map_.sample(
+          std::span(beam).subspan(k, count), std::span(rate_).subspan(k, count),
+          part_of(samples.memory, k, count), std::span(signals).first(count));
       for (std::size_t i = 0; i < count; ++i) {
         write_sample(board_.at(samples.temperature[kBoard][k + i]),
                      signals[i].at_rate, signals[i].at_rest, k + i, samples);
@@ -139,8 +143,17 @@ class RateResponse {
 
  private:
   static StaticMap map_of(const Gyro& gyro, const TemperatureRange& range,
-                          double fastest) {
-    return {gyro, range.low, range.high, fastest};
+                          const MemoryTrajectory* memory, double fastest) {
+    if (memory == nullptr) return {gyro, range.low, range.high, fastest};
+    return {
+        gyro, range.low, range.high, fastest,
+        [memory](double low, double high) { return memory->range(low, high); }};
+  }
+  static std::span<const MemoryState> part_of(
+      const std::vector<MemoryState>& memory, std::size_t k,
+      std::size_t count) {
+    if (memory.empty()) return {};
+    return std::span(memory).subspan(k, count);
   }
 
   Board board_;
@@ -164,9 +177,10 @@ class MotionResponse {
 
  private:
   void write(std::size_t k, RunSamples& samples) {
-    const ModalParameters modal =
-        modal_parameters(gyro_.device, gyro_.beam,
-                         samples.temperature[kBeam][k], gyro_.stiffness_trim);
+    const ModalParameters modal = modal_parameters(
+        gyro_.device, gyro_.beam, samples.temperature[kBeam][k],
+        gyro_.stiffness_trim,
+        samples.memory.empty() ? MemoryState{} : samples.memory[k]);
     CaseMotion motion = motion_.at(k);
     const BeamSignal at_rate = beam_signal(gyro_, modal, motion, path_);
     Complex at_rest = at_rate.demodulated;
@@ -190,9 +204,10 @@ using StaticResponse = std::function<void(RunSamples& samples)>;
 
 StaticResponse static_response(const Gyro& gyro, const Motion& motion,
                                const ThermalTrajectory& temperatures,
+                               const MemoryTrajectory* memory,
                                const SampleGrid& grid) {
   if (motion.has_other_axes()) return MotionResponse(gyro, motion, grid.rate);
-  return RateResponse(gyro, motion, temperatures, grid);
+  return RateResponse(gyro, motion, temperatures, memory, grid);
 }
 
 // White noise of the sensing in front of the output stage [rad/sqrt(s)].
@@ -221,11 +236,15 @@ void simulate_quasistatic(const Scenario& given, const Gyro& gyro,
   const Scenario scenario = with_aligned_borders(given);
   const SampleGrid grid = sample_grid(scenario);
   const Motion motion(scenario, gyro, key);
+  const std::unique_ptr<MemoryTrajectory> memory =
+      memory_at_start(scenario, gyro);
   const ThermalTrajectory temperatures(ThermalNetwork(gyro.device.thermal),
-                                       thermal_load(scenario, gyro), grid);
+                                       thermal_load(scenario, gyro), grid, {},
+                                       memory ? memory->sink() : ThermalSink{});
+  if (memory) memory->finish();
   MaterialLimits(scenario, gyro.device.thermal).check(temperatures, grid);
   const StaticResponse respond =
-      static_response(gyro, motion, temperatures, grid);
+      static_response(gyro, motion, temperatures, memory.get(), grid);
   std::optional<SlowDriveNoise> drive_noise;
   if (has_channel_noise(scenario, gyro.device))
     drive_noise.emplace(scenario, gyro, key);
@@ -244,6 +263,10 @@ void simulate_quasistatic(const Scenario& given, const Gyro& gyro,
       samples.temperature[node].resize(count);
       temperatures.sample(static_cast<ThermalNode>(node), k, samples.time,
                           samples.temperature[node]);
+    }
+    if (memory) {
+      samples.memory.resize(count);
+      memory->sample(samples.time, samples.temperature[kBeam], samples.memory);
     }
     motion.sample(samples);
     respond(samples);

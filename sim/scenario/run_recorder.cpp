@@ -12,6 +12,7 @@
 
 #include "config/units.h"
 #include "dataset/recording/signals.h"
+#include "sim/memory/bond_relaxation.h"
 #include "sim/signal/random_purposes.h"
 
 namespace beamgyro {
@@ -191,6 +192,23 @@ void RunRecorder::add_loop_channels(Recording& block,
                        readout.quadrature_resolution / kDegree, "degree/s"));
 }
 
+void RunRecorder::add_memory(Recording& block,
+                             const RunSamples& samples) const {
+  const std::size_t count = samples.memory.size();
+  Samples glass(count), hysteresis(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const MemoryState& state = samples.memory[k];
+    glass[k] = reference_fictive_temperature(samples.temperature[kPzt][k],
+                                             device_.bond.glass_transition) +
+               state.glass_offset - kZeroCelsius;
+    hysteresis[k] = state.hysteresis;
+  }
+  if (device_.memory.relaxation)
+    add(block, "true_fictive_temperature", std::move(glass));
+  if (device_.memory.hysteresis)
+    add(block, "true_hysteresis", std::move(hysteresis));
+}
+
 void RunRecorder::add_truth(Recording& block, RunSamples& samples) const {
   add(block, "true_rate", scaled(std::move(samples.rate), 1 / kDegree));
   add(block, "true_bias", scaled(std::move(samples.bias), 1 / kDegree));
@@ -206,6 +224,7 @@ void RunRecorder::add_truth(Recording& block, RunSamples& samples) const {
     add(block, fmt::format("true_acceleration_{}", kAxes[i]),
         std::move(samples.acceleration[i]));
   }
+  if (!samples.memory.empty()) add_memory(block, samples);
   for (std::size_t node = 0; node < kThermalNodeCount; ++node) {
     add(block, fmt::format("true_{}_temperature", kThermalNodeNames[node]),
         scaled(std::move(samples.temperature[node]), 1, -kZeroCelsius));

@@ -8,6 +8,7 @@
 
 #include "dataset/recording/recording.h"
 #include "sim/device/device.h"
+#include "sim/memory/memory_state.h"
 #include "sim/scenario/scenario.h"
 #include "sim/signal/noise.h"
 #include "sim/signal/readout.h"
@@ -40,6 +41,7 @@ struct RunSamples {
   std::vector<double> drive_voltage_noise;    // [V]
   std::vector<std::uint8_t> locked;
   std::array<std::vector<double>, kThermalNodeCount> temperature;  // [K]
+  std::vector<MemoryState> memory;  // empty without memory effects
 
   // The motion of the case: the rate about the input axis, and the other axes
   // that the scenario moves. Axes that do not move are empty.
@@ -87,6 +89,7 @@ class RunRecorder {
   void add_measured(Recording& block, RunSamples& samples);
   void add_loop_channels(Recording& block, const RunSamples& samples);
   void add_truth(Recording& block, RunSamples& samples) const;
+  void add_memory(Recording& block, const RunSamples& samples) const;
 
   const Scenario& scenario_;
   const Device& device_;

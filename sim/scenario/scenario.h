@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,6 +43,8 @@ struct Scenario {
       PiecewiseLinear::constant(0), PiecewiseLinear::constant(0),
       PiecewiseLinear::constant(0)};
   bool noise_enabled = true;
+  // Temperatures before time 0 [K], which end there.
+  std::optional<PiecewiseLinear> history;
 };
 
 /// Returns the name used in files: "quasistatic", "envelope", "carrier".

@@ -131,6 +131,13 @@ PiecewiseLinear read_ambient(const ConfigTable& ambient,
                                    unit.offset);
 }
 
+// What the unit has been through before the run.
+std::optional<PiecewiseLinear> read_history(
+    const std::optional<ConfigTable>& history) {
+  if (!history) return {};
+  return read_points(*history, kAmbient);
+}
+
 SineSignal read_sine(const ConfigTable& sine, const MotionKeys& keys) {
   const auto& [column, factor, zero, range] = keys.unit;
   return {
@@ -215,6 +222,7 @@ Scenario read_scenario(const ConfigDocument& document,
   scenario.powered = read_power(root.table_or_empty("power"));
   scenario.ambient =
       read_ambient(root.table("ambient"), folder, scenario.soak_ends);
+  scenario.history = read_history(root.optional_table("history"));
   scenario.stirred = root.table_or_empty("chamber").flag_or("stirred", false);
   scenario.rate = read_motion(root.optional_table("rate"), kRate, folder,
                               scenario.duration);

@@ -8,8 +8,9 @@
 namespace beamgyro {
 
 UnpoweredBias::UnpoweredBias(const Scenario& scenario, const Gyro& gyro,
-                             const Motion& motion)
-    : scenario_(scenario), gyro_(gyro) {
+                             const Motion& motion,
+                             const MemoryTrajectory* memory)
+    : scenario_(scenario), gyro_(gyro), memory_(memory) {
   if (motion.has_other_axes())
     motion_.emplace(gyro, motion, scenario.output_rate);
 }
@@ -32,9 +33,9 @@ void UnpoweredBias::fill_moving(const std::vector<std::size_t>& unpowered,
   for (const std::size_t k : unpowered) {
     CaseMotion motion = motion_->at(k);
     motion.z = 0;
-    const ModalParameters modal =
-        modal_parameters(gyro_.device, gyro_.beam,
-                         samples.temperature[kBeam][k], gyro_.stiffness_trim);
+    const ModalParameters modal = modal_parameters(
+        gyro_.device, gyro_.beam, samples.temperature[kBeam][k],
+        gyro_.stiffness_trim, memory_ ? samples.memory[k] : MemoryState{});
     samples.bias[k] =
         electronics_at(gyro_, samples.temperature[kBoard][k])
             .output(beam_signal(gyro_, modal, motion, path_).demodulated)
@@ -48,12 +49,19 @@ void UnpoweredBias::fill_still(const std::vector<std::size_t>& unpowered,
   for (const std::size_t k : unpowered)
     beam.push_back(samples.temperature[kBeam][k]);
   const auto [low, high] = std::minmax_element(beam.begin(), beam.end());
-  const StaticMap map(gyro_, *low, *high, 0);
+  const StaticMap map = memory_ ? StaticMap(gyro_, *low, *high, 0,
+                                            [this](double from, double to) {
+                                              return memory_->range(from, to);
+                                            })
+                                : StaticMap(gyro_, *low, *high, 0);
   for (std::size_t i = 0; i < beam.size(); ++i) {
     const std::size_t k = unpowered[i];
-    samples.bias[k] = electronics_at(gyro_, samples.temperature[kBoard][k])
-                          .output(map.at(beam[i], 0).at_rest)
-                          .rate;
+    samples.bias[k] =
+        electronics_at(gyro_, samples.temperature[kBoard][k])
+            .output(
+                map.at(beam[i], 0, memory_ ? samples.memory[k] : MemoryState{})
+                    .at_rest)
+            .rate;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "sim/memory/memory_trajectory.h"
 #include "sim/scenario/filtered_motion.h"
 
 namespace beamgyro {
@@ -14,9 +15,10 @@ namespace beamgyro {
 /// what the quasi-static run computes at every sample.
 class UnpoweredBias {
  public:
-  /// The arguments must outlive the object.
+  /// The arguments must outlive the object; `memory` is null for a unit
+  /// without.
   UnpoweredBias(const Scenario& scenario, const Gyro& gyro,
-                const Motion& motion);
+                const Motion& motion, const MemoryTrajectory* memory);
 
   /// Replaces the bias of the samples without power. The samples must follow
   /// those of the call before.
@@ -30,6 +32,7 @@ class UnpoweredBias {
 
   const Scenario& scenario_;
   const Gyro& gyro_;
+  const MemoryTrajectory* memory_;
   LockPath path_;
   std::optional<FilteredMotion> motion_;  // of axes other than the input axis
 };

@@ -14,18 +14,25 @@ constexpr std::size_t kNodes = kThermalNodeCount;
 ThermalTrajectory::ThermalTrajectory(const ThermalNetwork& network,
                                      const ThermalLoad& load,
                                      const SampleGrid& grid,
-                                     const ThermalRunOptions& options)
+                                     const ThermalRunOptions& options,
+                                     const ThermalSink& also)
     : grid_(grid) {
   if (grid.count == 0) return;
   const auto first_after = [&](double t) {
     const std::size_t k = grid_.first_from(t);
     return k < grid_.count && grid_.time(k) == t ? k + 1 : k;
   };
-  integrate_temperatures(
-      network, load, grid.time(grid.count - 1), options,
-      {.on_state = [&](double t, const auto& y) { store(first_after(t), y); },
-       .on_step =
-           [&](const OdeStep& s) { store(grid_.first_from(s.end), s); }});
+  integrate_temperatures(network, load, grid.time(grid.count - 1), options,
+                         {.on_state =
+                              [&](double t, const auto& y) {
+                                store(first_after(t), y);
+                                if (also.on_state) also.on_state(t, y);
+                              },
+                          .on_step =
+                              [&](const OdeStep& s) {
+                                store(grid_.first_from(s.end), s);
+                                if (also.on_step) also.on_step(s);
+                              }});
 }
 
 void ThermalTrajectory::begin_values() {

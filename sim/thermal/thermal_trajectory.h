@@ -20,10 +20,12 @@ struct TemperatureRange {
 /// Where a step spans few samples their values are kept instead, 48 bytes each.
 class ThermalTrajectory {
  public:
-  /// Integrates; throws as integrate_temperatures().
+  /// Integrates; throws as integrate_temperatures(). `also` receives what the
+  /// integration hands over, too.
   ThermalTrajectory(const ThermalNetwork& network, const ThermalLoad& load,
                     const SampleGrid& grid,
-                    const ThermalRunOptions& options = {});
+                    const ThermalRunOptions& options = {},
+                    const ThermalSink& also = {});
 
   /// Of the temperatures of a node at the samples.
   TemperatureRange range(ThermalNode node) const;

@@ -58,7 +58,7 @@ TEST(StaticMap, ManySamplesAtATimeAreThoseOneByOne) {
     rate[k] = k % 5 == 0 ? 0 : limit * std::sin(x);
   }
   std::vector<StaticMap::Signals> signals(T.size());
-  map.sample(T, rate, signals);
+  map.sample(T, rate, {}, signals);
   for (std::size_t k = 0; k < T.size(); ++k) {
     const StaticMap::Signals one = map.at(T[k], rate[k]);
     EXPECT_EQ(signals[k].at_rate.demodulated, one.at_rate.demodulated) << k;

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace beamgyro {
+
+inline constexpr double kGasConstant = 8.314462618;  // [J/(mol K)]
+
+}  // namespace beamgyro

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// What a unit with memory shows in a run, in all fidelities.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "sim/scenario/simulation.h"
+#include "tests/sim/device/nominal_device.h"
+#include "tests/sim/scenario/scenario_text.h"
+
+namespace beamgyro::memory_test {
+namespace {
+
+constexpr char kQuiet[] = "[noise]\nenabled = false\n";
+
+Device lifelike() {
+  Overrides none;
+  const ConfigDocument document = ConfigDocument::read(
+      std::string(BEAMGYRO_SCENARIOS) + "/devices/lifelike.toml", none);
+  const Device device = read_device(document);
+  document.reject_unknown_keys();
+  return device;
+}
+
+bool has_column(const Recording& run, const std::string& name) {
+  return std::ranges::any_of(
+      run.columns, [&](const Column& column) { return column.name == name; });
+}
+
+double farthest(const std::vector<double>& a, const std::vector<double>& b,
+                std::size_t from = 0) {
+  double farthest = 0;
+  for (std::size_t k = from; k < a.size(); ++k)
+    farthest = std::max(farthest, std::abs(a[k] - b[k]));
+  return farthest;
+}
+
+// Up through the glass transition and back within an hour.
+Scenario excursion(Fidelity fidelity, const std::string& more = "") {
+  Scenario scenario =
+      scenario_from(kQuiet + more,
+                    "[ambient]\npoints = [[0, 25], [1200, 55], [1800, 55], "
+                    "[3600, 5]]\n[chamber]\nstirred = true\n",
+                    "3600", "1");
+  scenario.fidelity = fidelity;
+  return scenario;
+}
+
+TEST(V48Memory, EffectsOfNoStrengthChangeNothing) {
+  const Scenario scenario = excursion(Fidelity::kQuasistatic);
+  const Recording plain = simulated(scenario, nominal_device());
+  EXPECT_FALSE(has_column(plain, "true_fictive_temperature"));
+  EXPECT_FALSE(has_column(plain, "true_hysteresis"));
+  // x = 1 takes T_f out of tau_alpha.
+  const Recording still = simulated(
+      scenario, nominal_device({"memory.relaxation.modulus_per_K=0",
+                                "memory.relaxation.nonlinearity=1.0",
+                                "memory.hysteresis.stiffness=0",
+                                "memory.hysteresis.loss=0",
+                                "memory.hysteresis.mount_axis_deg=0"}));
+  // The tolerance of the static map of a unit with memory.
+  EXPECT_LT(farthest(column_values(plain, "true_bias"),
+                     column_values(still, "true_bias")),
+            1e-5);
+  EXPECT_TRUE(has_column(still, "true_fictive_temperature"));
+}
+
+TEST(Memory, EnvelopeAndQuasiStaticRunAgree) {
+  const auto bias = [](Fidelity fidelity, const Device& device) {
+    return column_values(simulated(excursion(fidelity), device), "true_bias");
+  };
+  const auto distance = [&](const Device& device) {
+    constexpr std::size_t kLocked = 20;  // [s]
+    return farthest(bias(Fidelity::kQuasistatic, device),
+                    bias(Fidelity::kEnvelope, device), kLocked);
+  };
+  // The quasi-static run leaves out the lag of mode and loops, 27 ms times the
+  // slope of the bias. Memory adds to the slope, and the tolerances of map and
+  // table.
+  EXPECT_LT(distance(lifelike()), 1.3 * distance(nominal_device()) + 2e-5);
+}
+
+TEST(Memory, CarrierAndEnvelopeAgree) {
+  Scenario scenario = scenario_from(
+      kQuiet, "[ambient]\npoints = [[0, 36], [10, 45]]\n", "0.8", "50");
+  scenario.history = PiecewiseLinear({0, 1000}, {333.15, 309.15});
+  const auto end = [&](Fidelity fidelity, const Device& device) {
+    scenario.fidelity = fidelity;
+    return column_values(simulated(scenario, device), "true_bias").back();
+  };
+  const double effect = end(Fidelity::kEnvelope, lifelike()) -
+                        end(Fidelity::kEnvelope, nominal_device());
+  EXPECT_GT(std::abs(effect), 0.01);
+  EXPECT_NEAR(end(Fidelity::kCarrier, lifelike()) -
+                  end(Fidelity::kCarrier, nominal_device()),
+              effect, 1e-4);
+}
+
+// Heating and cooling at 0.05 K/min [deg/s], by the temperature of the sensor.
+double widest_loop(const Device& device) {
+  const Recording run = simulated(
+      scenario_from(kQuiet,
+                    "[ambient.soaks]\ntemperatures_degC = [-40, 50, -40]\n"
+                    "hold_s = 3600\nramp_K_per_min = 0.05\n"
+                    "[chamber]\nstirred = true\n",
+                    "226800", "0.1"),
+      device);
+  const std::vector<double>& T = column_values(run, "true_sensor_temperature");
+  const std::vector<double>& bias = column_values(run, "true_bias");
+  const std::size_t top =
+      static_cast<std::size_t>(std::ranges::max_element(T) - T.begin());
+  double widest = 0;
+  std::size_t down = T.size() - 1;
+  for (std::size_t up = 0; up < top; ++up) {
+    if (T[up] < -35 || T[up] > 48) continue;
+    while (down > top && T[down] < T[up]) --down;
+    const double share = (T[up] - T[down + 1]) / (T[down] - T[down + 1]);
+    widest = std::max(
+        widest,
+        std::abs(bias[up] - std::lerp(bias[down + 1], bias[down], share)));
+  }
+  return widest;
+}
+
+TEST(Memory, LifelikeUnitHasALoopBetweenHeatingAndCooling) {
+  const double loop = widest_loop(lifelike());
+  EXPECT_GT(loop, 0.1);
+  EXPECT_LT(loop, 0.3);
+  EXPECT_NEAR(widest_loop(nominal_device()), 0.053, 0.002);  // of the lag
+}
+
+TEST(Memory, AYearMovesTheBiasByTenthsOfADegreePerSecond) {
+  const auto bias = [](const std::string& more) {
+    return column_values(simulated(scenario_from(kQuiet + more), lifelike()),
+                         "true_bias")
+        .back();
+  };
+  const double drift =
+      std::abs(bias("[age]\nhours = 8766\n") - bias("[age]\nhours = 0\n"));
+  EXPECT_GT(drift, 0.2);
+  EXPECT_LT(drift, 0.7);
+}
+
+TEST(Memory, AHistoryOfTheScenarioShapesTheGlass) {
+  const auto fictive = [](const std::string& more) {
+    const Scenario scenario =
+        scenario_from(kQuiet + more, "[ambient]\nconstant_degC = 5\n");
+    return column_values(simulated(scenario, lifelike()),
+                         "true_fictive_temperature")
+        .front();
+  };
+  // Cooled at 1 and at 20 K/min, as in V49 and with its tolerance.
+  EXPECT_NEAR(fictive(""), 34.206, 0.01);
+  EXPECT_NEAR(fictive("[history]\npoints = [[0, 65], [180, 5]]\n"), 38.143,
+              0.01);
+}
+
+TEST(Memory, DoesNotDependOnTheOutputRate) {
+  Scenario fine = excursion(Fidelity::kQuasistatic), coarse = fine;
+  coarse.output_rate = 0.01;
+  const std::vector<double> a =
+      column_values(simulated(fine, lifelike()), "true_bias");
+  const std::vector<double> b =
+      column_values(simulated(coarse, lifelike()), "true_bias");
+  for (std::size_t k = 0; k < b.size(); ++k)
+    EXPECT_NEAR(a[100 * k], b[k], 2e-5) << k;
+}
+
+}  // namespace
+}  // namespace beamgyro::memory_test

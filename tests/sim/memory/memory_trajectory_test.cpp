@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "sim/memory/memory_trajectory.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace beamgyro::memory_trajectory_test {
+namespace {
+
+constexpr double kZero = 273.15, kGlass = 311.15;  // [K]
+
+MemoryParameters nominal() {
+  return {.relaxation = RelaxationParameters{6e5, 0.4, 2e-3, {}},
+          .hysteresis =
+              HysteresisParameters{
+                  {0.5, 1.5, 4, 10}, {0.2, 0.3, 0.3, 0.2}, 4e-7, 5e-8, 3.5e-4},
+          .ageing = AgeingParameters{5e4, 86400, 604800, 2e-3, -5e-3, -1e-2,
+                                     -5e-2, 3e-3, 1e-2}};
+}
+
+// From 10 to 60 degC and back at 2 K/min, powered for half an hour.
+ThermalLoad load() {
+  return {.ambient = PiecewiseLinear({0, 1500, 2000, 3500},
+                                     {283.15, 333.15, 333.15, 283.15}),
+          .powered = {{0, 1800}},
+          .mechanical_power = 1e-4,
+          .dielectric_power = 1e-3};
+}
+
+struct MemoryRun {
+  MemoryRun() : memory(UnitMemory(nominal(), kGlass, {}, 283.15)) {
+    const ThermalNetwork network{ThermalParameters{}};
+    integrate_temperatures(network, load(), 5000, {}, memory.sink());
+    memory.finish();
+    for (int k = 0; k <= 5000; ++k) times.push_back(k);
+    history = simulate_temperatures(network, load(), times);
+  }
+  MemoryTrajectory memory;
+  std::vector<double> times;
+  ThermalHistory history;
+};
+
+TEST(MemoryTrajectory, IsThatOfSmallStepsAlongTheThermalSolution) {
+  const MemoryRun run;
+  UnitMemory stepped(nominal(), kGlass, {}, 283.15);
+  const auto& beam = run.history.temperature[kBeam];
+  const auto& patches = run.history.temperature[kPzt];
+  double widest = 0;
+  for (std::size_t k = 0; k < run.times.size(); ++k) {
+    if (k > 0) stepped.advance_patches(patches[k - 1], patches[k], 1);
+    stepped.push_beam(beam[k]);
+    const MemoryState want = stepped.state(patches[k]);
+    const MemoryState have = run.memory.at(run.times[k], beam[k]);
+    widest = std::max(widest, std::abs(want.glass_offset));
+    // 1e-3 K of T_f is worth 1e-5 deg/s; a sample a second misses the turning
+    // point of the beam by less than 1e-5 K.
+    ASSERT_NEAR(have.glass_offset, want.glass_offset, 1e-3) << k;
+    ASSERT_NEAR(have.hysteresis, want.hysteresis, 1e-5) << k;
+    ASSERT_NEAR(have.decades, want.decades, 1e-7) << k;
+  }
+  EXPECT_GT(widest, 1);
+}
+
+TEST(MemoryTrajectory, RangeHoldsEveryState) {
+  const MemoryRun run;
+  const auto& beam = run.history.temperature[kBeam];
+  for (std::size_t k = 0; k < run.times.size(); k += 7) {
+    const MemoryState state = run.memory.at(run.times[k], beam[k]);
+    const MemoryRange range = run.memory.range(beam[k] - 0.5, beam[k] + 0.5);
+    EXPECT_GE(state.glass_offset, range.low.glass_offset - 1e-3);
+    EXPECT_LE(state.glass_offset, range.high.glass_offset + 1e-3);
+    EXPECT_GE(state.hysteresis, range.low.hysteresis - 1e-9);
+    EXPECT_LE(state.hysteresis, range.high.hysteresis + 1e-9);
+    EXPECT_GE(state.decades, range.low.decades);
+    EXPECT_LE(state.decades, range.high.decades);
+  }
+}
+
+TEST(UnitMemory, BeginsAsCooledThroughTheGlassTransition) {
+  UnitMemory memory(nominal(), kGlass, {}, kZero + 5);
+  // 1 K/min ends at 34.206 degC (V49), from however far above T_g.
+  EXPECT_NEAR(memory.relaxation()->fictive_temperature() - kZero, 34.206, 0.01);
+  EXPECT_NEAR(memory.state(kZero + 5).hysteresis, 1, 1e-12);
+  EXPECT_EQ(memory.state(kZero + 5).decades, 0);
+}
+
+TEST(UnitMemory, GoesThroughItsHistory) {
+  // Cooled at 20 K/min, then stored at 30 degC for 1000 h.
+  UnitHistory history{PiecewiseLinear({0, 180}, {kZero + 65, kZero + 5}), 0};
+  const UnitMemory quenched(nominal(), kGlass, history, kZero + 5);
+  EXPECT_NEAR(quenched.relaxation()->fictive_temperature() - kZero, 38.143,
+              0.01);
+  history.temperature =
+      PiecewiseLinear({0, 180, 300, 300 + 3.6e6},
+                      {kZero + 65, kZero + 5, kZero + 30, kZero + 30});
+  history.age = 3.6e6;  // trimmed when the storage began
+  UnitMemory stored(nominal(), kGlass, history, kZero + 30);
+  EXPECT_LT(stored.relaxation()->fictive_temperature(),
+            quenched.relaxation()->fictive_temperature() - 1);
+  EXPECT_NEAR(
+      stored.state(kZero + 30).decades,
+      std::log10((604800 + 86400 + 3.6e6 * ageing_rate(5e4, kZero + 30)) /
+                 (604800 + 86400)),
+      1e-3);
+}
+
+TEST(UnitMemory, AgesFromItsTrimOn) {
+  // 100 h at 60 degC, of which the trim leaves out the first 90; then 1000 h
+  // that no history tells of, at 25 degC.
+  const double hour = 3600, hot = kZero + 60;
+  UnitHistory history{PiecewiseLinear({0, 100 * hour}, {hot, hot}), 10 * hour};
+  const auto decades = [&] {
+    return UnitMemory(nominal(), kGlass, history, hot).state(hot).decades;
+  };
+  const double born = 604800 + 86400, rate = ageing_rate(5e4, hot);
+  EXPECT_NEAR(decades(), std::log10(1 + 10 * hour * rate / born), 1e-9);
+  history.age = 1100 * hour;
+  EXPECT_NEAR(decades(),
+              std::log10(1 + (1000 * hour + 100 * hour * rate) / born), 1e-9);
+}
+
+}  // namespace
+}  // namespace beamgyro::memory_trajectory_test
