@@ -22,9 +22,8 @@ namespace beamgyro {
 /// For a unit with memory the table has up to three more dimensions, T_f -
 /// T_f,ref, hysteresis and age, over the range of each that the run visits;
 /// that of T_f - T_f,ref is the range within the piece. Each takes as few
-/// Chebyshev polynomials as the tolerance allows: two, a straight line, do for
-/// the hysteresis and for the age over a run of days, and for the glass of a
-/// unit that stays below T_g.
+/// Chebyshev polynomials as the tolerance allows; docs/model.md says how many
+/// that are.
 class StaticMap {
  public:
   /// Tabulates temperatures in [low, high] [K] and rates up to +-`rate_limit`
