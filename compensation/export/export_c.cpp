@@ -84,6 +84,7 @@ class Writer {
   std::string runtime() const {
     std::vector<std::string_view> called = code_.sections;
     if (parts_.filters > 0) called.insert(called.end(), {"exp", "lowpass"});
+    if (parts_.plays > 0) called.push_back("play");
     if (parts_.clock) called.push_back("exp");
     if (parts_.reads_more) called.push_back("finite");
     if (c_.scale_factor) called.push_back("table");
@@ -133,7 +134,7 @@ class Writer {
 
 std::string Writer::input_lines() const {
   std::string text;
-  int filter = 0;
+  int filter = 0, play = 0;
   for (std::size_t i = 0; i < c_.inputs.size(); ++i) {
     const Input& input = c_.inputs[i];
     std::string value = "T";
@@ -155,6 +156,10 @@ std::string Writer::input_lines() const {
         value = fmt::format(
             "lowpass_lag(state->filter[{}], first, T) / time_constants[{}]",
             filter++, i);
+        break;
+      case InputKind::kTemperaturePlay:
+        value = fmt::format(
+            "play_at(&state->play[{}], first, T, half_widths[{}])", play++, i);
         break;
     }
     text += fmt::format(
@@ -181,7 +186,8 @@ std::string Writer::step_function() const {
   text += "  float T = sample->temperature_degC, y;\n";
   if (parts_.uses_inputs)
     text += fmt::format("  float x[{}];\n", c_.inputs.size());
-  if (parts_.filters > 0) text += "  const int first = !state->started;\n";
+  if (parts_.follows_temperature())
+    text += "  const int first = !state->started;\n";
   if (parts_.clock)
     text +=
         "  const float since_power_on = (float)state->samples * "
@@ -198,7 +204,7 @@ std::string Writer::step_function() const {
       "    if (T > FLT_MAX) return T - T;\n"
       "    T = range[1];\n"
       "  }\n";
-  if (parts_.filters > 0) text += "  state->started = 1;\n";
+  if (parts_.follows_temperature()) text += "  state->started = 1;\n";
   if (parts_.uses_inputs)
     text += input_lines() + finite_lines() + "  y = bias_of(x);\n";
   else

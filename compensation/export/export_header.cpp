@@ -91,9 +91,14 @@ std::string structures(const std::string& name, const FirmwareModel& model,
         "  uint32_t samples; /* since power-on */\n";
   if (parts.filters > 0)
     text += fmt::format(
-        "  float filter[{}][5]; /* low-passes of the temperature */\n"
-        "  int started;        /* they have their first temperature */\n",
+        "  float filter[{}][5]; /* low-passes of the temperature */\n",
         parts.filters);
+  if (parts.plays > 0)
+    text += fmt::format(
+        "  float play[{}];      /* play operators of the temperature */\n",
+        parts.plays);
+  if (parts.follows_temperature())
+    text += "  int started;        /* they have their first temperature */\n";
   return text +
          fmt::format(
              "  int clamped; /* the last temperature was out of range, or not "
@@ -122,6 +127,10 @@ bool has_filter(const Input& input) {
          input.kind == InputKind::kTemperatureRate;
 }
 
+bool has_play(const Input& input) {
+  return input.kind == InputKind::kTemperaturePlay;
+}
+
 bool reads_a_signal(const Input& input) {
   return input.kind == InputKind::kColumn && input.column != "temperature";
 }
@@ -131,6 +140,7 @@ FirmwareParts::FirmwareParts(const Compensator& c) {
   if (!uses_inputs) return;
   for (const Input& input : c.inputs) {
     filters += has_filter(input) ? 1 : 0;
+    plays += has_play(input) ? 1 : 0;
     clock = clock || input.kind == InputKind::kSincePowerOn;
     reads_more = reads_more || reads_a_signal(input);
   }

@@ -10,7 +10,11 @@
 
 namespace beamgyro {
 
+/// Returns whether the input needs a low-pass of the temperature.
 bool has_filter(const Input& input);
+
+/// Returns whether the input is a play operator of the temperature.
+bool has_play(const Input& input);
 
 /// Returns whether the input is a signal other than the temperature.
 bool reads_a_signal(const Input& input);
@@ -21,8 +25,11 @@ struct FirmwareParts {
 
   bool uses_inputs;         // the bias is not a constant
   int filters = 0;          // of the temperature
+  int plays = 0;            // likewise
   bool clock = false;       // since power-on
   bool reads_more = false;  // than the rate and the temperature
+
+  bool follows_temperature() const { return filters + plays > 0; }
 };
 
 /// Returns the text of NAME.h: origin of the compensator, warnings and

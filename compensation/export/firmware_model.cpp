@@ -30,14 +30,18 @@ int drive_frequency_of(const Compensator& c) {
 }
 
 FirmwareArrays arrays_of(const Compensator& c) {
-  std::vector<double> centres, gains, constants;
+  std::vector<double> centres, gains, constants, half_widths;
+  bool plays = false;
   for (std::size_t i = 0; i < c.inputs.size(); ++i) {
     const bool frequency =
         c.inputs[i].column == kFirmwareSignals[kFirmwareDriveFrequency];
     centres.push_back(c.bias.input_scales[i].centre -
                       (frequency ? drive_frequency_of(c) : 0));
     gains.push_back(1.0 / c.bias.input_scales[i].half_width);
-    constants.push_back(c.inputs[i].time_constant);
+    const bool play = c.inputs[i].kind == InputKind::kTemperaturePlay;
+    plays = plays || play;
+    constants.push_back(play ? 0 : c.inputs[i].parameter);
+    half_widths.push_back(play ? c.inputs[i].parameter : 0);
   }
   FirmwareArrays arrays;
   arrays.add({"range", "of the temperature [degC]",
@@ -47,6 +51,9 @@ FirmwareArrays arrays_of(const Compensator& c) {
   arrays.add({"gains_of_inputs", "x = (input - centre) gain", singles(gains)});
   arrays.add(
       {"time_constants", "[s], 0 where there is none", singles(constants)});
+  if (plays)
+    arrays.add(
+        {"half_widths", "[K], 0 where there is none", singles(half_widths)});
   arrays.add({"unit", "bias = unit[0] + unit[1] f(x) [deg/s]",
               singles(std::vector{c.bias.bias_scale.centre,
                                   c.bias.bias_scale.half_width})});
@@ -94,6 +101,7 @@ struct FirmwareModel::State {
   std::uint32_t samples = 0;
   bool started = false;                       // since the first temperature
   std::vector<std::array<float, 5>> filters;  // one per input
+  std::vector<float> plays;                   // likewise
 };
 
 FirmwareModel::FirmwareModel(const Compensator& c)
@@ -126,6 +134,7 @@ void FirmwareModel::start(float period) {
   state_->samples = 0;
   state_->started = false;
   state_->filters.assign(inputs_.size(), {});
+  state_->plays.assign(inputs_.size(), 0.0f);
   const std::vector<float>& constants = arrays_.values("time_constants");
   for (std::size_t i = 0; i < inputs_.size(); ++i)
     if (constants[i] > 0.0f)
@@ -159,6 +168,9 @@ float FirmwareModel::step(const FirmwareSample& sample) {
     if (input.kind == InputKind::kTemperatureRate)
       value = runtime::lowpass_lag(state_->filters[i].data(), first, T) /
               constants[i];
+    if (input.kind == InputKind::kTemperaturePlay)
+      value = runtime::play_at(&state_->plays[i], first, T,
+                               arrays_.values("half_widths")[i]);
     x[i] = (value - centres[i]) * gains[i];
   }
   if (uses_inputs_)

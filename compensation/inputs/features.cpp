@@ -40,11 +40,19 @@ double LowPass::step(double time, double x) {
   return x - lag_;
 }
 
+double Play::step(double x) {
+  p_ = started_ ? std::clamp(p_, x - half_width_, x + half_width_) : x;
+  started_ = true;
+  return p_;
+}
+
 FeatureStream::FeatureStream(std::vector<Input> inputs,
                              const TemperatureRange& range)
     : inputs_(std::move(inputs)), range_(range) {
-  for (const Input& input : inputs_)
-    low_passes_.emplace_back(input.time_constant);
+  for (const Input& input : inputs_) {
+    low_passes_.emplace_back(input.parameter);
+    plays_.emplace_back(input.parameter);
+  }
 }
 
 bool FeatureStream::step(double time, std::uint8_t status,
@@ -58,11 +66,12 @@ bool FeatureStream::step(double time, std::uint8_t status,
     powered_ = true;
     power_on_time_ = time;
     for (LowPass& low_pass : low_passes_) low_pass.reset();
+    for (Play& play : plays_) play.reset();
   }
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const Input& input = inputs_[i];
     if (input.kind == InputKind::kSincePowerOn) {
-      features[i] = std::exp(-(time - power_on_time_) / input.time_constant);
+      features[i] = std::exp(-(time - power_on_time_) / input.parameter);
       continue;
     }
     double value = measured[i];
@@ -75,9 +84,13 @@ bool FeatureStream::step(double time, std::uint8_t status,
       value = std::clamp(value, range_.lowest, range_.highest);
     features[i] = value;
     if (input.kind == InputKind::kColumn) continue;
+    if (input.kind == InputKind::kTemperaturePlay) {
+      features[i] = plays_[i].step(value);
+      continue;
+    }
     const double smooth = low_passes_[i].step(time, value);
     features[i] = input.kind == InputKind::kTemperatureRate
-                      ? (value - smooth) / input.time_constant
+                      ? (value - smooth) / input.parameter
                       : smooth;
   }
   return true;

@@ -42,10 +42,26 @@ class LowPass {
   double lag_ = 0.0;
 };
 
+/// Play operator p <- min(max(p, x - r), x + r) with p = x at the first sample:
+/// it follows x only when pushed, so it knows from which side x has come.
+class Play {
+ public:
+  explicit Play(double half_width) : half_width_(half_width) {}
+
+  /// Returns p. x has the unit of the half-width.
+  double step(double x);
+  void reset() { started_ = false; }
+
+ private:
+  double half_width_;
+  bool started_ = false;
+  double p_ = 0.0;
+};
+
 /// Computes the inputs of a compensator sample by sample, as firmware would, in
 /// training and at run time alike. Filters and the time since power-on start at
-/// the first powered sample after an unpowered one: a low-pass starts at the
-/// temperature there, its rate of change (x - y) / tau at 0.
+/// the first powered sample after an unpowered one: a low-pass and a play start
+/// at the temperature there, the rate of change (x - y) / tau at 0.
 class FeatureStream {
  public:
   explicit FeatureStream(std::vector<Input> inputs,
@@ -63,6 +79,7 @@ class FeatureStream {
   std::vector<Input> inputs_;
   TemperatureRange range_;
   std::vector<LowPass> low_passes_;  // one per input, idle for other kinds
+  std::vector<Play> plays_;          // likewise
   bool powered_ = false;
   double power_on_time_ = 0.0;  // [s]
 };

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::string_view kLowpass = "temperature_lowpass";
 constexpr std::string_view kTemperatureRate = "temperature_rate";
+constexpr std::string_view kTemperaturePlay = "temperature_play";
 constexpr std::string_view kSincePowerOn = "since_power_on";
 
 const std::vector<std::string>& plain_inputs() {
@@ -33,22 +34,27 @@ const std::vector<std::string>& plain_inputs() {
   std::vector<std::string> known = plain_inputs();
   known.emplace_back(kLowpass);
   known.emplace_back(kTemperatureRate);
+  known.emplace_back(kTemperaturePlay);
   known.emplace_back(kSincePowerOn);
   const std::string near = suggestion(stem, known);
   std::string hint;
   if (stem == kLowpass || stem == kTemperatureRate || stem == kSincePowerOn)
     hint = fmt::format("it takes one positive time constant in s, as {}(100); ",
                        stem);
+  else if (stem == kTemperaturePlay)
+    hint =
+        fmt::format("it takes one positive half-width in K, as {}(2); ", stem);
   else if (!near.empty())
     hint = fmt::format("did you mean \"{}\"? ", near);
   throw std::invalid_argument(fmt::format(
-      "input \"{}\": {}inputs are {}, {}(TAU), {}(TAU) and {}(TAU), TAU in s",
+      "input \"{}\": {}inputs are {}, {}(TAU), {}(TAU), {}(TAU), TAU in s, and "
+      "{}(R), R in K",
       name, hint, fmt::join(plain_inputs(), ", "), kLowpass, kTemperatureRate,
-      kSincePowerOn));
+      kSincePowerOn, kTemperaturePlay));
 }
 
-// TAU of "stem(TAU)".
-double time_constant(std::string_view name, std::string_view stem) {
+// The number of "stem(NUMBER)".
+double parameter_of(std::string_view name, std::string_view stem) {
   if (name.size() < stem.size() + 3 || name[stem.size()] != '(' ||
       name.back() != ')')
     reject(name);
@@ -71,23 +77,28 @@ Input parse_input(std::string_view name) {
   const std::string_view stem = name.substr(0, name.find('('));
   if (stem == kLowpass)
     return {InputKind::kTemperatureLowpass, "temperature",
-            time_constant(name, stem)};
+            parameter_of(name, stem)};
   if (stem == kTemperatureRate)
     return {InputKind::kTemperatureRate, "temperature",
-            time_constant(name, stem)};
+            parameter_of(name, stem)};
+  if (stem == kTemperaturePlay)
+    return {InputKind::kTemperaturePlay, "temperature",
+            parameter_of(name, stem)};
   if (stem == kSincePowerOn)
-    return {InputKind::kSincePowerOn, "", time_constant(name, stem)};
+    return {InputKind::kSincePowerOn, "", parameter_of(name, stem)};
   reject(name);
 }
 
 std::string input_name(const Input& input) {
   switch (input.kind) {
     case InputKind::kTemperatureLowpass:
-      return fmt::format("{}({})", kLowpass, input.time_constant);
+      return fmt::format("{}({})", kLowpass, input.parameter);
     case InputKind::kTemperatureRate:
-      return fmt::format("{}({})", kTemperatureRate, input.time_constant);
+      return fmt::format("{}({})", kTemperatureRate, input.parameter);
+    case InputKind::kTemperaturePlay:
+      return fmt::format("{}({})", kTemperaturePlay, input.parameter);
     case InputKind::kSincePowerOn:
-      return fmt::format("{}({})", kSincePowerOn, input.time_constant);
+      return fmt::format("{}({})", kSincePowerOn, input.parameter);
     case InputKind::kColumn:
       break;
   }

@@ -11,26 +11,27 @@ enum class InputKind {
   kColumn,              // a measured column as it is
   kTemperatureLowpass,  // temperature_lowpass(TAU)
   kTemperatureRate,     // temperature_rate(TAU), smoothed dT/dt [K/s]
+  kTemperaturePlay,     // temperature_play(R), a play operator of T [degC]
   kSincePowerOn,        // since_power_on(TAU) = exp(-t / TAU)
 };
 
 /// One input of a compensator: a measured quantity, never the truth.
 struct Input {
   InputKind kind = InputKind::kColumn;
-  std::string column;          // measured column read; "" for since_power_on
-  double time_constant = 0.0;  // [s], > 0; 0 for kColumn
+  std::string column;      // measured column read; "" for since_power_on
+  double parameter = 0.0;  // TAU [s] or R [K], > 0; 0 for kColumn
 
   bool operator==(const Input&) const = default;
 };
 
 /// Reads "output", "temperature", "temperature_lowpass(100)",
-/// "temperature_rate(60)", "since_power_on(300)", "drive_frequency",
-/// "drive_voltage", "quadrature" or "rate". Throws std::invalid_argument for
-/// any other name and lists these.
+/// "temperature_rate(60)", "temperature_play(2)", "since_power_on(300)",
+/// "drive_frequency", "drive_voltage", "quadrature" or "rate". Throws
+/// std::invalid_argument for any other name and lists these.
 Input parse_input(std::string_view name);
 
 /// Returns the name from which parse_input() reads the same input, to the last
-/// bit of the time constant.
+/// bit of the parameter.
 std::string input_name(const Input& input);
 
 /// Returns whether the input is the gyro's own answer, `output` or `rate`. A

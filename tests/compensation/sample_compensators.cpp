@@ -56,19 +56,20 @@ BpNetwork random_network(const std::vector<int>& layers) {
 }
 
 Compensator every_input() {
-  Compensator c =
-      with_inputs({"temperature", "temperature_lowpass(100)",
-                   "temperature_rate(60)", "since_power_on(300)",
-                   "drive_frequency", "drive_voltage", "quadrature", "rate"},
-                  {{5.0, 45.0},
-                   {5.0, 45.0},
-                   {0.0, 0.05},
-                   {0.5, 0.5},
-                   {9156.0, 12.0},
-                   {1.5, 0.7},
-                   {40.0, 25.0},
-                   {0.0, 150.0}});
-  c.bias.function = random_network({8, 5, 1});
+  Compensator c = with_inputs(
+      {"temperature", "temperature_lowpass(100)", "temperature_rate(60)",
+       "temperature_play(2)", "since_power_on(300)", "drive_frequency",
+       "drive_voltage", "quadrature", "rate"},
+      {{5.0, 45.0},
+       {5.0, 45.0},
+       {0.0, 0.05},
+       {5.0, 45.0},
+       {0.5, 0.5},
+       {9156.0, 12.0},
+       {1.5, 0.7},
+       {40.0, 25.0},
+       {0.0, 150.0}});
+  c.bias.function = random_network({9, 5, 1});
   c.scale_factor = LookupTable{Eigen::ArrayXd::LinSpaced(7, -35.0, 45.0),
                                Eigen::ArrayXd::LinSpaced(7, 0.98, 1.03)};
   return c;

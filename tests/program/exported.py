@@ -14,8 +14,8 @@ WARNINGS = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow",
 
 INPUTS = """\
 inputs = ["temperature", "temperature_lowpass(100)", "temperature_rate(60)",
-          "since_power_on(300)", "drive_frequency", "drive_voltage",
-          "quadrature"]
+          "temperature_play(2)", "since_power_on(300)", "drive_frequency",
+          "drive_voltage", "quadrature"]
 """
 
 TRAINING = "restarts = 1\nmax_epochs = 30\nweight_decay = 1e-6\n"
@@ -26,6 +26,8 @@ MODELS = {
     "cubic": CUBIC,
     "slopes": 'kind = "polynomial"\n'
               'inputs = ["temperature", "temperature_rate(60)"]\n',
+    "play": 'kind = "polynomial"\n'
+            'inputs = ["temperature", "temperature_play(1)"]\n',
     "scaled": CUBIC,
     "table": 'kind = "table"\n',
     "spline": 'kind = "spline"\n',

@@ -146,6 +146,17 @@ TEST(FirmwareModel, RateOfTemperatureFollowsItsClosedForm) {
   }
 }
 
+TEST(FirmwareModel, PlayIsThatOfTheWorkbench) {
+  FirmwareModel model(of_input("temperature_play(3.3)"));
+  model.start(0.5f);
+  Play exact(3.3);
+  for (int k = 0; k < 3000; ++k) {
+    const double T = chamber(0.5 * k);
+    // Of 60 degC a single holds 4e-6, in what goes in and what comes out.
+    ASSERT_NEAR(-model.step(at(static_cast<float>(T))), exact.step(T), 8e-6);
+  }
+}
+
 TEST(FirmwareModel, SlowFilterAtAFastRateLosesNothingToRounding) {
   FirmwareModel model(of_input("temperature_lowpass(400)"));
   model.start(0.0005f);

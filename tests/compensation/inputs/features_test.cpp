@@ -218,5 +218,58 @@ TEST(Features, TemperatureRateIsZeroWhereTheTemperatureIsClamped) {
   EXPECT_NEAR(x(599, 0), 0.0, 1e-10);
 }
 
+// From the first temperature up to T, back down and up again: p = T - r after
+// a rise, T + r after a fall, and what it was in between.
+TEST(Features, PlayFollowsTheTemperatureOnlyWhenPushed) {
+  FeatureStream stream(inputs({"temperature_play(2)"}));
+  double p[1];
+  double time = 0.0;
+  for (const auto& [T, expected] : {std::pair{20.0, 20.0},
+                                    {21.0, 20.0},
+                                    {25.0, 23.0},
+                                    {22.0, 23.0},
+                                    {21.0, 23.0},
+                                    {18.0, 20.0},
+                                    {21.5, 20.0},
+                                    {23.0, 21.0}}) {
+    ASSERT_TRUE(stream.step(time += 1.0, 0, std::vector{T}, p));
+    EXPECT_DOUBLE_EQ(p[0], expected) << T;
+  }
+}
+
+// A cycle between 10 and 30 degC encloses 2 r (T_2 - T_1 - 2 r) in the (T, p)
+// plane, however fast it is run through.
+TEST(Features, PlayEnclosesTheSameAreaAtAnyRate) {
+  for (const double slope : {0.01, 0.5}) {  // [K/s]
+    FeatureStream stream(inputs({"temperature_play(3)"}));
+    const int way = static_cast<int>(std::lround(20.0 / slope));
+    double area = 0.0, before = 10.0, p[1];
+    for (int k = 0; k <= 4 * way; ++k) {
+      const double T = 30.0 - slope * std::abs(k % (2 * way) - way);
+      stream.step(k, 0, std::vector{T}, p);
+      if (k > 2 * way)
+        area += 0.5 * (p[0] + before) * slope *
+                ((k - 1) % (2 * way) < way ? -1.0 : 1.0);
+      before = p[0];
+    }
+    EXPECT_NEAR(area, 2.0 * 3.0 * (20.0 - 2.0 * 3.0), 1e-6);
+  }
+}
+
+TEST(Features, PlayStartsAtTheTemperatureOfEachPowerOn) {
+  RecordedRun run{.duration = 300.0, .step = 1.0};
+  run.temperature = [](double t) { return 20.0 + 0.1 * t; };
+  run.powered = [](double t) { return t < 150.0 || t >= 170.0; };
+  const Eigen::ArrayXXd x =
+      features_of(inputs({"temperature_play(1.5)"}), run.recording(),
+                  {.lowest = 0.0, .highest = 45.0});
+  EXPECT_EQ(x(0, 0), 20.0);
+  EXPECT_DOUBLE_EQ(x(149, 0), 34.9 - 1.5);
+  EXPECT_TRUE(std::isnan(x(160, 0)));
+  EXPECT_EQ(x(170, 0), 37.0);
+  EXPECT_EQ(x(180, 0), 37.0);
+  EXPECT_DOUBLE_EQ(x(299, 0), 45.0 - 1.5);  // of the clamped temperature
+}
+
 }  // namespace
 }  // namespace beamgyro::features_test

@@ -14,7 +14,8 @@ TEST(Input, NameReadsBackToTheSameInput) {
   for (const char* name :
        {"output", "rate", "temperature", "drive_frequency", "drive_voltage",
         "quadrature", "temperature_lowpass(100)", "temperature_lowpass(0.3)",
-        "temperature_rate(60)", "since_power_on(412.5)"}) {
+        "temperature_rate(60)", "temperature_play(1.5)",
+        "since_power_on(412.5)"}) {
     const Input input = parse_input(name);
     EXPECT_EQ(input_name(input), name);
     EXPECT_EQ(parse_input(input_name(input)), input);
@@ -24,7 +25,7 @@ TEST(Input, NameReadsBackToTheSameInput) {
 TEST(Input, FilterKnowsItsColumnAndTimeConstant) {
   const Input low_passed = parse_input("temperature_lowpass(1e2)");
   EXPECT_EQ(low_passed.column, "temperature");
-  EXPECT_EQ(low_passed.time_constant, 100.0);
+  EXPECT_EQ(low_passed.parameter, 100.0);
   EXPECT_EQ(parse_input("temperature_rate(60)").column, "temperature");
   EXPECT_EQ(parse_input("since_power_on(300)").column, "");
 }
@@ -53,6 +54,19 @@ TEST(Input, WrongNameIsAnsweredWithTheNearestOne) {
               parse_input("since_power(3)");
             }).find("did you mean \"since_power_on\"?"),
             std::string::npos);
+}
+
+TEST(Input, PlayNeedsOnePositiveHalfWidthInKelvin) {
+  EXPECT_EQ(parse_input("temperature_play(4)").column, "temperature");
+  EXPECT_FALSE(sees_the_rate(parse_input("temperature_play(4)")));
+  for (const char* name :
+       {"temperature_play", "temperature_play(0)", "temperature_play(-2)",
+        "temperature_play(inf)", "temperature_play(2", "temperature_play(2 K)"})
+    EXPECT_NE(message_of([&] {
+                parse_input(name);
+              }).find("one positive half-width in K, as temperature_play(2)"),
+              std::string::npos)
+        << name;
 }
 
 TEST(Input, FilterNeedsOnePositiveTimeConstant) {
