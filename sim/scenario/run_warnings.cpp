@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "config/units.h"
-#include "sim/device/materials.h"
 #include "sim/scenario/aliasing.h"
 #include "sim/scenario/drive_lock.h"
+#include "sim/thermal/material_range.h"
 
 namespace beamgyro {
 namespace {
@@ -54,14 +54,10 @@ std::string power_cause(const Scenario& scenario) {
   return before + (before.empty() || after.empty() ? "" : ", and ") + after;
 }
 
-// Where the coefficients of the ceramic are linear [degC].
-constexpr double kColdestLinear = kColdestCeramic - kZeroCelsius;
-constexpr double kHottestLinear = kHottestCeramic - kZeroCelsius;
-
 bool is_beyond_ceramic(double celsius) {
   constexpr double kThermalError = 1e-3;  // [K], of a run
-  return celsius < kColdestLinear - kThermalError ||
-         celsius > kHottestLinear + kThermalError;
+  return celsius < kLinearCeramic.low - kThermalError ||
+         celsius > kLinearCeramic.high + kThermalError;
 }
 
 std::string share(std::size_t count, std::size_t all) {
@@ -103,7 +99,7 @@ std::string RunWarnings::heat_text() const {
       "degC, where the ceramic's coefficients are linear; they keep the values "
       "of the nearest end",
       clamped_.lowest, clamped_.highest, share(clamped_.count, samples_),
-      kColdestLinear, kHottestLinear);
+      kLinearCeramic.low, kLinearCeramic.high);
 }
 
 std::string RunWarnings::power_text() const {

@@ -14,7 +14,12 @@ namespace beamgyro {
 ///   crack when the parts that they join shrink.
 inline constexpr Range kMaterialTemperatures{-100, 150};
 
-/// What the range stands for in messages.
+/// Where the linear coefficients of the ceramic hold [degC], kColdestCeramic to
+/// kHottestCeramic of the device. Beyond they keep the values of the nearest
+/// end.
+inline constexpr Range kLinearCeramic{-40, 80};
+
+/// What the range of the materials stands for in messages.
 inline constexpr const char* kMaterialReason =
     "the temperatures that ceramic and bond stand";
 

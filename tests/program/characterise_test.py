@@ -92,6 +92,15 @@ class Characterise(ProgramTest):
         self.assertEqual((self.dir / "a.csv").read_bytes(),
                          (self.dir / "b.csv").read_bytes())
 
+    def test_temperatures_beyond_the_linear_range_of_the_ceramic(self):
+        for grid, warns in [("-40:80:20", False), ("-41", True),
+                            ("70:90:10", True)]:
+            answer = self.beamgyro("characterise", "device.toml", "-o", "c.csv",
+                                   "--beam-temperature", grid)
+            self.assertEqual(answer.returncode, 0, answer.stderr)
+            self.assertEqual("beyond -40 to 80 degC the ceramic's coefficients"
+                             in answer.stderr, warns, grid)
+
     def test_bad_ranges(self):
         for text in ["60:-40:1", "-40:60:0", "-40:60", "a:b:c", "nan",
                      "-300", "-40:60:-1"]:
