@@ -57,7 +57,8 @@ void envelope(benchmark::State& state, const RateProfile& rate) {
     EnvelopeTrajectory twin(scenario, gyro, motion, true);
     benchmark::DoNotOptimize(twin.advance(times));
   }
-  EnvelopeTrajectory reference(scenario, gyro, motion, false, nullptr, kReference);
+  EnvelopeTrajectory reference(scenario, gyro, motion, false, nullptr,
+                               kReference);
   state.counters["error_deg_per_s"] =
       largest_difference(output, reference.advance(times).output);
   state.counters["steps"] = static_cast<double>(steps);
