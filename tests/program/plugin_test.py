@@ -128,6 +128,13 @@ class Plugins(ProgramTest):
         wants = self.write("wants.c", (EXAMPLES / "cubic.c").read_text()
                            .replace('"rate,temperature"', '"rate,true_rate"'))
         self.build(wants, "wants.so")
+        spaced = self.write("spaced.c", (EXAMPLES / "cubic.c").read_text()
+                            .replace('"rate,temperature"',
+                                     '"rate, temperature"'))
+        self.build(spaced, "spaced.so")
+        told = self.rejected("compensate", "./spaced.so", "run.h5", "-o",
+                             "out.h5", says=["' temperature'", "quadrature"])
+        self.assertNotIn("true_", told)  # none of these may be asked for
         for compensator, says in [
                 ("./text.so", "cannot be loaded"),
                 ("./missing.so", "No such file"),

@@ -2,6 +2,7 @@
 #include "validation/external/measured_signals.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <stdexcept>
 
@@ -43,9 +44,13 @@ MeasuredSignals::MeasuredSignals(const Recording& run,
       values_.push_back(nullptr);
       continue;
     }
-    const std::vector<double>& values = column_values(run, name);
-    if (find_column(run, name)->role != Role::kMeasured) refuse_signal(name);
-    values_.push_back(values.data());
+    const Column* column = find_column(run, name);
+    if (column == nullptr)
+      throw std::invalid_argument(
+          fmt::format("the recording has no variable '{}'; it measures {}",
+                      name, fmt::join(measured_names(run), ", ")));
+    if (column->role != Role::kMeasured) refuse_signal(name);
+    values_.push_back(column->values.data());
   }
 }
 
