@@ -109,6 +109,7 @@ int compensate_any(const CompensateArguments& arguments) {
             : "RUN.h5 or -o is missing; expected beamgyro compensate "
               "COMPENSATOR RUN.h5 -o OUT.h5, or beamgyro compensate "
               "COMPENSATOR --stream");
+  require_limits_for_code(arguments.limits, arguments.compensator);
   if (arguments.stream) return stream_answers(arguments);
   if (arguments.rate) throw std::invalid_argument("--rate-Hz is for --stream");
   return compensate(arguments);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "cli/process_limits.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <stdexcept>
 
 namespace beamgyro {
 namespace {
@@ -21,6 +24,15 @@ void add_process_limits(Command& command, LimitArguments& arguments) {
                  arguments.timeout, {1e-3, kLongestTimeout});
   command.number({"--memory-GiB", "N", "Memory that it may use", "2"},
                  arguments.memory, {1e-3, kMostMemory});
+}
+
+void require_limits_for_code(const LimitArguments& arguments,
+                             const std::string& compensator) {
+  if (!arguments.timeout && !arguments.memory) return;
+  if (is_command(compensator) || is_library(compensator)) return;
+  throw std::invalid_argument(fmt::format(
+      "{} is for a library or a command; {} is neither",
+      arguments.timeout ? "--timeout-s" : "--memory-GiB", compensator));
 }
 
 ProcessLimits process_limits(const LimitArguments& arguments) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "cli/command_line.h"
 #include "validation/external/tested_compensator.h"
@@ -16,6 +17,11 @@ struct LimitArguments {
 
 /// Adds --timeout-s and --memory-GiB.
 void add_process_limits(Command& command, LimitArguments& arguments);
+
+/// Throws std::invalid_argument when one of them is given for a compensator
+/// that is no library and no command.
+void require_limits_for_code(const LimitArguments& arguments,
+                             const std::string& compensator);
 
 /// Returns the limits for compensators of this program.
 ProcessLimits process_limits(const LimitArguments& arguments = {});

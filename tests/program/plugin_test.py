@@ -143,6 +143,13 @@ class Plugins(ProgramTest):
             self.rejected("compensate", compensator, "run.h5", "-o", "out.h5",
                           says=says)
 
+    def test_limits_are_for_code(self):
+        self.write("mean.toml", 'kind = "constant"\n')
+        self.ok("train", "run.h5", "--model", "mean.toml", "-o", "mean.json")
+        for option in "--timeout-s", "--memory-GiB":
+            self.rejected("compensate", "mean.json", "run.h5", "-o", "out.h5",
+                          option, 1, says=[option, "mean.json"])
+
     def test_no_library_is_overwritten(self):
         self.build(EXAMPLES / "cubic.c", "cubic.so")
         os.link(self.dir / "cubic.so", self.dir / "out.h5")
