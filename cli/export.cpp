@@ -18,6 +18,7 @@
 #include "compensation/firmware/c_text.h"
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
+#include "dataset/files/made_directories.h"
 
 namespace beamgyro {
 namespace {
@@ -155,11 +156,7 @@ void require_outputs(const fs::path& directory, const NamedTexts& texts,
 
 // Writes all files or none.
 void write_texts(const fs::path& directory, const NamedTexts& texts) {
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error)
-    throw_file_error(directory, "cannot make this directory", error,
-                     "one that is there or can be made");
+  const MadeDirectories made(directory);
   std::vector<fs::path> written;
   try {
     for (const auto& [called, text] : texts) {
@@ -167,7 +164,8 @@ void write_texts(const fs::path& directory, const NamedTexts& texts) {
       written.push_back(directory / called);
     }
   } catch (...) {
-    for (const fs::path& path : written) fs::remove(path, error);
+    std::error_code ignored;
+    for (const fs::path& path : written) fs::remove(path, ignored);
     throw;
   }
 }

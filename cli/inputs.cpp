@@ -118,15 +118,15 @@ void require_json_name(const fs::path& path) {
           path.string(), extension));
 }
 
-void require_directory_name(const fs::path& path) {
+void require_directory_name(const fs::path& path, std::string_view option) {
   const std::string extension = path.extension().string();
   for (const char* ending :
        {".h5", ".nc", ".csv", ".json", ".toml", ".c", ".h"}) {
     if (extension == ending)
       throw std::invalid_argument(
-          fmt::format("-o {}: is the name of a file; expected that of a "
+          fmt::format("{} {}: is the name of a file; expected that of a "
                       "directory",
-                      path.string()));
+                      option, path.string()));
   }
 }
 

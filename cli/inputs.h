@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dataset/recording/recording.h"
@@ -33,7 +34,9 @@ void require_recording_name(const std::filesystem::path& path);
 /// The same for the argument of --json: a file of another kind is not written
 /// over by mistake. Any other name passes.
 void require_json_name(const std::filesystem::path& path);
-void require_directory_name(const std::filesystem::path& path);
+/// The same for the argument of `option`, the name of a directory.
+void require_directory_name(const std::filesystem::path& path,
+                            std::string_view option = "-o");
 
 /// Prepares the note for an interruption. Throws what writing to `output` would
 /// throw at its start. Throws

@@ -4,18 +4,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/option_values.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
+#include "cli/validate_outputs.h"
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/rows/recorded_runs.h"
 #include "compensation/rows/set_runs.h"
@@ -48,10 +53,7 @@ std::vector<std::filesystem::path> inputs_of(
 // Scores the test devices of a set, or the devices named.
 int validate_on_set(const ValidateArguments& arguments,
                     const Compensator& compensator) {
-  if (!arguments.json.empty()) {
-    require_output(arguments.json, inputs_of(arguments));
-    require_json_name(arguments.json);
-  }
+  require_outputs_of(arguments, inputs_of(arguments));
   const SetSelection selection = set_selection(arguments);
   const RunSource source = runs_of_set(arguments.runs[0], selection);
   std::optional<Progress> progress("validating " + arguments.compensator);
@@ -62,20 +64,22 @@ int validate_on_set(const ValidateArguments& arguments,
   const bool passed =
       std::all_of(scores.begin(), scores.end(),
                   [](const DeviceScore& score) { return score.passed; });
-  if (!arguments.json.empty())
-    write_text_file(
-        arguments.json,
-        nlohmann::ordered_json{{"verdict", passed ? "pass" : "fail"},
-                               {"set", source.set->name},
-                               {"manifest_sha256", source.set->manifest_sha256},
-                               {"warnings", warnings},
-                               {"devices", to_json(scores)}}
-                .dump(2) +
-            "\n");
   progress.reset();
   for (const std::string& warning : warnings) print_warning(warning);
-  print_result(device_table(scores));
-  return passed ? 0 : kNotPassed;
+  std::vector<std::function<void()>> files;
+  if (!arguments.json.empty())
+    files.emplace_back([&] {
+      write_text_file(arguments.json,
+                      nlohmann::ordered_json{
+                          {"verdict", passed ? "pass" : "fail"},
+                          {"set", source.set->name},
+                          {"manifest_sha256", source.set->manifest_sha256},
+                          {"warnings", warnings},
+                          {"devices", to_json(scores)}}
+                              .dump(2) +
+                          "\n");
+    });
+  return deliver(device_table(scores), files, passed ? 0 : kNotPassed);
 }
 
 nlohmann::ordered_json metrics_on_runs(const ValidateArguments& arguments,
@@ -102,23 +106,24 @@ int validate_on_runs(const ValidateArguments& arguments) {
     runs.push_back({std::filesystem::path(path).filename().string(),
                     &recordings.back(), sha256_of_file(path)});
   }
-  if (!arguments.json.empty()) {
-    require_output(arguments.json, inputs_of(arguments));
-    require_json_name(arguments.json);
-  }
+  require_outputs_of(arguments, inputs_of(arguments));
 
   const Validation validation = validate(
       compensator, std::filesystem::path(arguments.compensator).stem().string(),
       runs, specification_of(arguments));
+  std::string json;
   if (!arguments.json.empty()) {
-    nlohmann::ordered_json json = to_json(validation);
-    json["metrics"] = metrics_on_runs(arguments, compensator);
-    write_text_file(arguments.json, json.dump(2) + "\n");
+    nlohmann::ordered_json all = to_json(validation);
+    all["metrics"] = metrics_on_runs(arguments, compensator);
+    json = all.dump(2) + "\n";
   }
   progress.reset();
   for (const std::string& warning : validation.warnings) print_warning(warning);
-  print_result(table(validation));
-  return validation.passed() ? 0 : kNotPassed;
+  std::vector<std::function<void()>> files;
+  if (!arguments.json.empty())
+    files.emplace_back([&] { write_text_file(arguments.json, json); });
+  return deliver(table(validation), files,
+                 validation.passed() ? 0 : kNotPassed);
 }
 
 bool is_number(const std::string& word) {
@@ -173,18 +178,52 @@ int judge_on_runs(const ValidateArguments& arguments) {
   return validate_by_specification(arguments);
 }
 
-void require_check_alone(const ValidateArguments& arguments) {
-  if (arguments.compensator.empty() && arguments.device.empty() &&
-      !arguments.qualification && !arguments.specification &&
-      !arguments.workbench && !arguments.campaign && !arguments.devices &&
-      arguments.json.empty() && arguments.report.empty() &&
-      arguments.figures.empty() && arguments.bundle.empty() &&
-      arguments.set_runs.empty() && !arguments.full_scale)
+// Whether the arguments ask for no validation.
+bool asks_for_none(const ValidateArguments& arguments) {
+  return arguments.compensator.empty() && arguments.device.empty() &&
+         !arguments.qualification && !arguments.specification &&
+         !arguments.workbench && !arguments.campaign && !arguments.devices &&
+         arguments.json.empty() && arguments.report.empty() &&
+         arguments.figures.empty() && arguments.bundle.empty() &&
+         arguments.set_runs.empty() && !arguments.full_scale;
+}
+
+void require_list_alone(const ValidateArguments& arguments) {
+  if (asks_for_none(arguments) && arguments.check.empty() && !arguments.jobs &&
+      !arguments.limits.timeout && !arguments.limits.memory)
     return;
+  throw std::invalid_argument(
+      "--list-metrics: judges nothing; expected no other argument");
+}
+
+void require_check_alone(const ValidateArguments& arguments) {
+  if (asks_for_none(arguments)) return;
   throw std::invalid_argument(fmt::format(
       "--check {}: the bundle says what is validated; expected no more than "
-      "--jobs beside it",
+      "--jobs, --timeout-s and --memory-GiB beside it",
       arguments.check));
+}
+
+// Throws when a recording is there twice, under whatever name: it would count
+// twice.
+void require_different_runs(const std::vector<std::string>& runs) {
+  std::map<std::uintmax_t, std::vector<std::string>> of_size;  // [bytes]
+  for (const std::string& run : runs) {
+    std::error_code error;  // shows when the run is read
+    const std::uintmax_t size = std::filesystem::file_size(run, error);
+    if (!error) of_size[size].push_back(run);
+  }
+  for (const auto& [size, names] : of_size) {
+    std::map<std::string, std::string> of_hash;
+    if (names.size() < 2) continue;
+    for (const std::string& name : names) {
+      const auto [same, is_new] = of_hash.emplace(sha256_of_file(name), name);
+      if (!is_new)
+        throw std::invalid_argument(
+            fmt::format("{}: is the same recording as {}; expected each once",
+                        name, same->second));
+    }
+  }
 }
 
 void require_device(const ValidateArguments& arguments) {
@@ -208,6 +247,7 @@ void require_device(const ValidateArguments& arguments) {
 
 int validate_any(const ValidateArguments& arguments) {
   if (arguments.list_metrics) {
+    require_list_alone(arguments);
     print_result(metric_list());
     return 0;
   }
@@ -220,8 +260,10 @@ int validate_any(const ValidateArguments& arguments) {
         "COMPENSATOR is missing; expected beamgyro validate COMPENSATOR "
         "RUN.h5..., beamgyro validate COMPENSATOR --device DEVICE.toml, or "
         "beamgyro validate --check DIR");
+  require_limits_for_code(arguments.limits, arguments.compensator);
   if (!arguments.runs.empty()) {
     require_no_device_options(arguments);
+    require_different_runs(arguments.runs);
     return is_judged(arguments) ? judge_on_runs(arguments)
                                 : validate_on_runs(arguments);
   }

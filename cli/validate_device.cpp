@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -9,13 +10,13 @@
 #include <utility>
 
 #include "cli/figure_pictures.h"
-#include "cli/inputs.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
 #include "cli/validate.h"
+#include "cli/validate_outputs.h"
 #include "cli/version.h"
-#include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
+#include "dataset/files/made_directories.h"
 #include "parallel/work_queue.h"
 #include "report/verdict_report.h"
 #include "validation/bundle/bundle.h"
@@ -96,9 +97,9 @@ nlohmann::ordered_json json_of(const CompletedValidation& validation) {
 
 std::vector<BundleOutput> outputs_of(const CompletedValidation& validation) {
   const nlohmann::ordered_json json = json_of(validation);
-  return {{"result.json", json.dump(2) + "\n"},
-          {"report.txt", verdict_report(validation.result)},
-          {"report/index.html", page_of(json)}};
+  return {{kResultFile, json.dump(2) + "\n"},
+          {kReportFile, verdict_report(validation.result)},
+          {kPageFile, page_of(json)}};
 }
 
 std::vector<BundleOutput> validated(const Validator& validator,
@@ -114,23 +115,54 @@ std::vector<BundleOutput> validated(const Validator& validator,
   return outputs_of(validation);
 }
 
-// Prepares what the arguments name for writing.
-void require_result_places(const ValidateArguments& arguments,
-                           const std::vector<InputFile>& inputs) {
-  std::vector<fs::path> files;
-  for (const InputFile& input : inputs) files.push_back(input.path);
-  if (!arguments.bundle.empty()) require_new_bundle(arguments.bundle);
-  if (!arguments.report.empty()) {
-    require_directory_name(arguments.report);
-    fs::create_directories(arguments.report);
-    require_output(fs::path(arguments.report) / "index.html", files);
-  }
-  if (!arguments.figures.empty()) {
-    require_directory_name(arguments.figures);
-    fs::create_directories(arguments.figures);
-    require_output(fs::path(arguments.figures) / "result.json", files);
-  }
-  if (!arguments.json.empty()) require_output(arguments.json, files);
+// Returns the work of writing each file and directory that is asked for.
+std::vector<std::function<void()>> writers_of(
+    const ValidateArguments& arguments, const Validator& validator,
+    const std::vector<BundleOutput>& outputs) {
+  std::vector<std::function<void()>> writers;
+  if (!arguments.json.empty())
+    writers.emplace_back(
+        [&] { write_text_file(arguments.json, outputs[0].text); });
+  if (!arguments.report.empty())
+    writers.emplace_back([&] {
+      const MadeDirectories made(arguments.report);
+      write_text_file(fs::path(arguments.report) / "index.html",
+                      outputs[2].text);
+    });
+  if (!arguments.bundle.empty())
+    writers.emplace_back(
+        [&] { write_bundle(arguments.bundle, validator, outputs); });
+  if (!arguments.figures.empty())
+    writers.emplace_back([&] {
+      const MadeDirectories made(arguments.figures);
+      draw_figures(outputs[0].text, arguments.figures);
+    });
+  return writers;
+}
+
+// Says before it happens that code of whoever made the bundle is run.
+void announce_code(const Bundle& bundle) {
+  const std::string& compensator = bundle.request.compensator;
+  if (is_command(compensator) || is_library(compensator))
+    print_note(
+        fmt::format("{}: runs {}", bundle.directory.string(), compensator));
+}
+
+std::vector<BundleDifference> differences_of(
+    const Bundle& bundle, const ValidateArguments& arguments) {
+  std::vector<BundleDifference> different = changed_files(bundle);
+  if (!different.empty()) return different;
+  announce_code(bundle);
+  ValidationRequest request = bundle.request;
+  request.program_version = kProgramVersion;
+  request.git_revision = kGitRevision;
+  request.limits = process_limits(arguments.limits);
+  const Validator validator(std::move(request));
+  different = different_inputs(bundle, validator);
+  if (!different.empty()) return different;
+  Conformity verdict{};
+  return different_outputs(bundle, validator,
+                           validated(validator, arguments, verdict));
 }
 
 }  // namespace
@@ -138,48 +170,37 @@ void require_result_places(const ValidateArguments& arguments,
 int validate_by_specification(const ValidateArguments& arguments) {
   require_campaign(arguments);
   const Validator validator(request_of(arguments));
-  require_result_places(arguments, validator.inputs());
+  std::vector<fs::path> inputs;
+  for (const InputFile& input : validator.inputs())
+    inputs.push_back(input.path);
+  require_outputs_of(arguments, inputs);
+  if (!arguments.bundle.empty())
+    require_new_bundle(arguments.bundle, validator);
   Conformity verdict{};
   const std::vector<BundleOutput> outputs =
       validated(validator, arguments, verdict);
-  if (!arguments.json.empty()) write_text_file(arguments.json, outputs[0].text);
-  if (!arguments.report.empty())
-    write_text_file(fs::path(arguments.report) / "index.html", outputs[2].text);
-  if (!arguments.bundle.empty())
-    write_bundle(arguments.bundle, validator, outputs);
-  print_result(outputs[1].text);
-  if (!arguments.figures.empty())
-    draw_figures(outputs[0].text, arguments.figures);
-  return verdict == Conformity::kPass ? 0 : kNotPassed;
+  return deliver(outputs[1].text, writers_of(arguments, validator, outputs),
+                 verdict == Conformity::kPass ? 0 : kNotPassed);
 }
 
 int check_bundle(const ValidateArguments& arguments) {
-  Bundle bundle = read_bundle(arguments.check);
-  std::vector<std::string> different = std::move(bundle.changed);
-  if (different.empty()) {
-    bundle.request.program_version = kProgramVersion;
-    bundle.request.git_revision = kGitRevision;
-    bundle.request.limits = process_limits();
-    const Validator validator(std::move(bundle.request));
-    Conformity verdict{};
-    different = different_outputs(arguments.check,
-                                  validated(validator, arguments, verdict));
-  }
-  if (different.empty()) {
+  const Bundle bundle = read_bundle(arguments.check);
+  require_limits_for_code(arguments.limits, bundle.request.compensator);
+  const std::vector<BundleDifference> different =
+      differences_of(bundle, arguments);
+  for (const auto& [file, words] : different)
+    print_result(fmt::format("{}: {}\n", file.string(), words));
+  if (different.empty())
     print_result(fmt::format("{}: {} inputs and {} outputs are the same\n",
                              arguments.check, bundle.inputs.size(),
                              bundle.outputs.size()));
-    return 0;
-  }
-  for (const std::string& name : different)
-    print_result(fmt::format("{}: is not the same\n",
-                             (fs::path(arguments.check) / name).string()));
-  if (bundle.git_revision != kGitRevision)
+  if (bundle.git_revision != kGitRevision ||
+      bundle.program_version != kProgramVersion)
     print_note(
         fmt::format("the bundle was made by beamgyro {} ({}), this is {} ({})",
                     bundle.program_version, bundle.git_revision,
                     kProgramVersion, kGitRevision));
-  return kBundleDiffers;
+  return different.empty() ? 0 : kBundleDiffers;
 }
 
 }  // namespace beamgyro

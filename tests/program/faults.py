@@ -29,12 +29,13 @@ class FaultTest(ProgramTest):
                 "LD_PRELOAD": str(self.shim), "FAULT_PREFIX": str(place),
                 **plan})
 
-    def calls(self, place, arguments):
-        """Number, name and file of the calls of a command in peace."""
+    def calls(self, place, arguments, status=0):
+        """Number, name and file of the calls of a command in peace, where it
+        ends with a status."""
         with tempfile.TemporaryDirectory() as name:
             log = pathlib.Path(name) / "calls"
             answer = self.faulty(place, arguments, FAULT_LOG=str(log))
-            self.assertEqual(answer.returncode, 0, answer.stderr)
+            self.assertEqual(answer.returncode, status, answer.stderr)
             lines = [line.split(" ", 2) for line in log.read_text().splitlines()]
         return [(int(number), name, path.removeprefix(f"{place}/"))
                 for number, name, path in lines]

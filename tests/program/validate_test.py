@@ -2,6 +2,7 @@
 """`validate` against compensators that only look good, written by hand."""
 
 import json
+import resource
 import shutil
 import unittest
 
@@ -182,6 +183,27 @@ class Yardsticks(Validate):
         said, answer = self.judged(status=0)
         self.assertIn("constant", said["overall"]["worse_than"])
         self.assertIn("worse than a constant", answer.stdout)
+
+
+class Twice(Validate):
+    def test_a_recording_counts_once(self):
+        shutil.copy(self.dir / "test.h5", self.dir / "copy.h5")
+        for other in "test.h5", "./test.h5", "copy.h5":
+            for more in [], ["--report", "page"]:
+                with self.subTest((other, more)):
+                    self.rejected("validate", "cubic.json", "test.h5", other,
+                                  *more, says=["test.h5", "same recording"])
+
+    def test_the_table_is_told_though_the_file_cannot_be_written(self):
+        told = self.beamgyro("validate", "cubic.json", "test.h5")
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
+        answer = self.beamgyro("validate", "cubic.json", "test.h5", "--json",
+                               "v.json", preexec_fn=limit)
+        self.assertEqual(answer.returncode, 1)
+        self.assertEqual(answer.stdout, told.stdout)
+        self.assertIn("v.json: cannot write", answer.stderr)
 
 
 class InSample(Validate):

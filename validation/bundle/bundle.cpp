@@ -6,13 +6,16 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "config/file_error.h"
+#include "dataset/files/atomic_file.h"
 #include "dataset/files/directory.h"
-#include "dataset/files/json_node.h"
+#include "dataset/files/made_directories.h"
 #include "dataset/files/publish.h"
 #include "dataset/files/set_files.h"
 #include "dataset/files/sha256.h"
@@ -24,9 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-constexpr const char* kBundleName = "bundle.json";
-constexpr const char* kBundleFiletype = "beamgyro-bundle";
 
 // Names of copies by group and path.
 using CopyNames = std::map<std::pair<std::string, fs::path>, std::string>;
@@ -69,9 +69,90 @@ std::vector<BundleInput> copies_of(const std::vector<InputFile>& inputs,
   return copies;
 }
 
-void publish_text(const fs::path& directory, const std::string& name,
-                  const std::string& text) {
-  publish_file(directory, name, std::as_bytes(std::span(text)));
+// The files of a bundle while it is written. Unless keep() is called, they are
+// removed again.
+class UnfinishedBundle {
+ public:
+  explicit UnfinishedBundle(fs::path directory)
+      : directory_(std::move(directory)) {}
+  ~UnfinishedBundle() {
+    std::error_code ignored;
+    for (const std::string& name : names_) {
+      fs::path path = name;
+      fs::remove(directory_ / path, ignored);
+      while (!(path = path.parent_path()).empty())
+        fs::remove(directory_ / path, ignored);  // unless it has other files
+    }
+  }
+  UnfinishedBundle(const UnfinishedBundle&) = delete;
+  UnfinishedBundle& operator=(const UnfinishedBundle&) = delete;
+
+  void write(const std::string& name, const std::string& text) {
+    names_.push_back(name);
+    publish_file(directory_, name, std::as_bytes(std::span(text)));
+  }
+
+  void keep() { names_.clear(); }
+
+ private:
+  fs::path directory_;
+  std::vector<std::string> names_;
+};
+
+bool has_bytes(const fs::path& directory, const std::string& name,
+               const std::string& digits) {
+  try {
+    return sha256_of_set_file(directory, name) == digits;
+  } catch (const std::invalid_argument&) {
+    return false;  // missing, or no ordinary file
+  }
+}
+
+std::vector<std::string> files_of(const fs::path& directory) try {
+  return Directory(directory).files_below();
+} catch (const std::system_error& error) {
+  throw_file_error(directory, "cannot read", error.code());
+}
+
+// Whether a directory holds the first files of a bundle and nothing else. They
+// are written in the order of `copies`, and outputs follow.
+bool is_begun(const fs::path& directory,
+              const std::vector<BundleInput>& copies) {
+  std::vector<std::string> files = files_of(directory);
+  std::erase_if(files, [](const std::string& file) {
+    return is_partial_file(fs::path(file).filename().string());
+  });
+  const std::size_t all = files.size();
+  for (const BundleInput& copy : copies)
+    if (std::ranges::count(files, copy.name) > 0 &&
+        has_bytes(directory, copy.name, sha256(copy.text)))
+      std::erase(files, copy.name);
+  if (all - files.size() == copies.size())
+    for (const char* output : {kResultFile, kReportFile, kPageFile})
+      std::erase(files, output);
+  return files.empty();
+}
+
+void require_new(const fs::path& directory,
+                 const std::vector<BundleInput>& copies) {
+  const fs::file_status status = status_of(directory);
+  if (!fs::exists(status)) return;
+  if (!fs::is_directory(status) || !is_begun(directory, copies))
+    throw std::invalid_argument(fmt::format(
+        "--bundle {}: is there already; expected the name of a new directory",
+        directory.string()));
+}
+
+// Removes the partial files that dead processes left in a begun bundle.
+void remove_partial_files_of(const fs::path& directory) try {
+  const Directory bundle(directory);
+  std::set<fs::path> places;
+  for (const std::string& file : bundle.files_below())
+    places.insert(fs::path(file).parent_path());
+  for (const fs::path& place : places)
+    remove_dead_partial_files(bundle.subdirectory(place), false);
+} catch (const std::system_error& error) {
+  throw_file_error(directory, "cannot remove unfinished files", error.code());
 }
 
 Json hashes_of(const auto& files) {
@@ -89,12 +170,12 @@ Json request_json(const ValidationRequest& request, const CopyNames& names) {
                                  const std::optional<fs::path>& path) {
     return path ? Json(name_of(group, *path)) : Json();
   };
-  const bool is_command = request.compensator.starts_with("cmd:");
   Json runs = Json::array();
   for (const fs::path& run : request.runs) runs.push_back(name_of("runs", run));
   return {
-      {"compensator", is_command ? request.compensator
-                                 : name_of("compensator", request.compensator)},
+      {"compensator", is_command(request.compensator)
+                          ? request.compensator
+                          : name_of("compensator", request.compensator)},
       {"device", optional_name("device", request.device)},
       {"qualification",
        request.device ? Json(name_of("qualification", request.qualification))
@@ -108,100 +189,102 @@ Json request_json(const ValidationRequest& request, const CopyNames& names) {
       {"devices", request.devices ? Json(*request.devices) : Json()}};
 }
 
-std::optional<fs::path> optional_path(const fs::path& directory,
-                                      const JsonNode& node) {
-  if (node.is_null()) return {};
-  return directory / node.text();
-}
-
-ValidationRequest request_from(const fs::path& directory,
-                               const JsonNode& node) {
-  ValidationRequest request;
-  request.compensator = node.at("compensator").text();
-  if (!request.compensator.starts_with("cmd:"))
-    request.compensator = (directory / request.compensator).string();
-  request.device = optional_path(directory, node.at("device"));
-  if (request.device)
-    request.qualification = directory / node.at("qualification").text();
-  for (const std::string& run : node.at("runs").texts())
-    request.runs.push_back(directory / run);
-  request.full_scale = node.at("full_scale_deg_per_s").optional_number();
-  request.specification = optional_path(directory, node.at("specification"));
-  request.workbench = optional_path(directory, node.at("workbench"));
-  request.campaign = optional_path(directory, node.at("campaign"));
-  if (const JsonNode devices = node.at("devices"); !devices.is_null())
-    request.devices = devices.integer(1, 4'000'000'000);
-  return request;
-}
-
-bool has_bytes(const fs::path& directory, const std::string& name,
-               const std::string& digits) {
-  try {
-    return sha256_of_set_file(directory, name) == digits;
-  } catch (const std::invalid_argument&) {
-    return false;  // missing, or no ordinary file
-  }
+// Returns bundle.json.
+std::string bundle_text(const Validator& validator,
+                        const std::vector<BundleInput>& copies,
+                        const CopyNames& names,
+                        const std::vector<BundleOutput>& outputs,
+                        const std::string& version,
+                        const std::string& revision) {
+  const Json json{{"filetype", kBundleFiletype},
+                  {"format_version", 1},
+                  {"beamgyro_version", version},
+                  {"git_revision", revision},
+                  {"request", request_json(validator.request(), names)},
+                  {"inputs", hashes_of(copies)},
+                  {"outputs", hashes_of(outputs)}};
+  return json.dump(2) + "\n";
 }
 
 }  // namespace
 
-void require_new_bundle(const fs::path& directory) {
-  if (!fs::exists(status_of(directory))) return;
-  if (!fs::is_directory(directory) || !Directory(directory).names().empty())
-    throw std::invalid_argument(fmt::format(
-        "--bundle {}: is there already; expected the name of a new directory",
-        directory.string()));
+void require_new_bundle(const fs::path& directory, const Validator& validator) {
+  CopyNames names;
+  if (fs::is_directory(status_of(directory)) && !files_of(directory).empty())
+    require_new(directory, copies_of(validator.inputs(), names));
+  else
+    require_new(directory, {});
 }
 
 void write_bundle(const fs::path& directory, const Validator& validator,
                   const std::vector<BundleOutput>& outputs) {
-  require_new_bundle(directory);
-  fs::create_directories(directory);
   CopyNames names;
   const std::vector<BundleInput> copies = copies_of(validator.inputs(), names);
-  for (const BundleInput& copy : copies)
-    publish_text(directory, copy.name, copy.text);
+  require_new(directory, copies);
+  const MadeDirectories made(directory);
+  remove_partial_files_of(directory);
+  UnfinishedBundle files(directory);
+  for (const BundleInput& copy : copies) files.write(copy.name, copy.text);
   for (const BundleOutput& output : outputs)
-    publish_text(directory, output.name, output.text);
+    files.write(output.name, output.text);
   const ValidationRequest& request = validator.request();
-  const Json json{{"filetype", kBundleFiletype},
-                  {"format_version", 1},
-                  {"beamgyro_version", request.program_version},
-                  {"git_revision", request.git_revision},
-                  {"request", request_json(request, names)},
-                  {"inputs", hashes_of(copies)},
-                  {"outputs", hashes_of(outputs)}};
-  publish_text(directory, kBundleName, json.dump(2) + "\n");
+  files.write(kBundleFile,
+              bundle_text(validator, copies, names, outputs,
+                          request.program_version, request.git_revision));
+  files.keep();
 }
 
-Bundle read_bundle(const fs::path& directory) {
-  const std::string place = (directory / kBundleName).string();
-  const Json json = parse_json(read_text_file(place), place);
-  const JsonNode root(json, place);
-  if (root.at("filetype").text() != kBundleFiletype)
-    root.at("filetype")
-        .fail(fmt::format("is not \"{}\", what a bundle has", kBundleFiletype));
-  root.at("format_version").integer(1, 1);
-  Bundle bundle;
-  bundle.program_version = root.at("beamgyro_version").text();
-  bundle.git_revision = root.at("git_revision").text();
-  bundle.request = request_from(directory, root.at("request"));
-  for (const JsonNode& input : root.at("inputs").elements()) {
-    bundle.inputs.push_back(input.at("file").text());
-    if (!has_bytes(directory, bundle.inputs.back(), input.at("sha256").text()))
-      bundle.changed.push_back(bundle.inputs.back());
-  }
-  for (const JsonNode& output : root.at("outputs").elements())
-    bundle.outputs.push_back(output.at("file").text());
-  return bundle;
+std::vector<BundleDifference> changed_files(const Bundle& bundle) {
+  std::vector<BundleDifference> changed;
+  std::set<std::string> listed{kBundleFile};
+  for (const auto* files : {&bundle.inputs, &bundle.outputs})
+    for (const ListedFile& file : *files) {
+      listed.insert(file.name);
+      if (!has_bytes(bundle.directory, file.name, file.sha256))
+        changed.push_back({bundle.directory / file.name, "is not the same"});
+    }
+  for (const std::string& file : files_of(bundle.directory))
+    if (!listed.contains(file))
+      changed.push_back(
+          {bundle.directory / file, "is not listed in bundle.json"});
+  return changed;
 }
 
-std::vector<std::string> different_outputs(
-    const fs::path& directory, const std::vector<BundleOutput>& outputs) {
-  std::vector<std::string> different;
+std::vector<BundleDifference> different_inputs(const Bundle& bundle,
+                                               const Validator& validator) {
+  const auto place = [](const fs::path& path) {
+    return fs::absolute(path).lexically_normal();
+  };
+  std::set<fs::path> listed, read;
+  for (const ListedFile& input : bundle.inputs)
+    listed.insert(place(bundle.directory / input.name));
+  std::vector<BundleDifference> different;
+  for (const InputFile& input : validator.inputs())
+    if (read.insert(place(input.path)).second &&
+        !listed.contains(place(input.path)))
+      different.push_back({input.path, "is read and not in the bundle"});
+  for (const ListedFile& input : bundle.inputs)
+    if (const fs::path path = bundle.directory / input.name;
+        !read.contains(place(path)))
+      different.push_back({path, "is listed as an input and not read"});
+  return different;
+}
+
+std::vector<BundleDifference> different_outputs(
+    const Bundle& bundle, const Validator& validator,
+    const std::vector<BundleOutput>& outputs) {
+  std::vector<BundleDifference> different;
   for (const BundleOutput& output : outputs)
-    if (!has_bytes(directory, output.name, sha256(output.text)))
-      different.push_back(output.name);
+    if (!has_bytes(bundle.directory, output.name, sha256(output.text)))
+      different.push_back({bundle.directory / output.name, "is not the same"});
+  if (!different.empty()) return different;
+  CopyNames names;
+  const std::vector<BundleInput> copies = copies_of(validator.inputs(), names);
+  const std::string text =
+      bundle_text(validator, copies, names, outputs, bundle.program_version,
+                  bundle.git_revision);
+  if (!has_bytes(bundle.directory, kBundleFile, sha256(text)))
+    different.push_back({bundle.directory / kBundleFile, "is not the same"});
   return different;
 }
 

@@ -9,39 +9,72 @@
 
 namespace beamgyro {
 
+inline constexpr const char* kBundleFile = "bundle.json";
+inline constexpr const char* kBundleFiletype = "beamgyro-bundle";
+
+/// Names of the files that a validation writes, below the bundle.
+inline constexpr const char* kResultFile = "result.json";
+inline constexpr const char* kReportFile = "report.txt";
+inline constexpr const char* kPageFile = "report/index.html";
+
 /// A file that a validation writes.
 struct BundleOutput {
-  std::string name;  // below the directory: "result.json"
+  std::string name;
   std::string text;
 };
 
 /// Writes a bundle (docs/reference/bundle.md): copies of all inputs below
 /// inputs/, the outputs, and at last bundle.json with the request, versions and
-/// hashes. Throws std::invalid_argument when the directory is there and not
-/// empty, and as publish_file().
+/// hashes. When that fails, the files written are removed. Throws as
+/// require_new_bundle() and publish_file().
 void write_bundle(const std::filesystem::path& directory,
                   const Validator& validator,
                   const std::vector<BundleOutput>& outputs);
 
-/// Throws what write_bundle() would throw for the name of the directory.
-void require_new_bundle(const std::filesystem::path& directory);
+/// Throws std::invalid_argument unless the directory is new, empty, or holds
+/// what an interrupted command has left of the same bundle.
+void require_new_bundle(const std::filesystem::path& directory,
+                        const Validator& validator);
+
+/// A file as bundle.json lists it.
+struct ListedFile {
+  std::string name;    // below the directory, which it does not lead out of
+  std::string sha256;  // in hexadecimal digits
+};
+
+/// A file of a bundle that is not what it has to be.
+struct BundleDifference {
+  std::filesystem::path file;
+  std::string words;  // "is not the same"
+};
 
 /// A bundle as bundle.json describes it.
 struct Bundle {
+  std::filesystem::path directory;
   ValidationRequest request;                  // of its inputs, without versions
   std::string program_version, git_revision;  // that made it
-  std::vector<std::string> inputs, outputs;   // names below the directory
-  std::vector<std::string> changed;  // inputs that have other bytes, or none
+  std::vector<ListedFile> inputs, outputs;
 };
 
-/// Reads bundle.json and compares the inputs with their hashes. Throws
-/// std::invalid_argument when there is no bundle or bundle.json is damaged.
+/// Reads bundle.json and no other file. Throws std::invalid_argument when there
+/// is none, or when it is damaged: when a key is unknown or missing, a name
+/// leads out of the directory or is there twice, or the request names a file
+/// that is not among the inputs.
 Bundle read_bundle(const std::filesystem::path& directory);
 
-/// Returns the names of the outputs of a bundle that are missing or have other
-/// bytes than `outputs`, which were made again.
-std::vector<std::string> different_outputs(
-    const std::filesystem::path& directory,
+/// Returns the listed files that are missing or have another hash, and the
+/// files that are not listed.
+std::vector<BundleDifference> changed_files(const Bundle& bundle);
+
+/// Returns the files that the validation reads and the bundle does not have,
+/// and those that it has and the validation does not read.
+std::vector<BundleDifference> different_inputs(const Bundle& bundle,
+                                               const Validator& validator);
+
+/// Returns the files that have other bytes than `outputs`, which were made
+/// again, and than the bundle.json that is made of all.
+std::vector<BundleDifference> different_outputs(
+    const Bundle& bundle, const Validator& validator,
     const std::vector<BundleOutput>& outputs);
 
 }  // namespace beamgyro
