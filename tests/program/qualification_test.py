@@ -574,14 +574,15 @@ class Places(Qualified):
         self.ok("validate", "--check", "deep/b")
 
     def test_each_output_has_a_place_of_its_own(self):
-        (self.dir / "link").symlink_to("r")
+        (self.dir / "there").mkdir()
+        (self.dir / "link").symlink_to("there")
         for words, says in [
                 (["--report", "r", "--bundle", "r"],
                  ["--report r", "--bundle r"]),
                 (["--report", "r", "--bundle", "./r/"], "--bundle ./r/"),
                 (["--report", "r/b", "--bundle", "r"], "inside --bundle r"),
                 (["--report", "r", "--bundle", "r/b"], "inside --report r"),
-                (["--report", "r", "--bundle", "link"], "link"),
+                (["--report", "there", "--bundle", "link"], "--bundle link"),
                 (["--report", "r", "--figures", "r"], "--figures r"),
                 (["--json", "r/v.json", "--bundle", "r"], "--json r/v.json"),
                 (["--json", "v", "--report", "v"], "--json v")]:
