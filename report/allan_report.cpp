@@ -67,12 +67,13 @@ std::string noise_table(const NoiseCoefficients& found,
       fmt::format_to(out, "{:<22}{:>12}\n", name, "-");
       continue;
     }
-    const auto& [value, uncertainty, interval] = *report.per_second;
+    const auto& estimate = *report.per_second;
     const auto line = [&](const std::string& first, double scale,
                           const std::string& of) {
-      fmt::format_to(
-          out, "{:<22}{:>12.4g} {:<15} {}\n", first, value * scale, of,
-          interval_text({interval.low * scale, interval.high * scale}));
+      fmt::format_to(out, "{:<22}{:>12.4g} {:<15} {}\n", first,
+                     estimate.value * scale, of,
+                     interval_text({estimate.interval.low * scale,
+                                    estimate.interval.high * scale}));
     };
     line(name, report.hours_per_second_unit, report.unit_per_hour);
     line("", 1.0, report.unit_per_second);

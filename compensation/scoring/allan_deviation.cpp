@@ -224,7 +224,7 @@ std::vector<double> taus_of(const EvenSeries& series, TauSpacing spacing) {
     for (std::size_t m = 1; m <= most; ++m) add(m);
   else
     for (std::size_t decade = 1; decade <= most; decade *= 10)
-      for (const std::size_t step : {1, 2, 4}) add(step * decade);
+      for (const std::size_t step : {1U, 2U, 4U}) add(step * decade);
   return taus;
 }
 

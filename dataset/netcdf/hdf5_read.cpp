@@ -152,10 +152,10 @@ std::string text_attribute(hid_t object, const std::string& owner,
 }
 
 std::string comment_of(hid_t object, const std::string& owner) {
-  constexpr const char* kName = "comment";
-  if (!has_attribute(object, owner, kName)) return {};
+  constexpr const char* kCommentName = "comment";
+  if (!has_attribute(object, owner, kCommentName)) return {};
   {
-    const H5Id attribute = open_attribute(object, owner, kName);
+    const H5Id attribute = open_attribute(object, owner, kCommentName);
     const H5Id type(H5Aget_type(attribute), H5Tclose, "read a type");
     const H5Id space(H5Aget_space(attribute), H5Sclose, "read a size");
     if (H5Tget_class(type) != H5T_STRING ||
@@ -163,7 +163,7 @@ std::string comment_of(hid_t object, const std::string& owner) {
         H5Sget_simple_extent_npoints(space) != 1)
       return {};
   }
-  return text_attribute(object, owner, kName);
+  return text_attribute(object, owner, kCommentName);
 }
 
 std::uint64_t integer_attribute(hid_t file, const char* name) {

@@ -11,9 +11,13 @@ namespace {
 constexpr std::string_view kPageTemplate =
 #include "validation/page/page_text.h"
     ;
+// Longer than a compiler has to take.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Woverlength-strings"
 constexpr std::string_view kChartJs =
 #include "validation/page/chart_js_text.h"
     ;
+#pragma GCC diagnostic pop
 
 // What the template holds in place of the two.
 constexpr std::string_view kChartJsMark = "/* CHART.JS */";

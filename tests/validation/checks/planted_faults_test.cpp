@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Compensators with a known fault, checked on simulated runs.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -198,7 +199,7 @@ Recording first_samples(const Recording& run, std::size_t samples) {
 
 TEST(PlantedFaults, RunsThatShowNothingFailNothing) {
   const FunctionCompensator compensator(sound);
-  for (const std::size_t samples : {0, 1, 2, 3, 50}) {
+  for (const std::size_t samples : {0U, 1U, 2U, 3U, 50U}) {
     const Recording run =
         first_samples(simulated_runs().back().recording, samples);
     CheckedCompensator all;

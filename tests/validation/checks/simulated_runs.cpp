@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tests/validation/checks/simulated_runs.h"
 
+#include <fmt/format.h>
+
 #include <map>
 
 #include "compensation/training/train.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/validation/metrics/metric_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "sim/signal/noise.h"

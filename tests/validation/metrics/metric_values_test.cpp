@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -195,7 +196,7 @@ TEST(MetricValues, TurnOnTimeIsThatOfTheLoops) {
 }
 
 /// Eleven rates over +-100 deg/s, up and down, 20 s each, at one temperature.
-SceneRun table_run(double temperature, SignalOfTime rate_to_answer) {
+SceneRun table_run(double temperature, const SignalOfTime& rate_to_answer) {
   const auto rate = [](double t) {
     const int step = static_cast<int>(t / 20);
     return 20.0 * (step < 11 ? step : 21 - step) - 100.0;

@@ -68,7 +68,7 @@ struct GivenEvidence {
 };
 
 /// Soaks of an hour at these temperatures.
-Signal soaks(std::vector<double> temperatures) {
+Signal soaks(const std::vector<double>& temperatures) {
   return [=](double t) {
     return temperatures.at(static_cast<std::size_t>(t / 3600.0));
   };

@@ -60,8 +60,8 @@ TEST(ReportPage, NamesNothingToLoad) {
 TEST(ReportPage, IsSmallWithEveryFigureFull) {
   const std::vector<double> values(300, -0.123456);
   nlohmann::ordered_json result;
-  for (int figure = 0; figure < 20; ++figure)
-    for (int series = 0; series < 8; ++series)
+  for (std::size_t figure = 0; figure < 20; ++figure)
+    for (std::size_t series = 0; series < 8; ++series)
       result["figures"][figure]["series"][series] = {
           {"name", "after, slow_ramp, rising"}, {"x", values}, {"y", values}};
   EXPECT_LT(page_of(result).size(), 2'000'000u);

@@ -34,7 +34,7 @@ TEST(VerdictOf, OneFailureOutweighsEverythingElse) {
        decided("c", Conformity::kFail)},
       {check("jacobian", CheckOutcome::kPassed)});
   EXPECT_EQ(verdict.verdict, Conformity::kFail);
-  EXPECT_NE(verdict.words.find("c"), std::string::npos);
+  EXPECT_NE(verdict.words.find('c'), std::string::npos);
   EXPECT_EQ(verdict.words.find("b,"), std::string::npos);
 }
 

@@ -51,6 +51,8 @@ struct BadFile {
   const char* message;
 };
 
+// GoogleTest looks for this name.
+// NOLINTNEXTLINE(readability-identifier-naming)
 void PrintTo(const BadFile& bad, std::ostream* out) { *out << bad.text; }
 
 class BadSpecification : public testing::TestWithParam<BadFile> {};
