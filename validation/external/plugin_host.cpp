@@ -15,6 +15,7 @@
 #include <csignal>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <new>
 #include <span>
 #include <stdexcept>
@@ -171,6 +172,9 @@ void answer_records(const Plugin& plugin, OpenFile& input) {
     if (errno == ENOMEM) throw std::bad_alloc();
     throw std::runtime_error("beamgyro_plugin_create() returned no instance");
   }
+  // Also when a sample or a reset is refused.
+  const std::unique_ptr<void, decltype(plugin.destroy)> owner(instance,
+                                                              plugin.destroy);
   // The library sees one sample at a time, and nothing of the next.
   std::vector<double> record(width);
   std::array<std::byte, kBatchBytes> batch{};
@@ -191,7 +195,6 @@ void answer_records(const Plugin& plugin, OpenFile& input) {
     held -= used;
     write_pending();
   }
-  plugin.destroy(instance);
 }
 
 // Takes over standard input and output: what the library prints goes to
