@@ -25,6 +25,7 @@ namespace beamgyro {
 namespace {
 
 constexpr const char* kColumn = "compensated_rate";
+constexpr const char* kSigmaColumn = "compensated_rate_sigma";
 
 constexpr int kCompensatorFailed = 3;
 
@@ -82,6 +83,9 @@ int compensate(const CompensateArguments& arguments) {
   if (report_faults(arguments.compensator, answer)) return kCompensatorFailed;
   warn_of_range(arguments, answer.clamped, recording);
   recording.columns.push_back(column_of(kColumn, std::move(answer.rate)));
+  if (!answer.sigma.empty())
+    recording.columns.push_back(
+        column_of(kSigmaColumn, std::move(answer.sigma)));
   recording.compensator = tested_name(arguments.compensator);
   if (is_file)
     recording.compensator_sha256 = sha256_of_file(arguments.compensator);

@@ -16,8 +16,8 @@ DATASET = ["dataset/files", "dataset/recording", "dataset/netcdf",
 SIM = ["sim/numerics", "sim/thermal", "sim/signal", "sim/memory",
        "sim/device", "sim/dynamics", "sim/scenario", "sim/campaign"]
 COMPENSATION = [f"compensation/{room}" for room in
-                ("inputs", "firmware", "models", "rows", "network",
-                 "methods", "compensator", "scoring", "training", "export")]
+                ("inputs", "firmware", "models", "uncertainty", "rows",
+                 "network", "methods", "compensator", "scoring", "training", "export")]
 
 VALIDATION = [f"validation/{room}" for room in
               ("external", "evidence", "metrics", "checks", "specification",

@@ -27,21 +27,35 @@ std::vector<double> corrected_rate(const BiasModel& bias,
   return rate;
 }
 
-}  // namespace
-
-std::vector<double> compensated_rate(const Compensator& compensator,
-                                     const Recording& recording) {
-  const TemperatureRange& range = compensator.temperature_range;
-  std::vector<double> rate =
-      corrected_rate(compensator.bias, compensator.inputs, range, recording);
+// Divides by s of the measured temperature.
+std::vector<double> over_scale_factor(std::vector<double> rate,
+                                      const Compensator& compensator,
+                                      const Recording& recording) {
   if (!compensator.scale_factor) return rate;
   // Clamped, and an error where it is not finite.
-  const Eigen::ArrayXXd temperature =
-      features_of({parse_input("temperature")}, recording, range);
+  const Eigen::ArrayXXd temperature = features_of(
+      {parse_input("temperature")}, recording, compensator.temperature_range);
   for (std::size_t k = 0; k < rate.size(); ++k)
     rate[k] /=
         compensator.scale_factor->at(temperature(static_cast<Eigen::Index>(k)));
   return rate;
+}
+
+}  // namespace
+
+std::vector<double> compensated_rate(const Compensator& compensator,
+                                     const Recording& recording) {
+  return over_scale_factor(
+      corrected_rate(compensator.bias, compensator.inputs,
+                     compensator.temperature_range, recording),
+      compensator, recording);
+}
+
+std::vector<double> compensated_rate_sigma(const Compensator& compensator,
+                                           const Recording& recording) {
+  if (!compensator.sigma) return {};
+  return over_scale_factor(sigma_of(*compensator.sigma, recording), compensator,
+                           recording);
 }
 
 std::vector<double> baseline_rate(const Compensator& compensator,

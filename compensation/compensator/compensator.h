@@ -13,6 +13,7 @@
 #include "compensation/methods/bias_model.h"
 #include "compensation/methods/population.h"
 #include "compensation/rows/run_source.h"
+#include "compensation/uncertainty/bias_sigma.h"
 #include "dataset/recording/recording.h"
 
 namespace beamgyro {
@@ -77,6 +78,8 @@ struct Compensator {
   // is its mean then.
   std::optional<Population> population = {};
   Provenance provenance;
+  // 1-sigma of the bias that is left; nothing where training could not tell it.
+  std::optional<BiasSigma> sigma = {};
 };
 
 /// Returns the compensated rate [deg/s] of every sample, NaN where unpowered.
@@ -85,8 +88,14 @@ struct Compensator {
 std::vector<double> compensated_rate(const Compensator& compensator,
                                      const Recording& recording);
 
-/// Returns the same for the baseline of the compensator, the cubic of equation
-/// (1), with s = 1.
+/// Returns the 1-sigma [deg/s] of the bias of every compensated rate, NaN where
+/// unpowered: sigma / s(T). Empty for a compensator without one. Throws
+/// std::invalid_argument as compensated_rate().
+std::vector<double> compensated_rate_sigma(const Compensator& compensator,
+                                           const Recording& recording);
+
+/// Returns the compensated rate of the baseline of the compensator, the cubic
+/// of equation (1), with s = 1.
 std::vector<double> baseline_rate(const Compensator& compensator,
                                   const Recording& recording);
 

@@ -12,6 +12,7 @@
 
 #include "compensation/compensator/bias_model_json.h"
 #include "compensation/methods/population_json.h"
+#include "compensation/uncertainty/bias_sigma_json.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/json_node.h"
 #include "dataset/files/text_file.h"
@@ -214,6 +215,20 @@ TemperatureRange read_range(const JsonNode& node) {
   return {ends[0], ends[1]};
 }
 
+// It must grow outside the temperatures of training.
+BiasSigma read_sigma(const JsonNode& node, const TemperatureRange& range) {
+  constexpr double kSlack = 1e-6;  // [K]
+  BiasSigma sigma = read_bias_sigma(node);
+  const Eigen::ArrayXd& T = sigma.curve.temperatures;
+  if (!(T(0) >= range.lowest - kSlack &&
+        T(T.size() - 1) <= range.highest + kSlack))
+    node.at("temperature_degC")
+        .fail(fmt::format("{} to {} degC, must lie within temperature_range_"
+                          "degC, {} to {}",
+                          T(0), T(T.size() - 1), range.lowest, range.highest));
+  return sigma;
+}
+
 void check_header(const JsonNode& root) {
   const JsonNode filetype = root.at("filetype");
   if (filetype.text() != kFiletype)
@@ -257,6 +272,8 @@ Compensator read_root(const JsonNode& root) {
   c.baseline = read_bias_model(root.at("baseline"), "polynomial", 1);
   if (root.has("population"))
     c.population = read_population(root.at("population"));
+  if (root.has("sigma"))
+    c.sigma = read_sigma(root.at("sigma"), c.temperature_range);
   c.provenance = read_provenance(root.at("training"));
   return c;
 }
@@ -280,6 +297,7 @@ std::string compensator_text(const Compensator& compensator) {
   json["baseline"]["kind"] = kind_name(c.baseline);
   put_bias_model(c.baseline, json["baseline"]);
   if (c.population) json["population"] = population_json(*c.population);
+  if (c.sigma) json["sigma"] = bias_sigma_json(*c.sigma);
   json["training"] = json_of(c.provenance);
   // A file name need not be UTF-8.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -2,7 +2,9 @@
 #include "dataset/files/json_node.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -31,6 +33,15 @@ JsonNode JsonNode::at(const std::string& key) const {
 
 bool JsonNode::has(const std::string& key) const {
   return value_->is_object() && value_->contains(key);
+}
+
+void JsonNode::require_only(
+    std::initializer_list<std::string_view> keys) const {
+  if (!value_->is_object()) expected("an object");
+  for (const auto& member : value_->items())
+    if (std::ranges::find(keys, member.key()) == keys.end())
+      fail(fmt::format("\"{}\" is not known here; known are {}",
+                       member.key().substr(0, 40), fmt::join(keys, ", ")));
 }
 
 bool JsonNode::is_null() const { return value_->is_null(); }

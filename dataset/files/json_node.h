@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -23,6 +24,8 @@ class JsonNode {
 
   JsonNode at(const std::string& key) const;  // member, must be there
   bool has(const std::string& key) const;
+  /// Fails for a member that is none of these, and lists them.
+  void require_only(std::initializer_list<std::string_view> keys) const;
   bool is_null() const;
   std::vector<JsonNode> elements() const;         // of an array
   double number() const;                          // finite

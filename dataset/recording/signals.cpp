@@ -44,6 +44,8 @@ constexpr RecordedSignal kSignals[] = {
      kTruth, "air_temperature"},
     {"compensated_rate", "degree/s", "rate after compensation",
      Role::kCompensated},
+    {"compensated_rate_sigma", "degree/s",
+     "1-sigma of the bias of the compensated rate", Role::kCompensated},
 };
 
 }  // namespace

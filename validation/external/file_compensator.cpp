@@ -28,6 +28,7 @@ class FileCompensator : public TestedCompensator {
       const Stopwatch watch;
       Answer& answer = all.emplace_back();
       answer.rate = compensated_rate(compensator_, *run);
+      answer.sigma = compensated_rate_sigma(compensator_, *run);
       answer.seconds = watch.seconds();
       answer.clamped = clamped_samples(compensator_, *run);
       add_fault_of_values(*run, answer);

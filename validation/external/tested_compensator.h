@@ -36,6 +36,8 @@ struct SeenFault {
 /// The answers of a compensator to one run.
 struct Answer {
   std::vector<double> rate;  // [deg/s], one per time; NaN where none came
+  // [deg/s], 1-sigma of the bias of each; empty where it tells none.
+  std::vector<double> sigma = {};
   std::vector<SeenFault> faults = {};
   std::size_t clamped = 0;  // samples outside what training saw, where known
   // Of wall clock, with the start of its processes; without it for a command

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compensation/inputs/features.h"
+#include "compensation/inputs/input.h"
+#include "compensation/models/lookup_table.h"
+#include "dataset/recording/recording.h"
+
+namespace beamgyro {
+
+/// What the 1-sigma over temperature was computed from.
+enum class SigmaSource {
+  kPosterior,   // of a Gaussian process: the spread of a population
+  kCovariance,  // of a least-squares fit, and the residuals between its groups
+  kResiduals,   // of runs that were held out
+};
+
+/// Time constants of the terms of power-on and temperature rate [s].
+constexpr double kSigmaTimeConstant = 300.0;
+
+/// A term of the variance that is the square of amplitude times an input.
+struct SigmaTerm {
+  double amplitude = 0.0;  // [deg/s], or [deg/s/(K/s)] of the temperature rate
+  double time_constant = kSigmaTimeConstant;  // [s], > 0
+
+  bool operator==(const SigmaTerm&) const = default;
+};
+
+/// How the factor and the amplitudes were calibrated.
+struct SigmaCalibration {
+  std::string method;      // in words
+  std::string by;          // "device", "run", "cycle", ...; "" without groups
+  std::size_t groups = 0;  // that the method had
+  double level = 0.0;      // [-], of the interval that covers; 0 without
+
+  bool operator==(const SigmaCalibration&) const = default;
+};
+
+/// 1-sigma of the bias of a compensated rate [deg/s]:
+///
+///   sigma^2 = k^2 {s(T)^2 + (a_on exp(-t / tau_on))^2 + (a_rate r)^2}
+///
+/// T is the measured temperature, t the time since power-on and r the input
+/// temperature_rate(tau_rate) [K/s]. Unlike the inputs of a bias, they are not
+/// clamped. s(T) has straight lines between the values of `curve`. Beyond them,
+/// by d [K], it grows: s^2 = s_end^2 + (growth d)^2.
+struct BiasSigma {
+  LookupTable curve;               // [deg/s], > 0
+  std::array<double, 2> growth{};  // [deg/s/K], > 0, below and above the curve
+  std::optional<SigmaTerm> power_on;          // a_on and tau_on
+  std::optional<SigmaTerm> temperature_rate;  // a_rate and tau_rate
+  double factor = 1.0;                        // k [-], > 0
+  SigmaSource source = SigmaSource::kResiduals;
+  SigmaCalibration calibration;
+
+  /// Returns s(T) [deg/s] without the factor.
+  double curve_at(double temperature) const;
+
+  /// Returns sigma [deg/s] at a temperature [degC], exp(-t / tau_on) and a
+  /// temperature rate [K/s].
+  double at(double temperature, double since_power_on,
+            double temperature_rate) const;
+
+  /// Returns the inputs that at() takes, in its order.
+  std::vector<Input> inputs() const;
+};
+
+/// Computes sigma sample by sample, as firmware would. It starts anew at every
+/// power-on, as FeatureStream does.
+class BiasSigmaStream {
+ public:
+  explicit BiasSigmaStream(BiasSigma sigma);
+
+  /// Returns sigma [deg/s] of the sample at `time` [s], NaN for an unpowered
+  /// one. Throws std::invalid_argument for a temperature [degC] that is not
+  /// finite though the gyro is powered.
+  double step(double time, std::uint8_t status, double temperature);
+
+ private:
+  BiasSigma sigma_;
+  FeatureStream features_;
+};
+
+/// Returns sigma [deg/s] of every sample, NaN where unpowered. Throws
+/// std::invalid_argument as features_of().
+std::vector<double> sigma_of(const BiasSigma& sigma,
+                             const Recording& recording);
+
+}  // namespace beamgyro

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/uncertainty/bias_sigma_json.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "compensation/models/array_view.h"
+#include "compensation/models/parameter_json.h"
+
+namespace beamgyro {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr SigmaSource kSigmaSources[] = {
+    SigmaSource::kPosterior, SigmaSource::kCovariance, SigmaSource::kResiduals};
+constexpr std::string_view kPowerOnAmplitude = "sigma_deg_per_s";
+constexpr std::string_view kRateAmplitude = "sigma_deg_per_s_per_K_per_s";
+constexpr long kMostGroups = 1000000000;
+
+Json term_json(const SigmaTerm& term, std::string_view amplitude) {
+  return {{std::string(amplitude), finite_json(term.amplitude)},
+          {"time_constant_s", finite_json(term.time_constant)}};
+}
+
+std::optional<SigmaTerm> read_term(const JsonNode& sigma,
+                                   const std::string& name,
+                                   std::string_view amplitude) {
+  if (!sigma.has(name)) return std::nullopt;
+  const JsonNode node = sigma.at(name);
+  node.require_only({amplitude, "time_constant_s"});
+  const JsonNode value = node.at(std::string(amplitude));
+  const double number = value.number();
+  if (!(number >= 0.0))
+    value.fail(fmt::format("{}, must not be below 0", number));
+  return SigmaTerm{number, read_positive(node.at("time_constant_s"))};
+}
+
+SigmaSource read_source(const JsonNode& node) {
+  const std::string name = node.text();
+  for (const SigmaSource source : kSigmaSources)
+    if (name == sigma_source_name(source)) return source;
+  node.fail(fmt::format(
+      "\"{}\", must be \"posterior\", \"covariance\" or \"residuals\"", name));
+}
+
+SigmaCalibration read_calibration(const JsonNode& node) {
+  node.require_only({"method", "by", "groups", "level"});
+  SigmaCalibration calibration{
+      node.at("method").text(), node.at("by").text(),
+      static_cast<std::size_t>(node.at("groups").integer(0, kMostGroups)),
+      node.at("level").number()};
+  if (!(calibration.level >= 0.0 && calibration.level < 1.0))
+    node.at("level").fail(
+        fmt::format("{}, must be 0 or above and below 1", calibration.level));
+  return calibration;
+}
+
+LookupTable read_curve(const JsonNode& node) {
+  const JsonNode temperatures = node.at("temperature_degC");
+  const JsonNode sigmas = node.at("sigma_deg_per_s");
+  LookupTable curve{read_array(temperatures), read_array(sigmas)};
+  const Eigen::ArrayXd& T = curve.temperatures;
+  if (T.size() < 1) temperatures.fail("[], must have at least one temperature");
+  if (!(T.tail(T.size() - 1) > T.head(T.size() - 1)).all())
+    temperatures.fail("must increase");
+  if (curve.values.size() != T.size())
+    sigmas.fail(fmt::format("{} values for {} temperatures, must be as many",
+                            curve.values.size(), T.size()));
+  for (const JsonNode& each : sigmas.elements()) read_positive(each);
+  return curve;
+}
+
+}  // namespace
+
+std::string sigma_source_name(SigmaSource source) {
+  switch (source) {
+    case SigmaSource::kPosterior:
+      return "posterior";
+    case SigmaSource::kCovariance:
+      return "covariance";
+    case SigmaSource::kResiduals:
+      break;
+  }
+  return "residuals";
+}
+
+Json bias_sigma_json(const BiasSigma& sigma) {
+  Json json = {{"temperature_degC", numbers_json(sigma.curve.temperatures)},
+               {"sigma_deg_per_s", numbers_json(sigma.curve.values)},
+               {"growth_deg_per_s_per_K", numbers_json(sigma.growth)}};
+  if (sigma.power_on)
+    json["power_on"] = term_json(*sigma.power_on, kPowerOnAmplitude);
+  if (sigma.temperature_rate)
+    json["temperature_rate"] =
+        term_json(*sigma.temperature_rate, kRateAmplitude);
+  json["factor"] = finite_json(sigma.factor);
+  json["source"] = sigma_source_name(sigma.source);
+  json["calibration"] = {{"method", sigma.calibration.method},
+                         {"by", sigma.calibration.by},
+                         {"groups", sigma.calibration.groups},
+                         {"level", finite_json(sigma.calibration.level)}};
+  return json;
+}
+
+BiasSigma read_bias_sigma(const JsonNode& node) {
+  node.require_only({"temperature_degC", "sigma_deg_per_s",
+                     "growth_deg_per_s_per_K", "power_on", "temperature_rate",
+                     "factor", "source", "calibration"});
+  BiasSigma sigma;
+  sigma.curve = read_curve(node);
+  const std::vector<JsonNode> growth =
+      node.at("growth_deg_per_s_per_K").elements();
+  if (growth.size() != 2)
+    node.at("growth_deg_per_s_per_K")
+        .fail(fmt::format("{} values, must be [below, above]", growth.size()));
+  sigma.growth = {read_positive(growth[0]), read_positive(growth[1])};
+  sigma.power_on = read_term(node, "power_on", kPowerOnAmplitude);
+  sigma.temperature_rate = read_term(node, "temperature_rate", kRateAmplitude);
+  sigma.factor = read_positive(node.at("factor"));
+  sigma.source = read_source(node.at("source"));
+  sigma.calibration = read_calibration(node.at("calibration"));
+  return sigma;
+}
+
+}  // namespace beamgyro

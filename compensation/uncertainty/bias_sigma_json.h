@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "compensation/uncertainty/bias_sigma.h"
+#include "dataset/files/json_node.h"
+
+namespace beamgyro {
+
+/// "posterior", "covariance" or "residuals".
+std::string sigma_source_name(SigmaSource source);
+
+/// Returns the member `sigma` of a compensator file. Throws std::runtime_error
+/// for a number that is not finite.
+nlohmann::ordered_json bias_sigma_json(const BiasSigma& sigma);
+
+/// Reads it. Throws std::invalid_argument, naming file and key, for
+/// - a key that is missing or not known, or a value of the wrong type;
+/// - no temperatures, temperatures that do not increase or lie beyond absolute
+///   zero, or another number of sigmas;
+/// - a sigma, growth, time constant or factor that is not above 0 and finite,
+///   and an amplitude that is below 0;
+/// - a source or level that is not one.
+BiasSigma read_bias_sigma(const JsonNode& node);
+
+}  // namespace beamgyro
