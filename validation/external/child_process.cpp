@@ -180,6 +180,25 @@ ChildProcess::~ChildProcess() {
   }
 }
 
+bool read_available(std::optional<OpenFile>& pipe, std::string& into) {
+  std::array<char, 1 << 16> bytes;
+  const ssize_t n = ::read(pipe->descriptor(), bytes.data(), bytes.size());
+  if (n > 0) {
+    into.append(bytes.data(), static_cast<std::size_t>(n));
+    return true;
+  }
+  if (n == 0 || (errno != EAGAIN && errno != EINTR)) pipe.reset();
+  return false;
+}
+
+std::size_t write_available(std::optional<OpenFile>& pipe,
+                            std::string_view bytes) {
+  const ssize_t n = ::write(pipe->descriptor(), bytes.data(), bytes.size());
+  if (n > 0) return static_cast<std::size_t>(n);
+  if (errno != EAGAIN && errno != EINTR) pipe.reset();
+  return 0;
+}
+
 void kill_child_processes() noexcept {
   for (const std::atomic<pid_t>& group : live_groups)
     if (const pid_t id = group; id > 0) ::kill(-id, SIGKILL);

@@ -3,8 +3,11 @@
 
 #include <sys/types.h>
 
+#include <csignal>
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dataset/files/open_file.h"
@@ -52,6 +55,16 @@ class ChildProcess {
   std::size_t slot_ = 0;  // in the table of processes
   bool killed_ = false;
 };
+
+/// Appends to `into` what a pipe of a child holds and closes it at its end.
+/// Returns whether there was something.
+bool read_available(std::optional<OpenFile>& pipe, std::string& into);
+
+/// Writes as much of `bytes` as the pipe to a child takes and closes it when
+/// the child no longer reads. Returns how many it took. Call within a
+/// NoBrokenPipeSignal.
+std::size_t write_available(std::optional<OpenFile>& pipe,
+                            std::string_view bytes);
 
 /// Kills the process groups of all ChildProcess. May be called from a signal
 /// handler that ends this process.

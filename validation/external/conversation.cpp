@@ -4,11 +4,9 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -76,8 +74,6 @@ class Conversation {
  private:
   void prepare();
   void exchange();
-  bool write_some();
-  bool read_some(std::optional<OpenFile>& file, std::string& into);
   void take_answers(bool at_end);
   void check_time();
   void close_pipes();
@@ -138,37 +134,18 @@ void Conversation::exchange() {
       std::clamp(std::ceil(1e3 * std::min(left, 1.0)), 0.0, 1e3));
   if (::poll(waits.data(), waits.size(), longest) <= 0) return;
   bool progress = false;
-  if (waits[0].revents != 0) progress = write_some();
-  if (waits[1].revents != 0 && read_some(process_.output(), received_))
+  if (waits[0].revents != 0) {
+    // A process that reads no more is judged by what it answered.
+    const std::size_t taken = write_available(
+        process_.input(), std::string_view(sending_).substr(written_));
+    written_ += taken;
+    progress = taken > 0;
+  }
+  if (waits[1].revents != 0 && read_available(process_.output(), received_))
     progress = true;
-  if (waits[2].revents != 0) read_some(process_.error(), error_);
+  if (waits[2].revents != 0) read_available(process_.error(), error_);
   keep_tail(error_);
   if (progress) since_progress_ = Stopwatch();
-}
-
-// Returns whether bytes went. A process that reads no more is judged by what
-// it answered.
-bool Conversation::write_some() {
-  const ssize_t n =
-      ::write(process_.input()->descriptor(), sending_.data() + written_,
-              sending_.size() - written_);
-  if (n > 0) {
-    written_ += static_cast<std::size_t>(n);
-    return true;
-  }
-  if (errno != EAGAIN && errno != EINTR) process_.input().reset();
-  return false;
-}
-
-bool Conversation::read_some(std::optional<OpenFile>& file, std::string& into) {
-  std::array<char, 1 << 16> bytes;
-  const ssize_t n = ::read(file->descriptor(), bytes.data(), bytes.size());
-  if (n > 0) {
-    into.append(bytes.data(), static_cast<std::size_t>(n));
-    return true;
-  }
-  if (n == 0 || (errno != EAGAIN && errno != EINTR)) file.reset();
-  return false;
 }
 
 void Conversation::take_answers(bool at_end) {

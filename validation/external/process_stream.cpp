@@ -3,11 +3,10 @@
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "validation/external/answering.h"
@@ -31,7 +30,6 @@ class ProcessStream : public CompensatorStream {
   void start(const Recording& sample, double period);
   void send(const Recording& sample, bool starts);
   void exchange(short input_events, int longest);
-  bool read_some(std::optional<OpenFile>& file, std::string& into);
   void take_answers(bool at_end);
   void end_stretch();
   void fail(AnswerFault fault, const std::string& words);
@@ -118,33 +116,18 @@ void ProcessStream::exchange(short input_events, int longest) {
                                  entry(process_->error(), POLLIN)};
   if (input_events == 0) waits[0].fd = -1;
   if (::poll(waits.data(), waits.size(), longest) <= 0) return;
-  if (waits[1].revents != 0) read_some(process_->output(), received_);
-  if (waits[2].revents != 0) read_some(process_->error(), error_);
+  if (waits[1].revents != 0 && read_available(process_->output(), received_))
+    since_progress_ = Stopwatch();
+  if (waits[2].revents != 0 && read_available(process_->error(), error_))
+    since_progress_ = Stopwatch();
   keep_tail(error_);
   if (waits[0].revents == 0) return;
   const NoBrokenPipeSignal no_signal;
-  const ssize_t n =
-      ::write(process_->input()->descriptor(), sending_.data() + written_,
-              sending_.size() - written_);
-  if (n > 0) {
-    written_ += static_cast<std::size_t>(n);
-    since_progress_ = Stopwatch();
-  } else if (errno != EAGAIN && errno != EINTR) {
-    process_->input().reset();
-  }
-}
-
-bool ProcessStream::read_some(std::optional<OpenFile>& file,
-                              std::string& into) {
-  std::array<char, 1 << 16> bytes;
-  const ssize_t n = ::read(file->descriptor(), bytes.data(), bytes.size());
-  if (n > 0) {
-    into.append(bytes.data(), static_cast<std::size_t>(n));
-    since_progress_ = Stopwatch();
-    return true;
-  }
-  if (n == 0 || (errno != EAGAIN && errno != EINTR)) file.reset();
-  return false;
+  const std::size_t taken = write_available(
+      process_->input(), std::string_view(sending_).substr(written_));
+  if (taken == 0) return;
+  written_ += taken;
+  since_progress_ = Stopwatch();
 }
 
 void ProcessStream::take_answers(bool at_end) {
