@@ -208,7 +208,7 @@ class Interrupt(Terminal):
     def test_it_ends_a_loop_of_the_shell(self):
         self.write("s.toml", LONG)
         loop = f"for i in 1 2 3; do {PROGRAM} run s.toml -o $i.h5; " \
-               "echo went on; done; echo to the end"
+               "echo went on after $?; done; echo to the end"
         screen = Screen(["/bin/bash", "-c", loop], self.dir)
         self.addCleanup(self.end, screen)
         self.assertTrue(screen.read_for(20, CLOCK))

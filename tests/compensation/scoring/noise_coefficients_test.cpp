@@ -21,60 +21,17 @@ constexpr std::size_t kSamples = 1 << 18;  // 44 min
 constexpr double kPole = 0.02;             // [s], each of two equal ones
 constexpr double kN = 0.01, kB = 0.005, kK = 1e-3, kQ = 1e-3;  // [deg], [s]
 
-std::vector<double> normals(RandomPurpose purpose, std::size_t count,
-                            std::uint32_t run = 0) {
-  RandomStream stream(20240607, 0, run, purpose);
-  std::vector<double> values(count);
-  stream.fill_normal(values);
-  return values;
-}
+const NoiseSamples kRecord(kSamples, kInterval, 0);
 
-std::vector<double> white() {
-  auto rates = normals(RandomPurpose{0}, kSamples);
-  for (double& rate : rates) rate *= kN / std::sqrt(kInterval);
+std::vector<double> times(std::vector<double> rates, double factor) {
+  for (double& rate : rates) rate *= factor;
   return rates;
 }
 
-// The walk at the end of each sample.
-std::vector<double> random_walk() {
-  auto rates = normals(RandomPurpose{2}, kSamples);
-  double sum = 0.0;
-  for (double& rate : rates) {
-    sum += kK * std::sqrt(kInterval) * rate;
-    rate = sum;
-  }
-  return rates;
-}
-
-// Spectrum B^2/(2 pi f): processes of one pole each, whose time constants
-// double from a quarter of a sample to four times the record and whose variance
-// is (B^2/pi) ln 2.
-std::vector<double> flicker() {
-  std::vector<double> rates(kSamples, 0.0);
-  const double deviation = kB * std::sqrt(std::numbers::ln2 / std::numbers::pi);
-  std::uint32_t run = 0;
-  for (double time_constant = kInterval / 4.0;
-       time_constant < 4.0 * kInterval * kSamples; time_constant *= 2.0) {
-    const auto noise = normals(RandomPurpose{1}, kSamples + 1, run++);
-    const double keep = std::exp(-kInterval / time_constant);
-    const double renew = deviation * std::sqrt(1.0 - keep * keep);
-    double state = deviation * noise[kSamples];
-    for (std::size_t k = 0; k < kSamples; ++k) {
-      rates[k] += state;
-      state = keep * state + renew * noise[k];
-    }
-  }
-  return rates;
-}
-
-// Errors of Q in the angles at both ends of a sample.
-std::vector<double> quantisation() {
-  const auto errors = normals(RandomPurpose{5}, kSamples + 1);
-  std::vector<double> rates(kSamples);
-  for (std::size_t k = 0; k < kSamples; ++k)
-    rates[k] = kQ * (errors[k + 1] - errors[k]) / kInterval;
-  return rates;
-}
+std::vector<double> white() { return times(kRecord.white(), kN); }
+std::vector<double> random_walk() { return times(kRecord.random_walk(), kK); }
+std::vector<double> flicker() { return times(kRecord.flicker(), kB); }
+std::vector<double> quantisation() { return times(kRecord.quantisation(), kQ); }
 
 std::vector<double> sum(std::vector<double> rates,
                         const std::vector<double>& more) {
@@ -95,11 +52,7 @@ std::vector<double> band_limited(std::vector<double> rates) {
 }
 
 EvenSeries series_of(const std::vector<double>& rates) {
-  EvenSeries series;
-  series.stretches.push_back(rates);
-  series.interval = kInterval;
-  series.samples = rates.size();
-  return series;
+  return beamgyro::series_of(rates, kInterval);
 }
 
 // One sample in seven lacks.
@@ -361,41 +314,36 @@ void expect_coverage(Find coefficient, double truth, Make rates) {
 }
 
 TEST(NoiseCoefficients, HaveIntervalsThatHoldTheTruth) {
-  const auto times = [](std::vector<double> rates, double factor) {
-    for (double& rate : rates) rate *= factor;
-    return rates;
-  };
   {
     SCOPED_TRACE("quantisation");
-    expect_coverage(
-        &NoiseCoefficients::angle_quantisation, 0.5,
-        [&](const auto& s) { return times(s.quantisation(), 0.5); });
+    expect_coverage(&NoiseCoefficients::angle_quantisation, 0.5,
+                    [](const auto& s) { return times(s.quantisation(), 0.5); });
   }
   {
     SCOPED_TRACE("white");
     expect_coverage(&NoiseCoefficients::angle_random_walk, 0.5,
-                    [&](const auto& s) { return times(s.white(), 0.5); });
+                    [](const auto& s) { return times(s.white(), 0.5); });
   }
   {
     SCOPED_TRACE("flicker");
     expect_coverage(&NoiseCoefficients::bias_instability, 0.5,
-                    [&](const auto& s) { return times(s.flicker(), 0.5); });
+                    [](const auto& s) { return times(s.flicker(), 0.5); });
   }
   {
     SCOPED_TRACE("random walk");
     expect_coverage(&NoiseCoefficients::rate_random_walk, 0.5,
-                    [&](const auto& s) { return times(s.random_walk(), 0.5); });
+                    [](const auto& s) { return times(s.random_walk(), 0.5); });
   }
   {
     SCOPED_TRACE("ramp");
-    expect_coverage(&NoiseCoefficients::rate_ramp, 0.2, [&](const auto& s) {
+    expect_coverage(&NoiseCoefficients::rate_ramp, 0.2, [](const auto& s) {
       return sum(s.white(), times(s.ramp(), 0.2));
     });
   }
   {
     SCOPED_TRACE("white noise on flicker");
     expect_coverage(&NoiseCoefficients::bias_instability, 1.0,
-                    [&](const auto& s) { return sum(s.white(), s.flicker()); });
+                    [](const auto& s) { return sum(s.white(), s.flicker()); });
   }
 }
 

@@ -332,32 +332,11 @@ TEST(MetricCoverage, LowestAllanDeviation) {
           {.angle_random_walk = N, .rate_random_walk = K}));
 }
 
-constexpr double kGravity = 9.80665;  // [m/s2]
-
 TEST(MetricCoverage, Tumble) {
   const auto scenes = scenes_of(
       [](const NoiseLevels& noise, std::uint64_t seed) {
-        const auto axis = [](int number) {
-          return [number](double t) {
-            const int hold = static_cast<int>(t / 60);
-            if (hold / 8 != number) return 0.0;
-            return hold % 2 == 0 ? kGravity : -kGravity;
-          };
-        };
         Scene scene;
-        scene.add({kTumble,
-                   {.duration = 1440,
-                    .step = 1,
-                    .bias =
-                        [=](double t) {
-                          return 0.3 + (0.02 * axis(0)(t) + 0.01 * axis(1)(t) +
-                                        0.005 * axis(2)(t)) /
-                                           kGravity;
-                        }},
-                   {{"true_acceleration_x", axis(0)},
-                    {"true_acceleration_y", axis(1)},
-                    {"true_acceleration_z", axis(2)}}},
-                  noise, seed);
+        scene.add(tumble_run(0, {0.02, 0.01, 0.005}), noise, seed);
         return scene;
       },
       kNominalNoise);
@@ -387,7 +366,7 @@ TEST(MetricCoverage, Vibration) {
                           return 0.002 * y(t) * y(t) + 0.003 * turn(t);
                         }},
                    {{"true_acceleration_y",
-                     [=](double t) { return kGravity * y(t); }},
+                     [=](double t) { return kStandardGravity * y(t); }},
                     {"true_cross_rate_x", turn}}},
                   noise, seed);
         return scene;

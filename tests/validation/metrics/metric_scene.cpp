@@ -87,4 +87,25 @@ SignalOfTime soak_temperatures(std::vector<double> temperatures, double hold) {
   };
 }
 
+SceneRun tumble_run(double drift, const std::array<double, 3>& sensitivities) {
+  const auto axis = [](int number) {
+    return [number](double t) {
+      const int hold = static_cast<int>(t / 60);
+      if (hold / 8 != number) return 0.0;
+      return hold % 2 == 0 ? kStandardGravity : -kStandardGravity;
+    };
+  };
+  const auto bias = [drift, sensitivities, axis](double t) {
+    double sum = 0.0;
+    for (int j = 0; j < 3; ++j)
+      sum += sensitivities[static_cast<std::size_t>(j)] * axis(j)(t);
+    return 0.3 + drift * t + sum / kStandardGravity;
+  };
+  return {RunPurpose::kTumble,
+          {.duration = 1440, .step = 1, .bias = bias},
+          {{"true_acceleration_x", axis(0)},
+           {"true_acceleration_y", axis(1)},
+           {"true_acceleration_z", axis(2)}}};
+}
+
 }  // namespace beamgyro

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <string>
@@ -43,5 +44,12 @@ Estimate evaluated(const std::string& metric, const Evidence& evidence);
 
 /// Soaks of `hold` [s] at each temperature, joined by slopes of 300 s.
 SignalOfTime soak_temperatures(std::vector<double> temperatures, double hold);
+
+inline constexpr double kStandardGravity = 9.80665;  // [m/s2]
+
+/// Each axis in turn up and down four times, 60 s each. The bias is 0.3 deg/s,
+/// drifts by `drift` [deg/s/s], and follows the acceleration of each axis by
+/// `sensitivities` [deg/s/g].
+SceneRun tumble_run(double drift, const std::array<double, 3>& sensitivities);
 
 }  // namespace beamgyro

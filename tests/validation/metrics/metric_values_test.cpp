@@ -355,32 +355,9 @@ TEST(MetricValues, DelayOfARandomRate) {
   }
 }
 
-constexpr double kGravity = 9.80665;  // [m/s2]
-
-/// Each axis in turn up and down four times, 60 s each, beside a drift.
 Scene tumble_scene(const NoiseLevels& noise, std::uint64_t seed) {
-  const auto axis = [](int number) {
-    return [number](double t) {
-      const int hold = static_cast<int>(t / 60);
-      if (hold / 8 != number) return 0.0;
-      return hold % 2 == 0 ? kGravity : -kGravity;
-    };
-  };
   Scene scene;
-  scene.add({kTumble,
-             {.duration = 1440,
-              .step = 1,
-              .bias =
-                  [=](double t) {
-                    return 0.3 + 1e-5 * t +
-                           (0.02 * axis(0)(t) - 0.01 * axis(1)(t) +
-                            0.005 * axis(2)(t)) /
-                               kGravity;
-                  }},
-             {{"true_acceleration_x", axis(0)},
-              {"true_acceleration_y", axis(1)},
-              {"true_acceleration_z", axis(2)}}},
-            noise, seed);
+  scene.add(tumble_run(1e-5, {0.02, -0.01, 0.005}), noise, seed);
   return scene;
 }
 
@@ -423,19 +400,19 @@ Scene vibration_scene(const NoiseLevels& noise, std::uint64_t seed) {
     return t < 1500 ? 0.0 : t < 1800 ? 60.0 : -60.0;
   };
   Scene scene;
-  scene.add(
-      {kVibration,
-       {.duration = 2100,
-        .step = 0.5,
-        .bias =
-            [=](double t) {
-              return 0.3 + 0.02 * y(t) + 0.002 * y(t) * y(t) +
-                     0.001 * turn_x(t) - 0.003 * turn_y(t);
-            }},
-       {{"true_acceleration_y", [=](double t) { return kGravity * y(t); }},
-        {"true_cross_rate_x", turn_x},
-        {"true_cross_rate_y", turn_y}}},
-      noise, seed);
+  scene.add({kVibration,
+             {.duration = 2100,
+              .step = 0.5,
+              .bias =
+                  [=](double t) {
+                    return 0.3 + 0.02 * y(t) + 0.002 * y(t) * y(t) +
+                           0.001 * turn_x(t) - 0.003 * turn_y(t);
+                  }},
+             {{"true_acceleration_y",
+               [=](double t) { return kStandardGravity * y(t); }},
+              {"true_cross_rate_x", turn_x},
+              {"true_cross_rate_y", turn_y}}},
+            noise, seed);
   return scene;
 }
 

@@ -1,0 +1,357 @@
+# SPDX-License-Identifier: MIT
+"""`validate --device`: bundles, and where a validation writes."""
+
+import hashlib
+import json
+import resource
+import signal
+import subprocess
+import time
+import unittest
+
+from program import PROGRAM
+from qualified import Qualified
+
+
+class Bundles(Qualified):
+    def bundle(self, *arguments, model="cubic.toml"):
+        answer = self.beamgyro(
+            "validate", model, "--device", "device.toml", "--qualification",
+            "q.toml", "--bundle", "bundle", *arguments)
+        self.assertIn(answer.returncode, (0, 3), answer.stderr)
+        return answer
+
+    def check(self, status):
+        answer = self.beamgyro("validate", "--check", "bundle")
+        self.assertEqual(answer.returncode, status,
+                         answer.stdout + answer.stderr)
+        return answer.stdout
+
+    def test_a_bundle_is_made_again(self):
+        told = self.bundle("--spec", "spec.toml", "--campaign",
+                           "campaign.toml", "--devices", 2)
+        for name in ["device.toml", "q.toml", "cubic.toml", "ramp.toml",
+                     "warm_up.toml", "spec.toml", "campaign.toml"]:
+            (self.dir / name).unlink()  # the bundle needs none of them
+        (self.dir / "bundle").rename(self.dir / "elsewhere")
+        (self.dir / "elsewhere").rename(self.dir / "bundle")
+        self.assertIn("are the same", self.check(0))
+        self.assertEqual((self.dir / "bundle/report.txt").read_text(),
+                         told.stdout)
+
+    def test_a_changed_file_is_named(self):
+        self.bundle()
+        for name in ["result.json", "report.txt", "report/index.html",
+                     "inputs/device/device.toml",
+                     "inputs/qualification/ramp.toml",
+                     "inputs/compensator/cubic.toml"]:
+            path = self.dir / "bundle" / name
+            whole = path.read_bytes()
+            with self.subTest(name):
+                path.write_bytes(whole + b" ")
+                self.assertIn(name, self.check(1))
+                path.unlink()
+                self.assertIn(name, self.check(1))
+            path.write_bytes(whole)
+        self.check(0)
+
+    def test_a_result_of_other_inputs_is_told_by_its_bytes(self):
+        """A bundle whose result was improved by hand, hash and all."""
+        self.bundle()
+        path = self.dir / "bundle/result.json"
+        said = json.loads(path.read_text())
+        said["verdict"] = "pass"
+        said["words"] = "all is well"
+        path.write_text(json.dumps(said, indent=2) + "\n")
+        self.assertIn("result.json", self.check(1))
+
+    def test_recordings_are_bundled_too(self):
+        self.ok("run", "ramp.toml", "-o", "ramp.h5")
+        self.ok("run", "ramp.toml", "--seed", 3, "-o", "t.h5")
+        self.ok("train", "t.h5", "--model", "cubic.toml", "-o", "c.json")
+        answer = self.beamgyro("validate", "c.json", "ramp.h5", "--bundle",
+                               "bundle")
+        self.assertIn(answer.returncode, (0, 3), answer.stderr)
+        for path in self.dir.glob("*.h5"):
+            path.unlink()
+        self.check(0)
+
+    def test_the_bundle_of_a_command_runs_it_again(self):
+        self.write("same.py", "import sys\nrate = sys.stdin.readline()"
+                   ".strip().split(',').index('rate')\n"
+                   "for line in sys.stdin:\n"
+                   "    print(line.split(',')[rate].strip())\n")
+        answer = self.bundle(model="cmd:/usr/bin/python3 same.py")
+        self.assertIn("residual_rms_deg_per_s: 1 [", answer.stdout)
+        self.check(0)
+        told = self.beamgyro("validate", "--check", "bundle", "--timeout-s", 9)
+        self.assertEqual(told.returncode, 0, told.stderr)
+        self.assertIn("bundle: runs cmd:/usr/bin/python3 same.py", told.stderr)
+        (self.dir / "same.py").write_text("print(0)\n")
+        self.assertIn("result.json", self.check(1))
+
+    def altered(self, change):
+        """Alters bundle.json, and returns the text that it had."""
+        path = self.dir / "bundle/bundle.json"
+        whole = path.read_text()
+        said = json.loads(whole)
+        change(said)
+        path.write_text(json.dumps(said, indent=2, ensure_ascii=False) + "\n")
+        self.assertNotEqual(path.read_text(), whole)
+        return whole
+
+    def test_bundle_json_that_was_edited_is_refused(self):
+        self.bundle("--spec", "spec.toml")
+        outside = self.dir / "cubic.toml"
+
+        def put(key, value):
+            return lambda said: said["request"].update({key: value})
+
+        def entry(number, **keys):
+            return lambda said: said["inputs"][number].update(keys)
+
+        for change, says in [
+                (put("compensator", str(outside)),
+                 ["request.compensator", str(outside)]),
+                (put("compensator", "../cubic.toml"), "../cubic.toml"),
+                (put("compensator", "inputs/../../cubic.toml"),
+                 "request.compensator"),
+                (put("compensator", "inputs/compensator/other.toml"),
+                 ["other.toml", "inputs"]),
+                (put("device", "../device.toml"), "request.device"),
+                (put("qualification", "/etc/passwd"), "request.qualification"),
+                (put("qualification", None), "request.qualification"),
+                (put("specification", "spec.toml"), "request.specification"),
+                (put("workbench", "../c.json"), "request.workbench"),
+                (put("campaign", "../campaign.toml"), "request.campaign"),
+                (put("runs", ["inputs/device/device.toml"]), "request"),
+                (put("devices", 5), ["request.devices", "campaign"]),
+                (put("full_scale_deg_per_s", 50), "full_scale_deg_per_s"),
+                (put("limits", {}), ["request", '"limits"', "unknown key"]),
+                (lambda said: said.update(verdict="pass"), '"verdict"'),
+                (entry(0, note=""), ["inputs[0]", '"note"']),
+                (entry(0, file="../../../../etc/passwd"),
+                 ["inputs[0].file", "etc/passwd"]),
+                (entry(0, file="/etc/passwd"), "inputs[0].file"),
+                (entry(0, file="inputs//device"), "inputs[0].file"),
+                (entry(0, file="inputs/./device"), "inputs[0].file"),
+                (entry(0, file=""), "inputs[0].file"),
+                (entry(0, file="result.json"), "inputs[0].file"),
+                (lambda said: said["outputs"][0].update(file="../v.json"),
+                 "outputs[0].file"),
+                (lambda said: said.update(inputs=[]), "request.compensator"),
+                (lambda said: said["inputs"].pop(0), "is not in"),
+                (lambda said: said["inputs"].append(said["inputs"][0]),
+                 ["inputs[", "twice"])]:
+            whole = self.altered(change)
+            with self.subTest(says):
+                self.rejected("validate", "--check", "bundle", says=says)
+            (self.dir / "bundle/bundle.json").write_text(whole)
+        self.check(0)
+
+    def test_bundle_json_of_other_files_is_not_the_same(self):
+        self.bundle()
+        names = [file["file"] for file in json.loads(
+            (self.dir / "bundle/bundle.json").read_text())["inputs"]]
+        ramp_number = names.index("inputs/qualification/ramp.toml")
+
+        def zeros(said):
+            said["outputs"][0]["sha256"] = "0" * 64
+
+        for change, says in [
+                (lambda said: said["inputs"].pop(ramp_number),
+                 "ramp.toml: is not listed"),
+                (zeros, "result.json: is not the same"),
+                (lambda said: said["outputs"].pop(),
+                 "index.html: is not listed"),
+                (lambda said: said["inputs"].reverse(),
+                 "bundle.json: is not the same")]:
+            whole = self.altered(change)
+            with self.subTest(says):
+                self.assertIn(says, self.check(1))
+            (self.dir / "bundle/bundle.json").write_text(whole)
+
+    def test_files_that_are_not_listed_are_named(self):
+        self.bundle()
+        for name in ["inputs/device/other.toml", "inputs/note.txt",
+                     "read_me_first.txt", "report/second.html"]:
+            path = self.dir / "bundle" / name
+            path.write_text("A better result.\n")
+            with self.subTest(name):
+                self.assertIn(f"{name}: is not listed", self.check(1))
+            path.unlink()
+        self.check(0)
+
+    def test_an_input_that_names_a_file_elsewhere_is_found(self):
+        """Hash and all, a scenario of the bundle reads one outside."""
+        self.bundle()
+        path = self.dir / "bundle/inputs/qualification/q.toml"
+        path.write_text(path.read_text().replace(
+            'scenario = "warm_up.toml"',
+            f'scenario = "{self.dir}/warm_up.toml"'))
+
+        def change(said):
+            for file in said["inputs"]:
+                if file["file"].endswith("q.toml"):
+                    file["sha256"] = hashlib.sha256(
+                        path.read_bytes()).hexdigest()
+        self.altered(change)
+        told = self.check(1)
+        self.assertIn(f"{self.dir}/warm_up.toml: is read and not in", told)
+        self.assertIn("inputs/qualification/warm_up.toml: is listed", told)
+
+    def test_the_version_that_made_it_is_said(self):
+        self.bundle()
+        for key in "beamgyro_version", "git_revision":
+            whole = self.altered(lambda said: said.update({key: "older"}))
+            answer = self.beamgyro("validate", "--check", "bundle")
+            self.assertEqual(answer.returncode, 0, answer.stderr)
+            self.assertIn("was made by beamgyro", answer.stderr)
+            self.assertIn("older", answer.stderr)
+            (self.dir / "bundle/bundle.json").write_text(whole)
+        answer = self.beamgyro("validate", "--check", "bundle")
+        self.assertEqual(answer.stderr, "")
+
+    def test_what_an_interrupt_left_of_the_same_bundle_is_completed(self):
+        self.bundle()
+        whole = {path: path.read_bytes()
+                 for path in (self.dir / "bundle").rglob("*")
+                 if path.is_file()}
+        (self.dir / "bundle/bundle.json").unlink()
+        (self.dir / "bundle/report.txt").unlink()
+        (self.dir / "bundle/result.json").write_text("of another version")
+        self.bundle()
+        for path, content in whole.items():
+            self.assertEqual(path.read_bytes(), content, path)
+        self.check(0)
+        # A file of somebody else's is not taken for one of the bundle.
+        (self.dir / "bundle/bundle.json").unlink()
+        self.write("bundle/inputs/device/device.toml", "mine")
+        self.rejected("validate", "cubic.toml", "--device", "device.toml",
+                      "--qualification", "q.toml", "--bundle", "bundle",
+                      says=["--bundle bundle", "new directory"])
+
+    def test_a_directory_that_is_not_empty_is_not_taken(self):
+        self.bundle()
+        self.rejected("validate", "cubic.toml", "--device", "device.toml",
+                      "--qualification", "q.toml", "--bundle", "bundle",
+                      says=["--bundle bundle", "new directory"])
+
+    def test_damaged_bundles_are_refused(self):
+        self.bundle()
+        path = self.dir / "bundle/bundle.json"
+        whole = path.read_text()
+        for change, says in [
+                (whole[:50], "bundle.json"),
+                (whole.replace("beamgyro-bundle", "a cake"), "filetype"),
+                (whole.replace('"format_version": 1', '"format_version": 2'),
+                 "format_version"),
+                (whole.replace('"request"', '"demand"'), "request")]:
+            path.write_text(change)
+            with self.subTest(says):
+                self.rejected("validate", "--check", "bundle", says=says)
+        self.rejected("validate", "--check", "nowhere",
+                      says="nowhere/bundle.json")
+
+
+def small_files():
+    """A limit in place of a full disk. The page is larger, no other file is."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (150_000, 150_000))
+
+
+class Places(Qualified):
+    """Where a validation writes."""
+
+    def asked(self, *arguments, **options):
+        return self.beamgyro("validate", "cubic.toml", "--device",
+                             "device.toml", "--qualification", "q.toml",
+                             *arguments, **options)
+
+    def test_the_verdict_is_told_though_a_file_cannot_be_written(self):
+        told = self.asked().stdout
+        answer = self.asked("--json", "v.json", "--report", "page",
+                            "--bundle", "b", preexec_fn=small_files)
+        self.assertEqual(answer.returncode, 1)
+        self.assertEqual(answer.stdout, told)
+        self.assertIn("page/index.html: cannot write", answer.stderr)
+        self.assertIn("b/report/index.html: cannot write", answer.stderr)
+        json.loads((self.dir / "v.json").read_text())
+        for name in "page", "b":
+            self.assertFalse((self.dir / name).exists(), name)
+
+    def test_files_are_written_though_the_verdict_cannot_be_told(self):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            answer = subprocess.run(
+                [str(PROGRAM), "validate", "cubic.toml", "--device",
+                 "device.toml", "--qualification", "q.toml", "--json",
+                 "v.json"], cwd=self.dir, stdin=subprocess.DEVNULL,
+                stdout=full, stderr=subprocess.PIPE, check=False, timeout=60)
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn(b"standard output", answer.stderr)
+        json.loads((self.dir / "v.json").read_text())
+
+    def test_a_disk_that_becomes_full_leaves_no_half_bundle(self):
+        for before in False, True:
+            if before:
+                (self.dir / "deep/b").mkdir(parents=True)
+            answer = self.asked("--bundle", "deep/b",
+                                preexec_fn=small_files)
+            self.assertEqual(answer.returncode, 1, answer.stderr)
+            self.assertIn("deep/b/report/index.html", answer.stderr)
+            self.assertIn("residual_rms_deg_per_s", answer.stdout)
+            self.assertEqual((self.dir / "deep").exists(), before)
+            if before:
+                self.assertEqual(list((self.dir / "deep/b").iterdir()), [])
+        self.assertIn(self.asked("--bundle", "deep/b").returncode, (0, 3))
+        self.ok("validate", "--check", "deep/b")
+
+    def test_each_output_has_a_place_of_its_own(self):
+        (self.dir / "there").mkdir()
+        (self.dir / "link").symlink_to("there")
+        for words, says in [
+                (["--report", "r", "--bundle", "r"],
+                 ["--report r", "--bundle r"]),
+                (["--report", "r", "--bundle", "./r/"], "--bundle ./r/"),
+                (["--report", "r/b", "--bundle", "r"], "inside --bundle r"),
+                (["--report", "r", "--bundle", "r/b"], "inside --report r"),
+                (["--report", "there", "--bundle", "link"], "--bundle link"),
+                (["--report", "r", "--figures", "r"], "--figures r"),
+                (["--json", "r/v.json", "--bundle", "r"], "--json r/v.json"),
+                (["--json", "v", "--report", "v"], "--json v")]:
+            with self.subTest(words):
+                told = self.rejected("validate", "cubic.toml", "--device",
+                                     "device.toml", "--qualification",
+                                     "q.toml", *words, says=says)
+                self.assertIn("place of its own", told)
+                self.assertFalse((self.dir / "r").exists())
+
+    def test_what_can_be_no_directory_is_refused_by_its_option(self):
+        self.write("file", "mine")
+        for option in "--report", "--figures", "--bundle":
+            for name in ["/proc/x", "/dev/full", "file", "file/x", "c.json"]:
+                with self.subTest((option, name)):
+                    told = self.rejected(
+                        "validate", "cubic.toml", "--device", "device.toml",
+                        "--qualification", "q.toml", option, name,
+                        says=f"{option} {name}: ")
+                    self.assertNotIn("filesystem error", told)
+
+    def test_what_fails_or_is_interrupted_leaves_no_directory(self):
+        self.write("hang.py", "import time; time.sleep(60)")
+        for number in signal.SIGINT, signal.SIGTERM:
+            with subprocess.Popen(
+                    [str(PROGRAM), "validate", "cmd:/usr/bin/python3 hang.py",
+                     "--device", "device.toml", "--qualification", "q.toml",
+                     "--report", "r", "--figures", "f", "--bundle", "b"],
+                    cwd=self.dir, stdout=subprocess.DEVNULL,
+                    stderr=subprocess.DEVNULL) as process:
+                time.sleep(2)
+                self.assertIsNone(process.poll())
+                process.send_signal(number)
+                self.assertEqual(process.wait(20), -number)
+            for name in "rfb":
+                self.assertFalse((self.dir / name).exists(), name)
+
+
+if __name__ == "__main__":
+    unittest.main()
