@@ -2,14 +2,15 @@
 # SPDX-License-Identifier: MIT
 """Calibration of a new device from three soaks and a population.
 
-few_points.py [--program FILE] [--out DIR] [--devices N] [--scored N]
-              [--jobs N]
+few_points.py [--program FILE] [--out DIR] [--campaign FILE] [--devices N]
+              [--scored N] [--jobs N]
 
-Generates scenarios/campaigns/population.toml (its first --devices devices) as
+Generates the campaign (population.toml, its first --devices devices) as
 DIR/set, unless a whole set is there. The training devices' sweeps make the
 population; the first --scored test devices are new. Scored are soaks at every
-kelvin without noise. Prints rms residuals and writes them to DIR/table.json;
-DIR is out/few_points.
+kelvin without noise and, where the campaign has them (lifelike_population.toml),
+sweeps after a year with noise. Prints rms residuals and writes them to
+DIR/table.json; DIR is out/few_points.
 """
 
 import argparse
@@ -25,12 +26,25 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCENARIOS = ROOT / "scenarios"
-CAMPAIGN = SCENARIOS / "campaigns/population.toml"
 MODELS = SCENARIOS / "population"
 STEADY = "\n[rows]\nsteady_K_per_min = 0.05\n"
 CUBIC = 'kind = "polynomial"\n' + STEADY
 BIAS_ONLY = 'inputs = ["temperature"]\n'
 TRAIN, TEST = 0, 2  # of the variable part
+# label, name of the compensator, run it is trained on (none: the population's
+# mean). A year later: on which soaks, by whose population.
+NEW = [("adapted, 3 soaks", "adapted", "calibration"),
+       ("bias_only, 3 soaks", "bias_only", "calibration"),
+       ("adapted, 7 soaks", "adapted", "seven"),
+       ("cubic, 7 soaks", "cubic", "seven"),
+       ("population, 0 soaks", "population", None)]
+AFTER_A_YEAR = [
+    ("as calibrated when new: adapted, 3 soaks", "adapted", "calibration"),
+    ("as calibrated when new: cubic, 7 soaks", "cubic", "seven"),
+    ("3 soaks again, population of new devices", "adapted",
+     "calibration_after_a_year"),
+    ("3 soaks again, population a year old", "adapted_aged",
+     "calibration_after_a_year")]
 
 
 class Study:
@@ -39,6 +53,7 @@ class Study:
         self.out = arguments.out.resolve()
         self.devices, self.scored = arguments.devices, arguments.scored
         self.jobs = arguments.jobs
+        self.campaign = arguments.campaign
         self.set = self.out / "set"
         self.out.mkdir(parents=True, exist_ok=True)
 
@@ -51,8 +66,8 @@ class Study:
 
     def generate(self):
         fewer = ["--devices", self.devices] if self.devices else []
-        self.beamgyro("generate", CAMPAIGN, *fewer, "-o", self.set, "--resume",
-                      "--jobs", self.jobs)
+        self.beamgyro("generate", self.campaign, *fewer, "-o", self.set,
+                      "--resume", "--jobs", self.jobs)
 
     def devices_of(self, part):
         """Numbers of the devices of a part that could be simulated."""
@@ -61,25 +76,35 @@ class Study:
                      & (view["device_status"][:] == 0))
         return [int(device) for device in np.flatnonzero(ready)]
 
-    def population(self):
+    def population(self, run, name):
         """Trains the mean and what is common of the training devices."""
-        self.beamgyro("train", self.set, "--run", "sweep", "--model",
-                      MODELS / "population.toml", "-o",
-                      self.out / "population.json")
+        self.beamgyro("train", self.set, "--run", run, "--model",
+                      MODELS / "population.toml", "-o", self.out / name)
+
+    def populations(self):
+        self.population("sweep", "population.json")
+        if self.aged:
+            self.population("sweep_after_a_year", "population_aged.json")
         adapted = (MODELS / "adapted.toml").read_text()
-        (self.out / "adapted.toml").write_text(adapted)
-        (self.out / "bias_only.toml").write_text(BIAS_ONLY + adapted)
-        (self.out / "cubic.toml").write_text(CUBIC)
+        for name, text in [
+                ("adapted", adapted),
+                ("adapted_aged", adapted.replace("population.json",
+                                                 "population_aged.json")),
+                ("bias_only", BIAS_ONLY + adapted), ("cubic", CUBIC)]:
+            (self.out / f"{name}.toml").write_text(text)
 
     def score(self, device):
-        """Rms residual of each method over the check [deg/s]."""
+        """Rms residual of each method [deg/s], by what is scored."""
+        scored = {"check": self.residuals(device, "check", NEW)}
+        if self.aged:
+            scored["sweep_after_a_year"] = self.residuals(
+                device, "sweep_after_a_year", AFTER_A_YEAR)
+        return scored
+
+    def residuals(self, device, scored, cases):
         result = {}
-        for method, points, run in [("adapted", 3, "calibration"),
-                                    ("bias_only", 3, "calibration"),
-                                    ("adapted", 7, "seven"),
-                                    ("cubic", 7, "seven"),
-                                    ("population", 0, None)]:
-            file = self.out / f"{method}_{points}_{device}.json"
+        for label, method, run in cases:
+            file = self.out / f"{method}_{run}_{device}.json"
             if run is None:
                 file = self.out / "population.json"
             else:
@@ -87,10 +112,10 @@ class Study:
                               device, "--model", self.out / f"{method}.toml",
                               "-o", file)
             scores = self.out / f"scores_{device}.json"
-            self.beamgyro("validate", file, self.set, "--run", "check",
+            self.beamgyro("validate", file, self.set, "--run", scored,
                           "--device", device, "--json", scores, allowed=(0, 3))
             (own,) = json.loads(scores.read_text())["devices"]
-            result[f"{method}, {points} soaks"] = own["residual_rms_deg_per_s"]
+            result[label] = own["residual_rms_deg_per_s"]
             result["raw"] = own["raw_rms_deg_per_s"]
             if run is not None:
                 file.unlink()
@@ -103,23 +128,31 @@ class Study:
         new = self.devices_of(TEST)[:self.scored]
         if not new:
             raise RuntimeError("no test device in the set; more --devices?")
-        self.population()
+        self.aged = (self.set / "sweep_after_a_year.nc").exists()
+        self.populations()
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             scores = list(pool.map(self.score, new))
-        table = {}
-        for method in scores[0]:
-            rms = np.array([score[method] for score in scores])
-            table[method] = {"best": rms.min(), "median": np.median(rms),
-                             "worst": rms.max()}
+        tables = {
+            scored: {label: self.spread([score[scored][label]
+                                         for score in scores])
+                     for label in methods}
+            for scored, methods in scores[0].items()}
         (self.out / "table.json").write_text(json.dumps(
-            {"devices": new, "training": training, "rms_deg_per_s": table,
+            {"devices": new, "training": training, "rms_deg_per_s": tables,
              "of_devices": scores}, indent=1) + "\n")
         lines = [f"{len(new)} new devices, a population of {training}; "
-                 "rms [deg/s]",
-                 f"{'':24}{'best':>10}{'median':>10}{'worst':>10}"]
-        lines += [f"{method:24}{row['best']:10.4f}{row['median']:10.4f}"
-                  f"{row['worst']:10.4f}" for method, row in table.items()]
+                 "rms [deg/s]"]
+        for scored, table in tables.items():
+            lines += ["", f"{scored:42}{'best':>10}{'median':>10}"
+                      f"{'worst':>10}"]
+            lines += [f"{label:42}{row['best']:10.4f}{row['median']:10.4f}"
+                      f"{row['worst']:10.4f}" for label, row in table.items()]
         return "\n".join(lines)
+
+    @staticmethod
+    def spread(rms):
+        return {"best": min(rms), "median": float(np.median(rms)),
+                "worst": max(rms)}
 
 
 def main():
@@ -128,6 +161,8 @@ def main():
                         default=ROOT / "build/release/beamgyro")
     parser.add_argument("--out", type=pathlib.Path,
                         default=ROOT / "out/few_points")
+    parser.add_argument("--campaign", type=pathlib.Path,
+                        default=SCENARIOS / "campaigns/population.toml")
     parser.add_argument("--devices", type=int)
     parser.add_argument("--scored", type=int, default=40)
     parser.add_argument("--jobs", type=int,

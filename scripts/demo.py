@@ -15,6 +15,10 @@ import subprocess
 import sys
 import time
 
+import demo_lifelike
+from demo_runs import (MOTION, NOISE_OFF, REST, SOAKS, SOAKS_HELD_OUT, SWEEPS,
+                       TEST, TRAINING, TRAINING_SEED, VALIDATION)
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCENARIOS = ROOT / "scenarios"
 
@@ -25,57 +29,9 @@ LABELS = {
     "bp": "BP network on T",
     "output_and_temperature": "BP network on (output, T)",
     "recommended": "recommended network",
+    "recommended_with_play": "recommended with play",
 }
-TRAINING_SEED = 1
 ALLAN_START = 3600.0  # [s], the warm-up is no noise
-
-
-def ramp(name, rate, seed):
-    return (name, "ramp", seed, [f"ambient.soaks.ramp_K_per_min={rate}",
-                                 f"duration_s={10800 + 10800 / rate:g}"])
-
-
-def at(name, scenario, temperature, seed):
-    return (name, scenario, seed, [f"ambient.constant_degC={temperature}"])
-
-
-def sweep(name, seed, falling):
-    soaks = list(range(-40, 51, 5))[::-1 if falling else 1]
-    return (name, "soak_sweep_train", seed,
-            [f"ambient.soaks.temperatures_degC={soaks}"])
-
-
-# name, scenario, seed, overrides. The seeds were fixed before anything was
-# scored; no run serves two of the three purposes. Sweeps and ramps are repeated
-# because the gyro's own slow noise, a rate random walk of 0.05 deg/s over a
-# day, is in the labels of each: only other days average it out.
-SWEEPS = [("soak_sweep_train", "soak_sweep_train", 101, [])] + [
-    sweep(f"soak_sweep_train_{k}", 101 + k, falling=k % 2 == 1)
-    for k in range(1, 5)]
-TRAINING = SWEEPS + [
-    ramp(f"ramp_{rate}_{k}", rate, 110 + 10 * k + i)
-    for k in range(5) for i, rate in enumerate([0.5, 1, 2])] + [
-    at(f"warm_up_cycles_{t}", "warm_up_cycles", t, 160 + k)
-    for k, t in enumerate([-40, -30, -10, 10, 30, 50])]
-SOAKS_HELD_OUT = [(f"soak_sweep_validation_{k}", "soak_sweep_validation",
-                   201 + k, []) for k in range(3)]
-VALIDATION = SOAKS_HELD_OUT + [
-    ramp(f"ramp_1.2_{k}", 1.2, 210 + k) for k in range(3)] + [
-    at(f"warm_up_cycles_20_{k}", "warm_up_cycles", 20, 220 + k)
-    for k in range(3)]
-TEST = [("soak_sweep_test", "soak_sweep_test", 301, [])] + [
-    ramp(f"ramp_{rate}", rate, 310 + k) for k, rate in enumerate([0.75, 1.5])
-] + [at(f"warm_up_{t}", "warm_up", t, 320 + k)
-     for k, t in enumerate([0, 25, 40])] + [
-    at(f"rate_table_{t}", "rate_table", t, 330 + k)
-    for k, t in enumerate([-33, -12, 3, 22, 41])] + [
-    at(f"small_rates_{t}", "small_rates", t, 340 + k)
-    for k, t in enumerate([-28, 12, 37])]
-REST = [("rest", "rest", 401, [])]
-
-NOISE_OFF = "noise.enabled=false"
-SOAKS = ["soak_sweep_test"]
-MOTION = [name for name, *_ in TEST if name.startswith(("ramp", "warm_up"))]
 
 
 class Demo:
@@ -107,19 +63,26 @@ class Demo:
     def recording(self, name):
         return self.runs / f"{name}.h5"
 
-    def simulate(self):
-        runs = TRAINING + VALIDATION + TEST + REST
-        runs = [*runs, *((f"{name}_noise", *rest) for name, *rest in TEST)]
-        quiet = {name for name, *_ in TEST}
+    def simulate(self, training, test):
+        """Runs to train on with noise, runs to score with and without it."""
+        runs = [*training, *((f"{name}_noise", *rest) for name, *rest in test)]
+        runs += [(name, scenario, seed, [*overrides, NOISE_OFF])
+                 for name, scenario, seed, overrides in test]
 
         def run(item):
             name, scenario, seed, overrides = item
-            overrides = overrides + [NOISE_OFF] * (name in quiet)
             sets = [part for text in overrides for part in ("--set", text)]
             self.beamgyro("run", SCENARIOS / f"{scenario}.toml", "--seed", seed,
                           *sets, "-o", self.recording(name))
         self.all(run, runs)
         return len(runs)
+
+    def fit(self, method, training, held_out, file):
+        self.beamgyro(
+            "train", *(self.recording(name) for name, *_ in training),
+            "--held-out", *(self.recording(name) for name, *_ in held_out),
+            "--model", SCENARIOS / f"models/{method}.toml",
+            "--seed", TRAINING_SEED, "-o", file)
 
     def train(self):
         def fit(method):
@@ -128,11 +91,7 @@ class Demo:
             whole = method == "recommended"
             training = TRAINING if whole else SWEEPS
             held_out = VALIDATION if whole else SOAKS_HELD_OUT
-            self.beamgyro(
-                "train", *(self.recording(name) for name, *_ in training),
-                "--held-out", *(self.recording(name) for name, *_ in held_out),
-                "--model", SCENARIOS / f"models/{method}.toml",
-                "--seed", TRAINING_SEED, "-o", self.out / f"{method}.json")
+            self.fit(method, training, held_out, self.out / f"{method}.json")
         # The longest first, so that the cores end together.
         self.all(fit, reversed(METHODS))
 
@@ -269,16 +228,20 @@ def main():
               flush=True)
 
     note("simulating ...")
-    note(f"{demo.simulate()} runs simulated; training ...")
+    runs = demo.simulate(TRAINING + VALIDATION + REST, TEST)
+    note(f"{runs} runs simulated; training ...")
     demo.train()
     note(f"{len(METHODS)} compensators trained; scoring ...")
     scores = demo.validate()
     rows = [row(method, suffix, validation)
             for (method, suffix), validation in scores.items()]
+    note("scored; the same on a unit that remembers ...")
+    lifelike = demo_lifelike.study(demo)
     (demo.out / "table.json").write_text(json.dumps(
-        {"rows": rows, "training_seed": TRAINING_SEED,
-         "seeds": {name: seed for name, _, seed, _
-                   in TRAINING + VALIDATION + TEST + REST}}, indent=2) + "\n")
+        {"rows": rows, "lifelike": lifelike, "training_seed": TRAINING_SEED,
+         "seeds": {name: seed for name, _, seed, _ in
+                   TRAINING + VALIDATION + TEST + REST + demo_lifelike.RUNS}},
+        indent=2) + "\n")
     note("scored; drawing ...")
     demo.compensate()
     demo.allan()
@@ -286,6 +249,7 @@ def main():
                    check=True)
     note("done")
     print(table(rows))
+    print(demo_lifelike.table(lifelike, LABELS))
     print("\nPictures (and the same as .svg):")
     for picture in [*sorted(demo.out.glob("*.png")),
                     *sorted(demo.out.glob("more/*.png"))]:

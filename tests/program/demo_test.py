@@ -12,6 +12,7 @@ import unittest
 from program import PROGRAM, ROOT
 
 METHODS = {"cubic", "spline", "bp", "output_and_temperature", "recommended"}
+LIFELIKE = METHODS | {"recommended_with_play"}
 
 
 class Demo(unittest.TestCase):
@@ -28,7 +29,11 @@ class Demo(unittest.TestCase):
         cls.seconds = time.monotonic() - start
         if cls.answer.returncode != 0:
             raise AssertionError(cls.answer.stderr)
-        rows = json.loads((cls.out / "table.json").read_text())["rows"]
+        table = json.loads((cls.out / "table.json").read_text())
+        cls.lifelike = {row["method"]: row for row in table["lifelike"]
+                        if not row["noise"]}
+        cls.lifelike_rows = table["lifelike"]
+        rows = table["rows"]
         cls.quiet = {row["method"]: row for row in rows if not row["noise"]}
         cls.noisy = {row["method"]: row for row in rows if row["noise"]}
 
@@ -76,6 +81,31 @@ class Demo(unittest.TestCase):
             self.assertEqual(row["verdict"], "cancels the rate")
             self.assertLess(row["scale_factor_within_2_deg_per_s"], 0.1)
             self.assertGreater(row["scale_factor_within_120_deg_per_s"], 0.5)
+
+    def test_the_table_has_the_unit_that_remembers(self):
+        self.assertEqual({(row["method"], row["noise"])
+                          for row in self.lifelike_rows},
+                         {(method, noise) for method in LIFELIKE
+                          for noise in (False, True)})
+        self.assertIn("A unit that remembers", self.answer.stdout)
+        for row in self.lifelike_rows:
+            for key, value in row.items():
+                if key.endswith("_deg_per_s"):
+                    self.assertTrue(0 <= value < 2, f"{key}: {value}")
+
+    def test_a_store_moves_what_was_calibrated_and_a_zero_brings_it_back(self):
+        for method in LIFELIKE - {"output_and_temperature", "cubic"}:
+            with self.subTest(method):
+                row = self.lifelike[method]
+                # 1,000 h at 40 degC move this unit by 0.25 deg/s.
+                self.assertGreater(row["after_store_rms_deg_per_s"], 0.2)
+                self.assertLess(row["after_store_rezeroed_rms_deg_per_s"],
+                                0.7 * row["after_store_rms_deg_per_s"])
+
+    def test_play_inputs_halve_what_hysteresis_leaves_of_a_day(self):
+        left = [self.lifelike[method]["before_store_rms_deg_per_s"] ** 2
+                for method in ("recommended_with_play", "recommended")]
+        self.assertLess(left[0], left[1] / 2)
 
 
 if __name__ == "__main__":
