@@ -14,6 +14,7 @@ constexpr const char* kFiles = "Recordings and sets";
 void add_characterise(CommandLine& program);
 void add_run(CommandLine& program);
 void add_generate(CommandLine& program);
+void add_sensitivity(CommandLine& program);
 void add_import(CommandLine& program);
 void add_train(CommandLine& program);
 void add_compensate(CommandLine& program);

@@ -39,12 +39,13 @@ fs::path shipped_file(const fs::path& name) {
   return {};
 }
 
-void draw_figures(const std::string& result, const fs::path& directory) {
-  const fs::path script = shipped_file("scripts/validation_figures.py");
+void draw_figures(const FigureScript& drawn_by, const std::string& result,
+                  const fs::path& directory) {
+  const fs::path script = shipped_file(drawn_by.script);
   if (script.empty())
     throw std::runtime_error(
-        "--figures needs scripts/validation_figures.py, which is not beside "
-        "this program");
+        fmt::format("{} needs {}, which is not beside this program",
+                    drawn_by.option, drawn_by.script));
   const fs::path json = directory / "result.json";
   write_text_file(json, result);
   ChildProcess process({script.string(), json.string()});

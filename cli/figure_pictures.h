@@ -11,11 +11,17 @@ namespace beamgyro {
 /// path within the project.
 std::filesystem::path shipped_file(const std::filesystem::path& name);
 
-/// Writes `result`, the text of `validate --json`, to DIRECTORY/result.json,
-/// and a PNG of each of its figures beside it. scripts/validation_figures.py
-/// draws them with Python and matplotlib. Throws std::runtime_error with what
-/// the script said when it fails.
-void draw_figures(const std::string& result,
+/// A script that draws what a command found, and the option that asks for it.
+struct FigureScript {
+  const char* option;  // "--figures"
+  const char* script;  // "scripts/validation_figures.py"
+};
+
+/// Writes `result`, the text of `--json`, to DIRECTORY/result.json, and a PNG
+/// of each of its figures beside it. The script draws them with Python and
+/// matplotlib. Throws std::runtime_error with what the script said when it
+/// fails.
+void draw_figures(const FigureScript& drawn_by, const std::string& result,
                   const std::filesystem::path& directory);
 
 }  // namespace beamgyro

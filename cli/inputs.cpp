@@ -20,6 +20,7 @@
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/directory.h"
+#include "dataset/files/made_directories.h"
 #include "dataset/files/sha256.h"
 #include "dataset/files/text_file.h"
 #include "dataset/log/recording_csv.h"
@@ -142,6 +143,18 @@ void require_output(const fs::path& output,
   set_interrupt_note(fmt::format(
       "{} {}", output.string(),
       identity_of(output) ? "is as it was before" : "was not written"));
+}
+
+void require_output_directory(const char* option, const std::string& name,
+                              const char* file,
+                              const std::vector<fs::path>& inputs) {
+  require_directory_name(name, option);
+  try {
+    const MadeDirectories made(name);
+    require_output(fs::path(name) / file, inputs);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{} {}", option, error.what()));
+  }
 }
 
 void require_set_output(const fs::path& directory, const ManifestHead& head,

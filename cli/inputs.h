@@ -47,6 +47,12 @@ void require_directory_name(const std::filesystem::path& path,
 void require_output(const std::filesystem::path& output,
                     const std::vector<std::filesystem::path>& inputs);
 
+/// The same for `file` in the directory `name`, the argument of `option`.
+/// Leaves no directory that was not there.
+void require_output_directory(const char* option, const std::string& name,
+                              const char* file,
+                              const std::vector<std::filesystem::path>& inputs);
+
 /// The same for the files that `generate` makes in a directory.
 void require_set_output(const std::filesystem::path& directory,
                         const ManifestHead& head,

@@ -27,6 +27,7 @@ int run_program(const std::vector<std::string>& words) {
   add_characterise(program);
   add_run(program);
   add_generate(program);
+  add_sensitivity(program);
   add_train(program);
   add_compensate(program);
   add_validate(program);

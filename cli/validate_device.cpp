@@ -15,6 +15,7 @@
 #include "cli/validate.h"
 #include "cli/validate_outputs.h"
 #include "cli/version.h"
+#include "compensation/rows/recorded_runs.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/made_directories.h"
 #include "parallel/work_queue.h"
@@ -135,7 +136,8 @@ std::vector<std::function<void()>> writers_of(
   if (!arguments.figures.empty())
     writers.emplace_back([&] {
       const MadeDirectories made(arguments.figures);
-      draw_figures(outputs[0].text, arguments.figures);
+      draw_figures({"--figures", "scripts/validation_figures.py"},
+                   outputs[0].text, arguments.figures);
     });
   return writers;
 }

@@ -11,7 +11,6 @@
 
 #include "cli/inputs.h"
 #include "cli/terminal.h"
-#include "dataset/files/made_directories.h"
 
 namespace beamgyro {
 namespace {
@@ -56,18 +55,6 @@ void require_places_of_their_own(const ValidateArguments& arguments) {
             other.option, other.name));
 }
 
-// Prepares a directory for writing `file` in it, and leaves none.
-void require_directory(const char* option, const std::string& name,
-                       const char* file, const std::vector<fs::path>& inputs) {
-  require_directory_name(name, option);
-  try {
-    const MadeDirectories made(name);
-    require_output(fs::path(name) / file, inputs);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(fmt::format("{} {}", option, error.what()));
-  }
-}
-
 // Does one thing. Returns whether it succeeded, or else prints what failed.
 bool succeeds(const std::function<void()>& work) try {
   work();
@@ -83,11 +70,14 @@ void require_outputs_of(const ValidateArguments& arguments,
                         const std::vector<fs::path>& inputs) {
   require_places_of_their_own(arguments);
   if (!arguments.report.empty())
-    require_directory("--report", arguments.report, "index.html", inputs);
+    require_output_directory("--report", arguments.report, "index.html",
+                             inputs);
   if (!arguments.figures.empty())
-    require_directory("--figures", arguments.figures, "result.json", inputs);
+    require_output_directory("--figures", arguments.figures, "result.json",
+                             inputs);
   if (!arguments.bundle.empty())
-    require_directory("--bundle", arguments.bundle, "bundle.json", inputs);
+    require_output_directory("--bundle", arguments.bundle, "bundle.json",
+                             inputs);
   if (arguments.json.empty()) return;
   require_output(arguments.json, inputs);
   require_json_name(arguments.json);

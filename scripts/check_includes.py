@@ -23,6 +23,9 @@ VALIDATION = [f"validation/{room}" for room in
               ("external", "evidence", "metrics", "checks", "specification",
                "qualification", "result", "page", "bundle")]
 
+SENSITIVITY = [f"sensitivity/{room}" for room in
+               ("indices", "figures", "study")]
+
 BASE = ["config", "random", "parallel", "include"]
 
 
@@ -39,13 +42,16 @@ MAY_INCLUDE = {
     **in_order(SIM, [*BASE, *DATASET]),
     **in_order(COMPENSATION, [*BASE, *DATASET]),
     **in_order(VALIDATION, ALL),
-    "report": {*ALL, *VALIDATION},
-    "cli": {*ALL, *VALIDATION, "report"},
-    "bench": {*ALL, *VALIDATION, "report"},
+    **in_order(SENSITIVITY, ALL),
+    "report": {*ALL, *VALIDATION, *SENSITIVITY},
+    "cli": {*ALL, *VALIDATION, *SENSITIVITY, "report"},
+    "bench": {*ALL, *VALIDATION, *SENSITIVITY, "report"},
     "fuzz": set(ALL),  # of tests/ only
-    "agreement": {*ALL, *VALIDATION},  # of tests/ only
+    "agreement": {*ALL, *VALIDATION, *SENSITIVITY},  # of tests/ only
 }
 # Beside each other, not above each other.
+MAY_INCLUDE["sensitivity/indices"] = {"random"}
+MAY_INCLUDE["sensitivity/figures"] -= {"sensitivity/indices"}
 MAY_INCLUDE["dataset/recording"] -= {"dataset/files"}
 MAY_INCLUDE["dataset/log"] -= {"dataset/netcdf"}
 MAY_INCLUDE["dataset/set/shard"] -= {"dataset/log"}

@@ -18,7 +18,8 @@ import sys
 LIBRARIES = ["dataset/set/", "dataset/", "sim/numerics/", "sim/thermal/",
              "sim/signal/", "sim/memory/", "sim/device/", "sim/dynamics/",
              "sim/scenario/", "sim/campaign/", "compensation/", "config/",
-             "random/", "parallel/", "validation/", "report/", "cli/"]
+             "random/", "parallel/", "validation/", "sensitivity/", "report/",
+             "cli/"]
 
 # A library sees no header of these.
 UNSEEN = {"config/": ["dataset/", "sim/", "compensation/", "validation/", "report/", "cli/"],
@@ -26,6 +27,8 @@ UNSEEN = {"config/": ["dataset/", "sim/", "compensation/", "validation/", "repor
           "dataset/": ["dataset/set/", "sim/", "compensation/", "report/",
                        "cli/"],
           "dataset/set/": ["sim/", "compensation/", "validation/", "report/", "cli/"],
+          "validation/": ["sensitivity/", "report/", "cli/"],
+          "sensitivity/": ["validation/", "report/", "cli/"],
           "compensation/": ["sim/", "validation/", "report/", "cli/"],
           "sim/": ["compensation/", "validation/", "report/", "cli/"],
           "sim/numerics/": ["sim/"], "sim/thermal/": ["sim/"],

@@ -57,6 +57,24 @@ void add_as_built(const CampaignState& campaign, Device device,
     add("offset_trim_deg_per_s", readout.offset_trim / kDegree);
 }
 
+VirtualDevice built_device(const CampaignState& campaign, const DrawPlan& plan,
+                           DrawnValues drawn) {
+  VirtualDevice result;
+  result.parameters = std::move(drawn.parameters);
+  Overrides overrides = overrides_of(plan, drawn.values);
+  attempt(result, [&] {
+    const ConfigDocument& document = *campaign.device_document;
+    Device device = read_device(drawn_from(document, overrides));
+    if (campaign.base_gyro) {
+      add_as_built(campaign, device, overrides);
+      device = read_device(drawn_from(document, overrides));
+    }
+    result.device = device;
+  });
+  result.overrides = overrides.text();
+  return result;
+}
+
 }  // namespace
 
 Campaign::Campaign(std::shared_ptr<const CampaignState> state)
@@ -109,23 +127,16 @@ const MovedAxes& Campaign::moved_axes(std::size_t run) const {
   return state_->moved_axes.at(run);
 }
 
+const DrawPlan& Campaign::device_plan() const { return state_->device_plan; }
+
 VirtualDevice Campaign::device(std::uint32_t index) const {
   const DrawPlan& plan = state_->device_plan;
-  DrawnValues drawn = drawn_values(plan, state_->source, index);
-  VirtualDevice result;
-  result.parameters = std::move(drawn.parameters);
-  Overrides overrides = overrides_of(plan, drawn.values);
-  attempt(result, [&] {
-    const ConfigDocument& document = *state_->device_document;
-    Device device = read_device(drawn_from(document, overrides));
-    if (state_->base_gyro) {
-      add_as_built(*state_, device, overrides);
-      device = read_device(drawn_from(document, overrides));
-    }
-    result.device = device;
-  });
-  result.overrides = overrides.text();
-  return result;
+  return built_device(*state_, plan, drawn_values(plan, state_->source, index));
+}
+
+VirtualDevice Campaign::device_at(const DrawPlan& plan,
+                                  std::vector<double> uniform) const {
+  return built_device(*state_, plan, drawn_values(plan, std::move(uniform)));
 }
 
 VirtualRun Campaign::run(std::size_t run, std::uint32_t device) const {

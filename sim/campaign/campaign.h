@@ -100,6 +100,13 @@ class Campaign {
 
   /// Draws device number `index`, which may be larger than devices().
   VirtualDevice device(std::uint32_t index) const;
+  /// Returns what is drawn for a device: keys, distributions, groups.
+  const DrawPlan& device_plan() const;
+  /// Builds the device at independent uniform numbers in (0, 1), one per
+  /// parameters(), by a plan that is device_plan() but for its distributions.
+  VirtualDevice device_at(const DrawPlan& plan,
+                          std::vector<double> uniform) const;
+
   /// Draws the scenario of a device in a run, with the seed of the campaign.
   VirtualRun run(std::size_t run, std::uint32_t device) const;
   /// Returns the part of a device. It depends on a random number of the device

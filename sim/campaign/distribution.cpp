@@ -76,6 +76,26 @@ double share_inside(const Distribution& d) {
   return normal_cumulative(ends.high) - normal_cumulative(ends.low);
 }
 
+Distribution halved(const Distribution& d) {
+  using Kind = Distribution::Kind;
+  Distribution half = d;
+  half.sigma = 0.5 * d.sigma;
+  if (d.kind == Kind::kNormal || d.kind == Kind::kUniform) {
+    const double centre =
+        d.kind == Kind::kNormal ? d.centre : 0.5 * (d.low + d.high);
+    half.low = centre + 0.5 * (d.low - centre);
+    half.high = centre + 0.5 * (d.high - centre);
+  } else if (d.kind == Kind::kLognormal) {
+    // The root of the ratio; a limit at or below 0 cuts nothing off.
+    const auto nearer = [&](double end) {
+      return end <= 0 ? end : d.centre * std::sqrt(end / d.centre);
+    };
+    half.low = nearer(d.low);
+    half.high = nearer(d.high);
+  }
+  return half;
+}
+
 double quantile(const Distribution& d, double u) {
   switch (d.kind) {
     case Distribution::Kind::kNormal:

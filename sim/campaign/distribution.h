@@ -31,6 +31,12 @@ Distribution discrete(const std::vector<double>& weights);
 /// conditional one, given that the value lies inside.
 double quantile(const Distribution& distribution, double u);
 
+/// Returns the distribution of half the width: every value half as far from the
+/// centre, of kLognormal in its logarithm, so that limits move inwards as well.
+/// The centre is the mean of kNormal, the median of kLognormal and the middle
+/// of kUniform. Returns kDiscrete as it is.
+Distribution halved(const Distribution& distribution);
+
 /// Returns the probability that the uncut distribution gives a value between
 /// `low` and `high`; 1 for kUniform and kDiscrete.
 double share_inside(const Distribution& distribution);

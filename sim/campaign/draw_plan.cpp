@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <utility>
+
 namespace beamgyro {
 namespace {
 
@@ -48,6 +50,10 @@ DrawnValues drawn_values(const DrawPlan& plan, const UniformSource& source,
     uniform[i] =
         source.number(device, plan.streams[i], plan.first_dimension + i);
   }
+  return drawn_values(plan, std::move(uniform));
+}
+
+DrawnValues drawn_values(const DrawPlan& plan, std::vector<double> uniform) {
   for (const CorrelatedGroup& group : plan.groups) correlate(group, uniform);
   DrawnValues drawn;
   drawn.parameters.reserve(uniform.size());

@@ -59,6 +59,10 @@ ConfigNode drawn_value(const Draw& draw, const double* uniform,
 DrawnValues drawn_values(const DrawPlan& plan, const UniformSource& source,
                          std::uint32_t device);
 
+/// The same for given independent uniform numbers in (0, 1), one per
+/// DrawPlan::parameters.
+DrawnValues drawn_values(const DrawPlan& plan, std::vector<double> uniform);
+
 /// Returns the values as overrides of the file that they belong to.
 Overrides overrides_of(const DrawPlan& plan,
                        const std::vector<ConfigNode>& values);

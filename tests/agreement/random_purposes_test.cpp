@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "sensitivity/indices/random_purposes.h"
 #include "sim/campaign/random_purposes.h"
 #include "sim/scenario/random_purposes.h"
 #include "sim/signal/random_purposes.h"
@@ -35,7 +36,10 @@ TEST(RandomPurposes, AreAllDifferentAndWhatTheyWere) {
                                kTurnOnTransientStream,
                                kQuadratureNoiseStream,
                                kDriveFrequencyNoiseStream,
-                               kDriveVoltageNoiseStream};
+                               kDriveVoltageNoiseStream,
+                               kIndexResampleStream,
+                               kRankResampleStream,
+                               kRankSampleStream};
   std::uint32_t number = 0;
   for (const RandomPurpose purpose : all)
     EXPECT_EQ(static_cast<std::uint32_t>(purpose), number++);

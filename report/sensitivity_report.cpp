@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+#include "report/sensitivity_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+namespace beamgyro {
+namespace {
+
+// Below it the tolerances by themselves leave most of the variance unexplained.
+constexpr double kInteractionsDominate = 0.5;
+
+std::string studied_name(const MeritResult& result) {
+  const char* name = figure_of_merit(result.merit).name;
+  return result.of_logarithm ? fmt::format("ln {}", name) : name;
+}
+
+std::string index_text(const SensitivityIndex& index) {
+  return fmt::format("{:>6.3f} {:>13}", index.value,
+                     fmt::format("{:.2f} .. {:.2f}", index.low, index.high));
+}
+
+std::size_t key_width(const MeritResult& result) {
+  std::size_t width = 9;
+  for (const FactorResult& factor : result.factors)
+    width = std::max(width, factor.key.size());
+  return width;
+}
+
+std::string words_of_sum(const MeritResult& result) {
+  if (result.variance == 0)
+    return "No tolerance of the campaign changes this figure.\n";
+  std::string text =
+      fmt::format("Sum of the first orders: {:.2f}. ", result.sum_of_first);
+  if (result.sum_of_first < kInteractionsDominate)
+    return text +
+           fmt::format(
+               "Interactions dominate: {:.0f} % of the variance comes from two "
+               "or more\ntolerances together, so a tolerance with a large "
+               "total "
+               "index matters mostly by what\nit does to the effect of the "
+               "others.\n",
+               100 * (1 - std::max(result.sum_of_first, 0.0)));
+  return text + fmt::format(
+                    "The tolerances by themselves explain most of the "
+                    "variance,\ninteractions {:.0f} %.\n",
+                    100 * std::max(0.0, 1 - result.sum_of_first));
+}
+
+std::string share_text(const DeviceShare& share) {
+  return fmt::format(
+      "{:>6.1f} % {:>15}", 100 * share.value,
+      fmt::format("{:.1f} .. {:.1f}", 100 * share.low, 100 * share.high));
+}
+
+std::string yield_table(const MeritResult& result) {
+  const YieldResult& yield = *result.yield;
+  std::size_t width = 11;
+  for (const HalvedYield& halved : yield.halved)
+    width = std::max(width, halved.key.size() + 2);
+  const FigureOfMerit& figure = figure_of_merit(result.merit);
+  std::string text =
+      fmt::format("Share of devices within {} = {:g}:\n{:<{}} {:>8} {:>15}\n",
+                  figure.name, yield.limit, "", width, "yield", "95 %");
+  auto out = std::back_inserter(text);
+  fmt::format_to(out, "{:<{}} {}\n", "as they are", width,
+                 share_text(yield.as_is));
+  for (const HalvedYield& halved : yield.halved)
+    fmt::format_to(
+        out, "{:<{}} {}\n", halved.key + "/2", width,
+        halved.share ? share_text(*halved.share) : fmt::format("{:>8}", "-"));
+  return text;
+}
+
+nlohmann::ordered_json interval_json(const SensitivityIndex& index) {
+  return {index.low, index.high};
+}
+
+nlohmann::ordered_json yield_json(const YieldResult& yield) {
+  nlohmann::ordered_json halved = nlohmann::ordered_json::array();
+  for (const HalvedYield& each : yield.halved) {
+    nlohmann::ordered_json entry = {
+        {"key", each.key}, {"yield", nullptr}, {"yield_interval", nullptr}};
+    if (each.share) {
+      entry["yield"] = each.share->value;
+      entry["yield_interval"] = {each.share->low, each.share->high};
+    }
+    halved.push_back(entry);
+  }
+  return {{"limit", yield.limit},
+          {"as_is", yield.as_is.value},
+          {"as_is_interval", {yield.as_is.low, yield.as_is.high}},
+          {"halved", halved}};
+}
+
+nlohmann::ordered_json merit_json(const MeritResult& result) {
+  nlohmann::ordered_json indices = nlohmann::ordered_json::array();
+  for (const FactorResult& factor : result.factors) {
+    indices.push_back(
+        {{"key", factor.key},
+         {"first", factor.first.value},
+         {"first_interval", interval_json(factor.first)},
+         {"total", factor.total.value},
+         {"total_interval", interval_json(factor.total)},
+         {"first_by_rank", factor.first_by_rank.value},
+         {"first_by_rank_interval", interval_json(factor.first_by_rank)},
+         {"total_by_product", factor.total_by_product},
+         {"rows", factor.rows}});
+  }
+  const FigureOfMerit& figure = figure_of_merit(result.merit);
+  return {{"of", studied_name(result)},
+          {"unit", figure.unit},
+          {"meaning", figure.what},
+          {"samples", result.samples},
+          {"rows", result.rows},
+          {"p05", result.quantiles[0]},
+          {"median", result.quantiles[1]},
+          {"p95", result.quantiles[2]},
+          {"variance", result.variance},
+          {"sum_of_first", result.sum_of_first},
+          {"indices", indices},
+          {"yield", result.yield ? yield_json(*result.yield)
+                                 : nlohmann::ordered_json()}};
+}
+
+}  // namespace
+
+std::string sample_lines(const DeviceSample& sample, const StudyHead& head) {
+  std::string text = fmt::format(
+      "{}: {} samples of {} tolerances, {} devices, {:g} to {:g} degC, seed "
+      "{}\n",
+      head.campaign,
+      sample.merits.empty() ? 0 : sample.merits[0].design.a.size(),
+      sample.factors.size(), sample.devices, head.grid.low, head.grid.high,
+      head.seed);
+  if (sample.failures == 0) return text + "Every device works.\n";
+  return text + fmt::format(
+                    "{} devices ({:.3g} %) do not work; indices leave their "
+                    "rows out, a yield counts them as bad.\nThe first of them: "
+                    "{}\n",
+                    sample.failures,
+                    100.0 * static_cast<double>(sample.failures) /
+                        static_cast<double>(sample.devices),
+                    sample.first_failure);
+}
+
+std::string sensitivity_table(const MeritResult& result) {
+  const FigureOfMerit& figure = figure_of_merit(result.merit);
+  const std::size_t width = key_width(result);
+  std::string text = fmt::format(
+      "{}: {}\nmedian {:.4g}, 5 to 95 % of devices {:.4g} to {:.4g} {}\n"
+      "{:<{}} {:>6} {:>13} {:>6} {:>13} {:>6} {:>13}\n",
+      studied_name(result), figure.what, result.quantiles[1],
+      result.quantiles[0], result.quantiles[2], figure.unit, "tolerance", width,
+      "total", "95 %", "first", "95 %", "ranks", "95 %");
+  for (const FactorResult& factor : result.factors)
+    text += fmt::format("{:<{}} {} {} {}\n", factor.key, width,
+                        index_text(factor.total), index_text(factor.first),
+                        index_text(factor.first_by_rank));
+  text += words_of_sum(result);
+  if (result.rows < result.samples)
+    text +=
+        fmt::format("{} of {} samples count.\n", result.rows, result.samples);
+  if (result.yield) text += yield_table(result);
+  return text;
+}
+
+nlohmann::ordered_json to_json(const DeviceSample& sample,
+                               const StudyHead& head,
+                               const std::vector<MeritResult>& results) {
+  nlohmann::ordered_json figures = nlohmann::ordered_json::object();
+  for (const MeritResult& result : results)
+    figures[figure_of_merit(result.merit).name] = merit_json(result);
+  nlohmann::ordered_json json = {
+      {"campaign", head.campaign},
+      {"seed", head.seed},
+      {"range_degC", {head.grid.low, head.grid.high}},
+      {"temperatures", head.grid.count},
+      {"devices", sample.devices},
+      {"failures", sample.failures},
+      {"first_failure", nullptr},
+      {"figures", figures}};
+  if (sample.failures > 0) json["first_failure"] = sample.first_failure;
+  return json;
+}
+
+}  // namespace beamgyro

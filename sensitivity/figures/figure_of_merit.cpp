@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "sensitivity/figures/figure_of_merit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include "compensation/models/polynomial.h"
+#include "sensitivity/figures/settled_samples.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr std::array kFigures = {
+    FigureOfMerit{Merit::kBiasPeakToPeak, "bias_pp_deg_per_s", "deg/s",
+                  "peak to peak of the bias over the range", true},
+    FigureOfMerit{Merit::kCubicRms, "cubic_rms_deg_per_s", "deg/s",
+                  "rms that a cubic fitted to the bias leaves over the range",
+                  true},
+    FigureOfMerit{Merit::kScaleFactorDrift, "scale_factor_drift_rel", "1",
+                  "peak to peak of the relative scale factor over the range",
+                  true},
+    FigureOfMerit{Merit::kWarmUpChange, "warm_up_change_deg_per_s", "deg/s",
+                  "bias of the settled gyro less that at power-on, at 25 degC",
+                  false},
+    FigureOfMerit{Merit::kQuadrature, "quadrature_deg_per_s", "deg/s",
+                  "largest magnitude of the quadrature over the range", true},
+    FigureOfMerit{Merit::kCompensatorRms, "compensator_rms_deg_per_s", "deg/s",
+                  "rms that the compensator leaves over the range", true},
+};
+
+double root_mean_square(const Eigen::ArrayXd& values) {
+  return std::sqrt(values.square().mean());
+}
+
+double peak_to_peak(const Eigen::ArrayXd& values) {
+  return values.maxCoeff() - values.minCoeff();
+}
+
+// In the middle of the range the powers stay near 1.
+double left_by_cubic(const StaticCurve& curve) {
+  const double low = curve.temperature.minCoeff();
+  const double half = 0.5 * (curve.temperature.maxCoeff() - low);
+  const Eigen::ArrayXXd x = (curve.temperature - low) / half - 1;
+  return root_mean_square(curve.bias -
+                          fit_polynomial(x, curve.bias, 3).predict(x));
+}
+
+/// The figures of one device; the curve is computed once, when one needs it.
+class MeritsOf {
+ public:
+  MeritsOf(const Device& device, const MeritOptions& options)
+      : gyro_(make_gyro(device)), options_(options) {}
+
+  double operator()(Merit merit) {
+    switch (merit) {
+      case Merit::kBiasPeakToPeak:
+        return peak_to_peak(curve().bias);
+      case Merit::kCubicRms:
+        return left_by_cubic(curve());
+      case Merit::kScaleFactorDrift:
+        return peak_to_peak(scale_factor_curve(gyro_, options_.grid));
+      case Merit::kWarmUpChange:
+        return warm_up_change(gyro_, options_.ambient);
+      case Merit::kQuadrature:
+        return curve().quadrature.abs().maxCoeff();
+      case Merit::kCompensatorRms:
+        return root_mean_square(
+            settled_residual(*options_.compensator, gyro_.device, curve()));
+    }
+    return 0;
+  }
+
+ private:
+  const StaticCurve& curve() {
+    if (!curve_) curve_ = static_curve(gyro_, options_.grid);
+    return *curve_;
+  }
+
+  Gyro gyro_;
+  const MeritOptions& options_;
+  std::optional<StaticCurve> curve_;
+};
+
+}  // namespace
+
+std::span<const FigureOfMerit> figures_of_merit() { return kFigures; }
+
+const FigureOfMerit& figure_of_merit(Merit merit) {
+  return kFigures[static_cast<std::size_t>(merit)];
+}
+
+const FigureOfMerit* find_figure_of_merit(std::string_view name) {
+  const auto* const found = std::ranges::find_if(
+      kFigures, [&](const FigureOfMerit& each) { return name == each.name; });
+  return found == kFigures.end() ? nullptr : found;
+}
+
+std::vector<double> device_merits(const Device& device,
+                                  std::span<const Merit> merits,
+                                  const MeritOptions& options) {
+  MeritsOf merits_of(device, options);
+  std::vector<double> values;
+  for (const Merit merit : merits) values.push_back(merits_of(merit));
+  return values;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#include "sensitivity/study/device_sample.h"
+
+#include <limits>
+#include <utility>
+
+#include "parallel/work_queue.h"
+#include "random/random_stream.h"
+#include "sensitivity/indices/random_purposes.h"
+#include "sim/campaign/scrambled_sobol.h"
+#include "sim/numerics/simulation_failure.h"
+
+namespace beamgyro {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+class RowSampler {
+ public:
+  RowSampler(const Campaign& campaign, const DeviceSampleOptions& options,
+             DeviceSampleCounts& counts, DeviceSample& sample)
+      : campaign_(campaign),
+        options_(options),
+        counts_(counts),
+        sample_(sample),
+        plan_(campaign.device_plan()),
+        sobol_(2 * plan_.parameters.size(), options.seed),
+        failures_(options.rows) {
+    for (std::size_t k = 0; k < plan_.draws.size(); ++k) {
+      const Distribution& d = plan_.draws[k].distribution;
+      if (d.kind != Distribution::Kind::kDiscrete)
+        halved_.emplace_back(k, with_halved(plan_, k));
+    }
+    make_room();
+  }
+
+  void sample_row(std::size_t row) {
+    const std::size_t numbers = plan_.parameters.size();
+    std::vector<double> a(numbers), b(numbers), independent(numbers);
+    for (std::size_t n = 0; n < numbers; ++n) {
+      const auto index = static_cast<std::uint32_t>(row);
+      a[n] = sobol_.at(index, n);
+      b[n] = sobol_.at(index, numbers + n);
+      RandomStream stream(options_.seed, index, static_cast<std::uint32_t>(n),
+                          kRankSampleStream);
+      independent[n] = stream.uniform();
+    }
+    for (std::size_t i = 0; i < sample_.factors.size(); ++i)
+      keep_numbers(row, i, independent);
+    sample_design(row, a, b);
+    compute(row, plan_, std::move(independent),
+            [&](MeritSample& merit) { return &merit.independent[row]; });
+    if (!options_.halves_tolerances) return;
+    for (const auto& [key, plan] : halved_) {
+      const std::size_t at = key;
+      compute(row, plan, a,
+              [row, at](MeritSample& merit) { return &merit.halved[at][row]; });
+    }
+  }
+
+  const std::vector<std::string>& failures() const { return failures_; }
+
+ private:
+  void make_room() {
+    const std::size_t rows = options_.rows;
+    for (MeritSample& merit : sample_.merits) {
+      merit.design = {
+          std::vector<double>(rows, kNone),
+          std::vector<double>(rows, kNone),
+          {sample_.factors.size(), std::vector<double>(rows, kNone)}};
+      merit.independent.assign(rows, kNone);
+      merit.halved.resize(plan_.draws.size());
+      if (!options_.halves_tolerances) continue;
+      for (const auto& [key, plan] : halved_)
+        merit.halved[key].assign(rows, kNone);
+    }
+    for (const Factor& factor : sample_.factors)
+      sample_.numbers.emplace_back(
+          static_cast<Eigen::Index>(rows),
+          static_cast<Eigen::Index>(factor.numbers.size()));
+  }
+
+  void keep_numbers(std::size_t row, std::size_t factor,
+                    const std::vector<double>& uniform) {
+    Eigen::Index column = 0;
+    for (const std::size_t n : sample_.factors[factor].numbers)
+      sample_.numbers[factor](static_cast<Eigen::Index>(row), column++) =
+          uniform[n];
+  }
+
+  void sample_design(std::size_t row, const std::vector<double>& a,
+                     const std::vector<double>& b) {
+    compute(row, plan_, a,
+            [&](MeritSample& merit) { return &merit.design.a[row]; });
+    compute(row, plan_, b,
+            [&](MeritSample& merit) { return &merit.design.b[row]; });
+    for (std::size_t i = 0; i < sample_.factors.size(); ++i) {
+      std::vector<double> changed = a;
+      for (const std::size_t n : sample_.factors[i].numbers) changed[n] = b[n];
+      compute(row, plan_, std::move(changed),
+              [&](MeritSample& merit) { return &merit.design.ab[i][row]; });
+    }
+  }
+
+  template <class Place>
+  void compute(std::size_t row, const DrawPlan& plan,
+               std::vector<double> uniform, const Place& place) {
+    const VirtualDevice drawn = campaign_.device_at(plan, std::move(uniform));
+    std::string failure = drawn.failure;
+    if (drawn.device) {
+      try {
+        const std::vector<double> values =
+            device_merits(*drawn.device, options_.merits, options_.merit);
+        for (std::size_t m = 0; m < values.size(); ++m)
+          *place(sample_.merits[m]) = values[m];
+      } catch (const SimulationFailure& error) {
+        failure = error.what();
+      }
+    }
+    ++counts_.devices;
+    if (failure.empty()) return;
+    ++counts_.failures;
+    if (failures_[row].empty()) failures_[row] = std::move(failure);
+  }
+
+  const Campaign& campaign_;
+  const DeviceSampleOptions& options_;
+  DeviceSampleCounts& counts_;
+  DeviceSample& sample_;
+  const DrawPlan& plan_;
+  ScrambledSobol sobol_;
+  std::vector<std::pair<std::size_t, DrawPlan>> halved_;
+  std::vector<std::string> failures_;  // the first of each row
+};
+
+}  // namespace
+
+std::uint64_t devices_of_sample(const Campaign& campaign,
+                                const DeviceSampleOptions& options) {
+  const DrawPlan& plan = campaign.device_plan();
+  std::uint64_t each = 3 + factors_of(plan).size();
+  if (options.halves_tolerances) {
+    for (const Draw& draw : plan.draws)
+      if (draw.distribution.kind != Distribution::Kind::kDiscrete) ++each;
+  }
+  return each * options.rows;
+}
+
+DeviceSample sample_devices(const Campaign& campaign,
+                            const DeviceSampleOptions& options,
+                            DeviceSampleCounts& counts) {
+  DeviceSample sample;
+  sample.factors = factors_of(campaign.device_plan());
+  require_comparable(sample.factors, campaign.name());
+  device_merits(campaign.base_device(), options.merits, options.merit);
+  for (const Draw& draw : campaign.device_plan().draws)
+    sample.keys.push_back(key_of(draw));
+  sample.merits.resize(options.merits.size());
+  RowSampler sampler(campaign, options, counts, sample);
+  for_each_task(options.rows, thread_count(options.jobs),
+                [&](std::size_t row, std::size_t) { sampler.sample_row(row); });
+  sample.devices = counts.devices;
+  sample.failures = counts.failures;
+  for (const std::string& failure : sampler.failures()) {
+    if (failure.empty()) continue;
+    sample.first_failure = failure;
+    break;
+  }
+  return sample;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sensitivity/indices/index_interval.h"
+#include "sensitivity/study/device_sample.h"
+
+namespace beamgyro {
+
+/// A share of devices with its interval of 95 % (Wilson, 1927).
+struct DeviceShare {
+  double value = 0, low = 0, high = 0;
+};
+
+/// Returns k of n with its interval; n > 0.
+DeviceShare device_share(std::size_t k, std::size_t n);
+
+struct FactorResult {
+  std::string key;
+  SensitivityIndex first, total, first_by_rank;
+  double total_by_product = 0;
+  std::size_t rows = 0;
+};
+
+struct HalvedYield {
+  std::string key;
+  std::optional<DeviceShare> share;  // none for a choice, which has no half
+};
+
+/// Shares of devices whose figure has a magnitude of at most `limit`. Devices
+/// that do not work do not meet it.
+struct YieldResult {
+  double limit = 0;
+  DeviceShare as_is;
+  std::vector<HalvedYield> halved;  // the largest share first
+};
+
+struct MeritResult {
+  Merit merit{};
+  bool of_logarithm = false;
+  std::size_t rows = 0, samples = 0;  // with values in A and B, and all
+  double variance = 0;                // of what is studied
+  double sum_of_first = 0;
+  std::array<double, 3> quantiles{};  // 5, 50, 95 % of the figure itself
+  std::vector<FactorResult> factors;  // the largest total index first
+  std::optional<YieldResult> yield;
+};
+
+struct MeritQuestion {
+  Merit merit{};
+  bool of_logarithm = false;
+  std::optional<double> limit = {};
+};
+
+/// Estimates indices and yield of figure `index` of a sample. Of a logarithm,
+/// a value that is not above 0 counts as none. Throws std::runtime_error when
+/// no row has values in A and B.
+MeritResult analysed(const DeviceSample& sample, std::size_t index,
+                     const MeritQuestion& question, std::uint64_t seed);
+
+}  // namespace beamgyro
