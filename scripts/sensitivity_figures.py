@@ -35,7 +35,7 @@ def draw_bars(axes, indices, kind, place, color, label):
               error_kw={"elinewidth": 1, "capsize": 2})
 
 
-def draw(name, figure, file):
+def draw(figure, file):
     indices = figure["indices"][:MOST_BARS]
     drawn, axes = pyplot.subplots(figsize=(8, 1.4 + 0.34 * len(indices)))
     draw_bars(axes, indices, "total", -BAR / 2, COLORS[0], "total")
@@ -44,7 +44,7 @@ def draw(name, figure, file):
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     axes.set_xlabel("share of the variance")
-    axes.set_title(spoken(f"{figure['of']}: {figure['meaning']}"), fontsize=10)
+    axes.set_title(f"{figure['of']}: {spoken(figure['meaning'])}", fontsize=10)
     axes.legend(loc="lower right")
     drawn.savefig(file, metadata={"Software": None})
     pyplot.close(drawn)
@@ -60,7 +60,7 @@ def main():
     out.mkdir(parents=True, exist_ok=True)
     with pyplot.rc_context(STYLE):
         for name, figure in figures.items():
-            draw(name, figure, out / f"{name}.png")
+            draw(figure, out / f"{name}.png")
     print(f"{len(figures)} figures in {out}")
 
 

@@ -2,9 +2,12 @@
 """sensitivity: indices of a campaign, the same by any way, and bad input."""
 
 import json
+import signal
+import subprocess
+import time
 import unittest
 
-from program import CUBIC, SCENARIO, SCENARIOS, ProgramTest, ramp
+from program import CUBIC, PROGRAM, SCENARIO, SCENARIOS, ProgramTest, ramp
 
 CAMPAIGN = """\
 name = "three"
@@ -163,6 +166,16 @@ class Sensitivity(ProgramTest):
             "mount.axis_angle_deg", "patches.offset_m",
             "mount.glassy_stiffness_share", "readout.quadrature_trim_deg_per_s",
             "readout.offset_tc_deg_per_s_per_K")})
+
+    def test_an_interruption_leaves_no_file(self):
+        work = subprocess.Popen(
+            [str(PROGRAM), "sensitivity", "c.toml", "--samples", "1000000",
+             "--json", "s.json"], cwd=self.dir, stderr=subprocess.PIPE)
+        time.sleep(1)
+        work.send_signal(signal.SIGINT)
+        work.communicate(timeout=60)
+        self.assertEqual(work.returncode, -signal.SIGINT)
+        self.assertEqual(list(self.dir.glob("s.json*")), [])
 
     def test_wrong_words_are_refused(self):
         def refused(*words, says, campaign="c.toml"):

@@ -12,7 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 WIDTH = 100
 
 ROOMS = ["cli", "compensation", "config", "dataset", "parallel", "random",
-         "report", "sim", "validation"]
+         "report", "sensitivity", "sim", "validation"]
 
 PAGES = [*ROOT.glob("*.md"), *sorted(ROOT.glob("docs/**/*.md")),
          *sorted(ROOT.glob("bench/*.md")),
