@@ -20,7 +20,7 @@ METHODS = ["cubic", "spline", "bp", "output_and_temperature", "recommended",
 MOVING = {"recommended", "recommended_with_play"}
 RUNS = LIFELIKE_TRAINING + LIFELIKE_VALIDATION + LIFELIKE_TEST + [CYCLES, STORE]
 BLOCK = 60.0  # [s], what scores are averaged over, too
-TURN_ON = 300.0  # [s] at rest, whose mean re-zeroing subtracts
+TURN_ON = 600.0  # [s] at rest, whose mean re-zeroing subtracts
 
 
 def residual_blocks(file, first, last):

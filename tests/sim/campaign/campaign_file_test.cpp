@@ -382,7 +382,8 @@ TEST(CampaignFile, CopiesOfTheSourcesMakeTheSameCampaign) {
 }
 
 TEST(CampaignFile, TheShippedCampaignsCanBeRead) {
-  for (const char* name : {"small", "paper", "warm_up", "large"}) {
+  for (const char* name : {"small", "paper", "warm_up", "large", "lifelike",
+                           "lifelike_population", "population"}) {
     const Campaign c = Campaign::read(std::string(BEAMGYRO_SCENARIOS) +
                                       "/campaigns/" + name + ".toml");
     EXPECT_EQ(c.name(), name);
