@@ -2,11 +2,14 @@
 #include "report/sensitivity_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 namespace beamgyro {
 namespace {
@@ -49,6 +52,19 @@ std::string words_of_sum(const MeritResult& result) {
                     "The tolerances by themselves explain most of the "
                     "variance,\ninteractions {:.0f} %.\n",
                     100 * std::max(0.0, 1 - result.sum_of_first));
+}
+
+// Tolerances with a share that they have with others for the most part.
+std::string words_of_partners(const MeritResult& result) {
+  constexpr double kCounts = 0.05, kMostly = 0.5;  // [-]
+  std::vector<std::string> keys;
+  for (const FactorResult& factor : result.factors)
+    if (factor.total.low >= kCounts &&
+        factor.first.high < kMostly * factor.total.value)
+      keys.push_back(factor.key);
+  if (keys.empty()) return "";
+  return fmt::format("Mostly together with others: {}.\n",
+                     fmt::join(keys, ",\n  "));
 }
 
 std::string share_text(const DeviceShare& share) {
@@ -161,7 +177,7 @@ std::string sensitivity_table(const MeritResult& result) {
     text += fmt::format("{:<{}} {} {} {}\n", factor.key, width,
                         index_text(factor.total), index_text(factor.first),
                         index_text(factor.first_by_rank));
-  text += words_of_sum(result);
+  text += words_of_sum(result) + words_of_partners(result);
   if (result.rows < result.samples)
     text +=
         fmt::format("{} of {} samples count.\n", result.rows, result.samples);

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "report/sensitivity_report.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace beamgyro::sensitivity_report_test {
+namespace {
+
+FactorResult factor(const std::string& key, double first, double total) {
+  FactorResult result;
+  result.key = key;
+  result.first = {first, first - 0.02, first + 0.02};
+  result.total = {total, total - 0.02, total + 0.02};
+  return result;
+}
+
+MeritResult merit(double sum_of_first) {
+  MeritResult result;
+  result.merit = Merit::kBiasPeakToPeak;
+  result.of_logarithm = true;
+  result.rows = result.samples = 64;
+  result.variance = 1;
+  result.sum_of_first = sum_of_first;
+  result.factors = {factor("mount.axis_angle_deg", 0.12, 0.73),
+                    factor("beam.side_m", 0.07, 0.08)};
+  return result;
+}
+
+TEST(SensitivityReport, SaysWhenInteractionsDominate) {
+  const std::string text = sensitivity_table(merit(0.19));
+  EXPECT_NE(text.find("Sum of the first orders: 0.19. Interactions dominate: "
+                      "81 % of the variance"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("Mostly together with others: mount.axis_angle_deg.\n"),
+            std::string::npos);
+  EXPECT_EQ(sensitivity_table(merit(0.71)).find("dominate"), std::string::npos);
+}
+
+TEST(SensitivityReport, SaysWhenNothingVaries) {
+  MeritResult result = merit(0);
+  result.variance = 0;
+  EXPECT_NE(sensitivity_table(result).find("No tolerance of the campaign"),
+            std::string::npos);
+}
+
+TEST(SensitivityReport, AYieldOfAChoiceHasNoHalf) {
+  MeritResult result = merit(0.71);
+  result.yield = {
+      10, device_share(48, 64), {{"a.b", device_share(60, 64)}, {"c.d", {}}}};
+  const std::string text = sensitivity_table(result);
+  EXPECT_NE(text.find("as they are"), std::string::npos);
+  EXPECT_NE(text.find("a.b/2            93.8 %"), std::string::npos) << text;
+  EXPECT_NE(text.find("c.d/2              -\n"), std::string::npos) << text;
+  const nlohmann::ordered_json json = to_json(DeviceSample{}, {}, {result});
+  const auto& found = json["figures"]["bias_pp_deg_per_s"];
+  EXPECT_EQ(found["of"], "ln bias_pp_deg_per_s");
+  EXPECT_EQ(found["yield"]["as_is"], 0.75);
+  EXPECT_TRUE(found["yield"]["halved"][1]["yield"].is_null());
+  EXPECT_EQ(found["indices"][0]["total_interval"][1], 0.75);
+}
+
+}  // namespace
+}  // namespace beamgyro::sensitivity_report_test
