@@ -53,7 +53,7 @@ TEST(SensitivityReport, AYieldOfAChoiceHasNoHalf) {
       10, device_share(48, 64), {{"a.b", device_share(60, 64)}, {"c.d", {}}}};
   const std::string text = sensitivity_table(result);
   EXPECT_NE(text.find("as they are"), std::string::npos);
-  EXPECT_NE(text.find("a.b/2            93.8 %"), std::string::npos) << text;
+  EXPECT_NE(text.find("a.b/2         93.8 %"), std::string::npos) << text;
   EXPECT_NE(text.find("c.d/2              -\n"), std::string::npos) << text;
   const nlohmann::ordered_json json = to_json(DeviceSample{}, {}, {result});
   const auto& found = json["figures"]["bias_pp_deg_per_s"];
