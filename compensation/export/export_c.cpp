@@ -76,7 +76,9 @@ class Writer {
     text += runtime();
     if (parts_.uses_inputs)
       text += "static float bias_of(const float *x) {\n" + code_.body + "}\n\n";
-    return text + crc_function() + init_function() + step_function();
+    text += crc_function() + init_function();
+    if (c_.sigma) text += sigma_functions();
+    return text + step_function();
   }
 
  private:
@@ -88,6 +90,9 @@ class Writer {
     if (parts_.clock) called.push_back("exp");
     if (parts_.reads_more) called.push_back("finite");
     if (c_.scale_factor) called.push_back("table");
+    if (c_.sigma)
+      called.insert(called.end(),
+                    {"exp", "lowpass", "finite", "table", "root", "sigma"});
     called.push_back("crc");
     std::string text;
     for (const std::string_view section : runtime_sections())
@@ -118,8 +123,14 @@ class Writer {
         text += fmt::format(
             "  start_lowpass(state->filter[{}], period, time_constants[{}]);\n",
             filter++, i);
+    if (c_.sigma)
+      text +=
+          "  state->sigma_period = period;\n"
+          "  start_lowpass(state->sigma_filter, period, sigma_terms[3]);\n";
     return text + "  return 0;\n}\n\n";
   }
+
+  std::string sigma_functions() const;
 
   std::string step_function() const;
   std::string input_lines() const;
@@ -180,6 +191,35 @@ std::string Writer::finite_lines() const {
   return text;
 }
 
+std::string Writer::sigma_functions() const {
+  std::string text = fmt::format(
+      R"(static float next_sigma({0}_state *state, float T) {{
+  const float since = (float)state->sigma_samples * state->sigma_period;
+  const int first = !state->sigma_started;
+  float on, lag, sigma;
+  if (state->sigma_samples < 0xffffffffu) ++state->sigma_samples;
+  if (!is_finite(T)) return T - T;
+  state->sigma_started = 1;
+  on = sigma_terms[0] * exp_minus(since / sigma_terms[1]);
+  lag = lowpass_lag(state->sigma_filter, first, T);
+  sigma = sigma_at(sigma_temperatures, sigmas, {1}, sigma_growth, T, on,
+                   sigma_terms[2] * (lag / sigma_terms[3]));
+)",
+      name_, model_.arrays().count("sigmas"));
+  if (c_.scale_factor)
+    text += fmt::format(
+        "  if (T < range[0]) T = range[0];\n"
+        "  if (T > range[1]) T = range[1];\n"
+        "  sigma = sigma / table_at(scale_factor_temperatures, scale_factors, "
+        "{}, T);\n",
+        model_.arrays().count("scale_factors"));
+  return text + fmt::format(
+                    "  return sigma;\n}}\n\n"
+                    "float {0}_sigma(const {0}_state *state) {{ return "
+                    "state->sigma; }}\n\n",
+                    name_);
+}
+
 std::string Writer::step_function() const {
   std::string text = fmt::format(
       "float {0}_step({0}_state *state, const {0}_sample *sample) {{\n", name_);
@@ -193,6 +233,7 @@ std::string Writer::step_function() const {
         "  const float since_power_on = (float)state->samples * "
         "state->period;\n"
         "  if (state->samples < 0xffffffffu) ++state->samples;\n";
+  if (c_.sigma) text += "  state->sigma = next_sigma(state, T);\n";
   text +=
       "  state->clamped = 0;\n"
       "  if (!(T >= range[0])) {\n"

@@ -13,7 +13,9 @@ namespace beamgyro {
 
 ExportFindings findings_of(const Compensator& compensator) {
   ExportFindings found;
-  found.difference = firmware_difference(compensator);
+  const FirmwareDifference differences = firmware_differences(compensator);
+  found.difference = differences.rate;
+  found.sigma_difference = differences.sigma;
   const std::optional<double> kept = rate_kept(compensator);
   if (kept && !(*kept >= kCancelledBelow))
     found.objections.push_back(fmt::format(
@@ -26,6 +28,11 @@ ExportFindings findings_of(const Compensator& compensator) {
         "those of compensate, and {:g} deg/s is the most; large terms that "
         "cancel lose digits, and weight_decay keeps those of a network small",
         found.difference, kLargestDifference));
+  if (!(found.sigma_difference <= kLargestDifference))
+    found.objections.push_back(fmt::format(
+        "its sigma in single precision differs by up to {:.2g} deg/s from that "
+        "of compensate, and {:g} deg/s is the most",
+        found.sigma_difference, kLargestDifference));
   return found;
 }
 

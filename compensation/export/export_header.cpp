@@ -55,7 +55,7 @@ std::string about(const Compensator& c, const FirmwareParts& parts,
 }
 
 std::string macros(const std::string& name, const FirmwareModel& model,
-                   double difference) {
+                   double difference, double sigma_difference) {
   const std::vector<float>& range = model.arrays().values("range");
   std::string text = fmt::format(
       "/* CRC-32 of the parameters. */\n#define {0}_CRC 0x{1:08x}u\n\n"
@@ -70,6 +70,10 @@ std::string macros(const std::string& name, const FirmwareModel& model,
       c_literal(static_cast<float>(difference)),
       c_literal(*std::ranges::min_element(kComparedPeriods)),
       c_literal(*std::ranges::max_element(kComparedPeriods)));
+  if (model.tells_sigma())
+    text += fmt::format(
+        "/* The same of {0}_sigma. */\n#define {0}_SIGMA_DIFFERENCE {1}\n\n",
+        name, c_literal(static_cast<float>(sigma_difference)));
   if (model.reads(kFirmwareDriveFrequency))
     text += fmt::format(
         "/* [Hz]; samples hold the difference from it. */\n"
@@ -99,11 +103,26 @@ std::string structures(const std::string& name, const FirmwareModel& model,
         parts.plays);
   if (parts.follows_temperature())
     text += "  int started;        /* they have their first temperature */\n";
+  if (model.tells_sigma())
+    text +=
+        "  float sigma; /* of the last rate [deg/s] */\n"
+        "  float sigma_period, sigma_filter[5];\n"
+        "  uint32_t sigma_samples;\n"
+        "  int sigma_started;\n";
   return text +
          fmt::format(
              "  int clamped; /* the last temperature was out of range, or not "
              "finite */\n}} {}_state;\n\n",
              name);
+}
+
+std::string sigma_function(const std::string& name) {
+  return fmt::format(
+      "/* 1-sigma [deg/s] of the bias of the rate that {0}_step returned last; "
+      "NaN after\n   a temperature that is NaN or infinite. It takes the "
+      "temperature as measured,\n   not clamped. */\n"
+      "float {0}_sigma(const {0}_state *state);\n\n",
+      name);
 }
 
 std::string functions(const std::string& name) {
@@ -159,8 +178,9 @@ std::string header_text(const Compensator& compensator, const std::string& name,
          about(compensator, parts, found.difference) +
          "\n#include <stdint.h>\n\n#ifdef __cplusplus\nextern \"C\" "
          "{\n#endif\n\n" +
-         macros(name, model, found.difference) +
+         macros(name, model, found.difference, found.sigma_difference) +
          structures(name, model, parts) + functions(name) +
+         (model.tells_sigma() ? sigma_function(name) : "") +
          "#ifdef __cplusplus\n}\n#endif\n\n#endif\n";
 }
 

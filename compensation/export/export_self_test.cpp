@@ -56,18 +56,37 @@ std::vector<float> golden_answers(FirmwareModel& model,
                                             (1.0f / 16777216.0f));
     }
     answers.push_back(model.step(sample));
+    if (model.tells_sigma()) answers.push_back(model.sigma());
   }
   return answers;
 }
 
-// One row of bits for every kGoldenStep answers.
-std::string golden_text(const std::vector<float>& answers) {
+// One row of bits for every kGoldenStep answers. `each` of them belong to a
+// sample; the bits are of number `which`.
+std::string golden_text(const std::vector<float>& answers, std::size_t each = 1,
+                        std::size_t which = 0) {
   std::string text;
-  for (int k = 0; k < kGoldenSamples; k += kGoldenStep)
-    text += fmt::format(
-        "{}0x{:08x}u,", k / kGoldenStep % 6 == 0 ? "\n  " : " ",
-        std::bit_cast<std::uint32_t>(answers[static_cast<std::size_t>(k)]));
+  for (std::size_t k = 0; k < kGoldenSamples; k += kGoldenStep)
+    text +=
+        fmt::format("{}0x{:08x}u,", k / kGoldenStep % 6 == 0 ? "\n  " : " ",
+                    std::bit_cast<std::uint32_t>(answers[each * k + which]));
   return text;
+}
+
+// The further array and lines of a compensator with a sigma.
+std::string golden_sigma_text(const std::vector<float>& answers) {
+  return fmt::format("static const uint32_t golden_sigma[{}] = {{{}\n}};\n",
+                     kGoldenSamples / kGoldenStep, golden_text(answers, 2, 1));
+}
+
+std::string sigma_check_text(const std::string& name) {
+  return fmt::format(
+      R"(    answer = {0}_sigma(&state);
+    memcpy(&bits, &answer, sizeof bits);
+    crc = crc_with(crc, bits);
+    if (k % {1} == 0 && bits != golden_sigma[k / {1}]) ++wrong;
+)",
+      name, kGoldenStep);
 }
 
 std::string fill_text(const FirmwareModel& model,
@@ -99,7 +118,7 @@ std::string self_test_source(const Compensator& compensator,
 
 static const uint32_t golden[{3}] = {{{4}
 }};
-static const float periods[4] = {{{5}, {6}, {7}, {8}}}; /* [s] */
+{12}static const float periods[4] = {{{5}, {6}, {7}, {8}}}; /* [s] */
 
 static uint32_t state_of_uniform = 1;
 
@@ -135,7 +154,7 @@ int main(void) {{
     memcpy(&bits, &answer, sizeof bits);
     crc = crc_with(crc, bits);
     if (k % {2} == 0 && bits != golden[k / {2}]) ++wrong;
-  }}
+{13}  }}
   if (wrong != 0 || ~crc != 0x{11:08x}u) {{
     printf("{0}: %d of {3} answers differ, crc %08lx. Compile with "
            "-ffp-contract=off and without -ffast-math\n", wrong,
@@ -147,10 +166,12 @@ int main(void) {{
 }}
 )",
       name, kGoldenSamples, kGoldenStep, kGoldenSamples / kGoldenStep,
-      golden_text(answers), c_literal(kGoldenPeriods[0]),
-      c_literal(kGoldenPeriods[1]), c_literal(kGoldenPeriods[2]),
-      c_literal(kGoldenPeriods[3]), kGoldenSamples / 4,
-      fill_text(model, ranges), crc32(answers));
+      golden_text(answers, model.tells_sigma() ? 2 : 1),
+      c_literal(kGoldenPeriods[0]), c_literal(kGoldenPeriods[1]),
+      c_literal(kGoldenPeriods[2]), c_literal(kGoldenPeriods[3]),
+      kGoldenSamples / 4, fill_text(model, ranges), crc32(answers),
+      model.tells_sigma() ? golden_sigma_text(answers) : "",
+      model.tells_sigma() ? sigma_check_text(name) : "");
 }
 
 }  // namespace beamgyro

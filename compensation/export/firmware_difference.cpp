@@ -111,14 +111,16 @@ Recording samples_at(const Compensator& c, const FirmwareModel& model,
   return recording;
 }
 
-double difference_at(const Compensator& c, FirmwareModel& model, float period) {
+FirmwareDifference difference_at(const Compensator& c, FirmwareModel& model,
+                                 float period) {
   const Recording recording = samples_at(c, model, static_cast<double>(period));
   const std::vector<double> expected = compensated_rate(c, recording);
+  const std::vector<double> sigma = compensated_rate_sigma(c, recording);
   std::array<const double*, kFirmwareSignalCount> values{};
   for (std::size_t s = 0; s < kFirmwareSignalCount; ++s)
     if (model.reads(s))
       values[s] = column_values(recording, kFirmwareSignals[s]).data();
-  double largest = 0.0;
+  FirmwareDifference largest;
   for (std::size_t k = 0; k < kSamples; ++k) {
     if (recording.status[k] != 0) {
       model.start(period);
@@ -135,19 +137,34 @@ double difference_at(const Compensator& c, FirmwareModel& model, float period) {
       throw std::invalid_argument(fmt::format(
           "the bias is not finite in single precision, at {} degC for one",
           sample.value[kTemperature]));
-    largest = std::max(largest, difference);
+    largest.rate = std::max(largest.rate, difference);
+    if (sigma.empty()) continue;
+    const double of_sigma =
+        std::abs(static_cast<double>(model.sigma()) - sigma[k]);
+    if (!std::isfinite(of_sigma))
+      throw std::invalid_argument(fmt::format(
+          "the sigma is not finite in single precision, at {} degC for one",
+          sample.value[kTemperature]));
+    largest.sigma = std::max(largest.sigma, of_sigma);
   }
   return largest;
 }
 
 }  // namespace
 
-double firmware_difference(const Compensator& compensator) {
+FirmwareDifference firmware_differences(const Compensator& compensator) {
   FirmwareModel model(compensator);
-  double largest = 0.0;
-  for (const float period : kComparedPeriods)
-    largest = std::max(largest, difference_at(compensator, model, period));
+  FirmwareDifference largest;
+  for (const float period : kComparedPeriods) {
+    const FirmwareDifference found = difference_at(compensator, model, period);
+    largest = {std::max(largest.rate, found.rate),
+               std::max(largest.sigma, found.sigma)};
+  }
   return largest;
+}
+
+double firmware_difference(const Compensator& compensator) {
+  return firmware_differences(compensator).rate;
 }
 
 }  // namespace beamgyro

@@ -11,7 +11,7 @@ constexpr float kComparedPeriods[] = {0.0005f, 0.01f, 0.1f, 1.0f, 20.0f};
 /// Largest difference that exported code may have [deg/s].
 constexpr double kLargestDifference = 1e-4;
 
-/// Returns the largest difference [deg/s] between FirmwareModel in single
+/// Returns the largest differences [deg/s] between FirmwareModel in single
 /// precision and compensated_rate() in double precision, over 20,000 samples at
 /// each of kComparedPeriods. The samples are in the range of training:
 ///
@@ -24,6 +24,13 @@ constexpr double kLargestDifference = 1e-4;
 /// std::invalid_argument for an input other than the temperature whose scale
 /// does not give its range (a polynomial with normalised = false), for answers
 /// that are not finite in single precision, and as FirmwareModel.
+struct FirmwareDifference {
+  double rate = 0.0;   // [deg/s]
+  double sigma = 0.0;  // [deg/s], from compensated_rate_sigma(), likewise
+};
+FirmwareDifference firmware_differences(const Compensator& compensator);
+
+/// Returns the difference of the rate.
 double firmware_difference(const Compensator& compensator);
 
 }  // namespace beamgyro

@@ -29,6 +29,24 @@ int drive_frequency_of(const Compensator& c) {
   return 0;
 }
 
+// Each amplitude times the factor.
+void put_sigma_arrays(const BiasSigma& sigma, FirmwareArrays& arrays) {
+  const SigmaTerm none{0.0, kSigmaTimeConstant};
+  const SigmaTerm on = sigma.power_on.value_or(none);
+  const SigmaTerm rate = sigma.temperature_rate.value_or(none);
+  const double k = sigma.factor;
+  arrays.add(
+      {"sigma_temperatures", "[degC]", singles(sigma.curve.temperatures)});
+  arrays.add({"sigmas", "[deg/s]", singles(k * sigma.curve.values)});
+  arrays.add({"sigma_growth", "below and above them [deg/s/K]",
+              singles(std::vector{k * sigma.growth[0], k * sigma.growth[1]})});
+  arrays.add({"sigma_terms",
+              "of power-on [deg/s], [s], of temperature rate [deg/s/(K/s)], "
+              "[s]",
+              singles(std::vector{k * on.amplitude, on.time_constant,
+                                  k * rate.amplitude, rate.time_constant})});
+}
+
 FirmwareArrays arrays_of(const Compensator& c) {
   std::vector<double> centres, gains, constants, half_widths;
   bool plays = false;
@@ -64,6 +82,7 @@ FirmwareArrays arrays_of(const Compensator& c) {
     arrays.add({"scale_factors", "over the nominal one",
                 singles(c.scale_factor->values)});
   }
+  if (c.sigma) put_sigma_arrays(*c.sigma, arrays);
   return arrays;
 }
 
@@ -102,6 +121,8 @@ struct FirmwareModel::State {
   bool started = false;                       // since the first temperature
   std::vector<std::array<float, 5>> filters;  // one per input
   std::vector<float> plays;                   // likewise
+  std::array<float, 5> sigma_filter{};
+  float sigma = 0.0f;  // [deg/s]
 };
 
 FirmwareModel::FirmwareModel(const Compensator& c)
@@ -109,6 +130,7 @@ FirmwareModel::FirmwareModel(const Compensator& c)
       function_(c.bias.function),
       uses_inputs_(reads_inputs(c.bias)),
       corrects_scale_factor_(c.scale_factor.has_value()),
+      tells_sigma_(c.sigma.has_value()),
       drive_frequency_(drive_frequency_of(c)),
       arrays_(arrays_of(c)),
       state_(std::make_unique<State>()) {}
@@ -139,6 +161,35 @@ void FirmwareModel::start(float period) {
   for (std::size_t i = 0; i < inputs_.size(); ++i)
     if (constants[i] > 0.0f)
       runtime::start_lowpass(state_->filters[i].data(), period, constants[i]);
+  if (tells_sigma_)
+    runtime::start_lowpass(state_->sigma_filter.data(), period,
+                           arrays_.values("sigma_terms")[3]);
+}
+
+float FirmwareModel::sigma() const { return state_->sigma; }
+
+float FirmwareModel::scale_factor_at(float temperature) const {
+  return runtime::table_at(arrays_.data("scale_factor_temperatures"),
+                           arrays_.data("scale_factors"),
+                           arrays_.count("scale_factors"), temperature);
+}
+
+// Before step() has counted the sample.
+float FirmwareModel::next_sigma(float temperature) {
+  if (runtime::is_finite(temperature) == 0) return temperature - temperature;
+  const float* terms = arrays_.data("sigma_terms");
+  const float since = static_cast<float>(state_->samples) * state_->period;
+  const float on = terms[0] * runtime::exp_minus(since / terms[1]);
+  const float lag = runtime::lowpass_lag(state_->sigma_filter.data(),
+                                         state_->started ? 0 : 1, temperature);
+  const float sigma = runtime::sigma_at(
+      arrays_.data("sigma_temperatures"), arrays_.data("sigmas"),
+      arrays_.count("sigmas"), arrays_.data("sigma_growth"), temperature, on,
+      terms[2] * (lag / terms[3]));
+  if (!corrects_scale_factor_) return sigma;
+  const float* range = arrays_.data("range");
+  const float clamped = std::min(std::max(temperature, range[0]), range[1]);
+  return sigma / scale_factor_at(clamped);
 }
 
 float FirmwareModel::step(const FirmwareSample& sample) {
@@ -146,6 +197,7 @@ float FirmwareModel::step(const FirmwareSample& sample) {
   const std::vector<float>& centres = arrays_.values("centres_of_inputs");
   const std::vector<float>& gains = arrays_.values("gains_of_inputs");
   const std::vector<float>& constants = arrays_.values("time_constants");
+  if (tells_sigma_) state_->sigma = next_sigma(sample.value[1]);
   const std::uint32_t samples = state_->samples;
   if (state_->samples < 0xffffffffu) ++state_->samples;
   float T = sample.value[1];
@@ -179,10 +231,7 @@ float FirmwareModel::step(const FirmwareSample& sample) {
   const std::vector<float>& unit = arrays_.values("unit");
   float rate =
       sample.value[0] - (unit[0] + unit[1] * bias_of(function_, arrays_, x));
-  if (corrects_scale_factor_)
-    rate = rate / runtime::table_at(arrays_.data("scale_factor_temperatures"),
-                                    arrays_.data("scale_factors"),
-                                    arrays_.count("scale_factors"), T);
+  if (corrects_scale_factor_) rate = rate / scale_factor_at(T);
   return rate;
 }
 

@@ -49,6 +49,11 @@ class FirmwareModel {
   /// filters wait for the next finite one.
   float step(const FirmwareSample& sample);
 
+  /// Returns the 1-sigma [deg/s] of the bias of the rate that step() returned
+  /// last, NaN after a temperature that is not finite. 0 without a sigma.
+  float sigma() const;
+  bool tells_sigma() const { return tells_sigma_; }
+
   const FirmwareArrays& arrays() const { return arrays_; }
   bool reads(std::size_t signal) const;  // index of kFirmwareSignals
 
@@ -62,10 +67,14 @@ class FirmwareModel {
  private:
   struct State;
 
+  float next_sigma(float temperature);
+  float scale_factor_at(float temperature) const;
+
   std::vector<Input> inputs_;
   BiasFunction function_;
   bool uses_inputs_;
   bool corrects_scale_factor_;
+  bool tells_sigma_;
   int drive_frequency_;  // [Hz]
   FirmwareArrays arrays_;
   std::unique_ptr<State> state_;

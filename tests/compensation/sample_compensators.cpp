@@ -94,6 +94,20 @@ Compensator spline_compensator() {
                                           SplineEnd::kNotAKnot)});
 }
 
+Compensator with_sigma(Compensator c) {
+  const auto [lowest, highest] = c.temperature_range;
+  BiasSigma& sigma = c.sigma.emplace();
+  sigma.curve = {Eigen::ArrayXd::LinSpaced(4, lowest, highest),
+                 Eigen::ArrayXd{{0.1, 1.0 / 3.0, 0.05, 0.2}}};
+  sigma.growth = {0.02, 0.07};
+  sigma.power_on = SigmaTerm{0.31, 120.0};
+  sigma.temperature_rate = SigmaTerm{7.7, 250.0};
+  sigma.factor = 1.1;
+  sigma.source = SigmaSource::kPosterior;
+  sigma.calibration = {"in words", "device", 92, 0.9};
+  return c;
+}
+
 std::vector<NamedCompensator> one_of_each_kind() {
   const Eigen::ArrayXd T = grid(-40.0, 50.0, 5.0), b = bias_curve(T);
   Compensator slopes = with_inputs({"temperature", "temperature_rate(60)"},
@@ -126,6 +140,9 @@ std::vector<NamedCompensator> one_of_each_kind() {
       {"fuzzy", fuzzy},
       {"radial_basis", bells},
       {"bp", network_compensator()},
+      {"spline_with_sigma", with_sigma(spline_compensator())},
+      {"bp_with_sigma", with_sigma(network_compensator())},
+      {"every_input_with_sigma", with_sigma(every_input())},
       {"bp_with_every_input", every_input()},
   };
 }

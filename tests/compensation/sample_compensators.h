@@ -14,12 +14,16 @@ Compensator network_compensator();
 /// Inputs "temperature" and a spline with knots every 90/13 K over -40..50.
 Compensator spline_compensator();
 
+/// The same with a sigma that has every term, in the range of the compensator.
+Compensator with_sigma(Compensator c);
+
 struct NamedCompensator {
   std::string name;
   Compensator compensator;
 };
 
-/// One of every kind, and a network with a scale-factor table and every input.
+/// One of every kind, some with a sigma, and a network with a scale-factor
+/// table and every input.
 std::vector<NamedCompensator> one_of_each_kind();
 
 }  // namespace beamgyro
