@@ -2,13 +2,24 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "compensation/inputs/input.h"
 #include "compensation/models/cubic_spline.h"
 #include "compensation/rows/training_rows.h"
+#include "compensation/uncertainty/bias_sigma.h"
 
 namespace beamgyro {
+
+/// Calibration of the 1-sigma of devices that are adapted from a population, on
+/// devices that it was not learned from.
+struct AdaptationSigma {
+  double factor = 1.0;                        // [-], of the deviation, > 0
+  std::optional<SigmaTerm> power_on;          // as of BiasSigma
+  std::optional<SigmaTerm> temperature_rate;  // likewise
+  int devices = 0;
+};
 
 /// The distribution of the gyros of a population. Over devices, the bias b and
 /// further channels q_1, q_2, ... (quadrature, ...) as functions of the
@@ -25,6 +36,7 @@ struct Population {
   Eigen::VectorXd mean;   // (1 + channels) * grid
   Eigen::MatrixXd modes;  // as many rows, one column per mode
   int devices = 0;        // it was learned from
+  std::optional<AdaptationSigma> sigma = {};
 
   Eigen::Index grid() const { return temperatures.size(); }
   TemperatureRange range() const;

@@ -7,6 +7,7 @@
 
 #include "compensation/models/array_view.h"
 #include "compensation/models/parameter_json.h"
+#include "compensation/uncertainty/bias_sigma_json.h"
 
 namespace beamgyro {
 namespace {
@@ -25,17 +26,33 @@ VectorXd read_vector(const JsonNode& node, Index size) {
   return array_view(numbers);
 }
 
+Json adaptation_json(const AdaptationSigma& sigma) {
+  Json json = {{"factor", finite_json(sigma.factor)},
+               {"devices", sigma.devices}};
+  put_sigma_terms(sigma.power_on, sigma.temperature_rate, json);
+  return json;
+}
+
+AdaptationSigma read_adaptation(const JsonNode& node) {
+  node.require_only({"factor", "devices", "power_on", "temperature_rate"});
+  return {read_positive(node.at("factor")), read_power_on_sigma(node),
+          read_temperature_rate_sigma(node),
+          static_cast<int>(node.at("devices").integer(1, 2147483647))};
+}
+
 }  // namespace
 
 Json population_json(const Population& population) {
   Json modes = Json::array();
   for (const auto& mode : population.modes.colwise())
     modes.push_back(numbers_json(mode));
-  return {{"devices", population.devices},
-          {"channels", input_names(population.channels)},
-          {"temperatures_degC", numbers_json(population.temperatures)},
-          {"mean", numbers_json(population.mean)},
-          {"modes", std::move(modes)}};
+  Json json = {{"devices", population.devices},
+               {"channels", input_names(population.channels)},
+               {"temperatures_degC", numbers_json(population.temperatures)},
+               {"mean", numbers_json(population.mean)},
+               {"modes", std::move(modes)}};
+  if (population.sigma) json["sigma"] = adaptation_json(*population.sigma);
+  return json;
 }
 
 Population read_population(const JsonNode& node) {
@@ -63,6 +80,7 @@ Population read_population(const JsonNode& node) {
   population.modes.resize(size, static_cast<Index>(modes.size()));
   for (std::size_t m = 0; m < modes.size(); ++m)
     population.modes.col(static_cast<Index>(m)) = read_vector(modes[m], size);
+  if (node.has("sigma")) population.sigma = read_adaptation(node.at("sigma"));
   return population;
 }
 

@@ -13,6 +13,7 @@
 #include "compensation/training/cautions.h"
 #include "compensation/training/scale_factor_table.h"
 #include "compensation/training/selection.h"
+#include "compensation/training/sigma_fit.h"
 
 namespace beamgyro {
 namespace {
@@ -171,6 +172,14 @@ std::string cause_of_few_rows(const TrainingRows& rows,
       rows.size(), options.seconds);
 }
 
+// Adds the 1-sigma of the bias, and that of devices adapted from a population.
+void fit_sigma(Compensator& c, const SigmaTask& task) {
+  if (c.population)
+    c.population->sigma = fit_adaptation_sigma(
+        *c.population, c.scale_factor ? &*c.scale_factor : nullptr, task);
+  c.sigma = fit_bias_sigma(c, task);
+}
+
 }  // namespace
 
 TrainResult train(const ModelSpec& spec, const RunSource& runs,
@@ -234,6 +243,13 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
   const TrainingRows own = with_columns(rows, spec.inputs, c.inputs);
   const TrainingRows own_unseen = with_columns(unseen, spec.inputs, c.inputs);
   write_scores(c.bias, c.baseline, own, own_unseen, p);
+  if (selected.weight == 1.0) {
+    const std::vector<Input>& inputs = selected.candidate.inputs;
+    const TrainingRows fitted = with_columns(rows, spec.inputs, inputs);
+    const TrainingRows others = with_columns(unseen, spec.inputs, inputs);
+    fit_sigma(c, {selected.candidate.kind, inputs, spec.rows, fitted, others,
+                  runs, held_out, seed});
+  }
   if (groups) p.cross_validated = summary_of(*groups, selected);
   p.warnings =
       cautions({c.inputs, c.bias, c.baseline, own, own_unseen,

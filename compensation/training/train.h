@@ -25,8 +25,8 @@ struct TrainResult {
 };
 
 /// Fits `spec` and the baseline, the cubic of equation (1), to the rows of
-/// `runs` (training_rows()). The runs are visited once, with a scale-factor
-/// table twice.
+/// `runs` (training_rows()), and their sigma (fit_bias_sigma()). The runs are
+/// visited once, and once more each for a scale-factor table and for sigma.
 /// - A network stops early on the rows of `held_out`; best_network() chooses
 ///   among its restarts and weight decays.
 /// - With `cross_validation` every group of that kind is predicted by a fit to

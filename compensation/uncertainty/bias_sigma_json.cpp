@@ -89,15 +89,27 @@ std::string sigma_source_name(SigmaSource source) {
   return "residuals";
 }
 
+void put_sigma_terms(const std::optional<SigmaTerm>& power_on,
+                     const std::optional<SigmaTerm>& temperature_rate,
+                     Json& json) {
+  if (power_on) json["power_on"] = term_json(*power_on, kPowerOnAmplitude);
+  if (temperature_rate)
+    json["temperature_rate"] = term_json(*temperature_rate, kRateAmplitude);
+}
+
+std::optional<SigmaTerm> read_power_on_sigma(const JsonNode& node) {
+  return read_term(node, "power_on", kPowerOnAmplitude);
+}
+
+std::optional<SigmaTerm> read_temperature_rate_sigma(const JsonNode& node) {
+  return read_term(node, "temperature_rate", kRateAmplitude);
+}
+
 Json bias_sigma_json(const BiasSigma& sigma) {
   Json json = {{"temperature_degC", numbers_json(sigma.curve.temperatures)},
                {"sigma_deg_per_s", numbers_json(sigma.curve.values)},
                {"growth_deg_per_s_per_K", numbers_json(sigma.growth)}};
-  if (sigma.power_on)
-    json["power_on"] = term_json(*sigma.power_on, kPowerOnAmplitude);
-  if (sigma.temperature_rate)
-    json["temperature_rate"] =
-        term_json(*sigma.temperature_rate, kRateAmplitude);
+  put_sigma_terms(sigma.power_on, sigma.temperature_rate, json);
   json["factor"] = finite_json(sigma.factor);
   json["source"] = sigma_source_name(sigma.source);
   json["calibration"] = {{"method", sigma.calibration.method},
@@ -119,8 +131,8 @@ BiasSigma read_bias_sigma(const JsonNode& node) {
     node.at("growth_deg_per_s_per_K")
         .fail(fmt::format("{} values, must be [below, above]", growth.size()));
   sigma.growth = {read_positive(growth[0]), read_positive(growth[1])};
-  sigma.power_on = read_term(node, "power_on", kPowerOnAmplitude);
-  sigma.temperature_rate = read_term(node, "temperature_rate", kRateAmplitude);
+  sigma.power_on = read_power_on_sigma(node);
+  sigma.temperature_rate = read_temperature_rate_sigma(node);
   sigma.factor = read_positive(node.at("factor"));
   sigma.source = read_source(node.at("source"));
   sigma.calibration = read_calibration(node.at("calibration"));

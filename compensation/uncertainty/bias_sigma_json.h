@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "compensation/uncertainty/bias_sigma.h"
@@ -11,6 +12,14 @@ namespace beamgyro {
 
 /// "posterior", "covariance" or "residuals".
 std::string sigma_source_name(SigmaSource source);
+
+/// Put the members `power_on` and `temperature_rate` that are there, and read
+/// them. Throw as bias_sigma_json() and read_bias_sigma().
+void put_sigma_terms(const std::optional<SigmaTerm>& power_on,
+                     const std::optional<SigmaTerm>& temperature_rate,
+                     nlohmann::ordered_json& json);
+std::optional<SigmaTerm> read_power_on_sigma(const JsonNode& node);
+std::optional<SigmaTerm> read_temperature_rate_sigma(const JsonNode& node);
 
 /// Returns the member `sigma` of a compensator file. Throws std::runtime_error
 /// for a number that is not finite.

@@ -72,7 +72,7 @@ class Compensation(ProgramTest):
         self.assertEqual((self.dir / "alone.json").read_bytes(),
                          (self.dir / "free.json").read_bytes())
 
-    def test_compensate_copies_the_recording_and_adds_one_variable(self):
+    def test_compensate_copies_the_recording_and_adds_rate_and_sigma(self):
         self.train("cubic", "cubic.toml")
         self.ok("compensate", "cubic.json", "test.h5", "-o", "out.h5")
         self.ok("compensate", "cubic.json", "test.h5", "-o", "again.h5")
@@ -80,7 +80,8 @@ class Compensation(ProgramTest):
                          (self.dir / "again.h5").read_bytes())
         with h5py.File(self.dir / "test.h5") as before, \
                 h5py.File(self.dir / "out.h5") as after:
-            self.assertEqual(set(after), {*before, "compensated_rate"})
+            self.assertEqual(set(after), {*before, "compensated_rate",
+                                          "compensated_rate_sigma"})
             for name in before:
                 if name != "meta":
                     np.testing.assert_array_equal(before[name][()],

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/methods/population_sigma.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace beamgyro {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+
+constexpr int kSoakCounts[] = {3, 5};  // that devices are adapted from
+
+int device_count(const TrainingRows& rows) {
+  return rows.size() > 0 ? rows.device.maxCoeff() + 1 : 0;
+}
+
+TrainingRows rows_of_device(const TrainingRows& rows, int device) {
+  return selected(rows, rows.device == device);
+}
+
+// Appends rows, the arrays of which are still vectors.
+struct ResidualCollector {
+  std::vector<double> temperature, residual, since, rate;
+  std::vector<int> group;
+
+  void add(double T, double e, double x, double r, int g) {
+    temperature.push_back(T);
+    residual.push_back(e);
+    since.push_back(x);
+    rate.push_back(r);
+    group.push_back(g);
+  }
+
+  ResidualRows rows() const {
+    const auto array = [](const std::vector<double>& values) -> ArrayXd {
+      return Eigen::Map<const ArrayXd>(values.data(),
+                                       static_cast<Index>(values.size()));
+    };
+    return {array(temperature),
+            array(residual),
+            array(since),
+            array(rate),
+            Eigen::Map<const Eigen::ArrayXi>(group.data(),
+                                             static_cast<Index>(group.size())),
+            "device"};
+  }
+};
+
+// The rows within half a point's width of the one nearest to each of `count`
+// temperatures in the middle of as many equal parts of the grid.
+RowMask evenly_spaced(const Population& population, const ArrayXd& T,
+                      int count) {
+  const auto [lowest, highest] = population.range();
+  RowMask chosen = RowMask::Constant(T.size(), false);
+  for (int k = 0; k < count; ++k) {
+    const double wanted = lowest + (highest - lowest) * (k + 0.5) / count;
+    Index nearest = 0;
+    (T - wanted).abs().minCoeff(&nearest);
+    chosen = chosen || (T - T(nearest)).abs() < kPointWidth / 2.0;
+  }
+  return chosen;
+}
+
+void add_predictions(const Population& population,
+                     const std::vector<Input>& inputs, const TrainingRows& own,
+                     int count, ResidualCollector& scored, ArrayXd& scales) {
+  const RowMask adapted_to = evenly_spaced(population, own.temperature, count);
+  const AdaptedBias adapted =
+      adapted_bias(population, inputs, selected(own, adapted_to), {});
+  const ArrayXd predicted =
+      bias_curve(population, adapted.mean).predict(own.temperature);
+  const LookupTable deviation{population.temperatures, adapted.deviation};
+  const Index before = scales.size();
+  Index added = 0;
+  scales.conservativeResize(before + own.size());
+  for (Index k = 0; k < own.size(); ++k) {
+    if (adapted_to(k) || own.beyond_range(k)) continue;
+    scored.add(own.temperature(k), own.bias(k) - predicted(k), 0.0, 0.0,
+               own.device(k));
+    scales(before + added++) = deviation.at(own.temperature(k));
+  }
+  scales.conservativeResize(before + added);
+}
+
+void add_own_residuals(const TrainingRows& own, double grid_K,
+                       ResidualCollector& found) {
+  const Index last = own.inputs.cols() - 1;
+  const ArrayXd since = own.inputs.col(last - 1), rate = own.inputs.col(last);
+  const RowMask still = rate.abs() < kRampRate && since < kWarmUpShare;
+  const TrainingRows soaks = selected(own, still);
+  if (soaks.size() == 0) return;
+  const CubicSpline curve = [&] {
+    const ArrayXd knots = spline_knots(soaks.temperature, grid_K);
+    return fit_cubic_spline(soaks.temperature, soaks.bias, knots,
+                            SplineEnd::kNotAKnot);
+  }();
+  const double lowest = curve.knots(0);
+  const double highest = curve.knots(curve.knots.size() - 1);
+  const ArrayXd predicted =
+      curve.predict(own.temperature.max(lowest).min(highest));
+  for (Index k = 0; k < own.size(); ++k) {
+    const double T = own.temperature(k);
+    // A warm-up leads to the first soak and may have no other.
+    if ((T >= lowest && T <= highest) || since(k) >= kWarmUpShare)
+      found.add(T, own.bias(k) - predicted(k), since(k), rate(k),
+                own.device(k));
+  }
+}
+
+}  // namespace
+
+ResidualRows own_curve_residuals(const TrainingRows& rows, double grid_K) {
+  ResidualCollector found;
+  for (int device = 0; device < device_count(rows); ++device) try {
+      add_own_residuals(rows_of_device(rows, device), grid_K, found);
+    } catch (const std::invalid_argument&) {
+      continue;  // its soaks determine no spline
+    }
+  return found.rows();
+}
+
+std::optional<AdaptationSigma> adaptation_sigma(
+    const Population& population, const std::vector<Input>& inputs,
+    const TrainingRows& soaks, const ResidualRows& lagging) {
+  ResidualCollector scored;
+  ArrayXd scales(0);
+  for (int device = 0; device < device_count(soaks); ++device) {
+    const TrainingRows own = rows_of_device(soaks, device);
+    for (const int count : kSoakCounts)
+      if (own.size() > 0)
+        add_predictions(population, inputs, own, count, scored, scales);
+  }
+  const ResidualRows rows = scored.rows();
+  const RowMask all = RowMask::Constant(rows.size(), true);
+  if (rows.size() == 0 || !(scales > 0.0).all()) return std::nullopt;
+  AdaptationSigma result;
+  result.factor =
+      covering_amplitude(rows, all, ArrayXd::Zero(rows.size()), scales);
+  result.devices = groups_among(rows, all);
+  if (!(result.factor > 0.0)) return std::nullopt;
+  BiasSigma terms;
+  terms.factor = result.factor;
+  // Alone: what is left of the curve is not the lag's.
+  terms.curve = {ArrayXd::Zero(1), ArrayXd::Zero(1)};
+  calibrate_terms(terms, lagging);
+  result.power_on = terms.power_on;
+  result.temperature_rate = terms.temperature_rate;
+  return result;
+}
+
+BiasSigma adapted_sigma(const Population& population, const ArrayXd& deviation,
+                        const PointNoise& noise) {
+  BiasSigma sigma;
+  sigma.source = SigmaSource::kPosterior;
+  sigma.calibration.method = "none: the population has no devices to tell";
+  if (population.sigma) {
+    sigma.factor = population.sigma->factor;
+    sigma.power_on = population.sigma->power_on;
+    sigma.temperature_rate = population.sigma->temperature_rate;
+    const bool covers = population.sigma->devices >= kLeastConformalGroups;
+    sigma.calibration = {
+        fmt::format("of the population, on devices adapted from {} and {} "
+                    "soaks and predicted at the others",
+                    kSoakCounts[0], kSoakCounts[1]),
+        "device", static_cast<std::size_t>(population.sigma->devices),
+        covers ? kSigmaLevel : 0.0};
+  }
+  const double run = std::sqrt(2.0) * noise.bias / sigma.factor;
+  sigma.curve = {population.temperatures,
+                 (deviation.square() + run * run).sqrt()};
+  return sigma;
+}
+
+BiasSigma population_sigma(const Population& population) {
+  BiasSigma sigma;
+  sigma.source = SigmaSource::kPosterior;
+  sigma.calibration.method = "none: no devices were held out";
+  sigma.curve = {population.temperatures,
+                 population.modes.topRows(population.grid())
+                     .rowwise()
+                     .norm()
+                     .array()
+                     .max(std::numeric_limits<float>::min())};
+  return sigma;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/training/left_out_sigma.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "compensation/methods/fit.h"
+#include "compensation/methods/population.h"
+#include "compensation/models/array_view.h"
+#include "compensation/training/cross_validation.h"
+
+namespace beamgyro {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::ArrayXXd;
+using Eigen::Index;
+
+constexpr int kLeastLeftOut = 3;
+
+// Mean temperature and square of the mean residual of groups that the others
+// surround.
+struct LeftOutGroups {
+  std::vector<double> temperature, square;
+};
+
+LeftOutGroups left_out_groups(const TrainingRows& rows, const RowGroups& groups,
+                              const ArrayXd& residual) {
+  LeftOutGroups found;
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (int group = 0; group < groups.count; ++group) {
+    const auto own = groups.of_row == group;
+    const double lowest = own.select(infinity, rows.temperature).minCoeff();
+    const double highest = own.select(-infinity, rows.temperature).maxCoeff();
+    double count = 0.0, T = 0.0, sum = 0.0;
+    for (Index k = 0; k < rows.size(); ++k) {
+      if (groups.of_row(k) != group || rows.temperature(k) < lowest ||
+          rows.temperature(k) > highest)
+        continue;
+      count += 1.0;
+      T += rows.temperature(k);
+      sum += residual(k);
+    }
+    if (count == 0.0) continue;
+    found.temperature.push_back(T / count);
+    found.square.push_back(sum / count * (sum / count));
+  }
+  return found;
+}
+
+// Inputs at temperatures, all others at their means.
+ArrayXXd inputs_at(const TrainingRows& rows, const ArrayXd& T) {
+  ArrayXXd x = rows.inputs.colwise().mean().replicate(T.size(), 1);
+  x.col(0) = T;
+  return x;
+}
+
+// h at temperatures.
+ArrayXd leverage(const FitSpec& kind, const std::vector<Input>& inputs,
+                 const TrainingRows& rows, const RowGroups& groups,
+                 const ArrayXd& T, std::uint64_t seed) {
+  ArrayXd sum = ArrayXd::Zero(T.size());
+  TrainingRows moved = rows;
+  for (int group = 0; group < groups.count; ++group) {
+    moved.bias = (groups.of_row == group).cast<double>();
+    sum += fit_model(kind, inputs, moved, {}, seed)
+               .model.predict(inputs_at(rows, T))
+               .square();
+  }
+  return sum;
+}
+
+}  // namespace
+
+ArrayXd local_rms(const Eigen::Ref<const ArrayXd>& T,
+                  const Eigen::Ref<const ArrayXd>& squares, const ArrayXd& at) {
+  const double span = T.maxCoeff() - T.minCoeff();
+  const double width = span > 0.0 ? span / 8.0 : 1.0;  // [K]
+  const double shared = 0.1 * static_cast<double>(T.size());
+  ArrayXd result(at.size());
+  for (Index k = 0; k < at.size(); ++k) {
+    const ArrayXd weights = (-0.5 * ((T - at(k)) / width).square()).exp();
+    const double mean = ((weights * squares).sum() + shared * squares.mean()) /
+                        (weights.sum() + shared);
+    // Residuals of 0 promise nothing below single precision.
+    result(k) = std::max<double>(std::sqrt(mean),
+                                 std::numeric_limits<float>::epsilon());
+  }
+  return result;
+}
+
+RowGroups soak_groups(const TrainingRows& rows) {
+  RowGroups groups{Grouping::kSegment, Eigen::ArrayXi(rows.size()), 0};
+  double first = 0.0;
+  for (Index k = 0; k < rows.size(); ++k) {
+    const bool anew = k == 0 || rows.cycle(k) != rows.cycle(k - 1) ||
+                      std::abs(rows.temperature(k) - first) >= kPointWidth;
+    if (anew) {
+      first = rows.temperature(k);
+      ++groups.count;
+    }
+    groups.of_row(k) = groups.count - 1;
+  }
+  return groups;
+}
+
+std::optional<LeftOutSigma> left_out_sigma(const FitSpec& kind,
+                                           const std::vector<Input>& inputs,
+                                           const TrainingRows& rows,
+                                           const ArrayXd& at,
+                                           std::uint64_t seed) try {
+  const RowGroups groups = soak_groups(rows);
+  if (groups.count < kLeastLeftOut) return std::nullopt;
+  RowGroups folds = groups;
+  folds.count = std::min(groups.count, kMostLeftOut);
+  folds.of_row =
+      groups.of_row.unaryExpr([](int group) { return group % kMostLeftOut; });
+  const Predictions unseen = predict_unseen(kind, inputs, rows, folds, seed);
+  const LeftOutGroups left =
+      left_out_groups(rows, groups, rows.bias - unseen.bias);
+  if (left.square.size() < kLeastLeftOut) return std::nullopt;
+  const ArrayXd T = array_view(left.temperature);
+  ArrayXd sigma = local_rms(T, array_view(left.square), at);
+  if (groups.count <= kMostLeftOut) {
+    const double usual = leverage(kind, inputs, rows, groups, T, seed).mean();
+    sigma *=
+        ((1.0 + leverage(kind, inputs, rows, groups, at, seed)) / (1.0 + usual))
+            .sqrt();
+  }
+  return LeftOutSigma{{at, sigma}, static_cast<int>(left.square.size())};
+} catch (const std::invalid_argument&) {
+  return std::nullopt;  // the others do not determine the fit
+}
+
+}  // namespace beamgyro

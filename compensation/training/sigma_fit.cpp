@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/training/sigma_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include "compensation/methods/fit.h"
+#include "compensation/methods/population_sigma.h"
+#include "compensation/rows/row_groups.h"
+#include "compensation/training/left_out_sigma.h"
+#include "compensation/uncertainty/sigma_calibration.h"
+
+namespace beamgyro {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+
+constexpr double kSigmaRowSeconds = 60.0;   // [s], where rows are samples
+constexpr double kDoublingDistance = 10.0;  // [K], at least, outside the range
+
+template <class... Kinds>
+bool is_one_of(const FitSpec& kind) {
+  return (std::holds_alternative<Kinds>(kind) || ...);
+}
+
+// Rows of ramps and warm-ups, too; the last two columns are since_power_on and
+// temperature_rate.
+TrainingRows all_rows(const RunSource& runs, std::vector<Input> inputs,
+                      const SigmaTask& task, const TemperatureRange& range,
+                      const LookupTable* scale_factor) {
+  inputs.push_back({InputKind::kSincePowerOn, "", kSigmaTimeConstant});
+  inputs.push_back(
+      {InputKind::kTemperatureRate, "temperature", kSigmaTimeConstant});
+  const double seconds = task.options.seconds;
+  const RowOptions options{seconds > 0.0 ? seconds : kSigmaRowSeconds, {}};
+  return training_rows(runs, inputs, options, range, scale_factor);
+}
+
+// Groups of rows that share slow noise.
+std::pair<Eigen::ArrayXi, std::string> independent_groups(
+    const TrainingRows& rows, bool of_a_set) {
+  if (of_a_set) return {rows.device, "device"};
+  for (const Grouping by : {Grouping::kRun, Grouping::kCycle, Grouping::kLeg})
+    if (RowGroups groups = group_rows(rows, by); groups.count >= 2)
+      return {std::move(groups.of_row), grouping_name(by)};
+  return {rows.run, grouping_name(Grouping::kRun)};
+}
+
+// Residuals of `trained` within its temperatures, or in a warm-up, which may
+// lead to them.
+ResidualRows residuals_of(const Compensator& trained, const RunSource& runs,
+                          const SigmaTask& task) {
+  const TrainingRows rows = [&] {
+    const TrainingRows all =
+        all_rows(runs, trained.inputs, task, trained.temperature_range,
+                 trained.scale_factor ? &*trained.scale_factor : nullptr);
+    return selected(all,
+                    !all.beyond_range ||
+                        all.inputs.col(all.inputs.cols() - 2) >= kWarmUpShare);
+  }();
+  const bool held_out = &runs == &task.held_out_runs;
+  auto [group, by] = held_out
+                         ? independent_groups(rows, runs.set.has_value())
+                         : std::pair{group_rows(rows, Grouping::kLeg).of_row,
+                                     grouping_name(Grouping::kLeg)};
+  const Index width = rows.inputs.cols() - 2;
+  return {rows.temperature,
+          rows.bias - trained.bias.predict(rows.inputs.leftCols(width)),
+          rows.inputs.col(width),
+          rows.inputs.col(width + 1),
+          std::move(group),
+          std::move(by)};
+}
+
+ArrayXd sigma_grid(const TemperatureRange& range) {
+  constexpr double kStep = 2.5;  // [K]
+  const double span = range.highest - range.lowest;
+  if (!(span > 0.0)) return ArrayXd::Constant(1, range.lowest);
+  const auto steps = static_cast<Index>(std::ceil(span / kStep));
+  return ArrayXd::LinSpaced(std::clamp<Index>(steps, 1, 100) + 1, range.lowest,
+                            range.highest);
+}
+
+// A temperature that is clamped leaves the slope of the bias: the larger of
+// that at the end and the usual one.
+std::array<double, 2> growth_of(const Compensator& trained,
+                                const LookupTable& curve) {
+  const ArrayXd& T = curve.temperatures;
+  const Index last = T.size() - 1;
+  std::array<double, 2> growth = {curve.values(0) / kDoublingDistance,
+                                  curve.values(last) / kDoublingDistance};
+  if (last < 1) return growth;
+  const bool of_temperature =
+      trained.inputs.size() == 1 &&
+      trained.inputs[0] == Input{InputKind::kColumn, "temperature", 0.0};
+  const ArrayXd bias =
+      of_temperature ? trained.bias.predict(T) : trained.baseline.predict(T);
+  const ArrayXd slope =
+      (bias.tail(last) - bias.head(last)) / (T.tail(last) - T.head(last));
+  const double usual = std::sqrt(slope.square().mean());
+  return {std::max({growth[0], std::abs(slope(0)), usual}),
+          std::max({growth[1], std::abs(slope(last - 1)), usual})};
+}
+
+// s(T) from the soaks of held-out rows, or all where there are none.
+LookupTable residual_curve(const ResidualRows& rows,
+                           const TemperatureRange& range) {
+  const RowMask soaks = soak_rows(rows);
+  const RowMask mask =
+      soaks.any() ? soaks : RowMask::Constant(rows.size(), true);
+  std::vector<Index> which;
+  for (Index k = 0; k < rows.size(); ++k)
+    if (mask(k)) which.push_back(k);
+  const ArrayXd grid = sigma_grid(range);
+  return {grid, local_rms(rows.temperature(which),
+                          rows.residual(which).square(), grid)};
+}
+
+// What is known before any calibration.
+std::optional<BiasSigma> uncalibrated(const Compensator& trained,
+                                      const SigmaTask& task) {
+  if (trained.population) return population_sigma(*trained.population);
+  if (const auto* adapted = std::get_if<AdaptedSpec>(&task.kind))
+    return adapted_sigma(adapted->population,
+                         adapted_bias(adapted->population, task.inputs,
+                                      task.rows, adapted->noise)
+                             .deviation,
+                         adapted->noise);
+  if (!is_one_of<PolynomialSpec, SplineSpec>(task.kind) || task.runs.set)
+    return std::nullopt;
+  auto curve = left_out_sigma(task.kind, task.inputs, task.rows,
+                              sigma_grid(trained.temperature_range), task.seed);
+  if (!curve) return std::nullopt;
+  BiasSigma sigma;
+  sigma.source = SigmaSource::kCovariance;
+  sigma.curve = std::move(curve->sigma);
+  sigma.calibration = {
+      "none: residuals of groups of training rows that were "
+      "left out in turn",
+      "soak", static_cast<std::size_t>(curve->groups), 0.0};
+  return sigma;
+}
+
+bool is_calibrated_by_population(const SigmaTask& task,
+                                 const ResidualRows& rows) {
+  const auto* adapted = std::get_if<AdaptedSpec>(&task.kind);
+  return adapted != nullptr && adapted->population.sigma &&
+         groups_among(rows, RowMask::Constant(rows.size(), true)) <
+             kLeastConformalGroups;
+}
+
+}  // namespace
+
+std::optional<BiasSigma> fit_bias_sigma(const Compensator& trained,
+                                        const SigmaTask& task) {
+  if (is_one_of<NoneSpec, ConstantSpec, ThermistorSpec, Px4Spec, ArduPilotSpec>(
+          task.kind))
+    return std::nullopt;
+  std::optional<BiasSigma> sigma = uncalibrated(trained, task);
+  const bool any_held_out = task.held_out_runs.count > 0;
+  if (any_held_out) {
+    const ResidualRows rows = residuals_of(trained, task.held_out_runs, task);
+    if (rows.size() == 0) return sigma;
+    if (!sigma) {
+      sigma.emplace();
+      sigma->curve = residual_curve(rows, trained.temperature_range);
+    }
+    if (!is_calibrated_by_population(task, rows)) calibrate(*sigma, rows);
+  } else if (sigma && sigma->source == SigmaSource::kCovariance) {
+    calibrate_terms(*sigma, residuals_of(trained, task.runs, task));
+  }
+  if (sigma) sigma->growth = growth_of(trained, sigma->curve);
+  return sigma;
+}
+
+std::optional<AdaptationSigma> fit_adaptation_sigma(
+    const Population& population, const LookupTable* scale_factor,
+    const SigmaTask& task) {
+  const auto* spec = std::get_if<PopulationSpec>(&task.kind);
+  if (spec == nullptr || !task.held_out_runs.set) return std::nullopt;
+  return adaptation_sigma(
+      population, task.inputs, task.held_out,
+      own_curve_residuals(
+          all_rows(task.held_out_runs, task.inputs, task, {}, scale_factor),
+          spec->grid_K));
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "compensation/compensator/compensator.h"
+#include "compensation/inputs/input.h"
+#include "compensation/methods/method_list.h"
+#include "compensation/methods/population.h"
+#include "compensation/rows/row_options.h"
+#include "compensation/rows/run_source.h"
+#include "compensation/rows/training_rows.h"
+
+namespace beamgyro {
+
+/// What the sigma of a trained compensator is fitted to.
+struct SigmaTask {
+  const FitSpec& kind;
+  const std::vector<Input>& inputs;  // that `kind` was fitted to
+  const RowOptions& options;         // of these rows
+  const TrainingRows& rows;          // their columns are `inputs`
+  const TrainingRows& held_out;      // likewise; may be empty
+  const RunSource& runs;
+  const RunSource& held_out_runs;
+  std::uint64_t seed;
+};
+
+/// Returns the sigma of `trained`, or nothing where its method or the data
+/// cannot tell one. s(T) is
+/// - of a population and of an adapted device the posterior deviation
+///   (population_sigma(), adapted_sigma());
+/// - of a polynomial and a spline of one gyro the root mean square near T of
+///   what groups of rows leave when they are left out in turn, in the shape of
+///   the covariance of the fit. A group is a stretch of rows within
+///   kPointWidth: rows of a soak share slow noise and count as one;
+/// - of others that read a temperature (not of constants, a thermistor or fits
+///   of autopilots) the root mean square near T of the residuals of held-out
+///   runs. Without these there is none.
+/// Held-out runs also calibrate (calibrate()), by device of a set, else by run,
+/// cycle or leg, whichever gives two groups first. An adapted device takes the
+/// calibration of its population until they give kLeastConformalGroups. Without
+/// held-out runs, polynomials and splines take a_on and a_rate from the
+/// training runs by leg. The runs concerned are visited once more.
+std::optional<BiasSigma> fit_bias_sigma(const Compensator& trained,
+                                        const SigmaTask& task);
+
+/// Returns adaptation_sigma() of a population that was just learned, on the
+/// held-out devices, or nothing without a set of these.
+std::optional<AdaptationSigma> fit_adaptation_sigma(
+    const Population& population, const LookupTable* scale_factor,
+    const SigmaTask& task);
+
+}  // namespace beamgyro

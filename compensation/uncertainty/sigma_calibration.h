@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "compensation/uncertainty/bias_sigma.h"
+
+namespace beamgyro {
+
+/// Share of residuals that an interval of sigma is calibrated to cover, and its
+/// half-width in sigmas for normal residuals.
+constexpr double kSigmaLevel = 0.9;
+constexpr double kSigmaHalfWidth = 1.6448536269514722;
+
+/// Fewest groups with a quantile at kSigmaLevel: n / (n + 1) reaches it.
+constexpr int kLeastConformalGroups = 9;
+
+// A row is on a ramp from this smoothed temperature rate on, and in the warm-up
+// while exp(-t / tau_on) is above that share.
+constexpr double kRampRate = 0.1 / 60.0;  // [K/s]
+constexpr double kWarmUpShare = 0.05;     // [-], of three time constants
+
+/// Residuals that sigma is calibrated on, one per row. Rows of a group share
+/// slow noise and the turn-on offset; groups are exchangeable with what is to
+/// come.
+struct ResidualRows {
+  Eigen::ArrayXd temperature;       // [degC], measured
+  Eigen::ArrayXd residual;          // [deg/s]
+  Eigen::ArrayXd since_power_on;    // exp(-t / kSigmaTimeConstant)
+  Eigen::ArrayXd temperature_rate;  // [K/s], smoothed
+  Eigen::ArrayXi group;
+  std::string by;  // kind of group
+
+  Eigen::Index size() const { return residual.size(); }
+};
+
+using RowMask = Eigen::Array<bool, Eigen::Dynamic, 1>;
+
+RowMask soak_rows(const ResidualRows& rows);     // neither of the others
+RowMask ramp_rows(const ResidualRows& rows);     // not in the warm-up
+RowMask warm_up_rows(const ResidualRows& rows);  // on a ramp or not
+
+/// Returns the number of different groups of the rows of `mask`.
+int groups_among(const ResidualRows& rows, const RowMask& mask);
+
+/// Returns the least a >= 0 for which the intervals
+///
+///   |residual| <= q sqrt(others^2 + (a scale)^2),   q = kSigmaHalfWidth,
+///
+/// cover a new group's rows with probability kSigmaLevel on average: the
+/// quantile, over groups of equal weight and one more group beyond all, of the
+/// a that each row of `mask` asks for (split conformal prediction with pooled
+/// groups). With fewer than kLeastConformalGroups it is the root of the mean
+/// over groups of the squares asked for with q = 1, times Student's t over the
+/// normal quantile. Throws std::invalid_argument when no row is in `mask`.
+double covering_amplitude(const ResidualRows& rows, const RowMask& mask,
+                          const Eigen::ArrayXd& others,
+                          const Eigen::ArrayXd& scale);
+
+/// Calibrates the factor on the rows of soaks, then a_rate on those of ramps,
+/// then a_on on those of warm-ups, and describes it in `calibration`. Without
+/// rows of soaks the factor is calibrated on all, and there is no a_rate. A
+/// term without rows of its own is absent.
+void calibrate(BiasSigma& sigma, const ResidualRows& rows);
+
+/// Calibrates a_rate and a_on alone.
+void calibrate_terms(BiasSigma& sigma, const ResidualRows& rows);
+
+}  // namespace beamgyro

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "compensation/uncertainty/bias_sigma_json.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "compensation/compensator/compensator_file.h"
+#include "tests/compensation/message_of.h"
+#include "tests/compensation/sample_compensators.h"
+
+namespace beamgyro::bias_sigma_json_test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// What reading says of a good file whose sigma has the patch merged into it.
+std::string error_with(const std::string& patch) {
+  Json json = Json::parse(compensator_text(with_sigma(spline_compensator())));
+  json["sigma"].merge_patch(Json::parse(patch));
+  return message_of([&] { parse_compensator(json.dump(), "mine.json"); });
+}
+
+TEST(BiasSigmaJson, ReadsWhatItWroteWithTheSameBits) {
+  const BiasSigma sigma = *with_sigma(spline_compensator()).sigma;
+  const Json json = bias_sigma_json(sigma);
+  const BiasSigma read = read_bias_sigma(JsonNode(json, "mine.json"));
+  EXPECT_TRUE((read.curve.temperatures == sigma.curve.temperatures).all());
+  EXPECT_TRUE((read.curve.values == sigma.curve.values).all());
+  EXPECT_EQ(read.growth, sigma.growth);
+  EXPECT_EQ(read.power_on, sigma.power_on);
+  EXPECT_EQ(read.temperature_rate, sigma.temperature_rate);
+  EXPECT_EQ(read.factor, sigma.factor);
+  EXPECT_EQ(read.source, sigma.source);
+  EXPECT_EQ(read.calibration, sigma.calibration);
+  EXPECT_EQ(bias_sigma_json(read).dump(), json.dump());
+}
+
+TEST(BiasSigmaJson, AFileWithoutASigmaHasNoMemberOfThatName) {
+  const std::string text = compensator_text(spline_compensator());
+  EXPECT_EQ(text.find("sigma"), std::string::npos);
+  EXPECT_FALSE(parse_compensator(text, "mine.json").sigma);
+}
+
+TEST(BiasSigmaJson, TermsMayBeAbsent) {
+  EXPECT_EQ(error_with(R"({"power_on": null, "temperature_rate": null})"),
+            "no error");
+}
+
+struct Broken {
+  std::string patch, place, words;
+};
+
+TEST(BiasSigmaJson, EveryBrokenMemberIsNamed) {
+  const std::vector<Broken> all = {
+      {R"({"temperature_degC": []})", "temperature_degC", "at least one"},
+      {R"({"temperature_degC": null})", "sigma", "is missing"},
+      {R"({"temperature_degC": [-40, -10, -10, 50]})", "temperature_degC",
+       "must increase"},
+      {R"({"temperature_degC": [50, 20, -10, -40]})", "temperature_degC",
+       "must increase"},
+      {R"({"temperature_degC": [-40, -10, 50]})", "sigma_deg_per_s",
+       "4 values for 3 temperatures"},
+      {R"({"temperature_degC": [-90, -10, 20, 50]})", "temperature_degC",
+       "must lie within"},
+      {R"({"temperature_degC": [-40, -10, 20, 500]})", "temperature_degC",
+       "must lie within"},
+      {R"({"temperature_degC": "warm"})", "temperature_degC", "array"},
+      {R"({"sigma_deg_per_s": [0.1, -0.1, 0.1, 0.1]})", "sigma_deg_per_s[1]",
+       "above 0"},
+      {R"({"sigma_deg_per_s": [0.1, 0.1, 0, 0.1]})", "sigma_deg_per_s[2]",
+       "above 0"},
+      {R"({"sigma_deg_per_s": [0.1, null, 0.1, 0.1]})", "sigma_deg_per_s[1]",
+       "finite number"},
+      {R"({"sigma_deg_per_s": []})", "sigma_deg_per_s",
+       "0 values for 4 temperatures"},
+      {R"({"growth_deg_per_s_per_K": null})", "sigma", "is missing"},
+      {R"({"growth_deg_per_s_per_K": [0.1]})", "growth_deg_per_s_per_K",
+       "[below, above]"},
+      {R"({"growth_deg_per_s_per_K": [0.1, 0]})", "growth_deg_per_s_per_K[1]",
+       "above 0"},
+      {R"({"power_on": {"sigma_deg_per_s": -1}})", "power_on.sigma_deg_per_s",
+       "not be below 0"},
+      {R"({"power_on": {"time_constant_s": 0}})", "power_on.time_constant_s",
+       "above 0"},
+      {R"({"power_on": 3})", "power_on", "an object"},
+      {R"({"temperature_rate": {"time_constant_s": null}})", "temperature_rate",
+       "is missing"},
+      {R"({"temperature_rate": {"tau": 3}})", "temperature_rate", "not known"},
+      {R"({"factor": 0})", "factor", "above 0"},
+      {R"({"factor": "1"})", "factor", "finite number"},
+      {R"({"source": "guess"})", "source", "must be"},
+      {R"({"calibration": {"groups": -1}})", "calibration.groups", "integer"},
+      {R"({"calibration": {"level": 1}})", "calibration.level", "below 1"},
+      {R"({"poweron": {}})", "sigma", "\"poweron\" is not known"},
+  };
+  for (const Broken& one : all) {
+    SCOPED_TRACE(one.patch);
+    const std::string error = error_with(one.patch);
+    EXPECT_NE(error.find("mine.json: sigma"), std::string::npos) << error;
+    EXPECT_NE(error.find(one.place), std::string::npos) << error;
+    EXPECT_NE(error.find(one.words), std::string::npos) << error;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+  }
+}
+
+TEST(BiasSigmaJson, ASigmaThatIsNoObjectIsNamed) {
+  Json json = Json::parse(compensator_text(with_sigma(spline_compensator())));
+  for (const char* value : {"[]", "null", "0.1", "\"small\""}) {
+    json["sigma"] = Json::parse(value);
+    EXPECT_NE(message_of([&] {
+                parse_compensator(json.dump(), "mine.json");
+              }).find("mine.json: sigma: "),
+              std::string::npos)
+        << value;
+  }
+}
+
+TEST(BiasSigmaJson, NumbersBeyondDoubleAreNamed) {
+  std::string text = compensator_text(with_sigma(spline_compensator()));
+  const std::string good = "\"factor\": 1.1";
+  const std::size_t place = text.find(good);
+  ASSERT_NE(place, std::string::npos);
+  text.replace(place, good.size(), "\"factor\": 1e999");
+  EXPECT_NE(message_of([&] {
+              parse_compensator(text, "mine.json");
+            }).find("mine.json"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace beamgyro::bias_sigma_json_test

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "compensation/methods/population_sigma.h"
+#include "compensation/training/left_out_sigma.h"
+#include "compensation/training/train.h"
+#include "compensation/uncertainty/sigma_calibration.h"
+#include "tests/compensation/recorded_run.h"
+#include "tests/compensation/rows_of.h"
+
+namespace beamgyro::trained_sigma_test {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+
+const std::vector<Input> kTemperatureInput = {parse_input("temperature")};
+
+// Soaks of an hour every 10 K with ramps of 10 min. Each soak has an offset of
+// its own, each run another one; the bias lags.
+Recording soak_run(std::uint32_t run, double lag) {
+  const std::vector<double> offsets = white(20, run);
+  RecordedRun one{.duration = 10 * 4200.0, .step = 10.0};
+  one.temperature = [](double t) {
+    const double soak = std::floor(t / 4200.0);
+    const double ramp = std::max(t - 4200.0 * soak - 3600.0, 0.0);
+    return -40.0 + 10.0 * (soak + ramp / 600.0);
+  };
+  one.bias = [=, T = one.temperature](double t) {
+    const auto soak = static_cast<std::size_t>(t / 4200.0);
+    const double rate = t - 4200.0 * double(soak) > 3600.0 ? 10.0 / 600.0 : 0.0;
+    return 0.5 + 0.02 * T(t) + 0.05 * offsets[soak] + lag * rate;
+  };
+  return one.recording();
+}
+
+std::vector<TrainingRun> soak_runs(int count, std::uint32_t first,
+                                   double lag = 4.0) {
+  std::vector<TrainingRun> result;
+  for (int k = 0; k < count; ++k) {
+    const std::string name = std::to_string(first) + std::to_string(k);
+    result.push_back({name + ".h5", name,
+                      soak_run(first + static_cast<std::uint32_t>(k), lag)});
+  }
+  return result;
+}
+
+ModelSpec line_spec() {
+  return {.inputs = kTemperatureInput,
+          .rows = {60.0, 0.05},
+          .kind = PolynomialSpec{1}};
+}
+
+// Share of the samples within the 90 % interval.
+double covered_share(const Compensator& c, const Recording& recording) {
+  const std::vector<double> rate = compensated_rate(c, recording);
+  const std::vector<double> sigma = compensated_rate_sigma(c, recording);
+  double covered = 0.0;
+  for (std::size_t k = 0; k < rate.size(); ++k)
+    if (std::abs(rate[k]) <= kSigmaHalfWidth * sigma[k]) covered += 1.0;
+  return covered / static_cast<double>(rate.size());
+}
+
+TEST(TrainedSigma, OfALineIsTheSpreadOfSoaksWhenNothingIsHeldOut) {
+  const Compensator c = train(line_spec(), soak_runs(3, 10), {}, 1).compensator;
+  ASSERT_TRUE(c.sigma);
+  EXPECT_EQ(c.sigma->source, SigmaSource::kCovariance);
+  // 30 soaks of 0.05 deg/s: their deviation is known to 13 %, and a line
+  // through them adds 2 / 30 of the variance.
+  EXPECT_NEAR(c.sigma->factor * c.sigma->curve_at(0.0), 0.05, 0.02);
+  ASSERT_TRUE(c.sigma->temperature_rate);
+  EXPECT_GT(c.sigma->temperature_rate->amplitude, 2.0);
+}
+
+TEST(TrainedSigma, IsWiderWhereTheFitIsLessSure) {
+  const Compensator c = train(line_spec(), soak_runs(1, 20), {}, 1).compensator;
+  ASSERT_TRUE(c.sigma);
+  const ArrayXd& T = c.sigma->curve.temperatures;
+  const double lowest = T(0), highest = T(T.size() - 1);
+  for (const double d : {1.0, 10.0, 50.0}) {
+    EXPECT_GT(c.sigma->curve_at(lowest - d), c.sigma->curve_at(lowest));
+    EXPECT_GT(c.sigma->curve_at(highest + d), c.sigma->curve_at(highest));
+  }
+  // A bias of 0.02 deg/s/K that is clamped leaves 1 deg/s at 50 K.
+  EXPECT_GT(c.sigma->curve_at(highest + 50.0), 0.99);
+}
+
+TEST(TrainedSigma, HeldOutRunsCalibrateIt) {
+  const Compensator c =
+      train(line_spec(), soak_runs(2, 30), soak_runs(12, 40), 1).compensator;
+  ASSERT_TRUE(c.sigma);
+  EXPECT_EQ(c.sigma->calibration.by, "run");
+  EXPECT_EQ(c.sigma->calibration.groups, 12U);
+  EXPECT_EQ(c.sigma->calibration.level, kSigmaLevel);
+  double share = 0.0;
+  for (const TrainingRun& run : soak_runs(12, 60))
+    share += covered_share(c, run.recording) / 12.0;
+  // 120 unseen soaks: 0.9 +- 0.027, and as much of the 120 calibrated on.
+  EXPECT_NEAR(share, 0.9, 0.08);
+}
+
+TEST(TrainedSigma, ConstantsAndThermistorsHaveNone) {
+  ModelSpec spec = line_spec();
+  spec.kind = ConstantSpec{};
+  EXPECT_FALSE(
+      train(spec, soak_runs(1, 80), soak_runs(2, 81), 1).compensator.sigma);
+}
+
+TEST(TrainedSigma, ATableHasOneFromHeldOutRunsOnly) {
+  ModelSpec spec = line_spec();
+  spec.kind = TableSpec{};
+  EXPECT_FALSE(train(spec, soak_runs(1, 90), {}, 1).compensator.sigma);
+  const Compensator c =
+      train(spec, soak_runs(1, 90), soak_runs(2, 91), 1).compensator;
+  ASSERT_TRUE(c.sigma);
+  EXPECT_EQ(c.sigma->source, SigmaSource::kResiduals);
+  EXPECT_EQ(c.sigma->calibration.groups, 2U);
+  EXPECT_EQ(c.sigma->calibration.level, 0.0);
+}
+
+TEST(TrainedSigma, IsTheSameForTheSameRuns) {
+  const auto text = [] {
+    const Compensator c =
+        train(line_spec(), soak_runs(2, 30), soak_runs(3, 40), 1).compensator;
+    return c.sigma->curve.values;
+  };
+  EXPECT_TRUE((text() == text()).all());
+}
+
+TEST(SoakGroups, AreStretchesWithinTwoKelvinsOfACycle) {
+  const RowGroups groups = soak_groups(rows_of(
+      {{0, 0, 20.0, 20.0, 5}, {0, 0, 30.0, 35.9, 60}, {0, 1, 35.9, 36.0, 4}},
+      [](double, int) { return 0.0; }));
+  EXPECT_EQ(groups.count, 5);
+  EXPECT_EQ(groups.of_row(4), 0);
+  EXPECT_EQ(groups.of_row(5), 1);
+  EXPECT_EQ(groups.of_row(64), 3);
+  EXPECT_EQ(groups.of_row(65), 4);
+}
+
+TEST(LocalRms, IsThatOfThePointsNearby) {
+  const ArrayXd T = ArrayXd::LinSpaced(81, -40.0, 40.0);
+  const ArrayXd squares = (T < 0.0).select(ArrayXd::Constant(81, 0.01), 0.09);
+  const ArrayXd found = local_rms(T, squares, ArrayXd{{-35.0, 0.0, 35.0}});
+  EXPECT_NEAR(found(0), 0.1, 0.07);
+  EXPECT_NEAR(found(1), std::sqrt(0.05), 0.01);
+  EXPECT_NEAR(found(2), 0.3, 0.03);
+  EXPECT_LT(found(0), found(1));
+  EXPECT_LT(found(1), found(2));
+  EXPECT_NEAR(local_rms(T, ArrayXd::Constant(81, 0.04), T)(13), 0.2, 1e-12);
+}
+
+// Devices of a parabola each: b = c_0 + c_1 T / 45 + c_2 (T / 45)^2.
+TrainingRows parabolas(int devices, std::uint32_t stream,
+                       const std::vector<double>& temperatures) {
+  const std::vector<double> c = white(3 * devices, stream);
+  std::vector<Leg> legs;
+  for (int d = 0; d < devices; ++d)
+    for (const double T : temperatures) legs.push_back({d, d, T, T, 2});
+  const auto rows_each = static_cast<int>(2 * temperatures.size());
+  return rows_of(legs, [&](double T, int row) {
+    const auto d = static_cast<std::size_t>(3 * (row / rows_each));
+    const double x = T / 45.0;
+    return c[d] + 0.5 * c[d + 1] * x + 0.5 * c[d + 2] * x * x;
+  });
+}
+
+std::vector<double> every_5_K() {
+  std::vector<double> temperatures;
+  for (int T = -40; T <= 50; T += 5) temperatures.push_back(T);
+  return temperatures;
+}
+
+// Adapted to one soak, a device is no more than the posterior says.
+TEST(AdaptedSigma, CoversUnseenDevicesOfANormalPopulation) {
+  const Population population =
+      fit_population(kTemperatureInput, parabolas(200, 3, every_5_K()), 5.0);
+  const TrainingRows unseen = parabolas(133, 5, every_5_K());
+  double share = 0.0;
+  for (int d = 0; d < 133; ++d) {
+    const TrainingRows own = selected(unseen, unseen.device == d);
+    const AdaptedBias adapted =
+        adapted_bias(population, kTemperatureInput,
+                     selected(own, own.temperature == 10.0), {});
+    const BiasSigma sigma = adapted_sigma(population, adapted.deviation, {});
+    const ArrayXd error =
+        own.bias -
+        bias_curve(population, adapted.mean).predict(own.temperature);
+    for (Index k = 0; k < own.size(); ++k)
+      if (std::abs(error(k)) <=
+          kSigmaHalfWidth * sigma.at(own.temperature(k), 0.0, 0.0))
+        share += 1.0 / (133.0 * static_cast<double>(own.size()));
+  }
+  // Rows of a device share their error: sqrt(0.09 / 133) = 0.026.
+  EXPECT_NEAR(share, 0.9, 0.06);
+}
+
+TEST(AdaptationSigma, IsNarrowWhereFewSoaksTellAll) {
+  const Population population =
+      fit_population(kTemperatureInput, parabolas(200, 3, every_5_K()), 5.0);
+  const auto learned = adaptation_sigma(population, kTemperatureInput,
+                                        parabolas(100, 4, every_5_K()), {});
+  ASSERT_TRUE(learned);
+  EXPECT_EQ(learned->devices, 100);
+  // Three soaks without noise determine a parabola.
+  EXPECT_GT(learned->factor, 0.0);
+  EXPECT_LT(learned->factor, 0.5);
+  EXPECT_FALSE(learned->power_on);
+  EXPECT_FALSE(learned->temperature_rate);
+}
+
+TEST(AdaptationSigma, IsWideWhereDevicesDifferMoreThanThePopulation) {
+  const Population population =
+      fit_population(kTemperatureInput, parabolas(200, 3, every_5_K()), 5.0);
+  TrainingRows others = parabolas(100, 4, every_5_K());
+  const ArrayXd wave = (others.temperature / 4.0).sin();
+  others.bias += wave;  // unlike any device of the population
+  const auto learned =
+      adaptation_sigma(population, kTemperatureInput, others, {});
+  ASSERT_TRUE(learned);
+  EXPECT_GT(learned->factor, 3.0);
+}
+
+TEST(AdaptedSigma, AddsTheTurnOnOfTwoRunsOutsideTheFactor) {
+  Population population =
+      fit_population(kTemperatureInput, parabolas(20, 6, every_5_K()), 5.0);
+  population.sigma = AdaptationSigma{0.5, SigmaTerm{0.2, 300.0}, {}, 30};
+  const ArrayXd deviation = ArrayXd::Constant(population.grid(), 0.4);
+  const BiasSigma sigma = adapted_sigma(population, deviation, {0.03, 0.01});
+  EXPECT_NEAR(sigma.at(10.0, 0.0, 0.0),
+              std::sqrt(0.2 * 0.2 + 2.0 * 0.03 * 0.03), 1e-12);
+  EXPECT_EQ(sigma.power_on, population.sigma->power_on);
+  EXPECT_EQ(sigma.calibration.groups, 30U);
+  EXPECT_EQ(sigma.source, SigmaSource::kPosterior);
+}
+
+}  // namespace
+}  // namespace beamgyro::trained_sigma_test

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: MIT
+"""The 1-sigma of the compensated rate: train, compensate, export."""
+
+import importlib.util
+import json
+import subprocess
+import unittest
+
+import h5py
+import numpy as np
+
+from program import ROOT, SCENARIOS, ProgramTest
+from train_set_test import CAMPAIGN, SCENARIO
+
+SPLINE = 'kind = "spline"\n[rows]\nsteady_K_per_min = 0.05\n'
+SOAKS = f"""\
+name = "soaks"
+description = "seven soaks"
+device = "device.toml"
+fidelity = "quasistatic"
+duration_s = 16000
+output_rate_Hz = 0.1
+seed = 3
+
+[ambient.soaks]
+temperatures_degC = [-35, -20, -5, 10, 25, 40]
+hold_s = 1800
+ramp_K_per_min = 1
+"""
+
+
+def bench():
+    """bench/uncertainty.py, which computes sigma from the page alone."""
+    specification = importlib.util.spec_from_file_location(
+        "uncertainty", ROOT / "bench/uncertainty.py")
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    return module
+
+
+class OfOneGyro(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("soaks.toml", SOAKS)
+        self.write("spline.toml", SPLINE)
+        self.ok("run", "soaks.toml", "-o", "soaks.h5")
+        self.ok("train", "soaks.h5", "--model", "spline.toml", "-o", "c.json")
+        self.compensator = json.loads((self.dir / "c.json").read_text())
+
+    def sigma_in(self, file):
+        with h5py.File(self.dir / file) as recording:
+            variable = recording["compensated_rate_sigma"]
+            self.assertEqual(variable.attrs["units"], b"degree/s")
+            self.assertEqual(variable.attrs["role"], b"compensated")
+            return variable[:]
+
+    def test_compensate_writes_what_the_page_of_the_file_says(self):
+        self.ok("compensate", "c.json", "soaks.h5", "-o", "out.h5")
+        found = self.sigma_in("out.h5")
+        with h5py.File(self.dir / "soaks.h5") as recording:
+            expected = bench().sigma_of(self.compensator["sigma"],
+                                        recording["time"][:],
+                                        recording["temperature"][:])
+        # The same arithmetic in another order.
+        np.testing.assert_allclose(found, expected, rtol=1e-9)
+        self.assertEqual(self.compensator["sigma"]["source"], "covariance")
+        self.assertIn("power_on", self.compensator["sigma"])
+        self.assertIn("temperature_rate", self.compensator["sigma"])
+
+    def test_outside_the_temperatures_of_training_it_grows(self):
+        self.ok("run", "soaks.toml", "-o", "cold.h5", "--set",
+                "ambient.soaks.temperatures_degC=[-35,-60]")
+        self.ok("compensate", "c.json", "cold.h5", "-o", "out.h5")
+        sigma = self.sigma_in("out.h5")
+        lowest = self.compensator["sigma"]["sigma_deg_per_s"][0]
+        self.assertGreater(sigma[-1],
+                           2 * lowest * self.compensator["sigma"]["factor"])
+
+    def test_a_file_without_one_gives_the_same_rate_and_no_sigma(self):
+        self.ok("compensate", "c.json", "soaks.h5", "-o", "with.h5")
+        del self.compensator["sigma"]
+        self.write("plain.json", json.dumps(self.compensator))
+        self.ok("compensate", "plain.json", "soaks.h5", "-o", "without.h5")
+        with h5py.File(self.dir / "with.h5") as one, \
+                h5py.File(self.dir / "without.h5") as other:
+            self.assertNotIn("compensated_rate_sigma", other)
+            np.testing.assert_array_equal(one["compensated_rate"][:],
+                                          other["compensated_rate"][:])
+
+    def test_broken_members_are_refused_by_name(self):
+        sigma = self.compensator["sigma"]
+        values = sigma["sigma_deg_per_s"]
+        cases = [
+            ("sigma_deg_per_s", [-v for v in values], "above 0"),
+            ("sigma_deg_per_s", values[1:], "as many"),
+            ("sigma_deg_per_s", [None] * len(values), "finite number"),
+            ("temperature_degC", [], "at least one"),
+            ("temperature_degC", sigma["temperature_degC"][::-1],
+             "must increase"),
+            ("temperature_degC", [10 * T for T in sigma["temperature_degC"]],
+             "must lie within"),
+            ("growth_deg_per_s_per_K", [0, 0], "above 0"),
+            ("factor", -1, "above 0"),
+            ("source", "hope", "must be"),
+            ("power_on", {}, "is missing"),
+            ("small", True, "not known"),
+        ]
+        for key, value, words in cases:
+            with self.subTest(key=key, words=words):
+                self.write("bad.json", json.dumps(
+                    self.compensator | {"sigma": sigma | {key: value}}))
+                self.rejected("compensate", "bad.json", "soaks.h5", "-o",
+                              "bad.h5", says=words)
+                self.assertFalse((self.dir / "bad.h5").exists())
+
+    def test_exported_code_tells_it_and_its_self_test_sees_damage(self):
+        self.ok("export", "c.json", "--format", "c", "-o", "code", "--name",
+                "gyro")
+        code = self.dir / "code"
+        self.assertIn("float gyro_sigma(const gyro_state *state);",
+                      (code / "gyro.h").read_text())
+        source = (code / "gyro.c").read_text()
+
+        def self_test():
+            subprocess.run(
+                ["cc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic",
+                 "-Wshadow", "-Wconversion", "-Wdouble-promotion", "-Werror",
+                 "-O2", "-ffp-contract=off", "gyro.c", "gyro_selftest.c", "-o",
+                 "selftest"], cwd=code, check=True)
+            return subprocess.run([code / "selftest"], check=False,
+                                  capture_output=True).returncode
+        self.assertEqual(self_test(), 0)
+        damaged = source.replace("sigma_terms[0] * exp_minus",
+                                 "-sigma_terms[0] + exp_minus")
+        self.assertNotEqual(damaged, source)
+        (code / "gyro.c").write_text(damaged)
+        self.assertEqual(self_test(), 1)
+
+    def test_without_one_the_exported_code_has_nothing_of_it(self):
+        del self.compensator["sigma"]
+        self.write("plain.json", json.dumps(self.compensator))
+        self.ok("export", "plain.json", "--format", "c", "-o", "code",
+                "--name", "gyro")
+        for file in (self.dir / "code").iterdir():
+            self.assertNotIn("sigma", file.read_text(), file.name)
+
+
+class OfAPopulation(ProgramTest):
+    def test_adapted_devices_take_the_calibration_of_the_population(self):
+        sweep = SCENARIO.format(
+            name="sweep", duration=38400,
+            temperatures=[-35, -20, -5, 10, 25, 40, 50])
+        self.write("sweep.toml", sweep)
+        self.write("check.toml", SCENARIO.format(
+            name="check", duration=12000, temperatures=[-20, 40]))
+        self.write("campaign.toml", CAMPAIGN.replace(
+            "validation = 0.2", "validation = 0.4").replace(
+            "train = 0.6", "train = 0.4"))
+        self.ok("generate", "campaign.toml", "-o", "set")
+        models = SCENARIOS / "population"
+        for name in ["population", "adapted"]:
+            self.write(f"{name}.toml", (models / f"{name}.toml").read_text()
+                       .replace("grid_K = 5", "grid_K = 15"))
+        self.ok("train", "set", "--run", "sweep", "--model",
+                "population.toml", "-o", "population.json")
+        population = json.loads((self.dir / "population.json").read_text())
+        with h5py.File(self.dir / "set/sweep.nc") as view:
+            parts = view["part"][:]
+        validation = int(np.count_nonzero(parts == 1))
+        sigma = population["sigma"]
+        self.assertEqual(sigma["source"], "posterior")
+        self.assertEqual(sigma["calibration"]["by"], "device")
+        self.assertEqual(sigma["calibration"]["groups"], validation)
+        learned = population["population"]["sigma"]
+        self.assertEqual(learned["devices"], validation)
+        self.ok("train", "set", "--run", "check", "--device",
+                int(np.flatnonzero(parts == 2)[0]), "--model", "adapted.toml",
+                "-o", "adapted.json")
+        adapted = json.loads((self.dir / "adapted.json").read_text())["sigma"]
+        self.assertEqual(adapted["factor"], learned["factor"])
+        self.assertEqual(adapted["temperature_rate"],
+                         learned["temperature_rate"])
+        # Known from two soaks, a device is surer than the population.
+        self.assertLess(np.mean(adapted["sigma_deg_per_s"]),
+                        np.mean(sigma["sigma_deg_per_s"]))
+
+
+if __name__ == "__main__":
+    unittest.main()
