@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -75,7 +76,8 @@ RunRecorder::RunRecorder(const Scenario& scenario, const Device& device,
     : scenario_(scenario),
       device_(device),
       noise_(with(device.noise, loop_noise.sensing), scenario.output_rate,
-             scenario.seed, key.device, key.run, scenario.age),
+             scenario.seed, key.device, key.run,
+             scenario.has_age ? std::optional(scenario.age) : std::nullopt),
       turn_on_(turn_on_offsets(device.noise, scenario.powered.size(),
                                scenario.seed, key.device, key.run)),
       transients_(turn_on_transients(device.noise, off_times(scenario.powered),

@@ -31,7 +31,8 @@ struct Scenario {
   double duration = 0;     // [s]
   double output_rate = 0;  // [Hz]
   std::uint64_t seed = 0;
-  double age = 0;  // of the unit at time 0, since its factory trim [s]
+  double age = 0;        // of the unit at time 0, since its factory trim [s]
+  bool has_age = false;  // the file gives it, be it 0
   std::vector<PowerInterval> powered;
   PiecewiseLinear ambient = PiecewiseLinear::constant(298.15);  // [K]
   std::vector<double> soak_ends;  // [s], of an ambient that is made of soaks

@@ -218,7 +218,9 @@ Scenario read_scenario(const ConfigDocument& document,
   }
   scenario.seed = static_cast<std::uint64_t>(
       root.integer("seed", 0, std::numeric_limits<long>::max()));
-  scenario.age = root.table_or_empty("age").number_or("hours", 0, kAge) * kHour;
+  const ConfigTable age = root.table_or_empty("age");
+  scenario.has_age = age.has("hours");
+  scenario.age = age.number_or("hours", 0, kAge) * kHour;
   scenario.powered = read_power(root.table_or_empty("power"));
   scenario.ambient =
       read_ambient(root.table("ambient"), folder, scenario.soak_ends);

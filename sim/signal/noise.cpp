@@ -31,10 +31,10 @@ void check_noise(const NoiseParameters& p) {
 
 RateNoise::RateNoise(const NoiseParameters& parameters, double output_rate,
                      std::uint64_t seed, std::uint32_t device,
-                     std::uint32_t run, double age)
-    : white_sigma_(parameters.angle_random_walk * std::sqrt(output_rate)),
-      walk_sigma_(parameters.rate_random_walk / std::sqrt(output_rate)),
-      walk_(parameters.rate_random_walk * walk_since_trim(age, seed, device)),
+                     std::uint32_t run, std::optional<double> age)
+    : output_rate_(output_rate),
+      white_sigma_(parameters.angle_random_walk * std::sqrt(output_rate)),
+      walk_K_(parameters.rate_random_walk),
       white_stream_(seed, device, run, kWhiteNoiseStream),
       walk_stream_(seed, device, run, kRateRandomWalkStream) {
   check_noise(parameters);
@@ -44,6 +44,28 @@ RateNoise::RateNoise(const NoiseParameters& parameters, double output_rate,
   if (parameters.bias_instability > 0.0)
     flicker_.emplace(parameters.bias_instability, output_rate, seed, device,
                      run);
+  if (age && walk_K_ > 0.0) {
+    age_ = *age;
+    walk_since_trim_.emplace(seed, device);
+  }
+}
+
+void RateNoise::add_walk(std::span<double> rate) {
+  const double sigma = walk_K_ / std::sqrt(output_rate_);
+  std::array<double, 1024> normal;
+  const auto numbers = std::span(normal).first(rate.size());
+  walk_stream_.fill_normal(numbers);
+  for (std::size_t i = 0; i < rate.size(); ++i) {
+    rate[i] += walk_;
+    walk_ += sigma * numbers[i];
+  }
+}
+
+void RateNoise::add_walk_since_trim(std::span<double> rate) {
+  for (double& r : rate) {
+    const double t = static_cast<double>(aged_samples_++) / output_rate_;
+    r += walk_K_ * walk_since_trim_->at(age_ + t);
+  }
 }
 
 void RateNoise::add_next(std::span<double> rate) {
@@ -57,44 +79,13 @@ void RateNoise::add_next(std::span<double> rate) {
       for (std::size_t i = 0; i < count; ++i)
         rate[i] += white_sigma_ * numbers[i];
     }
-    if (walk_sigma_ > 0.0) {
-      walk_stream_.fill_normal(numbers);
-      for (std::size_t i = 0; i < count; ++i) {
-        rate[i] += walk_;
-        walk_ += walk_sigma_ * numbers[i];
-      }
+    if (walk_since_trim_) {
+      add_walk_since_trim(rate.first(count));
+    } else if (walk_K_ > 0.0) {
+      add_walk(rate.first(count));
     }
     rate = rate.subspan(count);
   }
-}
-
-double walk_since_trim(double age, std::uint64_t seed, std::uint32_t device) {
-  constexpr double kLongest = 0x1p32, kShortest = 1;  // [s]
-  if (!(age >= 0 && age <= kLongest))
-    throw std::invalid_argument(
-        fmt::format("age is {} s, must be 0 to {}", age, kLongest));
-  if (age == 0) return 0;
-  // The interval that holds `age`, the path at its ends, and its number: the
-  // halves of number i are 2 i and 2 i + 1.
-  const auto normal = [&](std::uint32_t number) {
-    return RandomStream(seed, device, number, kWalkSinceTrimStream).normal();
-  };
-  double start = 0, length = kLongest;
-  double first = 0, last = std::sqrt(kLongest) * normal(0);
-  for (std::uint32_t number = 1; length > kShortest;) {
-    const double middle =
-        0.5 * (first + last) + 0.5 * std::sqrt(length) * normal(number);
-    length /= 2;
-    number *= 2;
-    if (age >= start + length) {
-      start += length;
-      first = middle;
-      number += 1;
-    } else {
-      last = middle;
-    }
-  }
-  return first + (last - first) * ((age - start) / length);
 }
 
 std::vector<double> turn_on_offsets(const NoiseParameters& parameters,

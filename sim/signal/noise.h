@@ -9,6 +9,7 @@
 
 #include "random/random_stream.h"
 #include "sim/signal/flicker.h"
+#include "sim/signal/walk_since_trim.h"
 
 namespace beamgyro {
 
@@ -28,36 +29,37 @@ struct NoiseParameters {
 /// sample at the times m / output_rate:
 ///   white    variance N^2 x output_rate,
 ///   flicker  see FlickerFilter, stationary from the start,
-///   walk     K walk_since_trim() at the first sample, steps of variance
-///            K^2 / output_rate. It goes on through power-off.
+///   walk     of a run at an age, K times WalkSinceTrim; else 0 at the first
+///            sample, with steps of variance K^2 / output_rate. It goes on
+///            through power-off.
 /// The noise does not depend on how a run is cut into calls.
 class RateNoise {
  public:
-  /// `age` [s] is the time since the trim at the first sample. Throws
-  /// std::invalid_argument for a parameter below 0, an output rate [Hz] not
-  /// above 0, or one not finite, and as walk_since_trim().
+  /// `age` [s] is the time since the trim at the first sample, where the run
+  /// has one. Throws std::invalid_argument for a parameter below 0, an output
+  /// rate [Hz] not above 0, or one not finite.
   RateNoise(const NoiseParameters& parameters, double output_rate,
             std::uint64_t seed, std::uint32_t device, std::uint32_t run,
-            double age = 0);
+            std::optional<double> age = {});
 
-  /// Adds the noise of the next rate.size() samples.
+  /// Adds the noise of the next rate.size() samples. Throws as WalkSinceTrim.
   void add_next(std::span<double> rate);
 
  private:
+  void add_walk(std::span<double> rate);
+  void add_walk_since_trim(std::span<double> rate);
+
+  double output_rate_;  // [Hz]
   double white_sigma_;  // [rad/s]
-  double walk_sigma_;   // of one step [rad/s]
+  double walk_K_;       // K [rad/s/sqrt(s)]
   double walk_ = 0.0;   // at the next sample [rad/s]
   RandomStream white_stream_;
   RandomStream walk_stream_;
   std::optional<FlickerNoise> flicker_;  // none when B = 0
+  double age_ = 0;                       // at the first sample [s]
+  std::size_t aged_samples_ = 0;         // of walk_since_trim_, taken
+  std::optional<WalkSinceTrim> walk_since_trim_;
 };
-
-/// Returns the Wiener path W(age) [sqrt(s)] of a device, W(0) = 0: values at
-/// two ages differ by a normal of their distance as variance, in every run and
-/// in every order. Drawn by halving intervals of the path (Levy) down to 1 s,
-/// with straight lines between. Throws std::invalid_argument for an age [s]
-/// outside 0 .. 2^32.
-double walk_since_trim(double age, std::uint64_t seed, std::uint32_t device);
 
 /// Turn-on offsets [rad/s] of the first `cycles` power cycles of a run,
 /// independent normals of sigma parameters.turn_on; cycle i gets the same value

@@ -126,6 +126,39 @@ TEST(QuasistaticRun, ARateBeyondFullScaleSaturatesAndSaysSo) {
   EXPECT_GT(values(run, "true_rate")[800], 200);
 }
 
+// What the random walk alone adds to the rate of a run [deg/s].
+std::vector<double> walk_of(const std::string& age,
+                            const std::string& duration) {
+  const Device device = nominal_device(
+      {"noise.angle_random_walk_deg_per_sqrt_s=0.0",
+       "noise.bias_instability_deg_per_s=0.0", "noise.turn_on_deg_per_s=0.0",
+       "noise.rate_random_walk_deg_per_s_per_sqrt_s=0.1",
+       "readout.amplifier_noise_V_per_sqrt_Hz=0.0"});
+  const std::string ambient = "[ambient]\nconstant_degC = 25\n";
+  std::vector<double> walk = values(
+      simulated(scenario_from(age, ambient, duration, "1"), device), "rate");
+  const Recording quiet =
+      simulated(scenario_from(age + kQuiet, ambient, duration, "1"), device);
+  for (std::size_t k = 0; k < walk.size(); ++k)
+    walk[k] -= values(quiet, "rate")[k];
+  return walk;
+}
+
+TEST(QuasistaticRun, TheRandomWalkGoesOnFromRunToRun) {
+  const std::vector<double> whole = walk_of("[age]\nhours = 0\n", "3600");
+  const std::vector<double> later = walk_of("[age]\nhours = 0.5\n", "1800");
+  // Two roundings of the converter of 300 deg/s / 2^16, and the Brownian noise
+  // of a second.
+  constexpr double kRoundoff = 0.015;  // [deg/s]
+  EXPECT_GT(std::abs(later.front()), 10 * kRoundoff);
+  for (std::size_t k = 0; k < later.size(); ++k)
+    ASSERT_NEAR(later[k], whole[1800 + k], kRoundoff) << k;
+  // Without an age a run has a walk of its own, from 0.
+  const std::vector<double> fresh = walk_of("", "1800");
+  EXPECT_NEAR(fresh.front(), 0, kRoundoff);
+  EXPECT_GT(std::abs(fresh.back() - whole[1799]), 10 * kRoundoff);
+}
+
 TEST(QuasistaticRun, ADriveAtItsVoltageLimitIsFlagged) {
   const Recording run = simulated(
       scenario_from(""), nominal_device({"drive.voltage_limit_V=0.5"}));

@@ -92,27 +92,40 @@ TEST(RateNoise, RateRandomWalkStartsAtZeroWithStepsOfItsVariance) {
   EXPECT_NEAR(variance / (kK * kK / kRate), 1.0, 3.0 * std::sqrt(2.0 / steps));
 }
 
-TEST(RateNoise, AnAgedUnitStartsFromItsWalkSinceTheTrim) {
-  constexpr double kAge = 3.6e6;  // [s]
-  std::vector<double> aged(1000, 0.0);
-  RateNoise({.rate_random_walk = kK}, 10.0, 11, 5, 3, kAge).add_next(aged);
-  std::vector<double> fresh(1000, 0.0);
-  RateNoise({.rate_random_walk = kK}, 10.0, 11, 5, 3).add_next(fresh);
-  const double start = kK * walk_since_trim(kAge, 11, 5);
-  EXPECT_EQ(aged[0], start);
-  EXPECT_NE(start, 0.0);
-  for (std::size_t i = 0; i < aged.size(); ++i)  // within rounding of the sums
-    EXPECT_NEAR(aged[i], start + fresh[i], 1e-12 * std::abs(start)) << i;
+// The walk of a run at 10 Hz that begins at an age [s].
+std::vector<double> aged_walk(double age, std::size_t count,
+                              std::uint32_t run) {
+  std::vector<double> rate(count, 0.0);
+  RateNoise({.rate_random_walk = kK}, 10.0, 11, 5, run, age).add_next(rate);
+  return rate;
+}
+
+TEST(RateNoise, ARunGoesOnWithTheWalkWhereAnEarlierOneEnded) {
+  for (const double age : {0.0, 1234.0, 3.6e6, 3.15576e7, 3600.123}) {
+    const auto whole = aged_walk(age, 30001, 3);
+    const auto first = aged_walk(age, 9001, 4);
+    const auto second = aged_walk(age + 900, 21001, 5);
+    EXPECT_NE(whole[9000], whole[0]);
+    // Ages near a year are rounded to 4e-9 s, of a slope of some K/sqrt(s).
+    for (std::size_t i = 0; i < first.size(); ++i)
+      ASSERT_NEAR(first[i], whole[i], 1e-7 * kK) << age << ' ' << i;
+    for (std::size_t i = 0; i < second.size(); ++i)
+      ASSERT_NEAR(second[i], whole[9000 + i], 1e-7 * kK) << age << ' ' << i;
+    EXPECT_EQ(first.back(), second.front()) << age;
+  }
+  EXPECT_EQ(aged_walk(0, 1, 3).front(), 0.0);
 }
 
 TEST(WalkSinceTrim, HasTheVarianceOfTheTimeBetweenAnyTwoAges) {
   constexpr std::uint32_t kDevices = 20000;
-  constexpr double kAges[] = {0.0, 40.0, 3600.0, 3.6e6, 3.1e7, 3.2e9};
+  // Steps of 40 s, 1 h, 1000 h, a year, and a century.
+  constexpr double kAges[] = {0.0, 40.0, 3640.0, 3.60364e6, 3.515e7, 3.2e9};
   for (std::size_t i = 1; i < std::size(kAges); ++i) {
     double grown = 0.0, overlap = 0.0;
     for (std::uint32_t device = 0; device < kDevices; ++device) {
-      const double before = walk_since_trim(kAges[i - 1], 7, device);
-      const double step = walk_since_trim(kAges[i], 7, device) - before;
+      WalkSinceTrim walk(7, device);
+      const double before = walk.at(kAges[i - 1]);
+      const double step = walk.at(kAges[i]) - before;
       grown += step * step / kDevices;
       overlap += step * before / kDevices;
     }
@@ -122,11 +135,33 @@ TEST(WalkSinceTrim, HasTheVarianceOfTheTimeBetweenAnyTwoAges) {
   }
 }
 
+TEST(WalkSinceTrim, HasIndependentStepsOfASecond) {
+  constexpr std::size_t kSteps = 100000;
+  WalkSinceTrim walk(7, 3);
+  double variance = 0.0, product = 0.0, last = 0.0;
+  for (std::size_t i = 0; i < kSteps; ++i) {
+    const double age = 1e6 + static_cast<double>(i);
+    const double step = walk.at(age + 1) - walk.at(age);
+    variance += step * step / kSteps;
+    product += step * last / kSteps;
+    last = step;
+  }
+  EXPECT_NEAR(variance, 1.0, 3.0 * std::sqrt(2.0 / kSteps));
+  EXPECT_NEAR(product, 0.0, 3.0 / std::sqrt(double{kSteps}));
+}
+
+TEST(WalkSinceTrim, DoesNotDependOnTheOrderOfAges) {
+  WalkSinceTrim walk(7, 3);
+  for (const double age : {5.5, 3.6e6, 0.0, 4.2e9, 4294967296.0, 17.0, 5.5})
+    EXPECT_EQ(walk.at(age), WalkSinceTrim(7, 3).at(age)) << age;
+}
+
 TEST(WalkSinceTrim, RejectsAnAgeThatIsNone) {
-  EXPECT_EQ(walk_since_trim(0.0, 7, 3), 0.0);
-  EXPECT_THROW(walk_since_trim(-1.0, 7, 3), std::invalid_argument);
-  EXPECT_THROW(walk_since_trim(NAN, 7, 3), std::invalid_argument);
-  EXPECT_THROW(walk_since_trim(1e10, 7, 3), std::invalid_argument);
+  WalkSinceTrim walk(7, 3);
+  EXPECT_EQ(walk.at(0.0), 0.0);
+  EXPECT_THROW(walk.at(-1.0), std::invalid_argument);
+  EXPECT_THROW(walk.at(NAN), std::invalid_argument);
+  EXPECT_THROW(walk.at(1e10), std::invalid_argument);
 }
 
 TEST(RateNoise, PartsAreIndependentAndAddUp) {
