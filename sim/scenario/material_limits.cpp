@@ -36,14 +36,8 @@ void MaterialLimits::check(double t, const NodeVector& nodes) const {
 
 void MaterialLimits::check(const ThermalTrajectory& temperatures,
                            const SampleGrid& grid) const {
-  bool stays = true;
-  for (int i = 0; i < kThermalNodeCount; ++i) {
-    const TemperatureRange range =
-        temperatures.range(static_cast<ThermalNode>(i));
-    stays = stays && !is_outside(range.low) && !is_outside(range.high);
-  }
   std::array<std::vector<double>, kThermalNodeCount> values;
-  for (std::size_t k = 0; k < grid.count && !stays; k += kBlockSamples) {
+  for (std::size_t k = 0; k < grid.count; k += kBlockSamples) {
     const std::vector<double> times =
         grid.times(k, std::min(kBlockSamples, grid.count - k));
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -57,12 +51,20 @@ void MaterialLimits::check(const ThermalTrajectory& temperatures,
 void MaterialLimits::check(
     std::span<const double> times,
     const std::array<std::vector<double>, kThermalNodeCount>& nodes) const {
+  const auto has_outside = [](const std::vector<double>& T) {
+    return std::any_of(T.begin(), T.end(), is_outside);
+  };
+  if (std::none_of(nodes.begin(), nodes.end(), has_outside)) return;
   for (std::size_t k = 0; k < times.size(); ++k) {
     NodeVector now;
     for (std::size_t i = 0; i < nodes.size(); ++i)
       now(static_cast<Eigen::Index>(i)) = nodes[i][k];
     check(times[k], now);
   }
+}
+
+bool MaterialLimits::stand(const TemperatureRange& range) {
+  return !is_outside(range.low) && !is_outside(range.high);
 }
 
 }  // namespace beamgyro

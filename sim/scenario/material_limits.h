@@ -27,6 +27,9 @@ class MaterialLimits {
       std::span<const double> times,
       const std::array<std::vector<double>, kThermalNodeCount>& nodes) const;
 
+  /// Returns whether the materials stand every temperature of `range`.
+  static bool stand(const TemperatureRange& range);
+
   /// Every sample of a run.
   void check(const ThermalTrajectory& temperatures,
              const SampleGrid& grid) const;

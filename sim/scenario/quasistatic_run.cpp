@@ -115,14 +115,14 @@ class FilteredRate {
 // the run.
 class RateResponse {
  public:
+  /// `beam` is the range of the beam's temperature.
   RateResponse(const Gyro& gyro, const Motion& motion,
-               const ThermalTrajectory& temperatures,
-               const MemoryTrajectory* memory, const SampleGrid& grid)
+               const TemperatureRange& beam, const MemoryTrajectory* memory,
+               const SampleGrid& grid)
       : board_(gyro),
         filter_(gyro.device.readout.corner_frequency),
         filtered_(motion, filter_, grid),
-        map_(map_of(gyro, temperatures.range(kBeam), memory,
-                    filtered_.fastest())) {}
+        map_(map_of(gyro, beam, memory, filtered_.fastest())) {}
 
   void operator()(RunSamples& samples) {
     const Samples& beam = samples.temperature[kBeam];
@@ -203,11 +203,11 @@ class MotionResponse {
 using StaticResponse = std::function<void(RunSamples& samples)>;
 
 StaticResponse static_response(const Gyro& gyro, const Motion& motion,
-                               const ThermalTrajectory& temperatures,
+                               const TemperatureRange& beam,
                                const MemoryTrajectory* memory,
                                const SampleGrid& grid) {
   if (motion.has_other_axes()) return MotionResponse(gyro, motion, grid.rate);
-  return RateResponse(gyro, motion, temperatures, memory, grid);
+  return RateResponse(gyro, motion, beam, memory, grid);
 }
 
 // White noise of the sensing in front of the output stage [rad/sqrt(s)].
@@ -242,12 +242,15 @@ void simulate_quasistatic(const Scenario& given, const Gyro& gyro,
                                        thermal_load(scenario, gyro), grid, {},
                                        memory ? memory->sink() : ThermalSink{});
   if (memory) memory->finish();
-  MaterialLimits(scenario, gyro.device.thermal).check(temperatures, grid);
+  const MaterialLimits limits(scenario, gyro.device.thermal);
+  const TemperatureRange beam = temperatures.range(kBeam);
+  // No table reaches so far: the failure names the first sample.
+  if (!MaterialLimits::stand(beam)) limits.check(temperatures, grid);
   const StaticResponse respond =
-      static_response(gyro, motion, temperatures, memory.get(), grid);
+      static_response(gyro, motion, beam, memory.get(), grid);
   std::optional<SlowDriveNoise> drive_noise;
   if (has_channel_noise(scenario, gyro.device))
-    drive_noise.emplace(scenario, gyro, key);
+    drive_noise.emplace(scenario, gyro, beam, key);
   RunNoise noise = drive_noise ? drive_noise->rms() : RunNoise{};
   noise.sensing = sensing_noise(gyro);
   RunRecorder recorder(scenario, gyro.device, key, noise);
@@ -264,6 +267,7 @@ void simulate_quasistatic(const Scenario& given, const Gyro& gyro,
       temperatures.sample(static_cast<ThermalNode>(node), k, samples.time,
                           samples.temperature[node]);
     }
+    limits.check(samples.time, samples.temperature);
     if (memory) {
       samples.memory.resize(count);
       memory->sample(samples.time, samples.temperature[kBeam], samples.memory);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "sim/scenario/sensing_noise.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "sim/dynamics/loop_noise.h"
 #include "sim/scenario/drive_lock.h"
@@ -64,18 +66,35 @@ RunNoise SensingNoise::rms() {
 }
 
 SlowDriveNoise::SlowDriveNoise(const Scenario& scenario, const Gyro& gyro,
-                               const RunKey& key)
+                               const TemperatureRange& beam, const RunKey& key)
     : scenario_(scenario),
       gyro_(gyro),
       ode_(gyro, drive_heating(gyro)),
       frequency_stream_(scenario.seed, key.device, key.run,
                         kDriveFrequencyNoiseStream),
       voltage_stream_(scenario.seed, key.device, key.run,
-                      kDriveVoltageNoiseStream) {}
+                      kDriveVoltageNoiseStream),
+      coldest_(beam.low) {
+  constexpr double kWidest = 4;  // [K]
+  const auto intervals =
+      static_cast<int>(std::ceil((beam.high - beam.low) / kWidest));
+  step_ = intervals > 0 ? (beam.high - beam.low) / intervals : kWidest;
+  for (int i = 0; i <= intervals; ++i)
+    sigma_.push_back(exact_sigma(std::min(coldest_ + i * step_, beam.high)));
+}
 
-Eigen::Vector2d SlowDriveNoise::sigma_at(double beam, double board) {
+Eigen::Vector2d SlowDriveNoise::exact_sigma(double T) {
   return std::sqrt(scenario_.output_rate) *
-         drive_noise(ode_.loops(), loop_noise(gyro_, ode_, beam, board));
+         drive_noise(ode_.loops(), loop_noise(gyro_, ode_, T, T));
+}
+
+Eigen::Vector2d SlowDriveNoise::sigma_at(double beam) const {
+  const double last = static_cast<double>(sigma_.size() - 1);
+  const double place = std::clamp((beam - coldest_) / step_, 0.0, last);
+  const auto left = static_cast<std::size_t>(place);
+  const std::size_t right = std::min(left + 1, sigma_.size() - 1);
+  return sigma_[left] +
+         (place - static_cast<double>(left)) * (sigma_[right] - sigma_[left]);
 }
 
 void SlowDriveNoise::add_next(RunSamples& samples) {
@@ -85,21 +104,14 @@ void SlowDriveNoise::add_next(RunSamples& samples) {
   frequency_stream_.fill_normal(samples.drive_frequency_noise);
   voltage_stream_.fill_normal(samples.drive_voltage_noise);
   for (std::size_t k = 0; k < count; ++k) {
-    const double beam = samples.temperature[kBeam][k];
-    const double board = samples.temperature[kBoard][k];
-    if (std::abs(beam - beam_) > kNoiseRefresh ||
-        std::abs(board - board_) > kNoiseRefresh) {
-      sigma_ = sigma_at(beam, board);
-      beam_ = beam, board_ = board;
-    }
-    samples.drive_frequency_noise[k] *= sigma_(0);
-    samples.drive_voltage_noise[k] *= samples.locked[k] ? sigma_(1) : 0;
+    const Eigen::Vector2d sigma = sigma_at(samples.temperature[kBeam][k]);
+    samples.drive_frequency_noise[k] *= sigma(0);
+    samples.drive_voltage_noise[k] *= samples.locked[k] ? sigma(1) : 0;
   }
 }
 
 RunNoise SlowDriveNoise::rms() {
-  const Eigen::Vector2d sigma =
-      sigma_at(kCalibrationTemperature, kCalibrationTemperature);
+  const Eigen::Vector2d sigma = exact_sigma(kCalibrationTemperature);
   return {.drive_frequency = sigma(0), .drive_voltage = sigma(1)};
 }
 

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "sim/dynamics/envelope.h"
 #include "sim/scenario/run_recorder.h"
 #include "sim/signal/linear_noise.h"
+#include "sim/thermal/thermal_trajectory.h"
 
 namespace beamgyro {
 
@@ -40,11 +42,15 @@ class SensingNoise {
 
 /// Noise of drive frequency and voltage for runs that do not simulate the
 /// loops: white, with the density that SensingNoise has well below their
-/// bandwidth. The density follows the temperatures in steps of kNoiseRefresh.
+/// bandwidth. The density is tabulated over the beam's temperature, with
+/// straight lines between points 4 K apart at most and the board as warm as the
+/// beam: what the board turns is the readout, behind the drive loop.
 class SlowDriveNoise {
  public:
-  /// `scenario` and `gyro` must outlive it.
-  SlowDriveNoise(const Scenario& scenario, const Gyro& gyro, const RunKey& key);
+  /// `beam` holds all temperatures of the beam. `scenario` and `gyro` must
+  /// outlive the object.
+  SlowDriveNoise(const Scenario& scenario, const Gyro& gyro,
+                 const TemperatureRange& beam, const RunKey& key);
 
   /// Writes the noise of the next samples.
   void add_next(RunSamples& samples);
@@ -53,14 +59,15 @@ class SlowDriveNoise {
   RunNoise rms();
 
  private:
-  Eigen::Vector2d sigma_at(double beam, double board);
+  Eigen::Vector2d exact_sigma(double T);
+  Eigen::Vector2d sigma_at(double beam) const;
 
   const Scenario& scenario_;
   const Gyro& gyro_;
   EnvelopeOde ode_;
   RandomStream frequency_stream_, voltage_stream_;
-  Eigen::Vector2d sigma_ = {0, 0};  // of a sample [Hz] [V]
-  double beam_ = 0, board_ = 0;     // of sigma_ [K]
+  double coldest_, step_;               // of the table [K]
+  std::vector<Eigen::Vector2d> sigma_;  // of a sample [Hz] [V]
 };
 
 inline constexpr double kNoiseRefresh = 2.0;  // [K]

@@ -162,6 +162,17 @@ TEST(MaterialRange, IsOneForEveryFidelity) {
   }
 }
 
+// The heat of a run that would go beyond what any table holds.
+TEST(MaterialRange, NamesTheFirstSampleHoweverHotTheRunEnds) {
+  const Device device = nominal_device({"thermal.electronics_power_W=600"});
+  const auto said = [&](const char* duration) {
+    return refusal(
+        scenario_from("", ambient("constant_degC = 100"), duration, "50"),
+        Fidelity::kQuasistatic, device);
+  };
+  EXPECT_EQ(said("300"), said("2"));
+}
+
 // At both ends of the range the model works in every fidelity.
 TEST(MaterialRange, BelongsToEveryFidelity) {
   const Device device = nominal_device({"thermal.electronics_power_W=0"});
