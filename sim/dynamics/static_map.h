@@ -23,7 +23,8 @@ namespace beamgyro {
 /// T_f,ref, hysteresis and age, over the range of each that the run visits;
 /// that of T_f - T_f,ref is the range within the piece. Each takes as few
 /// Chebyshev polynomials as the tolerance allows; docs/model.md says how many
-/// that are.
+/// that are. What two states do together takes few, and what three do together
+/// none, unless the exact solution disagrees.
 class StaticMap {
  public:
   /// Tabulates temperatures in [low, high] [K] and rates up to +-`rate_limit`
@@ -59,7 +60,7 @@ class StaticMap {
 
  private:
   // Re, Im of the demodulated signal, drive frequency, voltage.
-  static constexpr int kChannels = 4;
+  static constexpr int kChannels = 4, kFrequency = 2;
   static constexpr int kTemperatureNodes = 10, kMaxRates = 12;
   static constexpr Eigen::Index kBlock = 64;  // samples at a time
   template <int kColumns>
@@ -67,6 +68,7 @@ class StaticMap {
                              kColumns == Eigen::Dynamic ? kMaxRates : kColumns>;
 
   static constexpr int kMemoryAxes = 3, kMaxMemoryNodes = 12;
+  static constexpr int kGlassAxis = 0;
   using MemoryPoint = std::array<double, kMemoryAxes>;
 
   // The memory states of a piece: nodes along each axis, 1 where the state does
@@ -85,22 +87,37 @@ class StaticMap {
     // (channel x rate degree x memory polynomial) x temperature node
     Eigen::MatrixXd coefficients;
     MemoryBox memory = {};
-    std::vector<int> terms = {};  // of each row; empty: all of them
+    std::vector<int> terms = {};         // of each row
+    std::vector<int> memory_terms = {};  // polynomials that have terms, from 1
   };
   class MemoryResponse;
   struct Channels {  // one row a sample
     Lanes<kChannels> at_rate, at_rest;
   };
 
+  static double weighted(const Eigen::Vector4d& error);
   void tabulate(double low, double high);
   MemoryBox memory_box(double low, double high);
-  int needed_memory_nodes(double low, double high, MemoryBox box, int axis);
+  int needed_memory_nodes(std::span<const double> temperatures,
+                          const MemoryBox& box, int axis);
+  bool add_part(Piece& piece, const std::array<int, kMemoryAxes>& nodes,
+                int temperature_nodes, bool is_pair);
+  std::optional<Eigen::MatrixXd> lacking(const Piece& piece,
+                                         const MemoryBox& box,
+                                         const Eigen::MatrixXd& in_temperature,
+                                         bool is_pair);
+  void add_coefficients(Piece& piece, const MemoryBox& box,
+                        Eigen::MatrixXd& values,
+                        const Eigen::MatrixXd& in_temperature) const;
+  bool add_memory(Piece& piece);
   void prune(Piece& piece) const;
+  Eigen::Vector4d value(const Piece& piece, double T, double rate,
+                        const MemoryState& memory) const;
   ModalParameters modal(double T, const MemoryState& memory) const;
   Eigen::Vector4d exact(const ModalParameters& modal, double rate,
                         double guess = 0);
   std::optional<Piece> fitted(double low, double high);
-  double error(const Piece& piece);
+  double error(const Piece& piece, double memory_share = 1);
   void refine(double low, double high);
   int needed_rate_degree(double low, double high);
   Channels channels(const Piece& piece, std::span<const double> T,

@@ -34,6 +34,26 @@ FictiveModes extrapolated(const FictiveModes& before, double from, double to,
   return modes;
 }
 
+// T(t) is a straight line and tau is frozen, so T_fj is a mean of its value
+// before and of both temperatures, with weights that are never negative.
+FictiveModes with_tau(const FictiveModes& modes, double tau, double from,
+                      double to, double duration) {
+  constexpr double kNone = 1e-9, kAll = 40;  // beyond them exp() adds nothing
+  FictiveModes next;
+  for (std::size_t j = 0; j < modes.size(); ++j) {
+    const double E = duration / (BondRelaxation::kTimes[j] * tau);
+    if (E < kNone) {
+      next[j] = modes[j] + E * (0.5 * (from + to) - modes[j]);
+      continue;
+    }
+    const double lost = E < kAll ? -std::expm1(-E) : 1;
+    const double kept = 1 - lost, lag = lost / E;
+    next[j] =
+        to * (1 - lag) + from * std::max(0.0, lag - kept) + modes[j] * kept;
+  }
+  return next;
+}
+
 }  // namespace
 
 std::array<double, BondRelaxation::kModes> BondRelaxation::weights() {
@@ -68,24 +88,10 @@ double BondRelaxation::time_constant(double T, const Modes& modes) const {
 BondRelaxation::Modes BondRelaxation::stepped(const Modes& modes, double from,
                                               double to,
                                               double duration) const {
-  // T(t) is a straight line and tau is frozen, so T_fj is a mean of its value
-  // before and of both temperatures, with weights that are never negative.
-  const auto with_tau = [&](double tau, double end, double time) {
-    Modes next;
-    for (std::size_t j = 0; j < kModes; ++j) {
-      const double E = time / (kTimes[j] * tau);
-      const double lost = -std::expm1(-E);
-      const double kept = 1 - lost;
-      const double lag = E > 1e-12 ? lost / E : 1;
-      next[j] =
-          end * (1 - lag) + from * std::max(0.0, lag - kept) + modes[j] * kept;
-    }
-    return next;
-  };
   const double middle = 0.5 * (from + to);
   const Modes half =
-      with_tau(time_constant(from, modes), middle, 0.5 * duration);
-  return with_tau(time_constant(middle, half), to, duration);
+      with_tau(modes, time_constant(from, modes), from, middle, 0.5 * duration);
+  return with_tau(modes, time_constant(middle, half), from, to, duration);
 }
 
 BondRelaxation::Modes BondRelaxation::halved(const Modes& modes, double from,
@@ -93,7 +99,11 @@ BondRelaxation::Modes BondRelaxation::halved(const Modes& modes, double from,
                                              int depth) const {
   constexpr int kDeepest = 40;
   const double middle = 0.5 * (from + to);
+  constexpr double kFrozen = 3e-7, kEquilibrium = 1e-5;  // [K]
   const Modes whole = stepped(modes, from, to, duration);
+  if (std::abs(mean_of(whole) - mean_of(modes)) < kFrozen ||
+      std::abs(mean_of(whole) - to) < kEquilibrium)
+    return whole;
   const Modes first = stepped(modes, from, middle, 0.5 * duration);
   const Modes second = stepped(first, middle, to, 0.5 * duration);
   if (std::abs(mean_of(second) - mean_of(whole)) <= kError || depth == kDeepest)
@@ -104,7 +114,7 @@ BondRelaxation::Modes BondRelaxation::halved(const Modes& modes, double from,
 
 void BondRelaxation::advance(double from, double to, double duration) {
   // tau doubles with each K: wider steps would hide the lag at their end.
-  constexpr double kWidest = 0.5;  // [K]
+  constexpr double kWidest = 2;  // [K]
   const int parts =
       std::max(1, static_cast<int>(std::ceil(std::abs(to - from) / kWidest)));
   for (int i = 0; i < parts; ++i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -19,12 +20,15 @@ struct MemoryRange {
 /// thermal network. They are kept at knots, where
 /// - the beam turns: its hysteresis is exact between two knots;
 /// - the patches cross T_g;
-/// - a temperature has changed by kWidestStep, or T_f - T_f,ref by
-/// kWidestGlass. Between knots, T_f - T_f,ref and the age are cubics.
+/// - a temperature has changed by kWidestStep;
+/// - T_f - T_f,ref or the age bend, so that the middle of two intervals between
+///   knots is off the straight line by kGlassBend or kDecadesBend.
+/// Between knots, T_f - T_f,ref and the age are cubics.
 class MemoryTrajectory {
  public:
-  static constexpr double kWidestStep = 0.25;  // [K]
-  static constexpr double kWidestGlass = 0.1;  // [K]
+  static constexpr double kWidestStep = 1;    // [K]
+  static constexpr double kGlassBend = 0.01;  // [K]
+  static constexpr double kDecadesBend = 3e-4;
 
   explicit MemoryTrajectory(const UnitMemory& start);
 
@@ -57,15 +61,23 @@ class MemoryTrajectory {
  private:
   void begin(double t, const Eigen::VectorXd& y);
   void take(const OdeStep& step);
-  void advance(const OdeStep& step, double from, double to, int depth);
+  void advance(const OdeStep& step, double end);
+  bool add_one(const OdeStep& step, double from, double to);
+  bool add_two(const OdeStep& step, double from, double to);
+  double bend_of(const UnitMemory& middle, const UnitMemory& last,
+                 const std::array<double, 3>& patches) const;
   void add_knot(double t, double beam, double patches);
+  void adapt_width();
 
   UnitMemory memory_;
+  // What the last intervals allow for the next two together [s]; 0: unknown.
+  double width_ = 0;
   std::vector<double> times_, beam_;
   std::vector<char> breaks_;  // the slope of T_f - T_f,ref jumps
   std::vector<PlayOperators::States> plays_;
   std::vector<double> hysteresis_;
   SmoothCourse<double> glass_, decades_;
+  std::vector<double> least_glass_, most_glass_;  // of each interval
 };
 
 }  // namespace beamgyro

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/memory/unit_memory.h"
 #include "sim/scenario/simulation.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
@@ -66,6 +67,51 @@ TEST(V48Memory, EffectsOfNoStrengthChangeNothing) {
                      column_values(still, "true_bias")),
             1e-5);
   EXPECT_TRUE(has_column(still, "true_fictive_temperature"));
+}
+
+// The bias of a run by the exact solution, with the memory taken through its
+// temperatures sample by sample [deg/s]; not a number but at every `stride`-th
+// sample.
+std::vector<double> direct_bias(const Recording& run, const Device& device,
+                                std::size_t stride) {
+  const Gyro gyro = make_gyro(device);
+  const auto at = [&](const char* name, std::size_t k) {
+    return column_values(run, name)[k] + kZeroCelsius;
+  };
+  UnitMemory memory(device.memory, device.bond.glass_transition, {},
+                    at("true_beam_temperature", 0));
+  std::vector<double> bias(run.time.size(), NAN);
+  for (std::size_t k = 0; k < bias.size(); ++k) {
+    const double patches = at("true_pzt_temperature", k);
+    const double beam = at("true_beam_temperature", k);
+    if (k > 0)
+      memory.advance_patches(at("true_pzt_temperature", k - 1), patches,
+                             run.time[k] - run.time[k - 1]);
+    memory.push_beam(beam);
+    if (k % stride != 0) continue;
+    const ModalParameters modal =
+        modal_parameters(gyro.device, gyro.beam, beam, gyro.stiffness_trim,
+                         memory.state(patches));
+    bias[k] = electronics_at(gyro, at("true_board_temperature", k))
+                  .output(beam_signal(gyro, modal, {}).demodulated)
+                  .rate /
+              kDegree;
+  }
+  return bias;
+}
+
+TEST(Memory, ARunIsThatOfSmallStepsAndTheExactSolution) {
+  constexpr std::size_t kStride = 7;
+  for (const Device& device :
+       {lifelike(), nominal_device({"memory.relaxation={}",
+                                    "memory.hysteresis.mount_axis_deg=0.02",
+                                    "memory.ageing.trim_age_hours=1.0"})}) {
+    const Recording run = simulated(excursion(Fidelity::kQuasistatic), device);
+    const std::vector<double> want = direct_bias(run, device, kStride);
+    const std::vector<double>& have = column_values(run, "true_bias");
+    for (std::size_t k = 0; k < have.size(); k += kStride)
+      ASSERT_NEAR(have[k], want[k], 1e-5) << run.time[k];
+  }
 }
 
 TEST(Memory, EnvelopeAndQuasiStaticRunAgree) {

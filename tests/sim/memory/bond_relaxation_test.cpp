@@ -50,6 +50,22 @@ TEST(V51BondRelaxation, FictiveTemperatureRisesWithTheLogarithmOfTheRate) {
   EXPECT_NEAR(slope, 1.305, 0.005);
 }
 
+TEST(BondRelaxation, StepsOfAKelvinAreThoseOfAHundredth) {
+  for (const double rate : {0.05, 1.0, 20.0}) {  // [K/min]
+    BondRelaxation coarse(kNominal, kGlass, kZero + 70), fine = coarse;
+    double T = kZero + 70;
+    for (int i = 0; i < 330; ++i) {
+      const double step = i < 110 || i >= 220 ? -1 : 1;
+      coarse.advance(T, T + step, 60 / rate);
+      for (int k = 0; k < 100; ++k, T += step / 100)
+        fine.advance(T, T + step / 100, 0.6 / rate);
+      ASSERT_NEAR(coarse.fictive_temperature(), fine.fictive_temperature(),
+                  4e-4)
+          << rate << " K/min, " << T - kZero;
+    }
+  }
+}
+
 TEST(BondRelaxation, IsAtTheGlassTimeAtTheGlassTransition) {
   EXPECT_DOUBLE_EQ(
       BondRelaxation(kNominal, kGlass, kGlass).time_constant(kGlass), 100);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -61,6 +63,51 @@ TEST(MemoryTrajectory, IsThatOfSmallStepsAlongTheThermalSolution) {
     ASSERT_NEAR(have.decades, want.decades, 1e-7) << k;
   }
   EXPECT_GT(widest, 1);
+}
+
+// The largest error of T_f - T_f,ref [K] and of the age in decades over a load.
+std::array<double, 2> errors(const ThermalLoad& load, double end,
+                             double spacing) {
+  const double start = load.ambient.value(0);
+  const ThermalNetwork network{ThermalParameters{}};
+  MemoryTrajectory memory(UnitMemory(nominal(), kGlass, {}, start));
+  integrate_temperatures(network, load, end, {}, memory.sink());
+  memory.finish();
+  std::vector<double> times;
+  for (double t = 0; t <= end; t += spacing) times.push_back(t);
+  const ThermalHistory history = simulate_temperatures(network, load, times);
+  UnitMemory stepped(nominal(), kGlass, {}, start);
+  const auto& beam = history.temperature[kBeam];
+  const auto& patches = history.temperature[kPzt];
+  std::array<double, 2> largest = {0, 0};
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (k > 0) stepped.advance_patches(patches[k - 1], patches[k], spacing);
+    stepped.push_beam(beam[k]);
+    const MemoryState want = stepped.state(patches[k]);
+    const MemoryState have = memory.at(times[k], beam[k]);
+    largest[0] =
+        std::max(largest[0], std::abs(have.glass_offset - want.glass_offset));
+    largest[1] = std::max(largest[1], std::abs(have.decades - want.decades));
+  }
+  return largest;
+}
+
+TEST(MemoryTrajectory, HoldsOnSlowRampsAndInAStore) {
+  // Heating and cooling at 0.2 K/min through the glass transition.
+  const auto slow =
+      errors({.ambient = PiecewiseLinear({0, 12000, 24000},
+                                         {kZero + 15, kZero + 55, kZero + 15}),
+              .powered = {{0}},
+              .mechanical_power = 1e-4},
+             24000, 2);
+  EXPECT_LT(slow[0], 1e-3);  // 1e-5 deg/s
+  EXPECT_LT(slow[1], 1e-5);
+  // 300 h at 40 degC of a unit of a week: a decade is worth some deg/s.
+  const auto store = errors(
+      {.ambient = PiecewiseLinear({0, 9000, 1.08e6}, {298.15, 313.15, 313.15})},
+      1.08e6, 10);
+  EXPECT_LT(store[0], 1e-3);
+  EXPECT_LT(store[1], 1e-5);
 }
 
 TEST(MemoryTrajectory, RangeHoldsEveryState) {
