@@ -105,6 +105,21 @@ TEST(DeviceSample, ADeviceThatDoesNotWorkIsCounted) {
   EXPECT_EQ(missing, sample.failures);
 }
 
+TEST(DeviceSample, ADeviceThatCannotBeTrimmedIsCounted) {
+  // Patches half a millimetre off couple the modes more than the trim undoes.
+  const CampaignFolder folder;
+  const Campaign campaign = folder.campaign(with_tolerances(
+      "\"patches.offset_m\" = { normal = { mean = 0, sigma = 5e-4 } }\n"
+      "\"mount.axis_angle_deg\" = { normal = { mean = 0, sigma = 1 } }\n"));
+  DeviceSampleOptions options = options_of(32, 2);
+  options.halves_tolerances = false;
+  DeviceSampleCounts counts;
+  const DeviceSample sample = sample_devices(campaign, options, counts);
+  EXPECT_GT(sample.failures, 0U);
+  EXPECT_LT(sample.failures, sample.devices);
+  EXPECT_NE(sample.first_failure.find("quadrature trim"), std::string::npos);
+}
+
 TEST(HalvedDistribution, EveryValueIsHalfAsFarFromTheCentre) {
   Distribution normal, lognormal, uniform;
   normal.kind = Distribution::Kind::kNormal;
