@@ -106,10 +106,9 @@ def main():
     arguments = parser.parse_args()
     job = demo.Demo(arguments.program.resolve(), arguments.out.resolve(),
                     arguments.jobs)
-    demo.TRAINING += TRAINING_RATES  # simulated with the others
     if not job.recording(TRAINING_RATES[-1][0]).exists():
-        job.simulate()
-    del demo.TRAINING[-len(TRAINING_RATES):]
+        job.simulate(demo.TRAINING + TRAINING_RATES + demo.VALIDATION
+                     + demo.REST, demo.TEST)
     names = arguments.models or sorted(file.stem
                                        for file in MODELS.glob("*.toml"))
     rows = []

@@ -33,6 +33,7 @@ sys.path.insert(0, str(ROOT / "scripts"))
 sys.path.insert(0, str(ROOT / "bench"))
 import demo  # noqa: E402  (its runs, seeds and way to call the program)
 import automatic_study  # noqa: E402
+import demo_runs  # noqa: E402
 from demo import NOISE_OFF, SCENARIOS  # noqa: E402
 
 DEVICES = 40
@@ -49,16 +50,16 @@ DYNAMIC_TEST = [run for run in demo.TEST if run[0] in demo.MOTION]
 # ramps and power-ons. Only other runs and other turn-ons average theirs out.
 CAMPAIGN = [
     (f"campaign_{name}", *rest) for name, *rest in [
-        demo.ramp(f"ramp_{rate}_{k}", rate, seed + k)
+        demo_runs.ramp(f"ramp_{rate}_{k}", rate, seed + k)
         for rate, passes, seed in [(0.5, 5, 500), (1, 10, 520), (2, 20, 540)]
         for k in range(passes)] + [
-        demo.at(f"warm_up_{t}_{k}", "warm_up_cycles", t, 600 + 10 * k + i)
+        demo_runs.at(f"warm_up_{t}_{k}", "warm_up_cycles", t, 600 + 10 * k + i)
         for k in range(3)
         for i, t in enumerate([-40, -30, -20, -10, 5, 10, 30, 50])]]
 CAMPAIGN_HELD_OUT = [
     (f"campaign_{name}", *rest) for name, *rest in [
-        demo.ramp(f"ramp_1.2_{k}", 1.2, 700 + k) for k in range(6)] + [
-        demo.at(f"warm_up_{t}_{k}", "warm_up_cycles", t, 710 + 10 * k + i)
+        demo_runs.ramp(f"ramp_1.2_{k}", 1.2, 700 + k) for k in range(6)] + [
+        demo_runs.at(f"warm_up_{t}_{k}", "warm_up_cycles", t, 710 + 10 * k + i)
         for k in range(3) for i, t in enumerate([-15, 20, 45])]]
 NOISE = [("", [NOISE_OFF]), ("_noise", [])]  # scored runs: suffix, settings
 YEAR = ("_year", [NOISE_OFF, "age.hours=8766"])
