@@ -23,14 +23,15 @@ std::string studied_name(const MeritResult& result) {
 }
 
 // Without the sign of what rounds to zero.
-double shown(double value, int digits) {
+double unsigned_zero(double value, int digits) {
   return std::abs(value) < 0.5 * std::pow(10, -digits) ? 0.0 : value;
 }
 
 std::string index_text(const SensitivityIndex& index) {
-  return fmt::format("{:>6.3f} {:>13}", shown(index.value, 3),
-                     fmt::format("{:.2f} .. {:.2f}", shown(index.low, 2),
-                                 shown(index.high, 2)));
+  return fmt::format(
+      "{:>6.3f} {:>13}", unsigned_zero(index.value, 3),
+      fmt::format("{:.2f} .. {:.2f}", unsigned_zero(index.low, 2),
+                  unsigned_zero(index.high, 2)));
 }
 
 std::size_t key_width(const MeritResult& result) {
