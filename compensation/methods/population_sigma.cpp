@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -14,6 +13,7 @@ namespace {
 using Eigen::ArrayXd;
 using Eigen::Index;
 
+constexpr double kLeastSpread = 1e-6;  // [deg/s], of devices that are equal
 constexpr int kSoakCounts[] = {3, 5};  // that devices are adapted from
 
 int device_count(const TrainingRows& rows) {
@@ -186,7 +186,7 @@ BiasSigma population_sigma(const Population& population) {
                      .rowwise()
                      .norm()
                      .array()
-                     .max(std::numeric_limits<float>::min())};
+                     .max(kLeastSpread)};
   return sigma;
 }
 

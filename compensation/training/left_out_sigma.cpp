@@ -19,6 +19,7 @@ using Eigen::ArrayXXd;
 using Eigen::Index;
 
 constexpr int kLeastLeftOut = 3;
+constexpr double kLeastRms = 1e-6;  // [deg/s]: residuals of 0 promise nothing
 
 // Mean temperature and square of the mean residual of groups that the others
 // surround.
@@ -84,9 +85,7 @@ ArrayXd local_rms(const Eigen::Ref<const ArrayXd>& T,
     const ArrayXd weights = (-0.5 * ((T - at(k)) / width).square()).exp();
     const double mean = ((weights * squares).sum() + shared * squares.mean()) /
                         (weights.sum() + shared);
-    // Residuals of 0 promise nothing below single precision.
-    result(k) = std::max<double>(std::sqrt(mean),
-                                 std::numeric_limits<float>::epsilon());
+    result(k) = std::max(std::sqrt(mean), kLeastRms);
   }
   return result;
 }

@@ -89,7 +89,8 @@ ArrayXd sigma_grid(const TemperatureRange& range) {
 // A temperature that is clamped leaves the slope of the bias: the larger of
 // that at the end and the usual one.
 std::array<double, 2> growth_of(const Compensator& trained,
-                                const LookupTable& curve) {
+                                const BiasSigma& sigma) {
+  const LookupTable& curve = sigma.curve;
   const ArrayXd& T = curve.temperatures;
   const Index last = T.size() - 1;
   std::array<double, 2> growth = {curve.values(0) / kDoublingDistance,
@@ -100,8 +101,9 @@ std::array<double, 2> growth_of(const Compensator& trained,
       trained.inputs[0] == Input{InputKind::kColumn, "temperature", 0.0};
   const ArrayXd bias =
       of_temperature ? trained.bias.predict(T) : trained.baseline.predict(T);
-  const ArrayXd slope =
-      (bias.tail(last) - bias.head(last)) / (T.tail(last) - T.head(last));
+  // Of sigma, which is the factor times the growth.
+  const ArrayXd slope = (bias.tail(last) - bias.head(last)) /
+                        (T.tail(last) - T.head(last)) / sigma.factor;
   const double usual = std::sqrt(slope.square().mean());
   return {std::max({growth[0], std::abs(slope(0)), usual}),
           std::max({growth[1], std::abs(slope(last - 1)), usual})};
@@ -121,6 +123,11 @@ LookupTable residual_curve(const ResidualRows& rows,
                           rows.residual(which).square(), grid)};
 }
 
+// Files are taken for those of one gyro.
+bool has_several_devices(const SigmaTask& task) {
+  return task.runs.set && (task.rows.device != task.rows.device(0)).any();
+}
+
 // What is known before any calibration.
 std::optional<BiasSigma> uncalibrated(const Compensator& trained,
                                       const SigmaTask& task) {
@@ -131,7 +138,8 @@ std::optional<BiasSigma> uncalibrated(const Compensator& trained,
                                       task.rows, adapted->noise)
                              .deviation,
                          adapted->noise);
-  if (!is_one_of<PolynomialSpec, SplineSpec>(task.kind) || task.runs.set)
+  if (!is_one_of<PolynomialSpec, SplineSpec>(task.kind) ||
+      has_several_devices(task))
     return std::nullopt;
   auto curve = left_out_sigma(task.kind, task.inputs, task.rows,
                               sigma_grid(trained.temperature_range), task.seed);
@@ -174,7 +182,7 @@ std::optional<BiasSigma> fit_bias_sigma(const Compensator& trained,
   } else if (sigma && sigma->source == SigmaSource::kCovariance) {
     calibrate_terms(*sigma, residuals_of(trained, task.runs, task));
   }
-  if (sigma) sigma->growth = growth_of(trained, sigma->curve);
+  if (sigma) sigma->growth = growth_of(trained, *sigma);
   return sigma;
 }
 

@@ -102,7 +102,8 @@ ResidualRows drawn(int groups, std::uint32_t stream) {
     for (Index i = 0; i < kRows; ++i) {
       rows.group(k + i) = static_cast<int>(k / kRows);
       rows.temperature_rate(k + i) = i % 2 == 0 ? 0.0 : 0.02;
-      rows.since_power_on(k + i) = i < 10 ? std::exp(-0.3 * i) : 0.0;
+      rows.since_power_on(k + i) =
+          i < 10 ? std::exp(-0.3 * static_cast<double>(i)) : 0.0;
       rows.residual(k + i) = offset + lag * rows.temperature_rate(k + i) +
                              warm * rows.since_power_on(k + i);
     }

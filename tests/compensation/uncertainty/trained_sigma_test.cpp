@@ -97,6 +97,10 @@ TEST(TrainedSigma, HeldOutRunsCalibrateIt) {
   EXPECT_EQ(c.sigma->calibration.by, "run");
   EXPECT_EQ(c.sigma->calibration.groups, 12U);
   EXPECT_EQ(c.sigma->calibration.level, kSigmaLevel);
+  // A clamped bias of 0.02 deg/s/K leaves 1 deg/s at 50 K, whatever the factor.
+  const ArrayXd& T = c.sigma->curve.temperatures;
+  EXPECT_NE(c.sigma->factor, 1.0);
+  EXPECT_NEAR(c.sigma->at(T(T.size() - 1) + 50.0, 0.0, 0.0), 1.0, 0.1);
   double share = 0.0;
   for (const TrainingRun& run : soak_runs(12, 60))
     share += covered_share(c, run.recording) / 12.0;
@@ -121,6 +125,18 @@ TEST(TrainedSigma, ATableHasOneFromHeldOutRunsOnly) {
   EXPECT_EQ(c.sigma->source, SigmaSource::kResiduals);
   EXPECT_EQ(c.sigma->calibration.groups, 2U);
   EXPECT_EQ(c.sigma->calibration.level, 0.0);
+}
+
+TEST(TrainedSigma, OfACurveTellsOfOneDeviceOfASetAndNotOfSeveral) {
+  std::vector<TrainingRun> runs = soak_runs(2, 70);
+  for (TrainingRun& run : runs) run.device = "7";
+  RunSource source = source_of(runs);
+  source.set = SetPart{"set", "sha", 1, 1};
+  const std::vector<TrainingRun> none;
+  EXPECT_TRUE(train(line_spec(), source, source_of(none), 1).compensator.sigma);
+  runs[1].device = "8";
+  EXPECT_FALSE(
+      train(line_spec(), source, source_of(none), 1).compensator.sigma);
 }
 
 TEST(TrainedSigma, IsTheSameForTheSameRuns) {
