@@ -20,6 +20,7 @@ void add_train(CommandLine& program);
 void add_compensate(CommandLine& program);
 void add_export(CommandLine& program);
 void add_validate(CommandLine& program);
+void add_plan(CommandLine& program);
 void add_allan(CommandLine& program);
 void add_verify(CommandLine& program);
 void add_info(CommandLine& program);

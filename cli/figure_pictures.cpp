@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <span>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
@@ -28,6 +30,31 @@ std::string errors_of(ChildProcess& process) {
   return text;
 }
 
+fs::path script_of(const FigureScript& drawn_by) {
+  fs::path script = shipped_file(drawn_by.script);
+  if (script.empty())
+    throw std::runtime_error(
+        fmt::format("{} needs {}, which is not beside this program",
+                    drawn_by.option, drawn_by.script));
+  return script;
+}
+
+// Runs a script that draws, and waits for it.
+void draw(const fs::path& script, std::vector<std::string> words) {
+  words.insert(words.begin(), script.string());
+  ChildProcess process(words);
+  process.input().reset();
+  const auto end = process.wait(kLongestDrawing);
+  if (!end)
+    throw std::runtime_error(fmt::format("{}: still draws after {:.0f} s",
+                                         script.string(), kLongestDrawing));
+  if (end->status == 0 && end->signal == 0) return;
+  throw std::runtime_error(fmt::format(
+      "{}: {} (it needs Python 3 with matplotlib, python3-matplotlib in "
+      "Debian){}",
+      script.string(), end_words(*end), last_words(errors_of(process))));
+}
+
 }  // namespace
 
 fs::path shipped_file(const fs::path& name) {
@@ -41,24 +68,31 @@ fs::path shipped_file(const fs::path& name) {
 
 void draw_figures(const FigureScript& drawn_by, const std::string& result,
                   const fs::path& directory) {
-  const fs::path script = shipped_file(drawn_by.script);
-  if (script.empty())
-    throw std::runtime_error(
-        fmt::format("{} needs {}, which is not beside this program",
-                    drawn_by.option, drawn_by.script));
+  const fs::path script = script_of(drawn_by);
   const fs::path json = directory / "result.json";
   write_text_file(json, result);
-  ChildProcess process({script.string(), json.string()});
-  process.input().reset();
-  const auto end = process.wait(kLongestDrawing);
-  if (!end)
-    throw std::runtime_error(fmt::format("{}: still draws after {:.0f} s",
-                                         script.string(), kLongestDrawing));
-  if (end->status == 0 && end->signal == 0) return;
-  throw std::runtime_error(fmt::format(
-      "{}: {} (it needs Python 3 with matplotlib, python3-matplotlib in "
-      "Debian){}",
-      script.string(), end_words(*end), last_words(errors_of(process))));
+  draw(script, {json.string()});
+}
+
+void require_picture_name(const fs::path& path) {
+  const std::string ending = path.extension().string();
+  if (ending != ".png" && ending != ".svg")
+    throw std::invalid_argument(fmt::format(
+        "--picture {}: unknown kind of picture \"{}\"; expected a name that "
+        "ends in .png or .svg",
+        path.string(), ending));
+}
+
+void draw_plan(const std::string& result, const fs::path& path) {
+  const fs::path script = script_of({"--picture", "scripts/plan_figure.py"});
+  AtomicFile picture(path);
+  // The result lies beside the picture only as long as it is drawn.
+  fs::path name = path;
+  AtomicFile json(name += ".json");
+  json.file().write(std::as_bytes(std::span(result)));
+  draw(script, {json.partial_path().string(), picture.partial_path().string(),
+                path.extension().string().substr(1)});
+  picture.publish();
 }
 
 }  // namespace beamgyro

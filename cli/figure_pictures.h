@@ -24,4 +24,11 @@ struct FigureScript {
 void draw_figures(const FigureScript& drawn_by, const std::string& result,
                   const std::filesystem::path& directory);
 
+/// Throws std::invalid_argument unless `path` ends in .png or .svg.
+void require_picture_name(const std::filesystem::path& path);
+
+/// Draws `result`, the text of `plan --json`, into the picture `path`.
+/// scripts/plan_figure.py does it. Throws as draw_figures().
+void draw_plan(const std::string& result, const std::filesystem::path& path);
+
 }  // namespace beamgyro

@@ -4,7 +4,7 @@ set(PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/beamgyro)
 
 install(TARGETS beamgyro RUNTIME)
 install(DIRECTORY scenarios specs DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro)
-install(PROGRAMS scripts/validation_figures.py scripts/sensitivity_figures.py DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro/scripts)
+install(PROGRAMS scripts/plan_figure.py scripts/validation_figures.py scripts/sensitivity_figures.py DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro/scripts)
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # Everything at once. The name of the program is taken within this build.
@@ -14,7 +14,7 @@ target_link_libraries(beamgyro_everything INTERFACE
   beamgyro_report beamgyro_sensitivity beamgyro_validation beamgyro_compensation beamgyro_campaign beamgyro_set)
 install(TARGETS beamgyro_everything EXPORT beamgyroTargets)
 
-foreach(room parallel random config dataset sim compensation validation sensitivity report)
+foreach(room parallel random config dataset sim compensation planning validation sensitivity report)
   install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/beamgyro FILES_MATCHING PATTERN *.h)
 endforeach()
 install(DIRECTORY include/beamgyro DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})  # C headers, under their own names

@@ -43,11 +43,15 @@ MAY_INCLUDE = {
     **in_order(COMPENSATION, [*BASE, *DATASET]),
     **in_order(VALIDATION, ALL),
     **in_order(SENSITIVITY, ALL),
-    "report": {*ALL, *VALIDATION, *SENSITIVITY},
-    "cli": {*ALL, *VALIDATION, *SENSITIVITY, "report"},
-    "bench": {*ALL, *VALIDATION, *SENSITIVITY, "report"},
+    # Designs need no physics but heat flow.
+    "planning": {*BASE, *DATASET, *COMPENSATION, "sim/numerics",
+                 "sim/thermal"},
+    "report": {*ALL, *VALIDATION, *SENSITIVITY, "planning"},
+    "cli": {*ALL, *VALIDATION, *SENSITIVITY, "planning", "report"},
+    "bench": {*ALL, *VALIDATION, *SENSITIVITY, "planning", "report"},
     "fuzz": set(ALL),  # of tests/ only
-    "agreement": {*ALL, *VALIDATION, *SENSITIVITY},  # of tests/ only
+    # of tests/ only
+    "agreement": {*ALL, *VALIDATION, *SENSITIVITY, "planning"},
 }
 # Beside each other, not above each other.
 MAY_INCLUDE["sensitivity/indices"] = {"random"}

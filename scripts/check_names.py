@@ -18,11 +18,12 @@ import sys
 LIBRARIES = ["dataset/set/", "dataset/", "sim/numerics/", "sim/thermal/",
              "sim/signal/", "sim/memory/", "sim/device/", "sim/dynamics/",
              "sim/scenario/", "sim/campaign/", "compensation/", "config/",
-             "random/", "parallel/", "validation/", "sensitivity/", "report/",
-             "cli/"]
+             "random/", "parallel/", "validation/", "planning/",
+             "sensitivity/", "report/", "cli/"]
 
 # A library sees no header of these.
-UNSEEN = {"config/": ["dataset/", "sim/", "compensation/", "validation/", "report/", "cli/"],
+UNSEEN = {"planning/": ["validation/", "report/", "cli/"],
+          "config/": ["dataset/", "sim/", "compensation/", "validation/", "report/", "cli/"],
           "random/": ["dataset/", "sim/", "compensation/", "validation/", "report/", "cli/"],
           "dataset/": ["dataset/set/", "sim/", "compensation/", "report/",
                        "cli/"],

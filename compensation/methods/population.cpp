@@ -94,9 +94,28 @@ VectorXd spreads(const MatrixXd& deviations, Index grid) {
   return spread;
 }
 
+// Coefficients are stored to four decimals: they serve statistics over devices.
+constexpr double kCoefficientSteps = 1e4;
+
+// Coefficients of kMostCoefficients columns of X, evenly chosen, given the
+// eigenvectors and variances of the scaled outer product.
+MatrixXd coefficients_of(const MatrixXd& scaled, const MatrixXd& vectors,
+                         const VectorXd& variances) {
+  const Index devices = scaled.cols();
+  const Index kept = std::min(devices, kMostCoefficients);
+  MatrixXd c(kept, vectors.cols());
+  for (Index k = 0; k < kept; ++k)
+    c.row(k) = (vectors.transpose() * scaled.col(k * devices / kept))
+                   .cwiseQuotient(variances.cwiseSqrt())
+                   .transpose();
+  c *= std::sqrt(static_cast<double>(devices - 1));
+  return (c.array() * kCoefficientSteps).round() / kCoefficientSteps;
+}
+
 // Columns whose outer products add up to X X^T: scaled first, because a
 // channel in large units would push the bias below rounding.
-MatrixXd modes_of(const MatrixXd& X, Index grid) {
+void set_modes(Population& p, const MatrixXd& X) {
+  const Index grid = p.grid();
   const VectorXd unit = spreads(X, grid);
   const MatrixXd scaled = unit.cwiseInverse().asDiagonal() * X;
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scaled *
@@ -106,8 +125,10 @@ MatrixXd modes_of(const MatrixXd& X, Index grid) {
   Index kept = 0;
   while (kept < variance.size() && variance(variance.size() - 1 - kept) > least)
     ++kept;
-  return unit.asDiagonal() * eigen.eigenvectors().rightCols(kept) *
-         variance.tail(kept).cwiseSqrt().asDiagonal();
+  const MatrixXd vectors = eigen.eigenvectors().rightCols(kept);
+  p.modes = unit.asDiagonal() * vectors *
+            variance.tail(kept).cwiseSqrt().asDiagonal();
+  p.coefficients = coefficients_of(scaled, vectors, variance.tail(kept));
 }
 
 // Values at temperatures of the spline through values on the grid.
@@ -183,7 +204,6 @@ Equations all_equations(const Population& p, const std::vector<Input>& inputs,
   Equations all{MatrixXd(modes + curves * count, modes),
                 VectorXd::Zero(modes + curves * count)};
   all.H.topRows(modes).setIdentity();
-  const VectorXd unit = spreads(p.modes, p.grid());
   for (Index i = 0; i < curves && count > 0; ++i) {
     const Index curve =
         i == 0 ? 0 : curve_number(p, inputs[static_cast<std::size_t>(i)]);
@@ -191,7 +211,7 @@ Equations all_equations(const Population& p, const std::vector<Input>& inputs,
         i == 0 ? points.bias : ArrayXd(points.inputs.col(i));
     const Equations own = equations(
         p, curve, points.temperature, measured,
-        i == 0 ? noise.bias : noise.channel_share * unit(curve * p.grid()));
+        i == 0 ? noise.bias : noise.channel_share * curve_spread(p, curve));
     all.H.middleRows(modes + i * count, count) = own.H;
     all.y.segment(modes + i * count, count) = own.y;
   }
@@ -221,8 +241,13 @@ Population fit_population(const std::vector<Input>& inputs,
   population.mean = curves.rowwise().mean();
   const MatrixXd deviations = (curves.colwise() - population.mean) /
                               std::sqrt(static_cast<double>(count - 1));
-  population.modes = modes_of(deviations, population.grid());
+  set_modes(population, deviations);
   return population;
+}
+
+double curve_spread(const Population& population, Index curve) {
+  const Index grid = population.grid();
+  return spreads(population.modes.middleRows(curve * grid, grid), grid)(0);
 }
 
 AdaptedBias adapted_bias(const Population& population,

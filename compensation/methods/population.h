@@ -37,10 +37,21 @@ struct Population {
   Eigen::MatrixXd modes;  // as many rows, one column per mode
   int devices = 0;        // it was learned from
   std::optional<AdaptationSigma> sigma = {};
+  // c of its devices, one per row, or of kMostCoefficients of them. Files of
+  // older programs have none. The Gaussian process takes no notice of them:
+  // they say how far real devices are from it.
+  Eigen::MatrixXd coefficients = {};
 
   Eigen::Index grid() const { return temperatures.size(); }
   TemperatureRange range() const;
 };
+
+constexpr Eigen::Index kMostCoefficients = 1000;
+
+/// Returns the root mean square over the grid and over devices of a curve's
+/// deviation from its mean, in the unit of the curve; 1 if there is none. Curve
+/// 0 is the bias, the others are the channels in their order.
+double curve_spread(const Population& population, Eigen::Index curve);
 
 /// Learns a population from the rows of two devices or more, whose inputs are
 /// the temperature and the channels. The curves of each device are splines

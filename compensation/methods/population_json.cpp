@@ -40,17 +40,37 @@ AdaptationSigma read_adaptation(const JsonNode& node) {
           static_cast<int>(node.at("devices").integer(1, 2147483647))};
 }
 
+// c of the devices; files of older programs have none.
+Eigen::MatrixXd read_coefficients(const JsonNode& node, Index modes) {
+  if (!node.has("coefficients")) return {};
+  const std::vector<JsonNode> devices = node.at("coefficients").elements();
+  Eigen::MatrixXd coefficients(static_cast<Index>(devices.size()), modes);
+  for (Index k = 0; k < coefficients.rows(); ++k) {
+    const JsonNode& device = devices[static_cast<std::size_t>(k)];
+    const std::vector<double> c = device.numbers();
+    if (static_cast<Index>(c.size()) != modes)
+      device.fail(fmt::format("{} numbers, must be {}, one for each mode",
+                              c.size(), modes));
+    coefficients.row(k) = array_view(c).transpose();
+  }
+  return coefficients;
+}
+
 }  // namespace
 
 Json population_json(const Population& population) {
   Json modes = Json::array();
   for (const auto& mode : population.modes.colwise())
     modes.push_back(numbers_json(mode));
+  Json coefficients = Json::array();
+  for (const auto& device : population.coefficients.rowwise())
+    coefficients.push_back(numbers_json(device));
   Json json = {{"devices", population.devices},
                {"channels", input_names(population.channels)},
                {"temperatures_degC", numbers_json(population.temperatures)},
                {"mean", numbers_json(population.mean)},
-               {"modes", std::move(modes)}};
+               {"modes", std::move(modes)},
+               {"coefficients", std::move(coefficients)}};
   if (population.sigma) json["sigma"] = adaptation_json(*population.sigma);
   return json;
 }
@@ -80,6 +100,7 @@ Population read_population(const JsonNode& node) {
   population.modes.resize(size, static_cast<Index>(modes.size()));
   for (std::size_t m = 0; m < modes.size(); ++m)
     population.modes.col(static_cast<Index>(m)) = read_vector(modes[m], size);
+  population.coefficients = read_coefficients(node, population.modes.cols());
   if (node.has("sigma")) population.sigma = read_adaptation(node.at("sigma"));
   return population;
 }

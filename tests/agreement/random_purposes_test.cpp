@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "planning/random_purposes.h"
 #include "sensitivity/indices/random_purposes.h"
 #include "sim/campaign/random_purposes.h"
 #include "sim/scenario/random_purposes.h"
@@ -39,7 +40,8 @@ TEST(RandomPurposes, AreAllDifferentAndWhatTheyWere) {
                                kDriveVoltageNoiseStream,
                                kIndexResampleStream,
                                kRankResampleStream,
-                               kRankSampleStream};
+                               kRankSampleStream,
+                               kResidualForecastStream};
   std::uint32_t number = 0;
   for (const RandomPurpose purpose : all)
     EXPECT_EQ(static_cast<std::uint32_t>(purpose), number++);

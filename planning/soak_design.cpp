@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "planning/soak_design.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "planning/chamber_time.h"
+
+namespace beamgyro {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+// [-], of the mean variance: smaller gains are rounding.
+constexpr double kLeastGain = 1e-9;
+constexpr double kWaySlack = 1e-9;  // [K], rounding of a way
+
+}  // namespace
+
+SoakDesign::SoakDesign(const SoakModel& model, DesignLimits limits)
+    : model_(model),
+      limits_(std::move(limits)),
+      equations_(model.equations(limits_.candidates)) {}
+
+MatrixXd SoakDesign::covariance(const std::vector<double>& soaks) const {
+  const MatrixXd H = model_.equations(soaks);
+  MatrixXd A = H.transpose() * H;
+  A.diagonal().array() += 1.0;
+  return A.llt().solve(MatrixXd::Identity(A.rows(), A.cols()));
+}
+
+double SoakDesign::mean_variance(const std::vector<double>& soaks) const {
+  return model_.weight().cwiseProduct(covariance(soaks)).sum();
+}
+
+bool SoakDesign::is_allowed(const std::vector<double>& soaks) const {
+  for (std::size_t i = 0; i < soaks.size(); ++i)
+    for (std::size_t j = i + 1; j < soaks.size(); ++j)
+      if (std::abs(soaks[i] - soaks[j]) < kLeastDistance) return false;
+  return shortest_way(soaks, limits_.start) <= limits_.longest_way + kWaySlack;
+}
+
+// By how much each candidate lowers the mean variance.
+std::vector<double> SoakDesign::reductions(const MatrixXd& P) const {
+  const Index rows = model_.rows_per_soak();
+  const MatrixXd U = P * equations_.transpose();  // a column per row of H
+  const MatrixXd WU = model_.weight() * U;
+  std::vector<double> found;
+  for (Index k = 0; k < U.cols(); k += rows) {
+    MatrixXd S = equations_.middleRows(k, rows) * U.middleCols(k, rows);
+    S.diagonal().array() += 1.0;
+    const MatrixXd V =
+        U.middleCols(k, rows).transpose() * WU.middleCols(k, rows);
+    found.push_back(S.llt().solve(V).trace());
+  }
+  return found;
+}
+
+SoakDesign::Choice SoakDesign::best_addition(
+    const std::vector<double>& soaks) const {
+  const MatrixXd P = covariance(soaks);
+  const std::vector<double> gains = reductions(P);
+  Choice best{gains.size(), HUGE_VAL};
+  double gain = -HUGE_VAL;
+  std::vector<double> tried = soaks;
+  tried.push_back(0.0);
+  for (std::size_t k = 0; k < gains.size(); ++k) {
+    tried.back() = limits_.candidates[k];
+    if (gains[k] > gain && is_allowed(tried)) {
+      gain = gains[k];
+      best.candidate = k;
+    }
+  }
+  if (best.candidate < gains.size())
+    best.mean_variance = model_.weight().cwiseProduct(P).sum() - gain;
+  return best;
+}
+
+std::vector<double> SoakDesign::extended(std::vector<double> soaks,
+                                         std::size_t count) const {
+  while (soaks.size() < count) {
+    const Choice best = best_addition(soaks);
+    if (best.candidate == limits_.candidates.size()) break;
+    soaks.push_back(limits_.candidates[best.candidate]);
+  }
+  return soaks;
+}
+
+std::vector<double> SoakDesign::exchanged(std::vector<double> soaks) const {
+  double least = mean_variance(soaks);
+  for (bool improved = true; improved;) {
+    improved = false;
+    for (double& soak : soaks) {
+      std::vector<double> others;
+      for (const double& other : soaks)
+        if (&other != &soak) others.push_back(other);
+      const Choice best = best_addition(others);
+      if (best.mean_variance < least * (1.0 - kLeastGain)) {
+        soak = limits_.candidates[best.candidate];
+        least = best.mean_variance;
+        improved = true;
+      }
+    }
+  }
+  return soaks;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "compensation/inputs/features.h"
+#include "compensation/methods/population.h"
+#include "compensation/models/cubic_spline.h"
+
+namespace beamgyro {
+
+/// Maps temperatures of the chamber [degC] to those that the sensor settles to.
+using SensorOfChamber = std::function<Eigen::ArrayXd(const Eigen::ArrayXd&)>;
+
+struct SoakModelOptions {
+  TemperatureRange range;  // [degC], of the chamber: where the residual counts
+  PointNoise noise = {};
+  bool bias_only = false;  // soaks observe no channel of the population
+};
+
+/// Largest distance [K] by which a temperature of the sensor may lie outside
+/// those of the population. It takes the value at the end then.
+constexpr double kReach = 0.5;
+
+/// What soaks tell about a device of a population, in the coefficients c of its
+/// modes: a soak at chamber temperature T observes y = H(T) c + noise of unit
+/// variance, one row for the bias and one for each channel. The posterior of c
+/// is that of adapted_bias(): covariance A^-1, A = I + sum of H^T H.
+class SoakModel {
+ public:
+  /// Throws std::invalid_argument when the range, seen by the sensor, exceeds
+  /// the temperatures of the population by more than kReach.
+  SoakModel(Population population, SensorOfChamber sensor,
+            const SoakModelOptions& options);
+
+  const Population& population() const { return population_; }
+  TemperatureRange range() const { return options_.range; }
+  const PointNoise& noise() const { return options_.noise; }
+  Eigen::Index modes() const { return population_.modes.cols(); }
+
+  /// Rows that a soak adds to H.
+  Eigen::Index rows_per_soak() const;
+
+  /// Returns H: the rows of each soak together, in the order given. Throws as
+  /// the constructor for a temperature that the population does not reach.
+  Eigen::MatrixXd equations(const std::vector<double>& chamber) const;
+
+  /// Returns whether the population knows the device at this temperature.
+  bool reaches(double chamber) const;
+
+  /// W: the mean square over the range of the bias Phi_b e that an error e of c
+  /// makes is e^T W e [(deg/s)^2].
+  const Eigen::MatrixXd& weight() const { return weight_; }
+
+  /// Returns the slope of the bias over temperature [deg/s/K]: root mean square
+  /// over devices and over the range.
+  double rms_slope() const;
+
+ private:
+  Eigen::ArrayXd known_sensor(const Eigen::ArrayXd& chamber) const;
+  Eigen::ArrayXd range_grid() const;
+  Eigen::MatrixXd values(Eigen::Index curve,
+                         const Eigen::ArrayXd& sensor) const;
+
+  Population population_;
+  SensorOfChamber sensor_;
+  SoakModelOptions options_;
+  std::vector<CubicSpline>
+      modes_;  // of each curve, of the sensor's temperature
+  Eigen::MatrixXd weight_;
+};
+
+}  // namespace beamgyro

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "report/plan_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <iterator>
+
+namespace beamgyro {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string hours_and_minutes(double seconds) {
+  const auto minutes = std::lround(seconds / 60.0);
+  return fmt::format("{}:{:02}", minutes / 60, minutes % 60);
+}
+
+std::string temperatures_text(const SoakPlan& plan) {
+  return fmt::format("{:g}", fmt::join(plan.temperatures, ", "));
+}
+
+std::string forecast_columns(const SoakPlan& plan) {
+  return fmt::format("{:>7.2f}{:>9.3f}{:>9.3f}{:>9.3f}", plan.hours,
+                     plan.expected.median, plan.expected.p90,
+                     plan.expected.p95);
+}
+
+std::string schedule_lines(const PlanResult& result) {
+  const SoakPlan& plan = result.chosen;
+  std::string text = fmt::format(
+      "{} soak{} in {:.2f} h for {:g} to {:g} degC, of {}; population of {} "
+      "devices\n",
+      plan.temperatures.size(), plan.temperatures.size() == 1 ? "" : "s",
+      plan.hours, result.range.lowest, result.range.highest,
+      fmt::join(result.observed, " and "), result.devices);
+  for (const Visit& visit : visits(plan.temperatures, result.time))
+    fmt::format_to(std::back_inserter(text), "  {:>5} to {:>5}  {:g} degC\n",
+                   hours_and_minutes(visit.begin), hours_and_minutes(visit.end),
+                   visit.temperature);
+  fmt::format_to(std::back_inserter(text),
+                 "from {:g} degC at 0:00, ramps of {:g} K/min, soaks of {:g} "
+                 "min\n\n",
+                 result.time.start, result.time.ramp, result.time.hold / 60.0);
+  return text;
+}
+
+std::string comparison(const PlanResult& result) {
+  std::string text =
+      fmt::format("{:<10}{:>7}{:>9}{:>9}{:>9}  rms left, deg/s\n", "schedule",
+                  "hours", "median", "p90", "p95");
+  const auto line = [&](const char* name, const SoakPlan& plan) {
+    fmt::format_to(std::back_inserter(text), "{:<10}{}  {}\n", name,
+                   forecast_columns(plan), temperatures_text(plan));
+  };
+  line("planned", result.chosen);
+  line("even", result.even);
+  for (const SoakPlan& plan : result.candidates) line("candidate", plan);
+  return text;
+}
+
+std::string trade_off_table(const std::vector<TradeOff>& table) {
+  std::string text = fmt::format(
+      "\n{:<6}{:>10}{:>9}{:>9}{:>9}{:>10}{:>9}{:>9}{:>9}\n", "soaks",
+      "planned: h", "median", "p90", "p95", "even: h", "median", "p90", "p95");
+  for (const TradeOff& row : table)
+    fmt::format_to(std::back_inserter(text), "{:<6}   {}   {}\n",
+                   row.planned.temperatures.size(),
+                   forecast_columns(row.planned), forecast_columns(row.even));
+  return text;
+}
+
+Json forecast_json(const ResidualForecast& expected) {
+  return {{"median", expected.median},
+          {"p90", expected.p90},
+          {"p95", expected.p95}};
+}
+
+Json soaks_json(const SoakPlan& plan) {
+  return {{"temperatures_degC", plan.temperatures},
+          {"hours", plan.hours},
+          {"expected_rms_deg_per_s", forecast_json(plan.expected)}};
+}
+
+Json schedule_json(const PlanResult& result) {
+  Json stops = Json::array();
+  for (const Visit& visit : visits(result.chosen.temperatures, result.time))
+    stops.push_back({{"temperature_degC", visit.temperature},
+                     {"begin_s", visit.begin},
+                     {"end_s", visit.end}});
+  return {{"temperatures_degC", result.chosen.temperatures},
+          {"hold_s", result.time.hold},
+          {"ramp_K_per_min", result.time.ramp},
+          {"hours", result.chosen.hours},
+          {"start_degC", result.time.start},
+          {"visits", std::move(stops)}};
+}
+
+}  // namespace
+
+std::string plan_text(const PlanResult& result) {
+  return schedule_lines(result) + comparison(result) +
+         trade_off_table(result.trade_offs);
+}
+
+Json plan_json(const PlanResult& result) {
+  Json table = Json::array(), candidates = Json::array();
+  for (const TradeOff& row : result.trade_offs)
+    table.push_back({{"soaks", row.planned.temperatures.size()},
+                     {"planned", soaks_json(row.planned)},
+                     {"even", soaks_json(row.even)}});
+  for (const SoakPlan& plan : result.candidates)
+    candidates.push_back(soaks_json(plan));
+  return {{"schedule", schedule_json(result)},
+          {"expected_rms_deg_per_s", forecast_json(result.chosen.expected)},
+          {"even", soaks_json(result.even)},
+          {"candidates", std::move(candidates)},
+          {"trade_off", std::move(table)},
+          {"range_degC", {result.range.lowest, result.range.highest}},
+          {"observed", result.observed},
+          {"devices", result.devices},
+          {"forecast",
+           result.basis == ForecastBasis::kDevices ? "devices" : "gaussian"},
+          {"warnings", result.warnings}};
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "compensation/inputs/features.h"
+#include "planning/chamber_time.h"
+#include "planning/planner.h"
+#include "planning/residual_forecast.h"
+
+namespace beamgyro {
+
+/// What `plan` has found.
+struct PlanResult {
+  SoakPlan chosen, even;  // of the same number of soaks
+  std::vector<TradeOff> trade_offs;
+  std::vector<SoakPlan> candidates;  // of the user
+  ChamberTime time;
+  TemperatureRange range;             // [degC], of the chamber
+  std::vector<std::string> observed;  // "bias" and channels
+  int devices = 0;                    // of the population
+  ForecastBasis basis = ForecastBasis::kGaussian;
+  std::vector<std::string> warnings;
+};
+
+/// Returns the schedule, what it is expected to leave, and the tables.
+std::string plan_text(const PlanResult& result);
+
+/// Returns what `plan --json` writes (docs/planning.md).
+nlohmann::ordered_json plan_json(const PlanResult& result);
+
+}  // namespace beamgyro

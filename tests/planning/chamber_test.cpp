@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "planning/chamber_time.h"
+#include "planning/chamber_view.h"
+#include "planning/schedule_file.h"
+#include "planning/soak_length.h"
+#include "sim/thermal/thermal_parameters.h"
+
+namespace beamgyro::chamber_test {
+namespace {
+
+TEST(ChamberTime, WayStartsAtTheNearerEnd) {
+  EXPECT_EQ(in_visiting_order({-40, 50, 5}, 25),
+            (std::vector<double>{50, 5, -40}));
+  EXPECT_EQ(in_visiting_order({-35, -9, -23}, 25),
+            (std::vector<double>{-9, -23, -35}));
+  EXPECT_EQ(in_visiting_order({30, 40}, 25), (std::vector<double>{30, 40}));
+  EXPECT_EQ(shortest_way({-40, 50, 5}, 25), 25 + 90);
+  EXPECT_EQ(shortest_way({-35, -9}, 25), 60);
+  EXPECT_EQ(shortest_way({}, 25), 0);
+}
+
+TEST(ChamberTime, HoursAreThoseOfTheVisits) {
+  const ChamberTime time{25, 2, 1800};
+  const std::vector<double> soaks = {-40, 50, 5};
+  // 115 K at 2 K/min and three half hours.
+  EXPECT_DOUBLE_EQ(chamber_hours(soaks, time), 115.0 / 2 / 60 + 1.5);
+  const std::vector<Visit> stops = visits(soaks, time);
+  ASSERT_EQ(stops.size(), 3U);
+  EXPECT_DOUBLE_EQ(stops[0].begin, 750);
+  EXPECT_DOUBLE_EQ(stops[1].begin, 750 + 1800 + 45 * 30);
+  EXPECT_DOUBLE_EQ(stops[2].end, 3600 * chamber_hours(soaks, time));
+}
+
+TEST(ChamberView, InverseReturnsTheChamber) {
+  const ChamberView view({});
+  const double sensor = view.sensor_temperature(-40);
+  EXPECT_GT(sensor, -40);  // the electronics heat it
+  EXPECT_NEAR(view.chamber_temperature(sensor), -40, 1e-6);
+}
+
+TEST(SoakLength, FollowsTheSlowestMassAndTheDemand) {
+  const ThermalParameters nominal;
+  ThermalParameters slow;
+  slow.beam_heat_capacity *= 2;
+  const ChamberTime time{25, 2, 0};
+  const double usual = soak_length(nominal, {-40}, time, {});
+  EXPECT_GT(soak_length(slow, {-40}, time, {}), usual);
+  EXPECT_GT(soak_length(nominal, {-40}, time, {.largest_lag = 0.01}), usual);
+  // Each further row takes a minute where the lag does not matter.
+  const double five =
+      soak_length(nominal, {-40}, time, {.rows = 5, .largest_lag = 10});
+  EXPECT_EQ(soak_length(nominal, {-40}, time, {.rows = 30, .largest_lag = 10}),
+            five + 25 * 60);
+  EXPECT_EQ(soak_length(nominal, {-40, 25}, time, {}), usual);
+  EXPECT_THROW((void)soak_length(nominal, {-40}, time, {.rows = 1000}),
+               std::invalid_argument);
+}
+
+TEST(SoakLength, LagDecaysToTheSettledBeam) {
+  const auto rows = rows_over_time({}, 25, -40, 2, 0.05);
+  ASSERT_EQ(rows.size(), static_cast<std::size_t>(kLongestSoak));
+  EXPECT_EQ(rows.front().rows, 0);        // the sensor still follows the ramp
+  EXPECT_GT(rows.back().rows, 300);       // steady for most of six hours
+  EXPECT_LT(rows.back().mean_lag, 0.02);  // the first rows weigh little
+}
+
+TEST(ScheduleText, NamesTheDeviceInTomlAndEndsWithTheLastSoak) {
+  const std::string text =
+      schedule_text({-9, -23}, {25, 2, 1800}, "a \"b\"\\c.toml");
+  EXPECT_NE(text.find("device = \"a \\\"b\\\"\\\\c.toml\"\n"), text.npos);
+  EXPECT_NE(text.find("duration_s = 5040\n"), text.npos);  // 48 K and an hour
+  EXPECT_NE(text.find("#    0:17 to  0:47  hold -9 degC\n"), text.npos);
+}
+
+}  // namespace
+}  // namespace beamgyro::chamber_test

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "planning/soak_design.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <vector>
+
+#include "compensation/inputs/input.h"
+#include "planning/planner.h"
+#include "tests/planning/small_population.h"
+
+namespace beamgyro::soak_design_test {
+namespace {
+
+const Population& population() {
+  static const Population learned = small_population(60);
+  return learned;
+}
+
+std::vector<double> every_kelvin() {
+  std::vector<double> kelvins;
+  for (int k = 0; k <= 40; ++k) kelvins.push_back(k);
+  return kelvins;
+}
+
+TrainingRows rows_at(const std::vector<double>& soaks) {
+  TrainingRows rows;
+  const auto size = static_cast<Eigen::Index>(soaks.size());
+  rows.inputs.setZero(size, 2);
+  rows.bias.setZero(size);
+  for (Eigen::Index k = 0; k < size; ++k)
+    rows.inputs(k, 0) = soaks[static_cast<std::size_t>(k)];
+  rows.temperature = rows.inputs.col(0);
+  return rows;
+}
+
+TEST(SoakDesign, MeanVarianceIsThatOfTheAdaptedBias) {
+  // The population's grid is the range's: the same numbers by another way,
+  // equal but for rounding.
+  const std::vector<double> soaks = {3.0, 17.0, 31.0};
+  for (const bool bias_only : {false, true}) {
+    const SoakModel model = model_of(population(), bias_only);
+    const SoakDesign design(model, {every_kelvin()});
+    std::vector<Input> inputs = {parse_input("temperature")};
+    if (!bias_only) inputs.push_back(parse_input("quadrature"));
+    const AdaptedBias adapted =
+        adapted_bias(population(), inputs, rows_at(soaks), model.noise());
+    const double expected = adapted.deviation.square().mean();
+    EXPECT_NEAR(design.mean_variance(soaks) / expected, 1.0, 1e-6);
+  }
+}
+
+TEST(Planner, FindsTheBestOfAllPairs) {
+  const SoakModel model = model_of(population());
+  const SoakDesign design(model, {every_kelvin()});
+  double least = HUGE_VAL;
+  for (const double a : every_kelvin())
+    for (const double b : every_kelvin())
+      if (design.is_allowed({a, b}))
+        least = std::min(least, design.mean_variance({a, b}));
+  const Planner planner(model, population().range(), {});
+  const auto soaks = planner.with_soaks(2).temperatures;
+  // The low-rank gain and a new inverse differ by rounding.
+  EXPECT_NEAR(design.mean_variance(soaks) / least, 1.0, 1e-6);
+}
+
+TEST(SoakDesign, KeepsSoaksApartAndWithinTheWay) {
+  const SoakModel model = model_of(population());
+  const SoakDesign design(model, {every_kelvin(), 25.0, 12.0});
+  const auto soaks = design.exchanged(design.extended({}, 4));
+  ASSERT_EQ(soaks.size(), 4U);
+  EXPECT_TRUE(design.is_allowed(soaks));
+  EXPECT_FALSE(design.is_allowed({20.0, 22.0}));
+  // From 25 to 30 and to 20 are 15 K.
+  EXPECT_FALSE(design.is_allowed({20.0, 30.0}));
+  EXPECT_TRUE(design.is_allowed({20.0, 27.0}));
+}
+
+TEST(Planner, IsNeverWorseThanEvenSpacingAndMoreSoaksLeaveLess) {
+  const SoakModel model = model_of(population());
+  const SoakDesign design(model, {every_kelvin()});
+  const Planner planner(model, population().range(), {});
+  double before = HUGE_VAL;
+  for (std::size_t count = 1; count <= 8; ++count) {
+    const SoakPlan plan = planner.with_soaks(count);
+    ASSERT_EQ(plan.temperatures.size(), count);
+    const double left = design.mean_variance(plan.temperatures);
+    EXPECT_LE(left, design.mean_variance(even_spacing(model.range(), count)) *
+                        (1.0 + 1e-9));  // rounding
+    EXPECT_LT(left, before);
+    before = left;
+  }
+}
+
+TEST(Planner, KeepsToTheHoursAndReachesTheResidual) {
+  const SoakModel model = model_of(population());
+  const Planner planner(model, population().range(), {25.0, 1.0, 1800.0});
+  const SoakPlan quick = planner.within_hours(1.5);
+  EXPECT_LE(quick.hours, 1.5);
+  EXPECT_GE(quick.temperatures.size(), 2U);
+  const SoakPlan free = planner.with_soaks(3);
+  const SoakPlan good = planner.within_residual(free.expected.median * 1.05);
+  EXPECT_LE(good.expected.median, free.expected.median * 1.05);
+  EXPECT_LE(good.hours, free.hours);
+  EXPECT_THROW((void)planner.within_hours(0.9), std::invalid_argument);
+  EXPECT_THROW((void)planner.within_residual(1e-9), std::invalid_argument);
+}
+
+TEST(SoakModel, RefusesARangeThatThePopulationDoesNotKnow) {
+  EXPECT_THROW(
+      SoakModel(population(), same_temperature, {.range = {-5.0, 40.0}}),
+      std::invalid_argument);
+  EXPECT_THROW((void)model_of(population()).equations({41.0}),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace beamgyro::soak_design_test
