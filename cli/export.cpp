@@ -14,11 +14,13 @@
 #include "cli/terminal.h"
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/export/export_c.h"
+#include "compensation/export/export_ekf.h"
 #include "compensation/export/export_parameters.h"
 #include "compensation/firmware/c_text.h"
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/made_directories.h"
+#include "dataset/files/sha256.h"
 
 namespace beamgyro {
 namespace {
@@ -30,6 +32,10 @@ struct ExportArguments {
   std::string format, output, name;
   std::optional<long> instance, device_id;
   bool fit_cubic = false, force = false;
+  std::optional<std::string> rest;
+  std::optional<double> ramp;         // [K/min]
+  std::optional<double> correlation;  // [K]
+  std::optional<double> temperature;  // [degC]
 };
 
 using NamedTexts = std::vector<std::pair<std::string, std::string>>;
@@ -121,6 +127,46 @@ NamedTexts c_texts(const ExportArguments& arguments, const NamedCompensator& of,
           {name + "_plugin.c", c.plugin}};
 }
 
+// Before a long recording is read.
+void require_sigma(const NamedCompensator& of) {
+  if (!of.compensator.sigma)
+    throw std::invalid_argument(fmt::format(
+        "{}: states no sigma, from which the bias noise of a filter is "
+        "computed; expected a compensator with the member sigma",
+        of.file.string()));
+}
+
+EkfSource ekf_source(const fs::path& file) {
+  return {file.filename().string(), sha256_of_file(file)};
+}
+
+NamedTexts ekf_files(const ExportArguments& arguments,
+                     const NamedCompensator& of, const std::string& name) {
+  if (!arguments.rest)
+    throw std::invalid_argument(
+        "--rest is missing; expected a recording at rest, from which the noise "
+        "is taken");
+  EkfExport given{.name = name,
+                  .axis = axes_of(arguments)[0],
+                  .compensator = ekf_source(of.file),
+                  .rest = {},
+                  .settings = {},
+                  .noise = {},
+                  .figures = {}};
+  EkfSettings& settings = given.settings;
+  settings.temperature = arguments.temperature;
+  if (arguments.ramp) settings.temperature_rate = *arguments.ramp / 60.0;
+  settings.correlation = arguments.correlation.value_or(settings.correlation);
+  require_sigma(of);
+  const Recording rest = load_recording(*arguments.rest);
+  given.noise = of_file(*arguments.rest,
+                        [&] { return rest_noise(of.compensator, rest); });
+  given.rest = ekf_source(*arguments.rest);
+  given.figures = ekf_figures(of.compensator, given.noise, settings);
+  for (const std::string& warning : ekf_warnings(given)) print_warning(warning);
+  return ekf_texts(given);
+}
+
 void require_options(const ExportArguments& arguments) {
   const auto refuse = [&](bool given, const char* option, const char* formats) {
     if (given)
@@ -128,13 +174,19 @@ void require_options(const ExportArguments& arguments) {
           fmt::format("{}: is for the formats {}, not for {}", option, formats,
                       arguments.format));
   };
-  if (arguments.format != "px4")
+  const std::string& format = arguments.format;
+  if (format != "px4")
     refuse(arguments.device_id.has_value(), "--device-id", "px4");
-  if (arguments.format != "c") {
-    refuse(arguments.force, "--force", "c");
-    return;
+  if (format != "c") refuse(arguments.force, "--force", "c");
+  if (format != "ekf") {
+    refuse(arguments.rest.has_value(), "--rest", "ekf");
+    refuse(arguments.ramp.has_value(), "--ramp-K-per-min", "ekf");
+    refuse(arguments.correlation.has_value(), "--correlation-K", "ekf");
+    refuse(arguments.temperature.has_value(), "--temperature-degC", "ekf");
   }
-  refuse(!arguments.axes.empty(), "--axis", "px4 and ardupilot");
+  if (format == "px4" || format == "ardupilot") return;
+  if (format == "c")
+    refuse(!arguments.axes.empty(), "--axis", "px4, ardupilot and ekf");
   refuse(arguments.instance.has_value(), "--instance", "px4 and ardupilot");
   refuse(arguments.fit_cubic, "--fit-cubic", "px4 and ardupilot");
   refuse(arguments.compensators.size() > 1, "several compensators",
@@ -180,10 +232,13 @@ int run_export(const ExportArguments& arguments) {
                                           : arguments.name);
   const NamedTexts texts = arguments.format == "c"
                                ? c_texts(arguments, compensators[0], name)
+                           : arguments.format == "ekf"
+                               ? ekf_files(arguments, compensators[0], name)
                                : parameter_texts(arguments, compensators, name);
-  require_outputs(
-      arguments.output, texts,
-      {arguments.compensators.begin(), arguments.compensators.end()});
+  std::vector<fs::path> inputs = {arguments.compensators.begin(),
+                                  arguments.compensators.end()};
+  if (arguments.rest) inputs.emplace_back(*arguments.rest);
+  require_outputs(arguments.output, texts, inputs);
   require_directory_name(arguments.output);
   write_texts(arguments.output, texts);
   if (arguments.format == "px4" && arguments.device_id.value_or(0) == 0)
@@ -199,17 +254,19 @@ void add_export(CommandLine& program) {
   auto arguments = std::make_shared<ExportArguments>();
   Command& command =
       program.add("export", kCompensation,
-                  "Writes a compensator as C source or autopilot parameters");
+                  "Writes a compensator as C source, autopilot parameters or "
+                  "noise of navigation filters");
   command.arguments({"COMPENSATOR.json...", "",
                      "One compensator; for px4 and ardupilot up to three, one "
                      "for each axis"},
                     arguments->compensators, 3);
   command.reads({{FileKind::kCompensator}});
   command.choice(
-      {"--format", "c|px4|ardupilot",
+      {"--format", "c|px4|ardupilot|ekf",
        "c writes NAME.h, NAME.c, NAME_selftest.c and NAME_plugin.c; px4 writes "
-       "NAME.params; ardupilot writes NAME.parm"},
-      arguments->format, {"c", "px4", "ardupilot"});
+       "NAME.params; ardupilot writes NAME.parm; ekf writes NAME_ekf.json and "
+       "a file for each filter"},
+      arguments->format, {"c", "px4", "ardupilot", "ekf"});
   command.text({"-o,--output", "DIR", "Directory to write to"},
                arguments->output);
   command.text({"--name", "NAME", "Name of the files and of the C functions",
@@ -224,7 +281,7 @@ void add_export(CommandLine& program) {
   command.group("PX4 and ArduPilot");
   command.choices({"--axis", "x|y|z",
                    "Axis of the autopilot's gyro for each compensator, as in "
-                   "x,y",
+                   "x,y; of the robot for ekf",
                    "z for one compensator and x,y,z for three"},
                   arguments->axes, {"x", "y", "z"});
   command.integer({"--instance", "N",
@@ -238,10 +295,27 @@ void add_export(CommandLine& program) {
                 "Exports the cubic fitted to the same rows if the compensator "
                 "is no cubic"},
                arguments->fit_cubic);
+  command.group("Navigation filters (ekf)");
+  command.text({"--rest", "RUN.h5",
+                "Recording at rest, from which the noise is taken", "none"},
+               arguments->rest);
+  command.reads({{FileKind::kRecording}, {FileKind::kRecordingTable}});
+  command.number({"--ramp-K-per-min", "R",
+                  "Temperature rate that the bias noise is for", "1"},
+                 arguments->ramp, {0, 1000});
+  command.number({"--correlation-K", "L",
+                  "Temperature over which the bias forgets itself", "10"},
+                 arguments->correlation, positive());
+  command.number({"--temperature-degC", "T", "Temperature at power-on",
+                  "any of the training, equally likely"},
+                 arguments->temperature, {-273.15, 1000});
   command.example("beamgyro export cubic.json --format c -o firmware",
                   "C source for the firmware of a gyro");
   command.example("beamgyro export x.json y.json z.json --format px4 -o params",
                   "Parameters for three axes");
+  command.example(
+      "beamgyro export z.json --format ekf --rest rest.h5 -o filters",
+      "Noise parameters of navigation filters");
   command.action([arguments] { return run_export(*arguments); });
 }
 
