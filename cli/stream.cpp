@@ -84,11 +84,16 @@ class SampleLines {
 };
 
 void print_answers(CompensatorStream& stream) {
-  const std::vector<double> answers = stream.answers();
+  const std::vector<StreamAnswer> answers = stream.answers();
   if (answers.empty()) return;
   std::string text;
-  for (const double rate : answers)
-    fmt::format_to(std::back_inserter(text), "{}\n", rate);
+  for (const auto& [rate, sigma] : answers) {
+    const auto out = std::back_inserter(text);
+    if (stream.states_sigma())
+      fmt::format_to(out, "{},{}\n", rate, sigma);
+    else
+      fmt::format_to(out, "{}\n", rate);
+  }
   print_result(text);
 }
 
@@ -113,6 +118,9 @@ void take_line(const std::string& line, SampleLines& lines,
 }  // namespace
 
 int answer_stream(CompensatorStream& stream, const std::string& compensator) {
+  // A line of names, where there is more than the rate.
+  if (stream.states_sigma())
+    print_result("compensated_rate,compensated_rate_sigma\n");
   SampleLines lines;
   std::string text;
   bool more = true;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "compensation/compensator/compensator_file.h"
+#include "compensation/uncertainty/bias_sigma.h"
 #include "validation/external/command_compensator.h"
 #include "validation/external/library_compensator.h"
 #include "validation/external/process_stream.h"
@@ -24,15 +25,19 @@ class FileStream : public CompensatorStream {
         inputs_(with_temperature(compensator_.inputs)),
         features_(inputs_, compensator_.temperature_range),
         measured_(inputs_.size()),
-        values_(inputs_.size()) {}
+        values_(inputs_.size()) {
+    if (compensator_.sigma) sigma_.emplace(*compensator_.sigma);
+  }
 
   void take(const Recording& sample) override;
   void finish() override {}
+  bool states_sigma() const override { return sigma_.has_value(); }
 
  private:
   Compensator compensator_;
   std::vector<Input> inputs_;  // with the temperature at the end
   FeatureStream features_;
+  std::optional<BiasSigmaStream> sigma_;
   std::vector<double> measured_, values_;
 };
 
@@ -42,7 +47,8 @@ void FileStream::take(const Recording& sample) {
       measured_[i] = column_values(sample, inputs_[i].column)[0];
   const double rate = column_values(sample, "rate")[0];
   if (!features_.step(sample.time[0], sample.status[0], measured_, values_)) {
-    answers_.push_back(NAN);
+    if (sigma_) sigma_->step(sample.time[0], sample.status[0], NAN);
+    answers_.push_back({NAN});
     return;
   }
   const auto count = static_cast<Eigen::Index>(inputs_.size()) - 1;
@@ -52,7 +58,12 @@ void FileStream::take(const Recording& sample) {
   const double scale = compensator_.scale_factor
                            ? compensator_.scale_factor->at(values_.back())
                            : 1.0;
-  answers_.push_back((rate - bias) / scale);
+  StreamAnswer answer{(rate - bias) / scale};
+  if (sigma_)
+    answer.sigma = sigma_->step(sample.time[0], sample.status[0],
+                                column_values(sample, "temperature")[0]) /
+                   scale;
+  answers_.push_back(answer);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +12,13 @@
 #include "validation/external/tested_compensator.h"
 
 namespace beamgyro {
+
+/// The answer to a sample.
+struct StreamAnswer {
+  double rate;  // [deg/s]; NaN where unpowered
+  // [deg/s], 1-sigma of its bias; NaN where unpowered or not stated
+  double sigma = std::numeric_limits<double>::quiet_NaN();
+};
 
 /// A compensator that answers samples as they come, for as long as they come.
 class CompensatorStream {
@@ -31,15 +39,18 @@ class CompensatorStream {
   /// Takes answers that have come, and sees whether the process still works.
   virtual void collect() {}
 
-  /// Returns the answers [deg/s] that are there, in the order of the samples,
-  /// and forgets them. NaN where unpowered.
-  std::vector<double> answers() { return std::exchange(answers_, {}); }
+  /// Returns whether its answers have a sigma.
+  virtual bool states_sigma() const { return false; }
+
+  /// Returns the answers that are there, in the order of the samples, and
+  /// forgets them.
+  std::vector<StreamAnswer> answers() { return std::exchange(answers_, {}); }
 
   /// What is wrong with the compensator; it takes no more samples then.
   const std::optional<SeenFault>& fault() const { return fault_; }
 
  protected:
-  std::vector<double> answers_;
+  std::vector<StreamAnswer> answers_;
   std::optional<SeenFault> fault_;
 };
 

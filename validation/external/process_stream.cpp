@@ -55,7 +55,7 @@ void ProcessStream::take(const Recording& sample) {
   if (fault_) return;
   if ((sample.status[0] & kUnpowered) != 0) {
     end_stretch();
-    answers_.push_back(NAN);
+    answers_.push_back({NAN});
     ++asked_;
     ++answered_;
     return;
@@ -142,7 +142,7 @@ void ProcessStream::take_answers(bool at_end) {
            fmt::format("answered \"{}\", which is no number, to {}",
                        written->text.substr(0, 40), place()));
     if (fault_) break;
-    answers_.push_back(*written->rate);
+    answers_.push_back({*written->rate});
     ++answered_;
   }
   received_.erase(0, received_.size() - bytes.size());
