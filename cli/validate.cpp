@@ -31,6 +31,8 @@
 #include "report/validation_report.h"
 #include "validation/external/file_compensator.h"
 #include "validation/metrics/metric.h"
+#include "validation/metrics/sigma_evidence.h"
+#include "validation/metrics/sigma_report.h"
 #include "validation/result/judgement.h"
 #include "validation/result/recorded_evidence.h"
 #include "validation/result/result_json.h"
@@ -82,14 +84,19 @@ int validate_on_set(const ValidateArguments& arguments,
   return deliver(device_table(scores), files, passed ? 0 : kNotPassed);
 }
 
-nlohmann::ordered_json metrics_on_runs(const ValidateArguments& arguments,
-                                       const Compensator& compensator) {
+// Writes the metrics of the runs, and what is found of a sigma, into `json`.
+void add_metrics_on_runs(const ValidateArguments& arguments,
+                         const Compensator& compensator,
+                         nlohmann::ordered_json& json) {
   const std::vector<std::filesystem::path> runs(arguments.runs.begin(),
                                                 arguments.runs.end());
   const auto own = tested(compensator);
   const DeviceEvidence found = recorded_evidence(
       runs, {*own, &compensator, arguments.full_scale}, thread_count(0));
-  return metrics_json(metric_results(found, {}, {}, thread_count(0)), {});
+  json["metrics"] =
+      metrics_json(metric_results(found, {}, {}, thread_count(0)), {});
+  if (states_sigma(found.after))
+    json["sigma"] = sigma_json(sigma_report(sigma_evidence(found.after)));
 }
 
 int validate_on_runs(const ValidateArguments& arguments) {
@@ -114,7 +121,7 @@ int validate_on_runs(const ValidateArguments& arguments) {
   std::string json;
   if (!arguments.json.empty()) {
     nlohmann::ordered_json all = to_json(validation);
-    all["metrics"] = metrics_on_runs(arguments, compensator);
+    add_metrics_on_runs(arguments, compensator, all);
     json = all.dump(2) + "\n";
   }
   progress.reset();

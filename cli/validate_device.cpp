@@ -87,6 +87,9 @@ nlohmann::ordered_json json_of(const CompletedValidation& validation) {
   nlohmann::ordered_json json = to_json(validation.result);
   json["figures"] =
       figures_of(validation.evidence.before, validation.evidence.after);
+  if (validation.result.sigma)
+    for (auto& figure : sigma_figures(*validation.result.sigma))
+      json["figures"].push_back(std::move(figure));
   if (!validation.result.population) return json;
   for (const PopulationMetric& metric : validation.result.population->metrics)
     json["figures"].push_back(population_figure(

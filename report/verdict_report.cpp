@@ -124,6 +124,30 @@ std::string yield_lines(const PopulationYield& population) {
       2);
 }
 
+// "91.2 % [85, 95] of 27 soaks", of the intervals of 90 %.
+std::string coverage_words(const SigmaFit& fit, const char* groups) {
+  constexpr std::size_t kNinety = 1;
+  const auto& seen = fit.coverage.at(kNinety);
+  if (!seen) return fmt::format("no {}", groups);
+  return fmt::format("{:.1f} % [{:.1f}, {:.1f}] of {} {}", 100 * seen->value,
+                     100 * seen->interval->low, 100 * seen->interval->high,
+                     fit.groups, groups);
+}
+
+std::string sigma_lines(const SigmaReport& sigma) {
+  std::string text =
+      fmt::format("sigma: its 90 % interval holds {} and {}",
+                  coverage_words(sigma.soaks, "soaks"),
+                  coverage_words(sigma.ramps, "stretches of ramps"));
+  if (sigma.nis)
+    text += fmt::format(
+        "; a bias filter that believes it has a mean normalised innovation "
+        "squared of {:.3g} [{:.3g}, {:.3g}] over {} updates",
+        sigma.nis->value, sigma.nis->interval->low, sigma.nis->interval->high,
+        sigma.updates);
+  return wrapped(text, 2);
+}
+
 // "nominal.toml, qualification.toml", the name of a set, or "3 recordings".
 std::string evidence_words(const ValidationResult& result) {
   const ResultProvenance& provenance = result.provenance;
@@ -166,6 +190,7 @@ std::string verdict_report(const ValidationResult& result) {
     text += limit_line(result, limit);
   text += '\n';
   for (const CheckResult& check : result.checks) text += check_line(check);
+  if (result.sigma) text += '\n' + sigma_lines(*result.sigma);
   if (result.population) text += '\n' + yield_lines(*result.population);
   return text;
 }

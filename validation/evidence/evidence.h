@@ -42,6 +42,8 @@ struct EvidenceRun {
   std::vector<double> rate;              // [deg/s], one per time; NaN: none
   // Samples outside what training saw, where that is known.
   std::optional<std::size_t> clamped = {};
+  // [deg/s], stated 1-sigma of the bias of each rate; empty: none.
+  std::vector<double> sigma = {};
 };
 
 /// What metrics are evaluated on. Metrics see truth; compensators never do.

@@ -53,5 +53,14 @@ std::optional<Estimate> g_sensitivity_z(const Evidence& evidence);
 std::optional<Estimate> vibration_rectification(const Evidence& evidence);
 std::optional<Estimate> cross_axis(const Evidence& evidence);
 std::optional<Estimate> extrapolated_share(const Evidence& evidence);
+std::optional<Estimate> soak_coverage_50(const Evidence& evidence);
+std::optional<Estimate> soak_coverage_90(const Evidence& evidence);
+std::optional<Estimate> soak_coverage_95(const Evidence& evidence);
+std::optional<Estimate> ramp_coverage_50(const Evidence& evidence);
+std::optional<Estimate> ramp_coverage_90(const Evidence& evidence);
+std::optional<Estimate> ramp_coverage_95(const Evidence& evidence);
+std::optional<Estimate> soak_pit_distance(const Evidence& evidence);
+std::optional<Estimate> ramp_pit_distance(const Evidence& evidence);
+std::optional<Estimate> bias_filter_nis(const Evidence& evidence);
 
 }  // namespace beamgyro::evaluation

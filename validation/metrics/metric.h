@@ -32,6 +32,8 @@ struct Metric {
   std::vector<RunPurpose> reads;  // the purposes of runs it is evaluated on
   /// Returns nothing when no run shows the metric. Thread-safe.
   std::optional<Estimate> (*evaluate)(const Evidence& evidence);
+  // Results have it only where the compensator states a sigma.
+  bool is_of_sigma = false;
 };
 
 /// Returns every metric, in the order of reports.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "validation/evidence/evidence.h"
+#include "validation/metrics/sigma_report.h"
 
 namespace beamgyro {
 
@@ -33,5 +34,8 @@ struct PopulationFigure {
 /// Returns the figure of a yield, "population_" and the name: the share of the
 /// devices whose metric is at most x, before and after, and the limit.
 nlohmann::ordered_json population_figure(const PopulationFigure& figure);
+
+/// Returns the figures of a sigma, "sigma_pit" and "sigma_coverage".
+nlohmann::ordered_json sigma_figures(const SigmaReport& report);
 
 }  // namespace beamgyro

@@ -59,15 +59,21 @@ Recording later_part(const Recording& whole, double from) {
   return part;
 }
 
+std::vector<double> last_of(std::vector<double> values, std::size_t count) {
+  values.erase(values.begin(),
+               values.end() - static_cast<std::ptrdiff_t>(count));
+  return values;
+}
+
 // The rate of a run, which was answered as a whole, as evidence of the part
 // `read` of it. How many samples were clamped is known of a whole run only.
 EvidenceRun evidence_run(const ReadRun& named, const Recording& read,
                          std::vector<double> rate,
                          std::optional<std::size_t> clamped) {
-  const std::size_t cut = rate.size() - read.time.size();
-  rate.erase(rate.begin(), rate.begin() + static_cast<std::ptrdiff_t>(cut));
-  if (cut > 0 && clamped != std::size_t{0}) clamped.reset();
-  return {named.name, named.purpose, &read, std::move(rate), clamped};
+  const bool is_part = rate.size() > read.time.size();
+  if (is_part && clamped != std::size_t{0}) clamped.reset();
+  return {named.name, named.purpose, &read,
+          last_of(std::move(rate), read.time.size()), clamped};
 }
 
 // Counts tasks that are done.
@@ -173,6 +179,9 @@ DeviceEvidence answered_evidence(std::vector<ReadRun> read,
                                    answering.tells_clamped
                                        ? std::optional(found.answers[k].clamped)
                                        : std::nullopt);
+    if (!found.answers[k].sigma.empty())
+      found.after.runs[k].sigma =
+          last_of(found.answers[k].sigma, part.time.size());
     if (on_done) on_done();
   });
   return found;

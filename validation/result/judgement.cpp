@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "parallel/work_queue.h"
+#include "validation/metrics/sigma_evidence.h"
+#include "validation/metrics/sigma_report.h"
 
 namespace beamgyro {
 namespace {
@@ -72,8 +74,10 @@ std::vector<MetricResult> metric_results(const DeviceEvidence& found,
                                          std::span<const std::string> names,
                                          std::size_t threads) {
   std::vector<MetricResult> results;
+  const bool has_sigma = states_sigma(found.after);
   for (const Metric& metric : metrics()) {
     if (!names.empty() && std::ranges::count(names, metric.name) == 0) continue;
+    if (names.empty() && metric.is_of_sigma && !has_sigma) continue;
     results.push_back({&metric, {}, {}, {}});
     for (const Baseline& baseline : found.baselines)
       results.back().baselines.push_back({baseline.name, {}});
@@ -149,6 +153,8 @@ CheckedCompensator checked_runs(const DeviceEvidence& found,
 void judge(const JudgedBy& by, const DeviceEvidence& found, std::size_t threads,
            ValidationResult& result) {
   result.metrics = metric_results(found, by.metric_runs, {}, threads);
+  if (states_sigma(found.after))
+    result.sigma = sigma_report(sigma_evidence(found.after));
   result.limits = decided_limits(by.specification, result.metrics);
   CheckedCompensator checked = checked_runs(found, by.compensator);
   checked.provenance = by.provenance;

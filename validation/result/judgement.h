@@ -15,7 +15,7 @@ namespace beamgyro {
 
 /// Evaluates metrics before, after and of every baseline, each on the
 /// `runs` that are named for it, or on all. `names` are those to evaluate;
-/// none: all of metrics().
+/// none: all of metrics(), without those of sigma where no rate has one.
 std::vector<MetricResult> metric_results(const DeviceEvidence& found,
                                          const MetricRuns& runs,
                                          std::span<const std::string> names,
@@ -47,7 +47,7 @@ struct JudgedBy {
 };
 
 /// Evaluates every metric, decides on the limits, runs the checks and writes
-/// them and the verdict into `result`.
+/// them, what is found of a sigma, and the verdict into `result`.
 void judge(const JudgedBy& by, const DeviceEvidence& found, std::size_t threads,
            ValidationResult& result);
 

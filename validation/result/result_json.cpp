@@ -143,7 +143,27 @@ Json provenance_json(const ResultProvenance& provenance) {
   return json;
 }
 
+Json fit_json(const SigmaFit& fit) {
+  Json json{{"groups", fit.groups}, {"clusters", fit.clusters}};
+  for (std::size_t k = 0; k < kCoverageLevels.size(); ++k)
+    json["coverage"].push_back({{"level", kCoverageLevels[k]},
+                                {"share", estimate_json(fit.coverage[k])}});
+  json["pit"] = nullptr;
+  if (fit.pit)
+    json["pit"] = {{"histogram", figures_json(fit.pit->histogram)},
+                   {"distance", number_or_null(fit.pit->distance)},
+                   {"p_value", number_or_null(fit.pit->p_value)}};
+  return json;
+}
+
 }  // namespace
+
+nlohmann::ordered_json sigma_json(const SigmaReport& report) {
+  return {{"soaks", fit_json(report.soaks)},
+          {"ramps", fit_json(report.ramps)},
+          {"bias_filter",
+           {{"updates", report.updates}, {"nis", estimate_json(report.nis)}}}};
+}
 
 nlohmann::ordered_json metrics_json(const std::vector<MetricResult>& metrics,
                                     const std::vector<DecidedLimit>& limits) {
@@ -175,6 +195,7 @@ nlohmann::ordered_json to_json(const ValidationResult& result) {
   for (const CheckResult& check : result.checks)
     json["checks"].push_back(check_json(check));
   if (result.population) json["population"] = yield_json(*result.population);
+  if (result.sigma) json["sigma"] = sigma_json(*result.sigma);
   json["warnings"] = result.warnings;
   json["provenance"] = provenance_json(result.provenance);
   return json;

@@ -13,6 +13,9 @@ namespace beamgyro {
 /// finite is null. The same result gives the same bytes.
 nlohmann::ordered_json to_json(const ValidationResult& result);
 
+/// Returns the object "sigma" of it.
+nlohmann::ordered_json sigma_json(const SigmaReport& report);
+
 /// Returns the array "metrics" of it.
 nlohmann::ordered_json metrics_json(const std::vector<MetricResult>& metrics,
                                     const std::vector<DecidedLimit>& limits);

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "validation/metrics/sigma_evidence.h"
+#include "validation/metrics/sigma_report.h"
 #include "validation/result/judgement.h"
 #include "validation/result/population_yield.h"
 
@@ -50,6 +52,9 @@ class SetJudge {
            known != nullptr ? &known->provenance : nullptr,
            &set_},
           evidence, threads_, result);
+    if (result.sigma)
+      sigma_.add_device(sigma_evidence(evidence.after),
+                        found_.devices.devices.size());
     found_.devices.devices.push_back({result.verdict, result.words, device});
     for (PopulationMetric& metric : found_.devices.metrics)
       add_figures(result, metric);
@@ -71,6 +76,7 @@ class SetJudge {
     all.failed = number_of(Conformity::kFail);
     all.undecided = number_of(Conformity::kUndecided);
     all.interval = clopper_pearson(all.passed, all.devices.size());
+    if (found_.shown.sigma) found_.shown.sigma = sigma_report(sigma_);
     found_.shown.words =
         fmt::format("{} of {} devices pass. Device {}: {}", all.passed,
                     all.devices.size(), shown_device_, found_.shown.words);
@@ -95,6 +101,7 @@ class SetJudge {
   const SpecificationFile& specification_;
   std::size_t threads_;
   SetVerdicts found_;
+  SigmaEvidence sigma_;
   std::string shown_device_;
 };
 

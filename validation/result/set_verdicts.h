@@ -13,7 +13,8 @@ namespace beamgyro {
 /// The verdict on the devices of a set.
 struct SetVerdicts {
   PopulationYield devices;
-  // Of the first device with the worst verdict; its words name it.
+  // Of the first device with the worst verdict; its words name it. What is
+  // found of a sigma is of all devices, each of them a cluster.
   ValidationResult shown;
   DeviceEvidence evidence;
 };

@@ -10,6 +10,7 @@
 
 #include "validation/checks/checks.h"
 #include "validation/metrics/metric.h"
+#include "validation/metrics/sigma_report.h"
 #include "validation/specification/decision.h"
 #include "validation/specification/limit.h"
 
@@ -105,6 +106,8 @@ struct ValidationResult {
   std::vector<DecidedLimit> limits;   // in the order of the specification
   std::vector<CheckResult> checks;    // in the order of check_definitions()
   std::optional<PopulationYield> population = {};
+  // Where the compensator states a sigma; over all devices of a set.
+  std::optional<SigmaReport> sigma = {};
   std::vector<std::string> warnings = {};
   ResultProvenance provenance = {};
 };

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "validation/evidence/evidence.h"
+#include "validation/metrics/bias_filter.h"
+
+namespace beamgyro {
+
+/// Mean residuals over the sigma that is stated for them, z. Those of a group
+/// share their cause and count as one.
+struct ErrorGroup {
+  std::size_t cluster;    // groups of one cluster may depend on each other
+  std::vector<double> z;  // [-], at least one
+};
+
+/// Squared innovations of a bias filter over what it expected.
+struct FilterRun {
+  std::size_t cluster;
+  std::vector<double> normalised;  // [-]
+};
+
+/// What the runs show about the sigma that a compensator states.
+struct SigmaEvidence {
+  std::vector<ErrorGroup> soaks, ramps;
+  std::vector<FilterRun> filter;
+
+  bool empty() const { return soaks.empty() && ramps.empty(); }
+
+  /// Adds the evidence of another device, as one cluster.
+  void add_device(const SigmaEvidence& device, std::size_t cluster);
+};
+
+/// Returns whether a rate of `evidence` has a sigma.
+bool states_sigma(const Evidence& evidence);
+
+/// Returns the errors in the runs of soaks and of ramps whose rate has a sigma,
+/// each group as a cluster of its own:
+/// - a group for each soak (soaks_of()): the mean over its end;
+/// - of the blocks of 60 s whose temperature moves by 0.05 K/min or more, a
+///   group for each 10 K that it has moved by, with all its blocks.
+/// sigma of a mean is the root of its mean square. What is not finite is left
+/// out.
+std::vector<ErrorGroup> soak_errors(const Evidence& evidence);
+std::vector<ErrorGroup> ramp_errors(const Evidence& evidence);
+
+/// Returns filter_innovations() of these runs, of warm-ups and power cycles.
+std::vector<FilterRun> filter_runs(const Evidence& evidence);
+
+/// Returns all three.
+SigmaEvidence sigma_evidence(const Evidence& evidence);
+
+}  // namespace beamgyro
