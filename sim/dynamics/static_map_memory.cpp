@@ -104,7 +104,7 @@ void StaticMap::prune(Piece& piece) const {
   const Eigen::Index rows = piece.coefficients.rows();
   const auto unused = std::ranges::count(piece.terms, 0);
   const double allowed =
-      0.4 * tolerance_ * kChannels / static_cast<double>(rows - unused);
+      0.6 * tolerance_ * kChannels / static_cast<double>(rows - unused);
   for (Eigen::Index row = 0; row < rows; ++row) {
     int terms = piece.terms[static_cast<std::size_t>(row)];
     double dropped = 0;

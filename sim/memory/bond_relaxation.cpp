@@ -85,12 +85,12 @@ double BondRelaxation::time_constant(double T, const Modes& modes) const {
                    1 / glass_transition_));
 }
 
-BondRelaxation::Modes BondRelaxation::stepped(const Modes& modes, double from,
-                                              double to,
+// `tau` is the time constant at the start.
+BondRelaxation::Modes BondRelaxation::stepped(const Modes& modes, double tau,
+                                              double from, double to,
                                               double duration) const {
   const double middle = 0.5 * (from + to);
-  const Modes half =
-      with_tau(modes, time_constant(from, modes), from, middle, 0.5 * duration);
+  const Modes half = with_tau(modes, tau, from, middle, 0.5 * duration);
   return with_tau(modes, time_constant(middle, half), from, to, duration);
 }
 
@@ -100,12 +100,14 @@ BondRelaxation::Modes BondRelaxation::halved(const Modes& modes, double from,
   constexpr int kDeepest = 40;
   const double middle = 0.5 * (from + to);
   constexpr double kFrozen = 3e-7, kEquilibrium = 1e-5;  // [K]
-  const Modes whole = stepped(modes, from, to, duration);
+  const double tau = time_constant(from, modes);
+  const Modes whole = stepped(modes, tau, from, to, duration);
   if (std::abs(mean_of(whole) - mean_of(modes)) < kFrozen ||
       std::abs(mean_of(whole) - to) < kEquilibrium)
     return whole;
-  const Modes first = stepped(modes, from, middle, 0.5 * duration);
-  const Modes second = stepped(first, middle, to, 0.5 * duration);
+  const Modes first = stepped(modes, tau, from, middle, 0.5 * duration);
+  const Modes second =
+      stepped(first, time_constant(middle, first), middle, to, 0.5 * duration);
   if (std::abs(mean_of(second) - mean_of(whole)) <= kError || depth == kDeepest)
     return extrapolated(modes, from, to, whole, second);
   return halved(halved(modes, from, middle, 0.5 * duration, depth + 1), middle,

@@ -35,7 +35,7 @@ class BondRelaxation {
   /// halves give the same T_f as the whole to kError. A cycle through the glass
   /// transition leaves T_f within 4e-4 K.
   void advance(double from, double to, double duration);
-  static constexpr double kError = 3e-4;  // [K]
+  static constexpr double kError = 5e-4;  // [K]
 
   double fictive_temperature() const;  // T_f [K]
   const std::array<double, kModes>& modes() const { return modes_; }
@@ -49,7 +49,7 @@ class BondRelaxation {
  private:
   using Modes = std::array<double, kModes>;
   double time_constant(double T, const Modes& modes) const;
-  Modes stepped(const Modes& modes, double from, double to,
+  Modes stepped(const Modes& modes, double tau, double from, double to,
                 double duration) const;
   Modes halved(const Modes& modes, double from, double to, double duration,
                int depth) const;

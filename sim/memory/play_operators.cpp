@@ -9,6 +9,8 @@ PlayOperators::PlayOperators(const HysteresisParameters& parameters,
                              double start)
     : parameters_(parameters), temperature_(start) {
   states_.fill(start);
+  for (std::size_t i = 0; i < kPlayOperators; ++i)
+    largest_ += parameters_.weight[i] * parameters_.half_width[i];
 }
 
 void PlayOperators::push(double T) {
@@ -31,17 +33,10 @@ double PlayOperators::value(const States& states, double T) const {
 
 double PlayOperators::value() const { return value(states_, temperature_); }
 
-double PlayOperators::largest() const {
-  double sum = 0;
-  for (std::size_t i = 0; i < kPlayOperators; ++i)
-    sum += parameters_.weight[i] * parameters_.half_width[i];
-  return sum;
-}
-
-double PlayOperators::share() const { return value() / largest(); }
+double PlayOperators::share() const { return value() / largest_; }
 
 double PlayOperators::share(const States& states, double T) const {
-  return value(states, T) / largest();
+  return value(states, T) / largest_;
 }
 
 }  // namespace beamgyro

@@ -29,13 +29,14 @@ class PlayOperators {
 
   /// h [K] after a monotone move of T from where `states` were left to `T`.
   double value(const States& states, double T) const;
-  double value() const;    // h at the present T [K]
-  double largest() const;  // h_max [K]
-  double share() const;    // h/h_max
+  double value() const;                        // h at the present T [K]
+  double largest() const { return largest_; }  // h_max [K]
+  double share() const;                        // h/h_max
   double share(const States& states, double T) const;
 
  private:
   HysteresisParameters parameters_;
+  double largest_ = 0;
   double temperature_;
   States states_;
 };
