@@ -9,6 +9,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace beamgyro {
@@ -175,11 +176,13 @@ std::string sensitivity_table(const MeritResult& result) {
   const FigureOfMerit& figure = figure_of_merit(result.merit);
   const std::size_t width = key_width(result);
   std::string text = fmt::format(
-      "{}: {}\nmedian {:.4g}, 5 to 95 % of devices {:.4g} to {:.4g} {}\n"
+      "{}: {}\nmedian {:.4g}, 5 to 95 % of devices {:.4g} to {:.4g}{}\n"
       "{:<{}} {:>6} {:>13} {:>6} {:>13} {:>6} {:>13}\n",
       studied_name(result), figure.what, result.quantiles[1],
-      result.quantiles[0], result.quantiles[2], figure.unit, "tolerance", width,
-      "total", "95 %", "first", "95 %", "ranks", "95 %");
+      result.quantiles[0], result.quantiles[2],
+      figure.unit == std::string_view("1") ? ""
+                                           : fmt::format(" {}", figure.unit),
+      "tolerance", width, "total", "95 %", "first", "95 %", "ranks", "95 %");
   for (const FactorResult& factor : result.factors)
     text += fmt::format("{:<{}} {} {} {}\n", factor.key, width,
                         index_text(factor.total), index_text(factor.first),

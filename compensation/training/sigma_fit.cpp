@@ -190,7 +190,9 @@ std::optional<AdaptationSigma> fit_adaptation_sigma(
     const Population& population, const LookupTable* scale_factor,
     const SigmaTask& task) {
   const auto* spec = std::get_if<PopulationSpec>(&task.kind);
-  if (spec == nullptr || !task.held_out_runs.set) return std::nullopt;
+  if (spec == nullptr || !task.held_out_runs.set ||
+      task.held_out_runs.count == 0)
+    return std::nullopt;
   return adaptation_sigma(
       population, task.inputs, task.held_out,
       own_curve_residuals(

@@ -267,7 +267,8 @@ void StaticMap::add_coefficients(Piece& piece, const MemoryBox& box,
         rows += sum * in_temperature;
       }
       for (int c = 0; c < kChannels; ++c) {
-        int& terms = piece.terms[static_cast<std::size_t>(first + c)];
+        int& terms = piece.terms[static_cast<std::size_t>(first) +
+                                 static_cast<std::size_t>(c)];
         terms = std::max(terms, count);
       }
     }

@@ -61,7 +61,9 @@ class Screen:
         os.write(self.main, text)
 
     def end(self):
-        """Wait status of the process."""
+        """Wait status of the process. Nobody may wait for one that cannot
+        write to a full terminal."""
+        self.read_for(300)
         status = os.waitpid(self.process, 0)[1]
         os.close(self.main)
         return status
@@ -134,14 +136,14 @@ class Line(Terminal):
     def test_the_line_is_gone_at_the_end(self):
         self.write("s.toml", LONG.replace("200000", "60000"))
         screen = self.screen("run", "s.toml", "-o", "a.h5")
-        screen.read_for(60)
+        screen.read_for(300)
         self.assertEqual(screen.end(), 0)
         self.assertEqual(screen.lines(), [""])
 
     def test_the_time_left_converges(self):
         self.write("s.toml", LONG.replace("200000", "150000"))
         screen = self.screen("run", "s.toml", "-o", "a.h5")
-        screen.read_for(90)
+        screen.read_for(300)
         self.assertEqual(screen.end(), 0)
         ends = []
         for frame in screen.frames():

@@ -294,7 +294,8 @@ std::vector<Metric> sigma_table() {
   return {
       share("sigma_coverage_50_soaks_percent",
             "Soaks whose mean residual over the last 300 s lies within 0.674 "
-            "of the stated sigma: 50 for a sigma that is right.",
+            "of the stated sigma, those of each 10 K counted as one: 50 for a "
+            "sigma that is right.",
             &evaluation::soak_coverage_50),
       share("sigma_coverage_90_soaks_percent",
             "sigma_coverage_50_soaks_percent, but within 1.645 sigma: 90 for a "

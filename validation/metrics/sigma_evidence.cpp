@@ -25,13 +25,31 @@ std::vector<double> normalised_errors(const EvidenceRun& run,
   return z;
 }
 
+// Adds the errors of the segments in `taken`: those within kBiasCorrelation of
+// the first one of a group, in the same power cycle, join it.
+void add_groups(std::span<const Segment> segments, std::span<const double> z,
+                const std::vector<bool>& taken,
+                std::vector<ErrorGroup>& groups) {
+  const Segment* first = nullptr;  // of the group
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    if (!std::isfinite(z[k]) || !taken[k]) continue;
+    if (first == nullptr || segments[k].power_on != first->power_on ||
+        std::abs(segments[k].temperature - first->temperature) >=
+            kBiasCorrelation) {
+      groups.push_back({groups.size(), {}});
+      first = &segments[k];
+    }
+    groups.back().z.push_back(z[k]);
+  }
+}
+
 void add_soaks(const EvidenceRun& run, std::vector<ErrorGroup>& groups) {
   std::vector<SampleRange> ranges;
   for (const Soak& soak : soaks_of(*run.recording))
     ranges.push_back(soak.range);
-  for (const double z :
-       normalised_errors(run, segments_of(*run.recording, ranges)))
-    if (std::isfinite(z)) groups.push_back({groups.size(), {z}});
+  const std::vector<Segment> soaks = segments_of(*run.recording, ranges);
+  add_groups(soaks, normalised_errors(run, soaks),
+             std::vector<bool>(soaks.size(), true), groups);
 }
 
 // Whether the temperature moves from a block to the next one or from the one
@@ -48,18 +66,10 @@ bool is_moving(std::span<const Segment> blocks, std::size_t k) {
 void add_ramps(const EvidenceRun& run, std::vector<ErrorGroup>& groups) {
   const std::vector<Segment> blocks =
       segments_of(*run.recording, score_blocks(*run.recording));
-  const std::vector<double> z = normalised_errors(run, blocks);
-  const Segment* first = nullptr;  // of the group
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    if (!std::isfinite(z[k]) || !is_moving(blocks, k)) continue;
-    if (first == nullptr || blocks[k].power_on != first->power_on ||
-        std::abs(blocks[k].temperature - first->temperature) >=
-            kBiasCorrelation) {
-      groups.push_back({groups.size(), {}});
-      first = &blocks[k];
-    }
-    groups.back().z.push_back(z[k]);
-  }
+  std::vector<bool> moving(blocks.size());
+  for (std::size_t k = 0; k < blocks.size(); ++k)
+    moving[k] = is_moving(blocks, k);
+  add_groups(blocks, normalised_errors(run, blocks), moving, groups);
 }
 
 std::vector<ErrorGroup> errors_of(const Evidence& evidence,

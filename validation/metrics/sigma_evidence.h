@@ -39,11 +39,11 @@ bool states_sigma(const Evidence& evidence);
 
 /// Returns the errors in the runs of soaks and of ramps whose rate has a sigma,
 /// each group as a cluster of its own:
-/// - a group for each soak (soaks_of()): the mean over its end;
-/// - of the blocks of 60 s whose temperature moves by 0.05 K/min or more, a
-///   group for each 10 K that it has moved by, with all its blocks.
-/// sigma of a mean is the root of its mean square. What is not finite is left
-/// out.
+/// - of the soaks (soaks_of()), the means over their ends;
+/// - of the blocks of 60 s, those whose temperature moves by 0.05 K/min or
+/// more. What follows each other within 10 K is one group, since the bias
+/// hardly changes. sigma of a mean is the root of its mean square. What is not
+/// finite is left out.
 std::vector<ErrorGroup> soak_errors(const Evidence& evidence);
 std::vector<ErrorGroup> ramp_errors(const Evidence& evidence);
 

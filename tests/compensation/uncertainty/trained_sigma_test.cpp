@@ -180,13 +180,13 @@ TrainingRows parabolas(int devices, std::uint32_t stream,
     for (const double T : temperatures) legs.push_back({d, d, T, T, 2});
   const auto rows_each = static_cast<int>(2 * temperatures.size());
   return rows_of(legs, [&](double T, int row) {
-    const auto d = static_cast<std::size_t>(3 * (row / rows_each));
+    const auto d = 3 * static_cast<std::size_t>(row / rows_each);
     const double x = T / 45.0;
     return c[d] + 0.5 * c[d + 1] * x + 0.5 * c[d + 2] * x * x;
   });
 }
 
-std::vector<double> every_5_K() {
+std::vector<double> every_five_kelvins() {
   std::vector<double> temperatures;
   for (int T = -40; T <= 50; T += 5) temperatures.push_back(T);
   return temperatures;
@@ -194,9 +194,9 @@ std::vector<double> every_5_K() {
 
 // Adapted to one soak, a device is no more than the posterior says.
 TEST(AdaptedSigma, CoversUnseenDevicesOfANormalPopulation) {
-  const Population population =
-      fit_population(kTemperatureInput, parabolas(200, 3, every_5_K()), 5.0);
-  const TrainingRows unseen = parabolas(133, 5, every_5_K());
+  const Population population = fit_population(
+      kTemperatureInput, parabolas(200, 3, every_five_kelvins()), 5.0);
+  const TrainingRows unseen = parabolas(133, 5, every_five_kelvins());
   double share = 0.0;
   for (int d = 0; d < 133; ++d) {
     const TrainingRows own = selected(unseen, unseen.device == d);
@@ -217,10 +217,11 @@ TEST(AdaptedSigma, CoversUnseenDevicesOfANormalPopulation) {
 }
 
 TEST(AdaptationSigma, IsNarrowWhereFewSoaksTellAll) {
-  const Population population =
-      fit_population(kTemperatureInput, parabolas(200, 3, every_5_K()), 5.0);
-  const auto learned = adaptation_sigma(population, kTemperatureInput,
-                                        parabolas(100, 4, every_5_K()), {});
+  const Population population = fit_population(
+      kTemperatureInput, parabolas(200, 3, every_five_kelvins()), 5.0);
+  const auto learned =
+      adaptation_sigma(population, kTemperatureInput,
+                       parabolas(100, 4, every_five_kelvins()), {});
   ASSERT_TRUE(learned);
   EXPECT_EQ(learned->devices, 100);
   // Three soaks without noise determine a parabola.
@@ -231,9 +232,9 @@ TEST(AdaptationSigma, IsNarrowWhereFewSoaksTellAll) {
 }
 
 TEST(AdaptationSigma, IsWideWhereDevicesDifferMoreThanThePopulation) {
-  const Population population =
-      fit_population(kTemperatureInput, parabolas(200, 3, every_5_K()), 5.0);
-  TrainingRows others = parabolas(100, 4, every_5_K());
+  const Population population = fit_population(
+      kTemperatureInput, parabolas(200, 3, every_five_kelvins()), 5.0);
+  TrainingRows others = parabolas(100, 4, every_five_kelvins());
   const ArrayXd wave = (others.temperature / 4.0).sin();
   others.bias += wave;  // unlike any device of the population
   const auto learned =
@@ -243,8 +244,8 @@ TEST(AdaptationSigma, IsWideWhereDevicesDifferMoreThanThePopulation) {
 }
 
 TEST(AdaptedSigma, AddsTheTurnOnOfTwoRunsOutsideTheFactor) {
-  Population population =
-      fit_population(kTemperatureInput, parabolas(20, 6, every_5_K()), 5.0);
+  Population population = fit_population(
+      kTemperatureInput, parabolas(20, 6, every_five_kelvins()), 5.0);
   population.sigma = AdaptationSigma{0.5, SigmaTerm{0.2, 300.0}, {}, 30};
   const ArrayXd deviation = ArrayXd::Constant(population.grid(), 0.4);
   const BiasSigma sigma = adapted_sigma(population, deviation, {0.03, 0.01});

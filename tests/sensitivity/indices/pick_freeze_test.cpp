@@ -27,7 +27,7 @@ TEST(PickFreezeIndices, OfIshigamisFunctionLieInTheirIntervals) {
   // (1 + b pi^4/5)^2 / 2, V_2 = a^2/8, V_13 = 8 b^2 pi^8 / 225.
   const double first[] = {0.3139, 0.4424, 0};
   const double total[] = {0.5576, 0.4424, 0.2437};
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const PickFreezeIndices indices =
         pick_freeze_indices(sampled(ishigami, 3, kRows, seed), seed);
     EXPECT_EQ(indices.rows, kRows);

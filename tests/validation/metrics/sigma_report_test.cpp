@@ -66,7 +66,7 @@ std::unique_ptr<Scene> drawn_scene(double factor) {
   for (int run = 0; run < kRuns; ++run)
     for (const bool is_soak : {false, true}) {
       const SignalOfTime T = is_soak ? soaks : SignalOfTime(ramp);
-      const auto seed = static_cast<std::uint64_t>(2 * run + is_soak);
+      const auto seed = 2 * static_cast<std::uint64_t>(run) + (is_soak ? 1 : 0);
       const DrawnBias bias(seed);
       EvidenceRun& added =
           scene->add({is_soak ? kSoak : kRamp,
@@ -141,6 +141,19 @@ TEST(SigmaReport, ASigmaOfTwiceTheSizeIsCaught) {
   }
   EXPECT_LT(report.soaks.pit->p_value, 1e-6);
   EXPECT_LT(report.nis->interval->high, 0.9);
+}
+
+TEST(SigmaReport, SoaksWithinTenKelvinsCountAsOne) {
+  Scene scene;
+  const auto T = soak_temperatures({0, 4, 8, 12, 30, 33}, 900);
+  EvidenceRun& run = scene.add({kSoak,
+                                {.duration = 6900, .step = 2, .temperature = T},
+                                {{"true_ambient_temperature", T}}});
+  run.sigma.assign(run.rate.size(), 1.0);
+  std::vector<std::size_t> sizes;
+  for (const ErrorGroup& group : soak_errors(scene.evidence))
+    sizes.push_back(group.z.size());
+  EXPECT_EQ(sizes, (std::vector<std::size_t>{3, 1, 2}));
 }
 
 TEST(SigmaReport, TheSameErrorsInEveryGroupOfAClusterCountAsOne) {
