@@ -32,12 +32,13 @@ void handle_interrupts() {
   struct sigaction action {};
   action.sa_handler = end_process;
   sigfillset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  struct sigaction before {};
-  sigaction(SIGHUP, nullptr, &before);
-  if (before.sa_handler != SIG_IGN)  // as nohup makes it
-    sigaction(SIGHUP, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    // nohup ignores SIGHUP, a script SIGINT in what it starts in its
+    // background.
+    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
   // A closed pipe and a limit on the size of files are reported by the failed
   // write instead.
   std::signal(SIGPIPE, SIG_IGN);

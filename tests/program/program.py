@@ -5,12 +5,17 @@ import os
 import pathlib
 import resource
 import shutil
+import signal
 import subprocess
 import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENARIOS = ROOT / "scenarios"
+# A script that runs the tests in its background ignores SIGINT, which every
+# program that is started would inherit.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
 PROGRAM = pathlib.Path(
     os.environ.get("BEAMGYRO", ROOT / "build/release/beamgyro")).resolve()
 
