@@ -111,12 +111,10 @@ TemperatureRange chamber_of(const PlanArguments& arguments,
   return chamber;
 }
 
-// The hold that the device's thermal model asks for at the ends of the range
-// and right after power-on.
-double hold_of(const PlanArguments& arguments,
-               const ThermalParameters& parameters, const SoakModel& model,
-               const ChamberTime& time) {
-  if (arguments.hold) return *arguments.hold * 60.0;
+// The hold [s] that the device's thermal model asks for at the ends of the
+// range and right after power-on.
+double settling_hold(const ThermalParameters& parameters,
+                     const SoakModel& model, const ChamberTime& time) {
   const auto [lowest, highest] = model.range();
   SoakDemand demand;
   demand.largest_lag = kLagShare * model.noise().bias / model.rms_slope();
@@ -125,9 +123,35 @@ double hold_of(const PlanArguments& arguments,
                      time, demand);
 }
 
+// A hold that is asked for may be shorter or longer, or one that never settles.
+double hold_of(const PlanArguments& arguments,
+               const ThermalParameters& parameters, const SoakModel& model,
+               const ChamberTime& time, std::vector<std::string>& warnings) {
+  if (!arguments.hold) return settling_hold(parameters, model, time);
+  const double hold = *arguments.hold * 60.0;
+  std::string settles = "does not settle in any hold";
+  try {
+    const double asked = settling_hold(parameters, model, time);
+    if (hold >= asked) return hold;
+    settles = fmt::format("asks for {:g} min", asked / 60.0);
+  } catch (const std::invalid_argument&) {
+    // said in the warning
+  }
+  warnings.push_back(fmt::format(
+      "--hold {:g}: the thermal model {}; the beam lags behind the sensor in "
+      "shorter soaks, `train` may find no steady rows in them, and more than "
+      "the forecast will be left",
+      *arguments.hold, settles));
+  return hold;
+}
+
+// A goal counts as met within the digits that are printed.
 SoakPlan chosen_plan(const PlanArguments& arguments, const Planner& planner) {
-  if (arguments.hours) return planner.within_hours(*arguments.hours);
-  if (arguments.residual) return planner.within_residual(*arguments.residual);
+  constexpr double kHourDigits = 0.005, kResidualDigits = 0.0005;
+  if (arguments.hours)
+    return planner.within_hours(*arguments.hours + kHourDigits);
+  if (arguments.residual)
+    return planner.within_residual(*arguments.residual + kResidualDigits);
   const auto count = static_cast<std::size_t>(*arguments.soaks);
   if (count > planner.most_soaks())
     throw std::invalid_argument(fmt::format(
@@ -145,8 +169,10 @@ std::vector<std::string> observed_of(const SoakModel& model, bool bias_only) {
 }
 
 PlanResult result_of(const PlanArguments& arguments, const SoakModel& model,
-                     const Planner& planner, const TemperatureRange& chamber) {
+                     const Planner& planner, const TemperatureRange& chamber,
+                     std::vector<std::string> warnings) {
   PlanResult result;
+  result.warnings = std::move(warnings);
   result.chosen = chosen_plan(arguments, planner);
   const std::size_t count = result.chosen.temperatures.size();
   result.even = planner.even(count);
@@ -187,6 +213,11 @@ int run_plan(const PlanArguments& arguments) {
   check_outputs(arguments);
   Population population = read_population_of(arguments);
   const Device device = read_device_of(arguments);
+  if (device.thermal.oven)
+    throw std::invalid_argument(fmt::format(
+        "{}: has an oven, which holds the beam at one temperature whatever the "
+        "chamber does; expected a device without",
+        arguments.device));
   const ChamberView view(device.thermal, device.temperature_sensor.offset);
   const TemperatureRange range =
       arguments.range.empty() ? known_range(population, view)
@@ -199,9 +230,10 @@ int run_plan(const PlanArguments& arguments) {
   ChamberTime time;
   time.start = arguments.start.value_or(time.start);
   time.ramp = arguments.ramp.value_or(time.ramp);
-  time.hold = hold_of(arguments, device.thermal, model, time);
-  const PlanResult result =
-      result_of(arguments, model, Planner(model, chamber, time), chamber);
+  std::vector<std::string> warnings;
+  time.hold = hold_of(arguments, device.thermal, model, time, warnings);
+  const PlanResult result = result_of(
+      arguments, model, Planner(model, chamber, time), chamber, warnings);
   const std::string json = plan_json(result).dump(2) + "\n";
   if (!arguments.picture.empty()) draw_plan(json, arguments.picture);
   if (!arguments.output.empty())

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstddef>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
@@ -35,6 +36,7 @@ class SampleLines {
       take_names(line);
       return std::nullopt;
     }
+    require_cells(line);
     const std::string text = header_ + line + (has_status_ ? "\n" : ",0\n");
     Recording read = parsed(text);
     if (!(read.time[0] > time_))
@@ -60,10 +62,21 @@ class SampleLines {
                       "time,rate,temperature",
                       kInput));
     has_status_ = has("status");
+    commas_ = std::ranges::count(line, ',');
     header_ = line + (has_status_ ? "\n" : ",status\n");
   }
 
-  // Messages of the reader speak of the second line.
+  // The reader would count the status that is added, too.
+  void require_cells(const std::string& line) const {
+    const auto commas = std::ranges::count(line, ',');
+    if (commas == commas_ || header_.find('"') != header_.npos) return;
+    throw std::invalid_argument(
+        fmt::format("{}:{}: {} cells; expected {} as in the line of names",
+                    kInput, number_, commas + 1, commas_ + 1));
+  }
+
+  // Messages of the reader speak of the second line, those of the recording of
+  // its only sample.
   Recording parsed(const std::string& text) const {
     try {
       return parse_recording_csv(text, kInput);
@@ -73,12 +86,26 @@ class SampleLines {
       if (message.starts_with(second))
         message.replace(0, second.size(),
                         fmt::format("{}:{}", kInput, number_));
+      else
+        message = of_this_line(message);
       throw std::invalid_argument(message);
     }
   }
 
+  // "standard input: rate: sample 0 is nan ..." with the line for the sample.
+  std::string of_this_line(const std::string& message) const {
+    const std::string file = fmt::format("{}: ", kInput);
+    const std::string sample = ": sample 0 is ";
+    const std::size_t place = message.find(sample);
+    if (!message.starts_with(file) || place == message.npos) return message;
+    return fmt::format("{}:{}: {} is {}", kInput, number_,
+                       message.substr(file.size(), place - file.size()),
+                       message.substr(place + sample.size()));
+  }
+
   std::string header_;
   bool has_status_ = false;
+  std::ptrdiff_t commas_ = 0;  // of the line of names
   std::size_t number_ = 0;
   double time_ = -std::numeric_limits<double>::infinity();
 };
@@ -109,8 +136,9 @@ bool read_input(std::string& text) {
   return n > 0;
 }
 
-void take_line(const std::string& line, SampleLines& lines,
+void take_line(std::string line, SampleLines& lines,
                CompensatorStream& stream) {
+  if (line.ends_with('\r')) line.pop_back();
   if (line.find_first_not_of(" \t\r") == line.npos) return;
   if (const auto sample = lines.sample(line)) stream.take(*sample);
 }

@@ -49,8 +49,9 @@ class Planner {
   /// std::invalid_argument when these are too few for two soaks.
   SoakPlan within_hours(double hours) const;
 
-  /// The plan of fewest hours whose median residual is no more than `residual`
-  /// [deg/s]. Throws std::invalid_argument when no plan is that good.
+  /// Of the plans of least mean variance that of fewest hours whose median
+  /// residual is no more than `residual` [deg/s]. Throws std::invalid_argument
+  /// when no plan is that good.
   SoakPlan within_residual(double residual) const;
 
   SoakPlan even(std::size_t count) const;

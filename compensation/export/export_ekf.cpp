@@ -156,10 +156,10 @@ std::string robot_localization_text(const EkfExport& given) {
               "# sensor_msgs/Imu that the driver publishes, {}\n{}: [{}]\n",
               p.unit, p.name, cells);
         }
-        return fmt::format("# {}: element {} of 225, [{}, {}], {}\n{}_{}: {}\n",
-                           p.name, place_of(given.axis), rate_name(given.axis),
-                           rate_name(given.axis), p.unit, p.name,
-                           rate_name(given.axis), six_digits(p.written));
+        return fmt::format(
+            "# {}: index {} (from 0) of 225, [{}, {}], {}\n{}_{}: {}\n", p.name,
+            place_of(given.axis), rate_name(given.axis), rate_name(given.axis),
+            p.unit, p.name, rate_name(given.axis), six_digits(p.written));
       });
 }
 

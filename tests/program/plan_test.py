@@ -118,6 +118,31 @@ class Plan(ProgramTest):
         self.assertLessEqual(good["schedule"]["hours"],
                              free["schedule"]["hours"])
 
+    def test_a_goal_that_was_printed_is_met_as_well(self):
+        three = self.plan("--soaks", "3")
+        hours = three["schedule"]["hours"]
+        again = self.plan("--hours", f"{hours:.2f}")
+        self.assertLess(again["schedule"]["hours"], hours + 0.01)
+        self.assertLess(again["expected_rms_deg_per_s"]["median"],
+                        1.02 * three["expected_rms_deg_per_s"]["median"])
+        median = three["expected_rms_deg_per_s"]["median"]
+        again = self.plan("--residual", f"{median:.3f}")
+        self.assertLessEqual(again["schedule"]["hours"], hours)
+
+    def test_a_hold_that_is_too_short_is_warned_of(self):
+        answer = self.beamgyro("plan", "population.json", "--soaks", "2",
+                               "--hold", "5")
+        self.assertIn("--hold 5: the thermal model asks for", answer.stderr)
+        self.assertEqual(answer.returncode, 0)
+        answer = self.beamgyro("plan", "population.json", "--soaks", "2",
+                               "--hold", "90")
+        self.assertNotIn("--hold", answer.stderr)
+
+    def test_an_oven_is_refused(self):
+        oven = SCENARIOS / "devices/oven.toml"
+        self.rejected("plan", "population.json", "--soaks", "2", "--device",
+                      str(oven), says="has an oven")
+
     def test_candidates_are_compared(self):
         self.write("mine.txt", "# my soaks\n-40, 5, 50\n\n-30,0\n")
         plan = self.plan("--soaks", "3", "--range", "-40:50", "--candidates",

@@ -241,11 +241,23 @@ class Stream(ProgramTest):
         for text, says in [("rate,temperature\n", "1: no column time"),
                            (names + "0,1,2\n1,x,2\n", "input:3:3"),
                            (names + "0,1,2\n0,1,2\n", "3: time 0 does not"),
+                           (names + "0,1,2\n1,2\n",
+                            "input:3: 2 cells; expected 3"),
+                           (names + "0,1,2\n1,nan,2\n",
+                            "input:3: rate is nan while powered"),
                            ("time,temperature\n0,1\n1,2\n", "rate")]:
             for compensator in self.compensators[:2]:
                 answer = self.stream(compensator, text=text)
                 self.assertEqual(answer.returncode, 2, answer.stderr)
                 self.assertIn(says, answer.stderr)
+
+    def test_lines_may_end_in_carriage_return_and_newline(self):
+        for names, cells in [("time,rate,temperature", "0,1,20"),
+                             ("time,rate,temperature,status", "0,1,20,0")]:
+            one, other = (self.stream("cubic.json", text=end.join(
+                [names, cells, ""])) for end in ["\n", "\r\n"])
+            self.assertEqual((other.returncode, other.stderr), (0, ""))
+            self.assertEqual(other.stdout, one.stdout)
 
     def test_a_fault_ends_the_stream_with_status_3(self):
         text = "time,rate\n" + "".join(f"{k},{k}\n" for k in range(50))

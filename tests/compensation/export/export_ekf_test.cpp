@@ -156,12 +156,14 @@ TEST(ExportEkf, AValueThatAFilterDoesNotTakeIsCutOffAndSaid) {
 // Element [vyaw, vyaw] of 15 x 15 is number 11 16 = 176, [vroll, vroll] 144.
 TEST(ExportEkf, RobotLocalizationIsToldTheElementOfTheAxis) {
   EkfExport given = given_export();
-  EXPECT_NE(ekf_texts(given)[4].second.find(
-                "process_noise_covariance: element 176 of 225, [vyaw, vyaw]"),
-            std::string::npos);
+  EXPECT_NE(
+      ekf_texts(given)[4].second.find(
+          "process_noise_covariance: index 176 (from 0) of 225, [vyaw, vyaw]"),
+      std::string::npos);
   given.axis = 'x';
   const std::string text = ekf_texts(given)[4].second;
-  EXPECT_NE(text.find("element 144 of 225, [vroll, vroll]"), std::string::npos);
+  EXPECT_NE(text.find("index 144 (from 0) of 225, [vroll, vroll]"),
+            std::string::npos);
   EXPECT_NE(text.find(", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]"),
             std::string::npos);
 }
