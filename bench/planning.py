@@ -1,25 +1,25 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Compares what `beamgyro plan` forecasts with what devices show.
+"""Compares what `beamgyro plan` forecasts with what simulated devices show.
 
-planning.py POPULATION.json SET [--program FILE] [--out DIR] [--simulate N]
-            [--campaign FILE] [--jobs N]
+planning.py POPULATION.json SET CAMPAIGN.toml [--program FILE] [--out DIR]
+            [--devices N] [--hold MIN]... [--jobs N]
 
-SET has the run "check" of scenarios/campaigns/population.toml, of devices that
-the population was not learned from: soaks at every kelvin without noise. For 2
-to 7 soaks, planned and even, the truth there at the chamber's temperatures,
-with the point noise of `adapted` added, is given to the posterior of the
-population; what its mean leaves of the check is scored. With --simulate, the
-first N devices of CAMPAIGN, which made SET, are taken through all planned soaks
-and three and five even ones for real, by `generate`, `train` with
-scenarios/population/adapted.toml and the check. Ends with DIR/planning.json.
+SET is what CAMPAIGN made: the run "check" of
+scenarios/campaigns/population.toml, of devices that the population was not
+learned from, soaks at every kelvin without noise. For 2 to 7 soaks, planned and
+even, its first N devices go through the soaks with all noise (`generate`) and
+are adapted as `train` does it with scenarios/population/adapted.toml; what is
+left of the check is scored. The first device of each schedule is adapted by
+`train` too, and must agree. "soaks" leaves out rows that belong to no soak.
+With --hold also for planned soaks that are held for so long. Ends with
+DIR/planning.json.
 """
 
 import argparse
 import json
 import pathlib
 import subprocess
-import sys
 
 import h5py
 import numpy as np
@@ -30,9 +30,11 @@ SCENARIOS = ROOT / "scenarios"
 ADAPTED = SCENARIOS / "population/adapted.toml"
 HOLD, RAMP, LAST = 2700, 0.2, 600  # of the check [s, K/min], and rows used [s]
 NOISE, SHARE = 0.03, 0.01  # PointNoise of population.h
+WIDTH, STEADY = 2.0, 0.05  # of a point [K], and of a row [K/min]
+SAMPLES, PERIOD = 6, 10.0  # of a row, and seconds between them
 CHAMBER = np.arange(-40.0, 51.0)
 SOAKS = range(2, 8)
-NOISE_SEED = 5  # fixed before the first score
+DRAWS = 4000  # of the bootstrap
 
 
 def values(file, name):
@@ -41,21 +43,54 @@ def values(file, name):
         + data.attrs.get("add_offset", 0.0)
 
 
+def signals(path):
+    with h5py.File(path) as file:
+        return file["time"][()], [
+            values(file, "temperature"),
+            values(file, "rate") - values(file, "true_rate"),
+            values(file, "quadrature")]
+
+
 def truth(folder):
-    """Sensor, bias and quadrature of each device at the end of each soak."""
+    """Sensor and bias of each device at the end of each soak."""
     found = []
     for path in sorted(folder.glob("check_*.h5")):
-        with h5py.File(path) as file:
-            time = file["time"][()]
-            ends = HOLD + np.arange(len(CHAMBER)) * (HOLD + 60 / RAMP)
-            parts = [(time > end - LAST) & (time <= end) for end in ends]
-            rate = values(file, "rate") - values(file, "true_rate")
-            found.append([
-                np.stack([of[:, part].mean(1) for part in parts], 1)
-                for of in (values(file, "temperature"), rate,
-                           values(file, "quadrature"))])
-    sensor, bias, quadrature = (np.concatenate(of) for of in zip(*found))
-    return sensor.mean(0), bias, quadrature
+        time, (sensor, bias, _) = signals(path)
+        ends = HOLD + np.arange(len(CHAMBER)) * (HOLD + 60 / RAMP)
+        parts = [(time > end - LAST) & (time <= end) for end in ends]
+        found.append([np.stack([of[:, part].mean(1) for part in parts], 1)
+                      for of in (sensor, bias)])
+    sensor, bias = (np.concatenate(of) for of in zip(*found))
+    return sensor.mean(0), bias
+
+
+def rows_of(columns):
+    """Means of the steady minutes of each device."""
+    size = columns[0].shape[1]
+    means = [[] for _ in columns]
+    steady = []
+    for first in range(0, size - SAMPLES // 2 + 1, SAMPLES):
+        block = [of[:, first:first + SAMPLES] for of in columns]
+        weight = np.arange(block[0].shape[1]) * PERIOD
+        weight -= weight.mean()
+        slope = block[0] @ weight / (weight ** 2).sum() * 60
+        steady.append(abs(slope) <= STEADY)
+        for found, of in zip(means, block):
+            found.append(of.mean(1))
+    return np.transpose(means, (2, 1, 0)), np.transpose(steady)
+
+
+def points(folder, run):
+    """The points of each device that `adapted` makes of the steady rows."""
+    for path in sorted(folder.glob(f"{run}_0*.h5")):
+        for rows, steady in zip(*rows_of(signals(path)[1])):
+            own = rows[steady]
+            groups = []
+            for row in own[np.argsort(own[:, 0], kind="stable")]:
+                if not groups or row[0] - groups[-1][0][0] >= WIDTH:
+                    groups.append([])
+                groups[-1].append(row)
+            yield np.array([np.mean(group, 0) for group in groups])
 
 
 class Population:
@@ -63,35 +98,27 @@ class Population:
 
     def __init__(self, file, sensor):
         p = json.loads(file.read_text())["population"]
-        grid = np.array(p["temperatures_degC"])
-        self.sensor = np.clip(sensor, grid[0], grid[-1])
+        self.grid = np.array(p["temperatures_degC"])
+        self.sensor = np.clip(sensor, self.grid[0], self.grid[-1])
         mean, modes = np.array(p["mean"]), np.array(p["modes"]).T
-        n = len(grid)
-        spline = [CubicSpline(grid, of, bc_type="not-a-knot") for of in
-                  (mean[:n], mean[n:], modes[:n], modes[n:])]
-        self.curves = spline
-        self.bias_mean, self.bias_modes = (spline[0](self.sensor),
-                                           spline[2](self.sensor))
-        self.channel_noise = SHARE * np.sqrt((modes[n:] ** 2).sum() / n)
+        n = len(self.grid)
+        self.curves = [CubicSpline(self.grid, of, bc_type="not-a-knot")
+                       for of in (mean[:n], modes[:n], mean[n:], modes[n:])]
+        self.noise = [NOISE, SHARE * np.sqrt((modes[n:] ** 2).sum() / n)]
 
-    def left(self, chamber, bias, quadrature, with_quadrature, seed):
-        """rms over the check of each device, adapted at soaks."""
-        random = np.random.Generator(np.random.Philox(seed))
-        at = np.interp(chamber, CHAMBER, self.sensor)
-
-        def show(of):
-            return CubicSpline(self.sensor, of, axis=1)(at)
-        y = show(bias) + NOISE * random.standard_normal(
-            (len(bias), len(chamber)))
-        mean, channel_mean, modes, channel_modes = self.curves
-        H, y = modes(at) / NOISE, (y - mean(at)) / NOISE
-        if with_quadrature:
-            H = np.vstack([H, channel_modes(at) / self.channel_noise])
-            y = np.hstack([y, (show(quadrature) - channel_mean(at))
-                           / self.channel_noise])
-        c = np.linalg.solve(np.eye(H.shape[1]) + H.T @ H, H.T @ y.T)
-        error = bias - (self.bias_mean[:, None] + self.bias_modes @ c).T
-        return np.sqrt((error ** 2).mean(1))
+    def left(self, rows, bias, channels):
+        """rms over the check of a device, adapted at points."""
+        at = np.clip(rows[:, 0], self.grid[0], self.grid[-1])
+        H, y = [], []
+        for k in range(1 + channels):
+            mean, modes = self.curves[2 * k:2 * k + 2]
+            H.append(modes(at) / self.noise[k])
+            y.append((rows[:, 1 + k] - mean(at)) / self.noise[k])
+        H, y = np.vstack(H), np.hstack(y)
+        c = np.linalg.solve(np.eye(H.shape[1]) + H.T @ H, H.T @ y)
+        mean, modes = self.curves[:2]
+        error = bias - mean(self.sensor) - modes(self.sensor) @ c
+        return np.sqrt((error ** 2).mean())
 
 
 def quantiles(rms):
@@ -99,43 +126,54 @@ def quantiles(rms):
                     map(float, np.percentile(rms, [50, 90, 95]))))
 
 
-def interpolated(program, population_file, folder, out):
+def plans(program, population, out, hold):
     """One entry for each number of soaks, schedule and kind of observation."""
-    sensor, bias, quadrature = truth(folder)
-    population = Population(population_file, sensor)
     table = []
     for flags in [["--bias-only"], []]:
         file = out / "plan.json"
-        subprocess.run([program, "plan", population_file, "--soaks",
+        words = ["--hold", str(hold)] if hold else []
+        subprocess.run([program, "plan", population, "--soaks",
                         str(SOAKS[-1]), "--range", "-40:50", "--json", file,
-                        *flags], check=True, stdout=subprocess.DEVNULL)
+                        *flags, *words], check=True,
+                       stdout=subprocess.DEVNULL)
         plan = json.loads(file.read_text())
         for row in plan["trade_off"]:
-            for kind in ["planned", "even"]:
-                soaks = row[kind]
-                if row["soaks"] not in SOAKS:
-                    continue
-                real = quantiles(population.left(
-                    soaks["temperatures_degC"], bias, quadrature, not flags,
-                    NOISE_SEED))
-                table.append({"observed": "bias" if flags else "both",
-                              "kind": kind, "soaks": row["soaks"],
-                              "temperatures_degC": soaks["temperatures_degC"],
-                              "hours": soaks["hours"], "realised": real,
-                              "hold_s": plan["schedule"]["hold_s"],
-                              "ramp_K_per_min":
-                                  plan["schedule"]["ramp_K_per_min"],
-                              "forecast": soaks["expected_rms_deg_per_s"]})
+            for kind in ["planned"] if hold else ["planned", "even"]:
+                if row["soaks"] in SOAKS:
+                    table.append({
+                        "observed": "bias" if flags else "both", "kind": kind,
+                        "soaks": row["soaks"], **row[kind],
+                        "ramp_K_per_min": plan["schedule"]["ramp_K_per_min"]})
     return table
 
 
-def simulate(program, population_file, folder, campaign, table, out, devices,
-             jobs):
-    """The same for some schedules, run and trained as a user does it."""
-    chosen = [row for row in table
-              if row["kind"] == "planned" or row["soaks"] in (3, 5)]
+def schedule(row):
+    """A scenario through the soaks as `plan -o` writes it."""
+    order = sorted(row["temperatures_degC"])
+    if abs(order[-1] - 25) < abs(order[0] - 25):
+        order.reverse()
+    path, now, before = [[0, 25]], 0, 25
+    for soak in order:
+        now += abs(soak - before) / row["ramp_K_per_min"] * 60
+        path += [[now, soak]] * (now > 0) + [[now + row["hold_s"], soak]]
+        now, before = now + row["hold_s"], soak
+    return f"""name = "soaks"
+description = "a calibration"
+device = "{SCENARIOS}/devices/nominal.toml"
+fidelity = "quasistatic"
+duration_s = {int(np.ceil(now))}
+output_rate_Hz = {1 / PERIOD}
+seed = 0
+[ambient]
+points = {path}
+[chamber]
+stirred = true
+"""
+
+
+def generate(program, campaign, table, out, devices, jobs):
     text = campaign.read_text().split("[[run]]")[0]
-    for k, row in enumerate(chosen):
+    for k, row in enumerate(table):
         scenario = out / f"soaks_{k}.toml"
         scenario.write_text(schedule(row))
         text += f'[[run]]\nname = "soaks_{k}"\nscenario = "{scenario}"\n\n'
@@ -145,91 +183,95 @@ def simulate(program, population_file, folder, campaign, table, out, devices,
     subprocess.run([program, "generate", out / "soaks.toml", "-o", out / "soaks",
                     "--devices", str(devices), "--jobs", str(jobs)],
                    check=True, stdout=subprocess.DEVNULL)
-    sensor, bias, _ = truth(folder)
-    for k, row in enumerate(chosen):
-        model = out / "adapted.toml"
-        inputs = '["temperature"]' if row["observed"] == "bias" \
-            else '["temperature", "quadrature"]'
-        model.write_text(ADAPTED.read_text().replace(
-            '"population.json"',
-            f'"{population_file}"\ninputs = {inputs}'))
-        left = []
-        for device in range(devices):
-            file = out / "adapted.json"
-            subprocess.run([program, "train", out / "soaks", "--run",
-                            f"soaks_{k}", "--device", str(device), "--model",
-                            model, "-o", file], check=True,
-                           stdout=subprocess.DEVNULL)
-            p = json.loads(file.read_text())["parameters"]
-            curve = CubicSpline(p["knots_degC"], p["values_deg_per_s"])
-            left.append(np.sqrt(np.mean((bias[device] - curve(sensor)) ** 2)))
-        row["simulated"] = quantiles(left)
-        row["simulated_devices"] = devices
-    return chosen
 
 
-def schedule(row):
-    """A scenario through the soaks as `plan -o` writes it."""
-    order = sorted(row["temperatures_degC"])
-    if abs(order[-1] - 25) < abs(order[0] - 25):
-        order.reverse()
-    points, now, before = [[0, 25]], 0, 25
-    for soak in order:
-        now += abs(soak - before) / row["ramp_K_per_min"] * 60
-        points += [[now, soak]] * (now > 0) + [[now + row["hold_s"], soak]]
-        now, before = now + row["hold_s"], soak
-    return f"""name = "soaks"
-description = "a calibration"
-device = "{SCENARIOS}/devices/nominal.toml"
-fidelity = "quasistatic"
-duration_s = {int(np.ceil(now))}
-output_rate_Hz = 0.1
-seed = 0
-[ambient]
-points = {points}
-[chamber]
-stirred = true
-"""
+def trained(program, population_file, out, run, sensor, bias, inputs):
+    """rms left of the first device by `train`."""
+    model, file = out / "adapted.toml", out / "adapted.json"
+    model.write_text(ADAPTED.read_text().replace(
+        '"population.json"',
+        f'"{population_file}"\ninputs = {json.dumps(inputs)}'))
+    subprocess.run([program, "train", out / "soaks", "--run", run, "--device",
+                    "0", "--model", model, "-o", file], check=True,
+                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    p = json.loads(file.read_text())["parameters"]
+    curve = CubicSpline(p["knots_degC"], p["values_deg_per_s"])
+    return np.sqrt(np.mean((bias - curve(sensor)) ** 2))
+
+
+def simulate(program, population_file, folder, table, out):
+    sensor, bias = truth(folder)
+    population = Population(population_file, sensor)
+    for k, row in enumerate(table):
+        both = row["observed"] == "both"
+        settled = np.interp(row["temperatures_degC"], CHAMBER, sensor)
+        left, of_soaks = [], []
+        for device, rows in enumerate(points(out / "soaks", f"soaks_{k}")):
+            inside = abs(rows[:, :1] - settled).min(1) < WIDTH
+            left.append(population.left(rows, bias[device], both))
+            of_soaks.append(population.left(rows[inside], bias[device], both))
+        row["rms"], row["simulated"] = left, quantiles(left)
+        row["of_soaks"], row["devices"] = quantiles(of_soaks), len(left)
+        inputs = ["temperature", "quadrature"][:1 + both]
+        np.testing.assert_allclose(
+            trained(program, population_file, out, f"soaks_{k}",
+                    population.sensor, bias[0], inputs), left[0], rtol=1e-6)
 
 
 def print_table(table):
-    print(f"{'observed':9}{'schedule':9}{'soaks':>6}{'hours':>7}"
-          f"{'forecast':>22}{'realised':>22}")
+    print(f"{'observed':9}{'schedule':9}{'soaks':>6}{'hold':>5}{'hours':>7}"
+          f"{'forecast':>20}{'simulated':>22}{'rows of soaks':>22}")
     for row in table:
         cells = [f"{one['median']:8.3f}{one['p90']:7.3f}{one['p95']:7.3f}"
-                 for one in (row["forecast"], row["realised"])]
-        if "simulated" in row:
-            one = row["simulated"]
-            cells.append(f"  simulated {one['median']:.3f} {one['p90']:.3f} "
-                         f"{one['p95']:.3f} of {row['simulated_devices']}")
+                 for one in (row["expected_rms_deg_per_s"], row["simulated"],
+                             row["of_soaks"])]
         print(f"{row['observed']:9}{row['kind']:9}{row['soaks']:6}"
-              f"{row['hours']:7.2f}{''.join(cells)}")
+              f"{row['hold_s'] / 60:5.0f}{row['hours']:7.2f}{''.join(cells)}")
+
+
+def print_ratios(table):
+    """Planned over even, with 95 % of a bootstrap over devices."""
+    random = np.random.Generator(np.random.Philox(1))
+    for observed in ["bias", "both"]:
+        for soaks in SOAKS:
+            planned, even = (np.array(next(
+                row["rms"] for row in table if row["soaks"] == soaks and
+                (row["observed"], row["kind"]) == (observed, kind)))
+                for kind in ["planned", "even"])
+            draw = random.integers(0, len(even), (DRAWS, len(even)))
+            text = f"planned / even, {observed}, {soaks} soaks:"
+            for p in (50, 95):
+                ratio = (np.percentile(planned[draw], p, 1) /
+                         np.percentile(even[draw], p, 1))
+                low, high = np.percentile(ratio, [2.5, 97.5])
+                now = np.percentile(planned, p) / np.percentile(even, p)
+                text += f"  {p} % {now:.2f} [{low:.2f}, {high:.2f}]"
+            print(text)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("population", type=pathlib.Path)
-    parser.add_argument("set", type=pathlib.Path)
+    for name in ["population", "set", "campaign"]:
+        parser.add_argument(name, type=pathlib.Path)
     parser.add_argument("--program", type=pathlib.Path,
                         default=ROOT / "build/release/beamgyro")
     parser.add_argument("--out", type=pathlib.Path,
                         default=ROOT / "out/planning")
-    parser.add_argument("--simulate", type=int, default=0, metavar="N")
-    parser.add_argument("--campaign", type=pathlib.Path)
+    parser.add_argument("--devices", type=int, default=300)
+    parser.add_argument("--hold", type=int, action="append", default=[])
     parser.add_argument("--jobs", type=int, default=2)
     arguments = parser.parse_args()
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    population = arguments.population.resolve()
-    table = interpolated(arguments.program, population, arguments.set,
-                         arguments.out)
-    if arguments.simulate:
-        if arguments.campaign is None:
-            sys.exit("--simulate needs --campaign")
-        simulate(arguments.program, population, arguments.set,
-                 arguments.campaign, table, arguments.out.resolve(),
-                 arguments.simulate, arguments.jobs)
-    (arguments.out / "planning.json").write_text(json.dumps(table, indent=1))
+    out = arguments.out.resolve()
+    out.mkdir(parents=True, exist_ok=True)
+    program, population = arguments.program, arguments.population.resolve()
+    table = [row for hold in [None, *arguments.hold]
+             for row in plans(program, population, out, hold)]
+    generate(program, arguments.campaign, table, out, arguments.devices,
+             arguments.jobs)
+    simulate(program, population, arguments.set, table, out)
+    (out / "planning.json").write_text(json.dumps(table, indent=1))
     print_table(table)
+    print_ratios(table)
 
 
 if __name__ == "__main__":

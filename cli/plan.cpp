@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -17,15 +18,18 @@
 #include "cli/schedule_options.h"
 #include "cli/terminal.h"
 #include "compensation/compensator/compensator_file.h"
+#include "config/units.h"
 #include "dataset/files/atomic_file.h"
 #include "planning/chamber_view.h"
 #include "planning/planner.h"
 #include "planning/schedule_file.h"
 #include "planning/soak_length.h"
 #include "planning/soak_model.h"
+#include "planning/soak_noise.h"
 #include "report/plan_report.h"
 #include "sim/device/device.h"
 #include "sim/scenario/simulation_input.h"
+#include "sim/signal/noise.h"
 
 namespace beamgyro {
 namespace {
@@ -34,13 +38,11 @@ namespace fs = std::filesystem;
 
 constexpr const char* kShippedDevice = "scenarios/devices/nominal.toml";
 constexpr std::size_t kLeastTable = 7;  // soaks in the table of trade-offs
-// [-], of the noise of a point: the error by a beam that lags.
-constexpr double kLagShare = 0.5;
 
 struct PlanArguments {
   std::string population, output, json, picture, device, range, chamber;
-  std::optional<long> soaks;
-  std::optional<double> hours, residual, ramp, hold, start;
+  std::optional<long> soaks, hold;
+  std::optional<double> hours, residual, ramp, start;
   std::vector<std::string> candidates;
   bool bias_only = false;
 };
@@ -111,38 +113,31 @@ TemperatureRange chamber_of(const PlanArguments& arguments,
   return chamber;
 }
 
-// The hold [s] that the device's thermal model asks for at the ends of the
-// range and right after power-on.
-double settling_hold(const ThermalParameters& parameters,
-                     const SoakModel& model, const ChamberTime& time) {
-  const auto [lowest, highest] = model.range();
-  SoakDemand demand;
-  demand.largest_lag = kLagShare * model.noise().bias / model.rms_slope();
-  return soak_length(parameters,
-                     {lowest, std::clamp(time.start, lowest, highest), highest},
-                     time, demand);
+// Flicker is seen by a soak as the floor of its Allan deviation, white noise by
+// the fewest rows that a soak has.
+SlowNoise slow_noise(const NoiseParameters& noise) {
+  const double flicker = std::sqrt(2.0 * std::numbers::ln2 / std::numbers::pi) *
+                         noise.bias_instability;
+  const double white =
+      noise.angle_random_walk / std::sqrt(60.0 * kLeastSteadyRows);
+  return {noise.turn_on / kDegree, noise.rate_random_walk / kDegree,
+          std::hypot(flicker, white) / kDegree};
 }
 
-// A hold that is asked for may be shorter or longer, or one that never settles.
-double hold_of(const PlanArguments& arguments,
-               const ThermalParameters& parameters, const SoakModel& model,
-               const ChamberTime& time, std::vector<std::string>& warnings) {
-  if (!arguments.hold) return settling_hold(parameters, model, time);
-  const double hold = *arguments.hold * 60.0;
-  std::string settles = "does not settle in any hold";
-  try {
-    const double asked = settling_hold(parameters, model, time);
-    if (hold >= asked) return hold;
-    settles = fmt::format("asks for {:g} min", asked / 60.0);
-  } catch (const std::invalid_argument&) {
-    // said in the warning
-  }
-  warnings.push_back(fmt::format(
-      "--hold {:g}: the thermal model {}; the beam lags behind the sensor in "
-      "shorter soaks, `train` may find no steady rows in them, and more than "
-      "the forecast will be left",
-      *arguments.hold, settles));
-  return hold;
+// What the device's thermal model says at the ends of the range and right after
+// power-on, and its noise.
+SoakBehaviour behaviour_of(const PlanArguments& arguments, const Device& device,
+                           const TemperatureRange& range,
+                           const ChamberTime& time) {
+  SoakBehaviour found;
+  found.rows = slowest_rows(
+      device.thermal,
+      {range.lowest, std::clamp(time.start, range.lowest, range.highest),
+       range.highest},
+      time, kSteady);
+  found.noise = slow_noise(device.noise);
+  if (arguments.hold) found.minutes = static_cast<std::size_t>(*arguments.hold);
+  return found;
 }
 
 // A goal counts as met within the digits that are printed.
@@ -169,10 +164,8 @@ std::vector<std::string> observed_of(const SoakModel& model, bool bias_only) {
 }
 
 PlanResult result_of(const PlanArguments& arguments, const SoakModel& model,
-                     const Planner& planner, const TemperatureRange& chamber,
-                     std::vector<std::string> warnings) {
+                     const Planner& planner, const TemperatureRange& chamber) {
   PlanResult result;
-  result.warnings = std::move(warnings);
   result.chosen = chosen_plan(arguments, planner);
   const std::size_t count = result.chosen.temperatures.size();
   result.even = planner.even(count);
@@ -181,7 +174,7 @@ PlanResult result_of(const PlanArguments& arguments, const SoakModel& model,
     result.candidates.push_back(planner.judged(soaks));
   result.trade_offs = planner.trade_offs(
       std::min(std::max(count, kLeastTable), planner.most_soaks()));
-  result.time = planner.time();
+  result.time = planner.time_of(result.chosen);
   result.range = model.range();
   result.observed = observed_of(model, arguments.bias_only);
   result.devices = model.population().devices;
@@ -230,15 +223,14 @@ int run_plan(const PlanArguments& arguments) {
   ChamberTime time;
   time.start = arguments.start.value_or(time.start);
   time.ramp = arguments.ramp.value_or(time.ramp);
-  std::vector<std::string> warnings;
-  time.hold = hold_of(arguments, device.thermal, model, time, warnings);
-  const PlanResult result = result_of(
-      arguments, model, Planner(model, chamber, time), chamber, warnings);
+  const Planner planner(model, chamber, time,
+                        behaviour_of(arguments, device, range, time));
+  const PlanResult result = result_of(arguments, model, planner, chamber);
   const std::string json = plan_json(result).dump(2) + "\n";
   if (!arguments.picture.empty()) draw_plan(json, arguments.picture);
   if (!arguments.output.empty())
     write_text_file(arguments.output,
-                    schedule_text(result.chosen.temperatures, time,
+                    schedule_text(result.chosen.temperatures, result.time,
                                   device_name(arguments)));
   if (!arguments.json.empty()) write_text_file(arguments.json, json);
   for (const std::string& warning : result.warnings) print_warning(warning);
@@ -250,7 +242,7 @@ void add_chamber_options(Command& command, PlanArguments& arguments) {
   command.group("Device and chamber");
   command.text({"--device", "DEVICE.toml",
                 "Device whose thermal model tells how warm the sensor is and "
-                "how long a soak lasts",
+                "how long a soak lasts, and whose noise soaks show",
                 "the shipped nominal device"},
                arguments.device);
   command.reads({{FileKind::kDevice}});
@@ -260,9 +252,9 @@ void add_chamber_options(Command& command, PlanArguments& arguments) {
                arguments.chamber);
   command.number({"--ramp", "K/MIN", "Ramps between soaks", "2"},
                  arguments.ramp, {0, 100, true, false});
-  command.number({"--hold", "MIN", "Length of a soak in minutes",
-                  "what the thermal model asks for"},
-                 arguments.hold, {0, 1440, true, false});
+  command.integer({"--hold", "MIN", "Length of a soak in whole minutes",
+                   "the shortest that leaves at most 5 % more than the best"},
+                  arguments.hold, {1, kLongestSoak});
   command.number({"--start", "DEGC",
                   "Temperature at which chamber and device begin", "25"},
                  arguments.start, kChamberTemperatures);

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kCandidateStep = 1.0;     // [K]
 constexpr std::size_t kFurtherStarts = 4;  // steps from one end to the other
+constexpr std::size_t kHoldStep = 4;       // [min], of the first search
 constexpr int kHalvings = 6;               // of the way, for the fewest hours
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
@@ -30,8 +31,22 @@ std::vector<double> even_spacing(TemperatureRange range, std::size_t count) {
 }
 
 Planner::Planner(const SoakModel& model, TemperatureRange chamber,
-                 const ChamberTime& time)
-    : model_(model), time_(time) {
+                 const ChamberTime& time, SoakBehaviour behaviour)
+    : model_(model), time_(time), behaviour_(std::move(behaviour)) {
+  const auto& rows = behaviour_.rows;
+  while (shortest_ < rows.size() && rows[shortest_].rows < kLeastSteadyRows)
+    ++shortest_;
+  ++shortest_;
+  if (shortest_ > rows.size())
+    throw std::invalid_argument(fmt::format(
+        "a soak does not settle within {} min; expected a device that settles "
+        "faster, or a faster ramp",
+        rows.size()));
+  if (behaviour_.minutes &&
+      (*behaviour_.minutes < shortest_ || *behaviour_.minutes > rows.size()))
+    throw std::invalid_argument(fmt::format(
+        "--hold {}: soaks of {} min or more have settled; expected {} to {}",
+        *behaviour_.minutes, shortest_, shortest_, rows.size()));
   limits_.start = time.start;
   for (double T = chamber.lowest; T <= chamber.highest + 1e-9;
        T += kCandidateStep)
@@ -44,11 +59,76 @@ std::size_t Planner::most_soaks() const {
   return std::min(apart, kMostSoaks);
 }
 
+ChamberTime Planner::time_of(const SoakPlan& plan) const {
+  return {time_.start, time_.ramp, plan.hold};
+}
+
+// The beam is warmer than the sensor says where the chamber was warmer before.
+// The first soak has the warm-up after power-on beside the ramp.
+std::vector<double> Planner::lags(const std::vector<double>& soaks,
+                                  std::size_t minutes) const {
+  std::vector<double> found;
+  const std::vector<double> order = in_visiting_order(soaks, time_.start);
+  for (const double soak : soaks) {
+    const auto place = std::ranges::find(order, soak);
+    const bool first = place == order.begin();
+    const double before = first ? time_.start : *(place - 1);
+    const double ramp = std::ceil(std::abs(before - soak) / time_.ramp);
+    const double lag = mean_lag(
+        behaviour_.rows, minutes,
+        first ? behaviour_.rows.size() : static_cast<std::size_t>(ramp));
+    found.push_back(before > soak ? lag : -lag);
+  }
+  return found;
+}
+
+ResidualForecast Planner::forecast(const std::vector<double>& soaks,
+                                   std::size_t minutes) const {
+  SoakErrors errors = {lags(soaks, minutes), {}};
+  if (behaviour_.noise)
+    errors.noise = slow_noise_root(
+        *behaviour_.noise, soaks,
+        {time_.start, time_.ramp, static_cast<double>(minutes) * 60.0});
+  return forecast_residual(model_, soaks, errors);
+}
+
+std::size_t Planner::hold_minutes(const std::vector<double>& soaks) const {
+  if (behaviour_.minutes) return *behaviour_.minutes;
+  const auto median = [&](std::size_t minutes) {
+    return forecast(soaks, minutes).median;
+  };
+  std::size_t best = shortest_;
+  double least = median(best);
+  for (std::size_t tried = best + kHoldStep; tried <= behaviour_.rows.size();
+       tried += kHoldStep) {
+    const double now = median(tried);
+    if (now > least) break;
+    least = now;
+    best = tried;
+  }
+  std::size_t low = shortest_;
+  while (low < best) {
+    const std::size_t tried = (low + best) / 2;
+    if (median(tried) <= (1.0 + kHoldLoss) * least)
+      best = tried;
+    else
+      low = tried + 1;
+  }
+  return best;
+}
+
+SoakPlan Planner::judged_with(std::vector<double> soaks, double hold) const {
+  std::ranges::sort(soaks);
+  const auto minutes = static_cast<std::size_t>(std::lround(hold / 60.0));
+  const double hours = chamber_hours(soaks, {time_.start, time_.ramp, hold});
+  const ResidualForecast expected = forecast(soaks, minutes);
+  return {std::move(soaks), hold, hours, expected};
+}
+
 SoakPlan Planner::judged(std::vector<double> soaks) const {
   std::ranges::sort(soaks);
-  const double hours = chamber_hours(soaks, time_);
-  const ResidualForecast expected = forecast_residual(model_, soaks);
-  return {std::move(soaks), hours, expected};
+  const double hold = static_cast<double>(hold_minutes(soaks)) * 60.0;
+  return judged_with(std::move(soaks), hold);
 }
 
 SoakPlan Planner::even(std::size_t count) const {
@@ -56,9 +136,9 @@ SoakPlan Planner::even(std::size_t count) const {
 }
 
 // The way [K] that the holds leave time for.
-double Planner::longest_way(std::size_t count, double hours) const {
-  return (hours * 60.0 - static_cast<double>(count) * time_.hold / 60.0) *
-         time_.ramp;
+double Planner::longest_way(std::size_t count, double hours,
+                            double hold) const {
+  return (hours * 60.0 - static_cast<double>(count) * hold / 60.0) * time_.ramp;
 }
 
 // The soaks of least mean variance over a way, or none that is so short.
@@ -95,20 +175,23 @@ SoakPlan Planner::with_soaks(std::size_t count) const {
 }
 
 SoakPlan Planner::within_hours(double hours) const {
-  std::optional<std::vector<double>> chosen;
-  const SoakDesign design(model_, limits_);
+  std::optional<SoakPlan> chosen;
   for (std::size_t count = 2; count <= most_soaks(); ++count) {
-    const auto soaks = best(count, longest_way(count, hours));
+    if (longest_way(count, hours, static_cast<double>(shortest_) * 60.0) < 0.0)
+      break;
+    const double hold = with_soaks(count).hold;
+    const auto soaks = best(count, longest_way(count, hours, hold));
     if (!soaks) continue;
-    if (!chosen || design.mean_variance(*soaks) < design.mean_variance(*chosen))
-      chosen = soaks;
+    const SoakPlan plan = judged_with(*soaks, hold);
+    if (!chosen || plan.expected.median < chosen->expected.median)
+      chosen = plan;
   }
   if (!chosen)
     throw std::invalid_argument(fmt::format(
-        "{:g} hours are too few for two soaks of {:g} min each and the ramp "
-        "between them; expected more hours",
-        hours, time_.hold / 60.0));
-  return judged(*chosen);
+        "{:g} hours are too few for two soaks of {} min or more each and the "
+        "ramp between them; expected more hours",
+        hours, shortest_));
+  return *chosen;
 }
 
 // The same number of soaks over the shortest way that is good enough.
@@ -118,7 +201,7 @@ SoakPlan Planner::shortened(const SoakPlan& plan, double residual) const {
   for (int k = 0; k < kHalvings; ++k) {
     const double way = (least + most) / 2;
     const auto soaks = best(plan.temperatures.size(), way);
-    const SoakPlan tried = soaks ? judged(*soaks) : SoakPlan{};
+    const SoakPlan tried = soaks ? judged_with(*soaks, plan.hold) : SoakPlan{};
     if (soaks && tried.expected.median <= residual) {
       shortest = tried;
       most = way;
@@ -133,7 +216,8 @@ SoakPlan Planner::within_residual(double residual) const {
   std::optional<SoakPlan> fewest;
   SoakPlan last;
   for (std::size_t count = 1; count <= most_soaks(); ++count) {
-    const double holds = static_cast<double>(count) * time_.hold / 3600.0;
+    const double holds =
+        static_cast<double>(count * shortest_) / 60.0;  // [h], at least
     if (fewest && holds >= fewest->hours) break;
     last = with_soaks(count);
     if (last.expected.median > residual) continue;

@@ -8,15 +8,25 @@
 #include "planning/chamber_time.h"
 #include "planning/residual_forecast.h"
 #include "planning/soak_design.h"
+#include "planning/soak_length.h"
 #include "planning/soak_model.h"
+#include "planning/soak_noise.h"
 
 namespace beamgyro {
 
 /// Soaks of the chamber with what they cost and leave.
 struct SoakPlan {
   std::vector<double> temperatures;  // [degC], increasing
+  double hold = 0.0;                 // [s], of each soak
   double hours = 0.0;
   ResidualForecast expected;
+};
+
+/// What soaks of a device show beside its curves, and how long they may last.
+struct SoakBehaviour {
+  std::vector<SoakRows> rows;               // slowest_rows()
+  std::optional<SlowNoise> noise = {};      // none: that of SoakModel::noise()
+  std::optional<std::size_t> minutes = {};  // of a hold, chosen by the user
 };
 
 /// A number of soaks, planned and evenly spaced.
@@ -32,9 +42,14 @@ std::vector<double> even_spacing(TemperatureRange range, std::size_t count);
 class Planner {
  public:
   /// Soaks may be at whole kelvins from the lower limit of the chamber on, as
-  /// far as the population reaches. The model must outlive the planner.
+  /// far as the population reaches. All soaks of a plan have the same hold: the
+  /// user's, or the shortest whole number of minutes of which the median is no
+  /// more than kHoldLoss above that of the best one: the beam lags in shorter
+  /// holds, and the bias walks in longer ones. The model must outlive
+  /// the planner. Throws std::invalid_argument for a user's hold that has too
+  /// few rows, and when every hold has.
   Planner(const SoakModel& model, TemperatureRange chamber,
-          const ChamberTime& time);
+          const ChamberTime& time, SoakBehaviour behaviour);
 
   /// The largest number of soaks that the limits hold apart, up to kMostSoaks.
   std::size_t most_soaks() const;
@@ -63,18 +78,29 @@ class Planner {
   /// One entry for each number of soaks from 1 to `most`.
   std::vector<TradeOff> trade_offs(std::size_t most) const;
 
-  const ChamberTime& time() const { return time_; }
+  /// Start and ramp, with the hold of a plan.
+  ChamberTime time_of(const SoakPlan& plan) const;
 
  private:
-  double longest_way(std::size_t count, double hours) const;
+  double longest_way(std::size_t count, double hours, double hold) const;
+  std::vector<double> lags(const std::vector<double>& soaks,
+                           std::size_t minutes) const;
+  ResidualForecast forecast(const std::vector<double>& soaks,
+                            std::size_t minutes) const;
+  std::size_t hold_minutes(const std::vector<double>& soaks) const;
+  SoakPlan judged_with(std::vector<double> soaks, double hold) const;
   std::optional<std::vector<double>> best(std::size_t count,
                                           double longest) const;
   SoakPlan shortened(const SoakPlan& plan, double residual) const;
 
   const SoakModel& model_;
   ChamberTime time_;
+  SoakBehaviour behaviour_;
+  std::size_t shortest_ = 0;  // [min], hold with enough rows
   DesignLimits limits_;
 };
+
+constexpr double kHoldLoss = 0.05;  // [-], of the median
 
 constexpr std::size_t kMostSoaks = 20;
 

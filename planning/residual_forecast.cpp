@@ -2,12 +2,12 @@
 #include "planning/residual_forecast.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "planning/random_purposes.h"
 #include "random/random_stream.h"
@@ -20,8 +20,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index kLeastDevices = 3;   // one that is predicted by two others
-constexpr Index kLeastDraws = 4000;  // of the noise, over all devices
-constexpr Index kGaussianDraws = 8000;
+constexpr Index kLeastDraws = 4000;  // of devices and noise
 
 // A matrix of normal numbers, from stream `number`.
 MatrixXd normal_numbers(Index rows, Index columns, std::uint32_t number) {
@@ -51,9 +50,44 @@ MatrixXd inverse_with_identity(MatrixXd B) {
   return B.llt().solve(MatrixXd::Identity(B.rows(), B.cols()));
 }
 
+// What soaks are taken for, and what they show.
+struct Observation {
+  MatrixXd H;
+  SoakModel::Lagging shown;
+  MatrixXd noise;  // root of its covariance
+};
+Observation observation(const SoakModel& model,
+                        const std::vector<double>& soaks,
+                        const SoakErrors& errors) {
+  const auto& [lag, noise] = errors;
+  Observation found = {
+      model.equations(soaks),
+      model.lagging(soaks, lag.empty() ? std::vector(soaks.size(), 0.0) : lag),
+      {}};
+  const Index rows = found.H.rows();
+  if (noise.size() == 0) {
+    found.noise.setIdentity(rows, rows);
+  } else {
+    found.noise.setZero(rows, noise.cols());
+    for (Index k = 0; k < noise.rows(); ++k)
+      found.noise.row(k * model.rows_per_soak()) =
+          noise.row(k) / model.noise().bias;
+  }
+  return found;
+}
+
+// Appends the root of e^T W e of each row.
+void append_rms(const SoakModel& model, const MatrixXd& e,
+                std::vector<double>& rms) {
+  const VectorXd square = (e * model.weight()).cwiseProduct(e).rowwise().sum();
+  for (const double value : square)
+    rms.push_back(std::sqrt(std::max(value, 0.0)));
+}
+
 // Appends the residual of each device that is predicted by all others.
-void append_residuals(const SoakModel& model, const MatrixXd& H,
+void append_residuals(const SoakModel& model, const Observation& soaks,
                       const MatrixXd& noise, std::vector<double>& rms) {
+  const MatrixXd& H = soaks.H;
   const MatrixXd& c = model.population().coefficients;
   const auto n = static_cast<double>(model.population().devices);
   const double alpha = (n - 1.0) / (n - 2.0);
@@ -61,8 +95,9 @@ void append_residuals(const SoakModel& model, const MatrixXd& H,
   const MatrixXd B = inverse_with_identity(alpha * H * H.transpose());
   const MatrixXd g = c * H.transpose();  // H c, a row per device
   const MatrixXd Bg = g * B;
-  MatrixXd w = (gamma * g + noise) * B;
-  MatrixXd e = gamma * c;
+  MatrixXd e = gamma * c * model.truth();
+  const MatrixXd shown = e * soaks.shown.H.transpose() + noise;
+  MatrixXd w = (shown.rowwise() + soaks.shown.shift.transpose()) * B;
   for (Index d = 0; d < c.rows(); ++d) {
     // S^-1 = (B^-1 - beta g g^T)^-1 by Sherman and Morrison.
     const double share = 1.0 - beta * g.row(d).dot(Bg.row(d));
@@ -70,43 +105,38 @@ void append_residuals(const SoakModel& model, const MatrixXd& H,
     e.row(d) += beta * g.row(d).dot(w.row(d)) * c.row(d);
   }
   e -= alpha * w * H;
-  const VectorXd square = (e * model.weight()).cwiseProduct(e).rowwise().sum();
-  for (const double value : square)
-    rms.push_back(std::sqrt(std::max(value, 0.0)));
+  append_rms(model, e, rms);
 }
 
 ResidualForecast forecast_of_devices(const SoakModel& model,
-                                     const MatrixXd& H) {
+                                     const Observation& soaks) {
   const Index devices = model.population().coefficients.rows();
   const Index rounds = (kLeastDraws + devices - 1) / devices;
   std::vector<double> rms;
   for (Index round = 0; round < rounds; ++round)
-    append_residuals(
-        model, H,
-        normal_numbers(devices, H.rows(), static_cast<std::uint32_t>(round)),
-        rms);
+    append_residuals(model, soaks,
+                     normal_numbers(devices, soaks.noise.cols(),
+                                    static_cast<std::uint32_t>(round)) *
+                         soaks.noise.transpose(),
+                     rms);
   return quantiles_of(std::move(rms));
 }
 
 ResidualForecast forecast_of_process(const SoakModel& model,
-                                     const MatrixXd& H) {
-  // The eigenvalues of L^T W L, L L^T = A^-1, are those of the posterior.
-  MatrixXd A = H.transpose() * H;
-  A.diagonal().array() += 1.0;
-  const Eigen::LLT<MatrixXd> llt(A);
-  const MatrixXd left = llt.matrixL().solve(model.weight());
-  const MatrixXd posterior = llt.matrixL().solve(left.transpose());
-  const VectorXd variance =
-      Eigen::SelfAdjointEigenSolver<MatrixXd>(posterior, Eigen::EigenvaluesOnly)
-          .eigenvalues()
-          .cwiseMax(0.0);
-  const VectorXd square = normal_numbers(kGaussianDraws, variance.size(), 0)
-                              .array()
-                              .square()
-                              .matrix() *
-                          variance;
-  const Eigen::ArrayXd rms = square.array().sqrt();
-  return quantiles_of({rms.begin(), rms.end()});
+                                     const Observation& soaks) {
+  const MatrixXd K = inverse_with_identity(soaks.H.transpose() * soaks.H) *
+                     soaks.H.transpose();
+  const MatrixXd x =
+      normal_numbers(kLeastDraws, model.modes(), 0) * model.truth();
+  const MatrixXd shown = x * soaks.shown.H.transpose() +
+                         normal_numbers(kLeastDraws, soaks.noise.cols(), 1) *
+                             soaks.noise.transpose();
+  std::vector<double> rms;
+  append_rms(
+      model,
+      x - (shown.rowwise() + soaks.shown.shift.transpose()) * K.transpose(),
+      rms);
+  return quantiles_of(std::move(rms));
 }
 
 }  // namespace
@@ -119,11 +149,12 @@ ForecastBasis forecast_basis(const Population& population) {
 }
 
 ResidualForecast forecast_residual(const SoakModel& model,
-                                   const std::vector<double>& soaks) {
-  const MatrixXd H = model.equations(soaks);
+                                   const std::vector<double>& soaks,
+                                   const SoakErrors& errors) {
+  const Observation shown = observation(model, soaks, errors);
   return forecast_basis(model.population()) == ForecastBasis::kDevices
-             ? forecast_of_devices(model, H)
-             : forecast_of_process(model, H);
+             ? forecast_of_devices(model, shown)
+             : forecast_of_process(model, shown);
 }
 
 }  // namespace beamgyro

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "planning/soak_model.h"
@@ -19,6 +20,17 @@ enum class ForecastBasis {
   kGaussian,  // draws from the Gaussian process
 };
 
+/// How the soaks of a real device differ from what they are taken for.
+struct SoakErrors {
+  // [K], of each soak: by how much the beam is warmer than the sensor says.
+  // Empty: not at all.
+  std::vector<double> lag;
+  // L: the bias of the soaks is wrong by L z [deg/s], z ~ N(0, I), and channels
+  // are exact. Empty: all rows have the independent noise of
+  // SoakModel::noise().
+  Eigen::MatrixXd noise;
+};
+
 /// The basis that a population allows: its devices if it stores the
 /// coefficients of three or more.
 ForecastBasis forecast_basis(const Population& population);
@@ -32,15 +44,18 @@ ForecastBasis forecast_basis(const Population& population);
 ///
 ///   P_d = ((n - 1) I - n / (n - 1) c c^T) / (n - 2),
 ///
-/// the soaks show H x + noise, x = n / (n - 1) c, and the residual is that of
-/// e = x - P_d H^T (H P_d H^T + I)^-1 (H x + noise).
+/// the device is x = n / (n - 1) R c without the noise of its training
+/// (SoakModel::truth()), the soaks show G x + shift + noise
+/// (SoakModel::lagging()), and the residual is that of
+/// e = x - P_d H^T (H P_d H^T + I)^-1 (G x + shift + noise).
 ///
-/// Of the Gaussian process: rms^2 = sum of lambda_k z_k^2 with the eigenvalues
-/// of the posterior covariance over the range and z ~ N(0, 1).
+/// Of the Gaussian process: x is drawn from N(0, R^2), and mean and covariance
+/// are known.
 ///
-/// Noise and z come from counter-based streams: the forecast of the same soaks
+/// Noise and x come from counter-based streams: the forecast of the same soaks
 /// is always the same.
 ResidualForecast forecast_residual(const SoakModel& model,
-                                   const std::vector<double>& soaks);
+                                   const std::vector<double>& soaks,
+                                   const SoakErrors& errors = {});
 
 }  // namespace beamgyro

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "planning/soak_length.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <stdexcept>
+#include <utility>
 
 #include "config/units.h"
 #include "planning/chamber_view.h"
@@ -23,6 +21,15 @@ std::vector<double> minutes_from(double begin, int count) {
   std::vector<double> times;
   for (int k = 0; k <= count; ++k) times.push_back(begin + k * kMinute);
   return times;
+}
+
+ThermalParameters slower(ThermalParameters parameters) {
+  for (double* capacity :
+       {&parameters.beam_heat_capacity, &parameters.pzt_heat_capacity,
+        &parameters.mount_heat_capacity, &parameters.housing_heat_capacity,
+        &parameters.board_heat_capacity, &parameters.sensor_heat_capacity})
+    *capacity *= 1.0 + kCapacityMargin;
+  return parameters;
 }
 
 }  // namespace
@@ -57,26 +64,34 @@ std::vector<SoakRows> rows_over_time(const ThermalParameters& parameters,
   return found;
 }
 
-double soak_length(const ThermalParameters& parameters,
-                   const std::vector<double>& soaks, const ChamberTime& time,
-                   const SoakDemand& demand) {
-  int longest = 0;
+std::vector<SoakRows> slowest_rows(const ThermalParameters& parameters,
+                                   const std::vector<double>& soaks,
+                                   const ChamberTime& time, double steady) {
+  const ThermalParameters slow = slower(parameters);
+  std::vector<SoakRows> found;
   for (const double soak : soaks) {
-    const std::vector<SoakRows> rows =
-        rows_over_time(parameters, time.start, soak, time.ramp, demand.steady);
-    const auto enough = std::ranges::find_if(rows, [&](const SoakRows& now) {
-      return now.rows >= demand.rows &&
-             std::abs(now.mean_lag) <= demand.largest_lag;
-    });
-    if (enough == rows.end())
-      throw std::invalid_argument(fmt::format(
-          "a soak at {:g} degC does not settle within {} min to {:g} K/min and "
-          "a lag of the beam of {:.3g} K; expected --hold with the length that "
-          "is wanted",
-          soak, kLongestSoak, demand.steady, demand.largest_lag));
-    longest = std::max(longest, static_cast<int>(enough - rows.begin()) + 1);
+    std::vector<SoakRows> rows =
+        rows_over_time(slow, time.start, soak, time.ramp, steady);
+    if (found.empty() ||
+        std::abs(rows.back().mean_lag) > std::abs(found.back().mean_lag))
+      found = std::move(rows);
   }
-  return longest * kMinute;
+  return found;
+}
+
+double mean_lag(const std::vector<SoakRows>& rows, std::size_t minutes,
+                std::size_t ramp) {
+  const SoakRows& hold = rows.at(minutes - 1);
+  if (hold.rows == 0) return 0.0;
+  // Sum of the lags of the rows from the start of the hold to a minute of it.
+  const auto sum = [&](std::size_t minute) {
+    if (minute == 0) return 0.0;
+    const SoakRows& now = rows[std::min(minute, rows.size()) - 1];
+    return now.rows * now.mean_lag;
+  };
+  const std::size_t first = minutes - static_cast<std::size_t>(hold.rows);
+  return std::abs(sum(minutes) - (sum(minutes + ramp) - sum(first + ramp))) /
+         hold.rows;
 }
 
 }  // namespace beamgyro

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "planning/chamber_time.h"
@@ -8,13 +9,9 @@
 
 namespace beamgyro {
 
-/// What a soak must last for.
-struct SoakDemand {
-  double steady = 0.05;  // [K/min], faster rows are not trained on
-  int rows = 5;          // of a minute that are to be trained on
-  double largest_lag =
-      0.05;  // [K], mean of them, of the beam behind the sensor
-};
+// Rows that scenarios/population/adapted.toml trains on.
+constexpr double kSteady = 0.05;     // [K/min], faster rows are left out
+constexpr int kLeastSteadyRows = 5;  // of a minute, that a soak should have
 
 /// Rows of one soak, by the thermal model.
 struct SoakRows {
@@ -31,12 +28,24 @@ std::vector<SoakRows> rows_over_time(const ThermalParameters& parameters,
                                      double from, double to, double ramp,
                                      double steady);
 
-/// Returns the shortest hold [s], a whole number of minutes, after which each
-/// of these soaks, reached from the start, meets the demand. Throws
-/// std::invalid_argument when kLongestSoak does not suffice.
-double soak_length(const ThermalParameters& parameters,
-                   const std::vector<double>& soaks, const ChamberTime& time,
-                   const SoakDemand& demand);
+/// Returns rows_over_time() of that soak, of some that are each reached from
+/// the start, whose beam lags most. A unit is slower by as much as its heat
+/// capacities may be larger than the parameters say: all are taken
+/// 1 + kCapacityMargin times.
+std::vector<SoakRows> slowest_rows(const ThermalParameters& parameters,
+                                   const std::vector<double>& soaks,
+                                   const ChamberTime& time, double steady);
+
+/// Returns the size of the mean lag [K] in the rows of a hold of so many
+/// minutes after a ramp of `ramp` whole minutes, given `rows` of a soak whose
+/// ramp was so long that the lag no longer grew. A shorter ramp is that one
+/// less one that ended `ramp` earlier, because the heat flow is linear. Rows
+/// are the last minutes of the hold. Throws std::out_of_range for holds that
+/// `rows` has not.
+double mean_lag(const std::vector<SoakRows>& rows, std::size_t minutes,
+                std::size_t ramp);
+
+constexpr double kCapacityMargin = 0.1;  // [-]
 
 constexpr int kLongestSoak = 360;  // [min]
 

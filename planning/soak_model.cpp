@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "compensation/models/array_view.h"
+#include "planning/training_noise.h"
 
 namespace beamgyro {
 namespace {
@@ -17,8 +18,7 @@ using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kRangeStep = 1.0;   // [K], over which the residual is averaged
-constexpr double kLeastStep = 1e-3;  // [K], where the population ends
+constexpr double kRangeStep = 1.0;  // [K], over which the residual is averaged
 
 }  // namespace
 
@@ -32,12 +32,16 @@ SoakModel::SoakModel(Population population, SensorOfChamber sensor,
         "the devices of the population are all alike: there is nothing that a "
         "soak could tell; expected a population whose devices differ");
   const Index grid = population_.grid();
-  for (Index curve = 0; curve < rows_per_soak(); ++curve)
+  for (Index curve = 0; curve < rows_per_soak(); ++curve) {
+    means_.push_back(bias_curve(
+        population_, population_.mean.segment(curve * grid, grid).array()));
     for (const auto& mode : population_.modes.colwise())
       modes_.push_back(
           bias_curve(population_, mode.segment(curve * grid, grid).array()));
+  }
   const MatrixXd bias = values(0, known_sensor(range_grid()));
   weight_ = bias.transpose() * bias / static_cast<double>(bias.rows());
+  truth_ = truth_root(population_);
 }
 
 // One column for each mode, one row for each temperature of the sensor.
@@ -81,34 +85,42 @@ Index SoakModel::rows_per_soak() const {
              : 1 + static_cast<Index>(population_.channels.size());
 }
 
-MatrixXd SoakModel::equations(const std::vector<double>& chamber) const {
-  const Index rows = rows_per_soak();
-  MatrixXd H(rows * static_cast<Index>(chamber.size()), modes());
-  if (chamber.empty()) return H;
-  const ArrayXd T = known_sensor(array_view(chamber));
-  for (Index curve = 0; curve < rows; ++curve) {
-    const double noise = curve == 0 ? options_.noise.bias
-                                    : options_.noise.channel_share *
-                                          curve_spread(population_, curve);
-    const MatrixXd own = values(curve, T) / noise;
-    for (Index k = 0; k < own.rows(); ++k) H.row(k * rows + curve) = own.row(k);
+double SoakModel::noise_of(Index curve) const {
+  return curve == 0
+             ? options_.noise.bias
+             : options_.noise.channel_share * curve_spread(population_, curve);
+}
+
+MatrixXd SoakModel::rows(const ArrayXd& sensor) const {
+  const Index curves = rows_per_soak();
+  MatrixXd H(curves * sensor.size(), modes());
+  for (Index curve = 0; curve < curves; ++curve) {
+    const MatrixXd own = values(curve, sensor) / noise_of(curve);
+    for (Index k = 0; k < own.rows(); ++k)
+      H.row(k * curves + curve) = own.row(k);
   }
   return H;
 }
 
-double SoakModel::rms_slope() const {
-  const ArrayXd T = known_sensor(range_grid());
-  const ArrayXd mean =
-      bias_curve(population_, population_.mean.head(population_.grid()).array())
-          .predict(T);
-  const MatrixXd modes_of_bias = values(0, T);
-  double squares = 0.0;
-  for (Index k = 1; k < T.size(); ++k)
-    squares +=
-        ((modes_of_bias.row(k) - modes_of_bias.row(k - 1)).squaredNorm() +
-         std::pow(mean(k) - mean(k - 1), 2)) /
-        std::max(T(k) - T(k - 1), kLeastStep) / (T(T.size() - 1) - T(0));
-  return std::sqrt(squares);
+MatrixXd SoakModel::equations(const std::vector<double>& chamber) const {
+  return chamber.empty() ? MatrixXd(0, modes())
+                         : rows(known_sensor(array_view(chamber)));
+}
+
+SoakModel::Lagging SoakModel::lagging(const std::vector<double>& chamber,
+                                      const std::vector<double>& lag) const {
+  const auto [lowest, highest] = population_.range();
+  const ArrayXd sensor = known_sensor(array_view(chamber));
+  const ArrayXd beam = (sensor + array_view(lag)).max(lowest).min(highest);
+  Lagging found{rows(beam), Eigen::VectorXd(rows_per_soak() * sensor.size())};
+  for (Index curve = 0; curve < rows_per_soak(); ++curve) {
+    const CubicSpline& mean = means_[static_cast<std::size_t>(curve)];
+    const ArrayXd shift =
+        (mean.predict(beam) - mean.predict(sensor)) / noise_of(curve);
+    for (Index k = 0; k < shift.size(); ++k)
+      found.shift(k * rows_per_soak() + curve) = shift(k);
+  }
+  return found;
 }
 
 }  // namespace beamgyro

@@ -47,6 +47,16 @@ class SoakModel {
   /// the constructor for a temperature that the population does not reach.
   Eigen::MatrixXd equations(const std::vector<double>& chamber) const;
 
+  /// What soaks show whose beam lags by `lag` [K] behind the sensor: the rows
+  /// `H` of the warmer temperature, and `shift`, by which the mean there
+  /// differs from that at the sensor's, over the noise.
+  struct Lagging {
+    Eigen::MatrixXd H;
+    Eigen::VectorXd shift;
+  };
+  Lagging lagging(const std::vector<double>& chamber,
+                  const std::vector<double>& lag) const;
+
   /// Returns whether the population knows the device at this temperature.
   bool reaches(double chamber) const;
 
@@ -54,22 +64,24 @@ class SoakModel {
   /// makes is e^T W e [(deg/s)^2].
   const Eigen::MatrixXd& weight() const { return weight_; }
 
-  /// Returns the slope of the bias over temperature [deg/s/K]: root mean square
-  /// over devices and over the range.
-  double rms_slope() const;
+  /// R: truth_root() of the population.
+  const Eigen::MatrixXd& truth() const { return truth_; }
 
  private:
   Eigen::ArrayXd known_sensor(const Eigen::ArrayXd& chamber) const;
   Eigen::ArrayXd range_grid() const;
   Eigen::MatrixXd values(Eigen::Index curve,
                          const Eigen::ArrayXd& sensor) const;
+  double noise_of(Eigen::Index curve) const;
+  Eigen::MatrixXd rows(const Eigen::ArrayXd& sensor) const;
 
   Population population_;
   SensorOfChamber sensor_;
   SoakModelOptions options_;
   std::vector<CubicSpline>
       modes_;  // of each curve, of the sensor's temperature
-  Eigen::MatrixXd weight_;
+  std::vector<CubicSpline> means_;  // likewise
+  Eigen::MatrixXd weight_, truth_;
 };
 
 }  // namespace beamgyro

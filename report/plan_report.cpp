@@ -79,6 +79,7 @@ Json forecast_json(const ResidualForecast& expected) {
 
 Json soaks_json(const SoakPlan& plan) {
   return {{"temperatures_degC", plan.temperatures},
+          {"hold_s", plan.hold},
           {"hours", plan.hours},
           {"expected_rms_deg_per_s", forecast_json(plan.expected)}};
 }

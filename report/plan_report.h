@@ -16,8 +16,8 @@ namespace beamgyro {
 struct PlanResult {
   SoakPlan chosen, even;  // of the same number of soaks
   std::vector<TradeOff> trade_offs;
-  std::vector<SoakPlan> candidates;  // of the user
-  ChamberTime time;
+  std::vector<SoakPlan> candidates;   // of the user
+  ChamberTime time;                   // of the chosen plan
   TemperatureRange range;             // [degC], of the chamber
   std::vector<std::string> observed;  // "bias" and channels
   int devices = 0;                    // of the population

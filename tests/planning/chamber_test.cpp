@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -45,22 +46,37 @@ TEST(ChamberView, InverseReturnsTheChamber) {
   EXPECT_NEAR(view.chamber_temperature(sensor), -40, 1e-6);
 }
 
-TEST(SoakLength, FollowsTheSlowestMassAndTheDemand) {
+TEST(SoakLength, LagFollowsTheSlowestMassAndSoak) {
   const ThermalParameters nominal;
   ThermalParameters slow;
   slow.beam_heat_capacity *= 2;
   const ChamberTime time{25, 2, 0};
-  const double usual = soak_length(nominal, {-40}, time, {});
-  EXPECT_GT(soak_length(slow, {-40}, time, {}), usual);
-  EXPECT_GT(soak_length(nominal, {-40}, time, {.largest_lag = 0.01}), usual);
-  // Each further row takes a minute where the lag does not matter.
-  const double five =
-      soak_length(nominal, {-40}, time, {.rows = 5, .largest_lag = 10});
-  EXPECT_EQ(soak_length(nominal, {-40}, time, {.rows = 30, .largest_lag = 10}),
-            five + 25 * 60);
-  EXPECT_EQ(soak_length(nominal, {-40, 25}, time, {}), usual);
-  EXPECT_THROW((void)soak_length(nominal, {-40}, time, {.rows = 1000}),
-               std::invalid_argument);
+  const auto usual = slowest_rows(nominal, {-40}, time, kSteady);
+  const auto late = slowest_rows(slow, {-40}, time, kSteady);
+  EXPECT_GT(late[59].mean_lag, 1.5 * usual[59].mean_lag);
+  EXPECT_LT(usual[119].mean_lag, usual[59].mean_lag);
+  // Slower than the parameters say, and than a soak that is nearer.
+  EXPECT_GT(usual[59].mean_lag,
+            rows_over_time(nominal, 25, -40, 2, kSteady)[59].mean_lag);
+  EXPECT_EQ(slowest_rows(nominal, {20, -40}, time, kSteady)[59].mean_lag,
+            usual[59].mean_lag);
+}
+
+TEST(SoakLength, LagOfAShortRampIsThatOfALongOneLessAnEarlierOne) {
+  // A lag of 4 K that decays with a time constant of 10 min, rows from 8 min
+  // on.
+  std::vector<SoakRows> rows;
+  double sum = 0.0;
+  for (int minute = 1; minute <= 200; ++minute) {
+    if (minute > 8) sum += 4.0 * std::exp(-minute / 10.0);
+    const int count = std::max(minute - 8, 0);
+    rows.push_back({count, count > 0 ? sum / count : 0.0});
+  }
+  // Of a ramp of 5 min: 1 - exp(-5 / 10) of a long one.
+  EXPECT_NEAR(mean_lag(rows, 30, 5) / rows[29].mean_lag, 1 - std::exp(-0.5),
+              1e-9);
+  EXPECT_NEAR(mean_lag(rows, 30, 1000), rows[29].mean_lag, 1e-6);
+  EXPECT_EQ(mean_lag(rows, 30, 0), 0.0);
 }
 
 TEST(SoakLength, LagDecaysToTheSettledBeam) {

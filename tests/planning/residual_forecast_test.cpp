@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "planning/soak_design.h"
+#include "planning/soak_noise.h"
+#include "planning/training_noise.h"
 #include "tests/planning/small_population.h"
 
 namespace beamgyro::residual_forecast_test {
@@ -81,6 +84,74 @@ TEST(ResidualForecast, OfTheProcessHasTheVarianceOfTheDesign) {
   EXPECT_LT(found.median, rms);
   EXPECT_GT(found.p90, rms);
   EXPECT_GT(found.p95, found.p90);
+}
+
+TEST(ResidualForecast, GrowsWithALagOfTheBeam) {
+  const SoakModel model = model_of(small_population(50));
+  const std::vector<double> soaks = {5.0, 33.0};
+  const double settled = forecast_residual(model, soaks).median;
+  EXPECT_EQ(forecast_residual(model, soaks, {{0.0, 0.0}, {}}).median, settled);
+  EXPECT_GT(forecast_residual(model, soaks, {{3.0, 3.0}, {}}).median,
+            1.01 * settled);
+}
+
+TEST(ResidualForecast, TurnOnStaysWhereIndependentNoiseAveragesOut) {
+  const SoakModel model = model_of(small_population(200), true);
+  const std::vector<double> soaks = {0.0,  5.0,  10.0, 15.0, 20.0,
+                                     25.0, 30.0, 35.0, 40.0};
+  const auto forecast = [&](const SlowNoise& noise) {
+    return forecast_residual(
+               model, soaks,
+               {{}, slow_noise_root(noise, soaks, {20.0, 2.0, 600.0})})
+        .p95;
+  };
+  // 95 % of |N(0, 0.03)| are below 0.059, of the mean of nine below 0.020; the
+  // curve has four modes, which take up less than half of the offset.
+  EXPECT_GT(forecast({.turn_on = 0.03}), 1.2 * forecast({.own = 0.03}));
+}
+
+TEST(SlowNoiseRoot, WalksInTheOrderOfTheVisits) {
+  // From 20 degC first to 30, then to 0: an hour of hold each, 10 K and 30 K.
+  const Eigen::MatrixXd L = slow_noise_root(
+      {.turn_on = 0.03, .walk = 1e-3, .own = 0.01}, {0.0, 30.0}, {20, 2, 3600});
+  const Eigen::MatrixXd covariance = L * L.transpose();
+  const double first = 1e-6 * (300 + 3600), own = 1e-4, turn_on = 9e-4;
+  EXPECT_NEAR(covariance(1, 1), turn_on + first + own, 1e-12);
+  EXPECT_NEAR(covariance(0, 1), turn_on + first, 1e-12);
+  EXPECT_NEAR(covariance(0, 0), turn_on + first + 1e-6 * (900 + 3600) + own,
+              1e-12);
+}
+
+// Smooth curves of unit variance, in all directions a little, and in the bias
+// the noise of a walk with steps of `step` [deg/s].
+Eigen::MatrixXd smooth_covariance(Eigen::Index grid, double step) {
+  Eigen::MatrixXd covariance(2 * grid, 2 * grid);
+  for (Eigen::Index i = 0; i < 2 * grid; ++i)
+    for (Eigen::Index j = 0; j < 2 * grid; ++j) {
+      const double distance = static_cast<double>(i - j) / 4.0;
+      covariance(i, j) = std::exp(-distance * distance);
+      if (i == j) covariance(i, j) += 1e-6;
+      if (i < grid && j < grid)
+        covariance(i, j) += step * step * static_cast<double>(std::min(i, j));
+    }
+  return covariance;
+}
+
+TEST(TruthRoot, TakesOffTheWalkAndNoMore) {
+  Population p = small_population(40);
+  p.modes = smooth_covariance(p.grid(), 0.5).llt().matrixL();
+  const Eigen::MatrixXd R = truth_root(p);
+  const Eigen::MatrixXd found = p.modes * R * R * p.modes.transpose();
+  // Steps of 0.5 deg/s add up to a variance of 10. What the curves have in all
+  // directions, 1e-6, is all that can be taken for a walk.
+  const Eigen::MatrixXd clean = smooth_covariance(p.grid(), 0.0);
+  EXPECT_LT((found - clean).cwiseAbs().maxCoeff(), 1e-4);
+}
+
+TEST(TruthRoot, KeepsCurvesWithoutDirectionsOfNoise) {
+  const Population smooth = small_population(60);
+  const Eigen::MatrixXd R = truth_root(smooth);
+  EXPECT_LT((R - Eigen::MatrixXd::Identity(R.rows(), R.cols())).norm(), 1e-12);
 }
 
 TEST(ResidualForecast, IsTheSameEveryTime) {

@@ -11,6 +11,7 @@
 
 #include "compensation/inputs/input.h"
 #include "planning/planner.h"
+#include "planning/soak_length.h"
 #include "tests/planning/small_population.h"
 
 namespace beamgyro::soak_design_test {
@@ -62,7 +63,7 @@ TEST(Planner, FindsTheBestOfAllPairs) {
     for (const double b : every_kelvin())
       if (design.is_allowed({a, b}))
         least = std::min(least, design.mean_variance({a, b}));
-  const Planner planner(model, population().range(), {});
+  const Planner planner(model, population().range(), {}, {.rows = {{5, 0.0}}});
   const auto soaks = planner.with_soaks(2).temperatures;
   // The low-rank gain and a new inverse differ by rounding.
   EXPECT_NEAR(design.mean_variance(soaks) / least, 1.0, 1e-6);
@@ -83,7 +84,7 @@ TEST(SoakDesign, KeepsSoaksApartAndWithinTheWay) {
 TEST(Planner, IsNeverWorseThanEvenSpacingAndMoreSoaksLeaveLess) {
   const SoakModel model = model_of(population());
   const SoakDesign design(model, {every_kelvin()});
-  const Planner planner(model, population().range(), {});
+  const Planner planner(model, population().range(), {}, {.rows = {{5, 0.0}}});
   double before = HUGE_VAL;
   for (std::size_t count = 1; count <= 8; ++count) {
     const SoakPlan plan = planner.with_soaks(count);
@@ -98,7 +99,9 @@ TEST(Planner, IsNeverWorseThanEvenSpacingAndMoreSoaksLeaveLess) {
 
 TEST(Planner, KeepsToTheHoursAndReachesTheResidual) {
   const SoakModel model = model_of(population());
-  const Planner planner(model, population().range(), {25.0, 1.0, 1800.0});
+  const Planner planner(
+      model, population().range(), {25.0, 1.0, 0.0},
+      {.rows = std::vector<SoakRows>(30, {5, 0.0}), .minutes = 30});
   const SoakPlan quick = planner.within_hours(1.5);
   EXPECT_LE(quick.hours, 1.5);
   EXPECT_GE(quick.temperatures.size(), 2U);
@@ -108,6 +111,38 @@ TEST(Planner, KeepsToTheHoursAndReachesTheResidual) {
   EXPECT_LE(good.hours, free.hours);
   EXPECT_THROW((void)planner.within_hours(0.9), std::invalid_argument);
   EXPECT_THROW((void)planner.within_residual(1e-9), std::invalid_argument);
+}
+
+TEST(Planner, HoldsAreAsShortAsTheLagAllows) {
+  const SoakModel model = model_of(population());
+  // Rows from the third minute on, a lag that halves with every minute.
+  std::vector<SoakRows> rows(2);
+  double sum = 0.0;
+  for (int count = 1; count <= 40; ++count) {
+    sum += 4.0 * std::pow(0.5, count);
+    rows.push_back({count, sum / count});
+  }
+  const Planner planner(model, population().range(), {}, {.rows = rows});
+  const SoakPlan plan = planner.with_soaks(2);
+  const double settled = forecast_residual(model, plan.temperatures).median;
+  // From 25 degC to soaks in the cold the beam is warmer than the sensor says.
+  ASSERT_LT(plan.temperatures.back(), 25.0);
+  const auto minutes = static_cast<std::size_t>(plan.hold / 60);
+  const auto ramp = static_cast<std::size_t>(
+      std::ceil((plan.temperatures[1] - plan.temperatures[0]) / 2.0));
+  const auto at = [&](std::size_t hold) {
+    return forecast_residual(
+               model, plan.temperatures,
+               {{mean_lag(rows, hold, ramp), rows[hold - 1].mean_lag}, {}})
+        .median;
+  };
+  EXPECT_NEAR(at(minutes), plan.expected.median, 1e-9);
+  EXPECT_LE(at(minutes), settled * 1.1);
+  EXPECT_GT(minutes, 7U);  // five rows
+  EXPECT_GT(at(minutes - 1), at(minutes));
+  EXPECT_THROW(
+      Planner(model, population().range(), {}, {.rows = rows, .minutes = 6}),
+      std::invalid_argument);
 }
 
 TEST(SoakModel, RefusesARangeThatThePopulationDoesNotKnow) {

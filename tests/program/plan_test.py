@@ -110,11 +110,13 @@ class Plan(ProgramTest):
 
     def test_hours_and_residual_are_kept(self):
         quick = self.plan("--hours", "2")
-        self.assertLessEqual(quick["schedule"]["hours"], 2)
+        # Within the digits that are printed.
+        self.assertLess(quick["schedule"]["hours"], 2.005)
         free = self.plan("--soaks", "4")
         target = free["expected_rms_deg_per_s"]["median"] * 1.001
         good = self.plan("--residual", str(target))
-        self.assertLessEqual(good["expected_rms_deg_per_s"]["median"], target)
+        self.assertLess(good["expected_rms_deg_per_s"]["median"],
+                        target + 0.0005)
         self.assertLessEqual(good["schedule"]["hours"],
                              free["schedule"]["hours"])
 
@@ -129,19 +131,46 @@ class Plan(ProgramTest):
         again = self.plan("--residual", f"{median:.3f}")
         self.assertLessEqual(again["schedule"]["hours"], hours)
 
-    def test_a_hold_that_is_too_short_is_warned_of(self):
-        answer = self.beamgyro("plan", "population.json", "--soaks", "2",
-                               "--hold", "5")
-        self.assertIn("--hold 5: the thermal model asks for", answer.stderr)
-        self.assertEqual(answer.returncode, 0)
-        answer = self.beamgyro("plan", "population.json", "--soaks", "2",
-                               "--hold", "90")
-        self.assertNotIn("--hold", answer.stderr)
-
     def test_an_oven_is_refused(self):
         oven = SCENARIOS / "devices/oven.toml"
         self.rejected("plan", "population.json", "--soaks", "2", "--device",
                       str(oven), says="has an oven")
+
+    def test_holds_are_as_short_as_the_thermal_model_and_the_soaks_allow(self):
+        def holds(*words):
+            plan = self.plan("--soaks", "7", *words)
+            self.assertEqual(plan["schedule"]["hold_s"],
+                             plan["trade_off"][6]["planned"]["hold_s"])
+            return [row["planned"]["hold_s"] / 60 for row in plan["trade_off"]]
+        usual = holds()
+        # What many soaks tell is spoilt by less of a lag.
+        self.assertLess(usual[1], usual[6])
+        for hold in usual:
+            self.assertTrue(15 <= hold <= 60 and hold == int(hold), hold)
+        device = (self.dir / "device.toml").read_text()
+        slow, changed = re.subn(
+            r"(?m)^beam_heat_capacity_J_per_K = ([\d.]+)",
+            lambda found: f"{found[0].split('=')[0]}= {2 * float(found[1])}",
+            device)
+        self.assertEqual(changed, 1)
+        self.write("slow.toml", slow)
+        # Few soaks need no more than five rows, which the sensor decides.
+        self.assertGreater(holds("--device", "slow.toml")[6], usual[6])
+        self.assertEqual(holds("--hold", "50"), [50] * 7)
+        self.rejected("plan", "population.json", "--soaks", "3", "--hold", "5",
+                      says="--hold 5: soaks of ")
+
+    def test_the_noise_of_the_device_is_forecast(self):
+        usual = self.plan("--soaks", "7")["expected_rms_deg_per_s"]
+        text, changed = re.subn(
+            r"(?m)^turn_on_deg_per_s = .*$", "turn_on_deg_per_s = 0.2",
+            (self.dir / "device.toml").read_text())
+        self.assertEqual(changed, 1)
+        self.write("offset.toml", text)
+        worse = self.plan("--soaks", "7", "--device", "offset.toml")
+        # Half of all |N(0, 0.2)| are above 0.135 deg/s, and no soak tells.
+        self.assertGreater(worse["expected_rms_deg_per_s"]["median"],
+                           max(0.1, 1.2 * usual["median"]))
 
     def test_candidates_are_compared(self):
         self.write("mine.txt", "# my soaks\n-40, 5, 50\n\n-30,0\n")
@@ -208,6 +237,7 @@ class Plan(ProgramTest):
                 ([*two, "--candidates", "5,5.5"], "closer together"),
                 ([*two, "--ramp", "0"], "--ramp 0"),
                 ([*two, "--hold", "-5"], "--hold -5"),
+                ([*two, "--hold", "30.5"], "--hold 30.5"),
                 ([*two, "--device", "nowhere.toml"], "nowhere.toml"),
                 ([*two, "-o", "soaks.csv"], ".toml"),
                 ([*two, "--json", "population.json"], "is read by this"),
