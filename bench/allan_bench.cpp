@@ -8,7 +8,7 @@
 #include "compensation/scoring/noise_coefficients.h"
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 /// White rates at 100 Hz.
@@ -47,4 +47,4 @@ void coefficients(benchmark::State& state) {
 BENCHMARK(coefficients)->Arg(1'000'000)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

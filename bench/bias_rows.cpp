@@ -5,7 +5,7 @@
 
 #include "sim/signal/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 ScaledRows bias_rows(Eigen::Index count, Eigen::Index inputs, double noise,
                      std::uint32_t run) {
@@ -27,4 +27,4 @@ ScaledRows bias_rows(Eigen::Index count, Eigen::Index inputs, double noise,
   return set;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -19,7 +19,7 @@
 #include "sim/numerics/explicit_rk.h"
 #include "sim/scenario/envelope_trajectory.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using nlohmann::json;
@@ -223,14 +223,14 @@ int print_model(const std::string& file) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::internal
 
 int main(int argc, char** argv) try {
   if (argc != 2) {
     std::cerr << "usage: beamgyro_model RUN.h5\n";
     return 2;
   }
-  return beamgyro::print_model(argv[1]);
+  return beamgyro::internal::print_model(argv[1]);
 } catch (const std::exception& error) {
   std::cerr << error.what() << '\n';
   return 1;

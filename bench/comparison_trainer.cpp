@@ -12,7 +12,7 @@
 #include "bench/bias_rows.h"
 #include "compensation/network/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using nlohmann::json;
@@ -105,7 +105,7 @@ int run(const std::vector<std::string>& words) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::internal
 
 int main(int argc, char** argv) try {
   const std::vector<std::string> words(argv + 1, argv + argc);
@@ -115,7 +115,7 @@ int main(int argc, char** argv) try {
                  "GOAL...\n";
     return 2;
   }
-  return beamgyro::run(words);
+  return beamgyro::internal::run(words);
 } catch (const std::exception& error) {
   std::cerr << error.what() << '\n';
   return 1;

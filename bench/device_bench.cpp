@@ -6,7 +6,7 @@
 #include "bench/shipped_device.h"
 #include "sim/dynamics/static_map.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 void project_device(benchmark::State& state) {
@@ -86,4 +86,4 @@ void look_up_static_map(benchmark::State& state) {
 BENCHMARK(look_up_static_map)->Unit(benchmark::kNanosecond);
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

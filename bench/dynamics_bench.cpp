@@ -11,7 +11,7 @@
 #include "sim/scenario/envelope_run.h"
 #include "sim/scenario/envelope_trajectory.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;  // [rad]
@@ -105,4 +105,4 @@ BENCHMARK_CAPTURE(carrier, second_with_rate_and_twin,
 BENCHMARK(envelope_day)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

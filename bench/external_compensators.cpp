@@ -16,8 +16,8 @@
 
 namespace {
 
-using beamgyro::Answer;
-using beamgyro::Recording;
+using beamgyro::internal::Answer;
+using beamgyro::internal::Recording;
 
 // The measured variables of a simulated run at 100 Hz.
 Recording run_of(std::size_t samples) {
@@ -36,7 +36,8 @@ Recording run_of(std::size_t samples) {
   const char* names[] = {"output",          "rate",          "temperature",
                          "drive_frequency", "drive_voltage", "quadrature"};
   for (std::size_t i = 0; i < 6; ++i)
-    run.columns.push_back(beamgyro::column_of(names[i], std::move(values[i])));
+    run.columns.push_back(
+        beamgyro::internal::column_of(names[i], std::move(values[i])));
   return run;
 }
 
@@ -54,12 +55,13 @@ double processor_seconds(int who) {
 
 int main(int argc, char** argv) {
   if (argc < 4) return 2;
-  beamgyro::ProcessLimits limits;
+  beamgyro::internal::ProcessLimits limits;
   limits.program = argv[1];
   const Recording run = run_of(std::stoul(argv[2]));
   const double samples = static_cast<double>(run.time.size());
   for (int k = 3; k < argc; ++k) {
-    const auto compensator = beamgyro::open_tested_compensator(argv[k], limits);
+    const auto compensator =
+        beamgyro::internal::open_tested_compensator(argv[k], limits);
     const double here = processor_seconds(RUSAGE_SELF);
     const double there = processor_seconds(RUSAGE_CHILDREN);
     const Answer answer = compensator->answer(run);

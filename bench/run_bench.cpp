@@ -9,7 +9,7 @@
 #include "dataset/netcdf/recording_file.h"
 #include "sim/scenario/simulation.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kDuration = 3600;  // [s]
@@ -87,4 +87,4 @@ BENCHMARK(thermal_hour)->Unit(benchmark::kMillisecond);
 BENCHMARK(noise_hour)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "sensitivity/study/sensitivity_study.h"
 #include "sim/campaign/campaign.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 Campaign shipped_population() {
@@ -56,4 +56,4 @@ void analyse_figure(benchmark::State& state) {
 BENCHMARK(analyse_figure)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 #include "sim/campaign/shard_making.h"
 #include "sim/scenario/simulation.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -137,4 +137,4 @@ BENCHMARK_CAPTURE(file_written, plain_values, false)
 BENCHMARK(plain_write)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

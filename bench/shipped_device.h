@@ -5,7 +5,7 @@
 
 #include "sim/device/device_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 inline Device shipped_device() {
   const ConfigDocument document = ConfigDocument::read(
@@ -13,4 +13,4 @@ inline Device shipped_device() {
   return read_device(document);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include "bench/bias_rows.h"
 #include "compensation/network/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kNoise = 0.002;
@@ -45,4 +45,4 @@ BENCHMARK_CAPTURE(train, levenberg_marquardt_3_14_1_on_20000, 20000, 3, 14, 1)
     ->Iterations(3);
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -27,7 +27,7 @@
 #include "dataset/recording/units.h"
 #include "report/allan_report.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr const char* kRateUnit = "deg/s";
@@ -344,4 +344,4 @@ void add_allan(CommandLine& program) {
   command.action([arguments] { return allan(*arguments); });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

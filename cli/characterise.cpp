@@ -18,7 +18,7 @@
 #include "sim/scenario/simulation_input.h"
 #include "sim/thermal/material_range.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 struct CharacteriseArguments {
@@ -122,4 +122,4 @@ void add_characterise(CommandLine& program) {
   command.action([arguments] { return characterise(*arguments); });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -13,7 +13,7 @@
 #include "cli/terminal.h"
 #include "config/suggestion.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct Command::Option {
   OptionText text;
@@ -362,4 +362,4 @@ Action CommandLine::parse(const std::vector<std::string>& words) {
   return [command = found.command] { return command->carry_out(); };
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

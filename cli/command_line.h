@@ -17,7 +17,7 @@ namespace CLI {  // NOLINT(readability-identifier-naming): as CLI11 has it
 class App;
 }
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Carries out a parsed command and returns the exit status.
 using Action = std::function<int()>;
@@ -133,4 +133,4 @@ class CommandLine {
   bool quiet_ = false, asks_help_ = false, asks_version_ = false;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

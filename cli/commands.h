@@ -3,7 +3,7 @@
 
 #include "cli/command_line.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // Headings of the list of commands.
 constexpr const char* kSimulation = "Simulation";
@@ -25,4 +25,4 @@ void add_allan(CommandLine& program);
 void add_verify(CommandLine& program);
 void add_info(CommandLine& program);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

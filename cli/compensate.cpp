@@ -21,7 +21,7 @@
 #include "dataset/recording/signals.h"
 #include "validation/external/tested_compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr const char* kColumn = "compensated_rate";
@@ -155,4 +155,4 @@ void add_compensate(CommandLine& program) {
   command.action([arguments] { return compensate_any(*arguments); });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

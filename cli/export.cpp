@@ -22,7 +22,7 @@
 #include "dataset/files/made_directories.h"
 #include "dataset/files/sha256.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -319,4 +319,4 @@ void add_export(CommandLine& program) {
   command.action([arguments] { return run_export(*arguments); });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

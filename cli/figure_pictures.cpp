@@ -14,7 +14,7 @@
 #include "validation/external/child_process.h"
 #include "validation/external/error_text.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,4 +95,4 @@ void draw_plan(const std::string& result, const fs::path& path) {
   picture.publish();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

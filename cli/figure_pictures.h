@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns a file that is shipped with this program, in its source tree or
 /// where it was installed, or an empty path when it is not there. `name` is its
@@ -31,4 +31,4 @@ void require_picture_name(const std::filesystem::path& path);
 /// scripts/plan_figure.py does it. Throws as draw_figures().
 void draw_plan(const std::string& result, const std::filesystem::path& path);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -21,7 +21,7 @@
 #include "dataset/set/manifest.h"
 #include "dataset/set/shard/shard.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -146,4 +146,4 @@ void require_kind(const fs::path& path, const ExpectedKinds& expected) {
   throw std::invalid_argument(message);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

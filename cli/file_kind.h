@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 enum class FileKind {
   kDevice,
@@ -35,4 +35,4 @@ struct ExpectedKinds {
 void require_kind(const std::filesystem::path& path,
                   const ExpectedKinds& expected);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -18,7 +18,7 @@
 #include "dataset/set/set_writer.h"
 #include "report/set_report.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr int kSomeDevicesFailed = 4;
@@ -178,4 +178,4 @@ void add_generate(CommandLine& program) {
   command.action([arguments] { return generate(*arguments); });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

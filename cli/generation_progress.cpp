@@ -9,7 +9,7 @@
 #include "cli/progress.h"
 #include "cli/terminal.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 void generate_with_progress(const std::string& activity, const ShardPlan& plan,
                             const std::vector<std::uint32_t>& files,
@@ -53,4 +53,4 @@ void warn_without_lock(const SetWriter& set, const std::string& directory) {
         directory));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

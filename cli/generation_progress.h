@@ -8,7 +8,7 @@
 #include "dataset/set/set_writer.h"
 #include "sim/campaign/generation.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Runs generate_shards() on `jobs` threads (0 means one per core) with a line
 /// of progress that has the rate, the time left and the failures.
@@ -24,4 +24,4 @@ void require_moderate_files(const std::string& campaign, const ShardPlan& plan);
 /// set.
 void warn_without_lock(const SetWriter& set, const std::string& directory);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

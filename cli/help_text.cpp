@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kHelpWidth = 80, kHelpColumn = 26;  // [characters]
@@ -140,4 +140,4 @@ std::string overview_text(std::string_view description,
   return page;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

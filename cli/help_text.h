@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// How an option or an argument stands in the help.
 struct OptionText {
@@ -48,4 +48,4 @@ std::string overview_text(std::string_view description,
                           const std::vector<HelpOfCommand>& commands,
                           const std::vector<HelpLine>& common);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -18,7 +18,7 @@
 #include "dataset/netcdf/recording_file.h"
 #include "report/import_report.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 struct ImportArguments {
@@ -85,4 +85,4 @@ void add_import(CommandLine& program) {
   command.action([arguments] { return run_import(*arguments); });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

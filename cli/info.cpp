@@ -14,7 +14,7 @@
 #include "report/recording_report.h"
 #include "report/set_report.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -62,4 +62,4 @@ void add_info(CommandLine& program) {
   command.action([path, device] { return info(*path, *device); });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -28,7 +28,7 @@
 #include "sim/device/device_file.h"
 #include "sim/scenario/scenario_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -182,4 +182,4 @@ void require_set_output(const fs::path& directory, const ManifestHead& head,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -13,7 +13,7 @@
 #include "sim/device/device.h"
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Reads a recording, as CSV when the name ends in .csv. For an HDF5 file
 /// without a checksum it keeps a warning, which is printed when the command
@@ -58,4 +58,4 @@ void require_set_output(const std::filesystem::path& directory,
                         const ManifestHead& head,
                         const std::vector<SourceText>& inputs);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 #include "cli/version.h"
 #include "validation/external/plugin_host.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr int kWorkFailed = 1, kWrongInput = 2;
@@ -45,10 +45,10 @@ int run_program(const std::vector<std::string>& words) {
 }
 
 }  // namespace
-}  // namespace beamgyro
+}  // namespace beamgyro::internal
 
 int main(int argc, char** argv) {
-  using namespace beamgyro;
+  using namespace beamgyro::internal;
   handle_interrupts();
   try {
     return run_program({argv + std::min(argc, 1), argv + argc});

@@ -12,7 +12,7 @@
 
 #include "config/suggestion.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 [[noreturn]] void fail_value(const std::string& option, const std::string& text,
@@ -67,4 +67,4 @@ std::string one_of(const std::string& option, const std::string& text,
           near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near)));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

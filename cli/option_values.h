@@ -6,7 +6,7 @@
 
 #include "config/range.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // Each function reads the value of an option. It throws std::invalid_argument
 // "--option VALUE: what is wrong; what would be right" for any other text.
@@ -22,4 +22,4 @@ double decimal_number(const std::string& option, const std::string& text,
 std::string one_of(const std::string& option, const std::string& text,
                    const std::vector<std::string>& allowed);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

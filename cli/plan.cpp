@@ -31,7 +31,7 @@
 #include "sim/scenario/simulation_input.h"
 #include "sim/signal/noise.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -322,4 +322,4 @@ void add_plan(CommandLine& program) {
   command.action([arguments] { return run_plan(*arguments); });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

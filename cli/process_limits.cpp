@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kGibibyte = 1073741824.0;  // bytes
@@ -45,4 +45,4 @@ ProcessLimits process_limits(const LimitArguments& arguments) {
   return limits;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

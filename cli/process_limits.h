@@ -7,7 +7,7 @@
 #include "cli/command_line.h"
 #include "validation/external/tested_compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The options that limit a library or a command.
 struct LimitArguments {
@@ -26,4 +26,4 @@ void require_limits_for_code(const LimitArguments& arguments,
 /// Returns the limits for compensators of this program.
 ProcessLimits process_limits(const LimitArguments& arguments = {});
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

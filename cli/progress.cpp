@@ -10,7 +10,7 @@
 
 #include "cli/terminal.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -100,4 +100,4 @@ void Progress::log() {
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

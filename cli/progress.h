@@ -11,7 +11,7 @@
 
 #include "cli/time_left.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Shows progress on standard error while the object lives. On a terminal this
 /// is one line, no wider than the terminal, that rewrites itself; it begins
@@ -54,4 +54,4 @@ class Progress {
   std::thread thread_;  // last: starts when everything else is there
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

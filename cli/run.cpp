@@ -18,7 +18,7 @@
 #include "sim/scenario/simulation.h"
 #include "sim/scenario/simulation_input.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 struct RunArguments {
@@ -125,4 +125,4 @@ void add_run(CommandLine& program) {
   command.action([arguments] { return run(*arguments); });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

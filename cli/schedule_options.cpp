@@ -14,7 +14,7 @@
 #include "compensation/methods/population.h"
 #include "dataset/files/text_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kMostCandidates = 100;
@@ -101,4 +101,4 @@ std::vector<std::vector<double>> candidate_schedules(
   return found;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

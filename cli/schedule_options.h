@@ -7,7 +7,7 @@
 #include "compensation/inputs/features.h"
 #include "config/range.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Temperatures that a chamber may be asked for [degC].
 inline constexpr Range kChamberTemperatures{-100.0, 200.0};
@@ -25,4 +25,4 @@ TemperatureRange temperature_range(const std::string& option,
 std::vector<std::vector<double>> candidate_schedules(
     const std::vector<std::string>& words, const TemperatureRange& chamber);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -30,7 +30,7 @@
 #include "sim/campaign/campaign.h"
 #include "sim/thermal/material_range.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 struct SensitivityArguments {
@@ -255,4 +255,4 @@ void add_sensitivity(CommandLine& program) {
   command.action([arguments] { return sensitivity(*arguments); });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

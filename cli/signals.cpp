@@ -9,7 +9,7 @@
 #include "dataset/files/atomic_file.h"
 #include "validation/external/child_process.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Dies by the signal, so that a loop of the shell ends, too.
@@ -45,4 +45,4 @@ void handle_interrupts() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

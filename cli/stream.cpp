@@ -19,7 +19,7 @@
 #include "dataset/log/csv_file.h"
 #include "dataset/log/recording_csv.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr const char* kInput = "standard input";
@@ -177,4 +177,4 @@ int answer_stream(CompensatorStream& stream, const std::string& compensator) {
   return kStreamFailed;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include "validation/external/compensator_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Reads samples as CSV on standard input, a line of names first, and prints an
 /// answer for each on standard output, as soon as it is there. Where the
@@ -12,4 +12,4 @@ namespace beamgyro {
 /// input:line: ..." for what is no such CSV.
 int answer_stream(CompensatorStream& stream, const std::string& compensator);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

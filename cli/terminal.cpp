@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 bool prints_errors_only = false;
@@ -171,4 +171,4 @@ void print_interrupted() noexcept {
   put("\n");
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

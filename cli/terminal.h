@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // Control characters in a printed text are replaced by \xNN.
 
@@ -51,4 +51,4 @@ void set_interrupt_note(std::string_view text);
 /// called from a signal handler.
 void print_interrupted() noexcept;
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

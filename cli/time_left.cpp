@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 void TimeLeft::note(double elapsed, double share) {
   samples_.push_back({elapsed, share});
@@ -26,4 +26,4 @@ std::string clock_text(double seconds) {
                      whole % 60);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

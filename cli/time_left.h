@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Estimates how long work still takes, from its speed over the last half of
 /// the time. So a slow start or a change of speed is forgotten, and the
@@ -29,4 +29,4 @@ class TimeLeft {
 /// Returns a duration as h:mm:ss.
 std::string clock_text(double seconds);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

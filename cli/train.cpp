@@ -20,7 +20,7 @@
 #include "dataset/files/atomic_file.h"
 #include "report/training_report.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 struct TrainArguments {
@@ -164,4 +164,4 @@ void add_train(CommandLine& program) {
   command.action([arguments] { return run_training(*arguments); });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

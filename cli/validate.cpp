@@ -37,7 +37,7 @@
 #include "validation/result/recorded_evidence.h"
 #include "validation/result/result_json.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 Specification specification_of(const ValidateArguments& arguments) {
@@ -379,4 +379,4 @@ void add_validate(CommandLine& program) {
   command.action([arguments] { return validate_any(*arguments); });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

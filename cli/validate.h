@@ -8,7 +8,7 @@
 #include "cli/process_limits.h"
 #include "compensation/rows/set_runs.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Exit status of a validation that ran and was not passed.
 constexpr int kNotPassed = 3;
@@ -37,4 +37,4 @@ int validate_by_specification(const ValidateArguments& arguments);
 /// same, and 1 when not.
 int check_bundle(const ValidateArguments& arguments);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

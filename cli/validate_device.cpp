@@ -26,7 +26,7 @@
 #include "validation/result/result_json.h"
 #include "validation/result/validator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -208,4 +208,4 @@ int check_bundle(const ValidateArguments& arguments) {
   return different.empty() ? 0 : kBundleDiffers;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 #include "cli/inputs.h"
 #include "cli/terminal.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -90,4 +90,4 @@ int deliver(std::string_view result,
   return all ? status : kNotWritten;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

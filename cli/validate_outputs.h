@@ -8,7 +8,7 @@
 
 #include "cli/validate.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Throws std::invalid_argument when a file or directory that the arguments ask
 /// for cannot be made, is one of the inputs, or is the same as another one or
@@ -22,4 +22,4 @@ void require_outputs_of(const ValidateArguments& arguments,
 int deliver(std::string_view result,
             const std::vector<std::function<void()>>& files, int status);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -17,7 +17,7 @@
 #include "report/set_report.h"
 #include "sim/campaign/set_repair.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -127,4 +127,4 @@ void add_verify(CommandLine& program) {
   command.action([arguments] { return verify(*arguments); });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include <CLI/Version.hpp>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 const char* const kProgramVersion = BEAMGYRO_VERSION;
 
@@ -29,4 +29,4 @@ std::string history_line(const std::string& command) {
                      command);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

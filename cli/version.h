@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 extern const char* const kGitRevision;  // "unknown" outside a git checkout
 extern const char* const kProgramVersion;
@@ -14,4 +14,4 @@ std::string version_text();
 /// Returns the line of a file's history that says what this program did.
 std::string history_line(const std::string& command);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

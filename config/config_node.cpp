@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 const ConfigNode* find_child(const ConfigNode& table, std::string_view key) {
   const auto found =
@@ -119,4 +119,4 @@ std::string printable(std::string_view text) {
   return line.substr(0, end) + "...";
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Line and column in a file, both from 1.
 struct FilePosition {
@@ -55,4 +55,4 @@ ConfigNode number_node(double number);
 /// length is bounded.
 std::string printable(std::string_view text);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

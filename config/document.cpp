@@ -18,7 +18,7 @@
 #include "config/toml_extent.h"
 #include "config/toml_parser.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::string_view kExpected = "a TOML file";
@@ -139,4 +139,4 @@ void ConfigDocument::reject_unknown_keys() const {
   state_->reject_unknown_keys();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "config/range.h"
 #include "config/table.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A TOML file with the overrides of its command applied. It is read through
 /// root(). When everything has been read, reject_unknown_keys() finds keys that
@@ -54,4 +54,4 @@ class ConfigDocument {
   ConfigTable root_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

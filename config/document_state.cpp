@@ -7,7 +7,7 @@
 
 #include "config/suggestion.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 struct UnknownKey {
@@ -120,4 +120,4 @@ void DocumentState::reject_unknown_keys() const {
                   advice(*this, first.table, node.key)));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 #include "config/config_node.h"
 #include "config/override_set.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// State that a document shares with its tables.
 struct DocumentState {
@@ -39,4 +39,4 @@ struct DocumentState {
 
 std::string joined(const std::string& table, std::string_view key);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

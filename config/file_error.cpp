@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 bool is_wrong_name(const std::error_code& error) {
   for (const std::errc wrong :
@@ -38,4 +38,4 @@ std::filesystem::file_status status_of(const std::filesystem::path& path) {
   return status;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Thrown when work on a file fails although its name is right: a failing or
 /// full disk, a server that is gone, too many open files.
@@ -44,4 +44,4 @@ auto uninterrupted(const Call& call) {
   return answer;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

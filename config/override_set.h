@@ -8,7 +8,7 @@
 #include "config/config_node.h"
 #include "config/overrides.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct Override {
   std::string argument;           // KEY=VALUE as given
@@ -30,4 +30,4 @@ struct OverrideSet {
 void insert_override(const Override& set, std::size_t origin,
                      const std::string& document, ConfigNode& root);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

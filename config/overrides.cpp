@@ -11,7 +11,7 @@
 #include "config/suggestion.h"
 #include "config/toml_parser.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 [[noreturn]] void reject(std::string_view argument,
@@ -232,4 +232,4 @@ std::string Overrides::text() const {
   return lines;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct ConfigNode;
 struct OverrideSet;
@@ -46,4 +46,4 @@ class Overrides {
   std::shared_ptr<OverrideSet> state_;  // documents mark keys as used in it
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

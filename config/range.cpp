@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -42,4 +42,4 @@ std::string text_of(const Range& range) {
   return "a finite number";
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

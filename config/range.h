@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Allowed interval of a number; an infinite end is no limit.
 struct Range {
@@ -21,4 +21,4 @@ Range between(double low, double high);  // [low, high]
 /// Describes the range for messages: "a number > 0", "a number in [0, 1)".
 std::string text_of(const Range& range);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::string lower_case(std::string_view text) {
@@ -55,4 +55,4 @@ std::string suggestion(std::string_view word,
   return best;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the smallest number of insertions, deletions, replacements and swaps
 /// of neighbours that turn `a` into `b`.
@@ -18,4 +18,4 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 std::string suggestion(std::string_view word,
                        const std::vector<std::string>& candidates);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

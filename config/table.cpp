@@ -12,7 +12,7 @@
 #include "config/suggestion.h"
 #include "config/value_reading.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::string read_choice(const ConfigValue& value,
@@ -292,4 +292,4 @@ void ConfigTable::fail(std::string_view key, const std::string& message) const {
   throw std::invalid_argument(place(key) + ": " + message);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

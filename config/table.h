@@ -10,7 +10,7 @@
 
 #include "config/range.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct ConfigNode;
 struct ConfigValue;
@@ -105,4 +105,4 @@ class ConfigTable {
   bool present_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 
 #include "config/toml_parser.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kDeepest = 256;
@@ -171,4 +171,4 @@ void check_toml_extent(std::string_view text) {
   TomlScan(text).run();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The largest file that is read as TOML [bytes].
 inline constexpr std::size_t kLargestToml = std::size_t{16} << 20;
@@ -17,4 +17,4 @@ inline constexpr std::size_t kLargestToml = std::size_t{16} << 20;
 ///   parser destroys its result by recursion.
 void check_toml_extent(std::string_view text);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include "config/toml_extent.h"
 #include "config/toml_library.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 FilePosition position_of(const toml::source_region& region) {
@@ -73,4 +73,4 @@ ConfigNode parse_toml(std::string_view text) {
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "config/config_node.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Thrown for text that is not TOML: what is wrong, and where.
 struct TomlError : std::runtime_error {
@@ -20,4 +20,4 @@ struct TomlError : std::runtime_error {
 /// that is not TOML or not UTF-8.
 ConfigNode parse_toml(std::string_view text);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Units that are typed for those in the names of keys.
@@ -118,4 +118,4 @@ const ConfigNode& read_array(const ConfigValue& value,
   return value.node;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include "config/document_state.h"
 #include "config/range.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A value of a document, and its dotted key for messages (with [index] inside
 /// an array).
@@ -33,4 +33,4 @@ const ConfigNode& read_array(const ConfigValue& value,
 
 std::string text_of_integers(long low, long high);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 class WorkQueue {
@@ -72,4 +72,4 @@ void for_each_task(std::size_t count, std::size_t threads, const Task& task) {
   queue.rethrow();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the number of threads to use: `wanted`, or one per core if that is
 /// 0.
@@ -22,4 +22,4 @@ using Task = std::function<void(std::size_t index, std::size_t worker)>;
 /// does not depend on the number of threads.
 void for_each_task(std::size_t count, std::size_t threads, const Task& task);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

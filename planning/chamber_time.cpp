@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 std::vector<double> in_visiting_order(std::vector<double> temperatures,
                                       double start) {
@@ -40,4 +40,4 @@ std::vector<Visit> visits(const std::vector<double>& temperatures,
   return found;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

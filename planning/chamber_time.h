@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What a soak costs in a chamber.
 struct ChamberTime {
@@ -35,4 +35,4 @@ struct Visit {
 std::vector<Visit> visits(const std::vector<double>& temperatures,
                           const ChamberTime& time);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include "config/units.h"
 #include "sim/thermal/thermal_oven.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 ChamberView::ChamberView(const ThermalParameters& parameters, double offset)
     : network_(parameters), offset_(offset) {}
@@ -42,4 +42,4 @@ double ChamberView::beam_excess(double chamber) const {
   return T(kBeam) - T(kSensor);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

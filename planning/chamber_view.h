@@ -5,7 +5,7 @@
 
 #include "sim/thermal/thermal_network.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The temperatures of a powered device in a stirred chamber, at the end of
 /// long soaks. The sensor is warmer than the chamber, because the electronics
@@ -37,4 +37,4 @@ class ChamberView {
   double offset_;  // [K]
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

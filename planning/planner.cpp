@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kCandidateStep = 1.0;     // [K]
@@ -239,4 +239,4 @@ std::vector<TradeOff> Planner::trade_offs(std::size_t most) const {
   return table;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

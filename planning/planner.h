@@ -12,7 +12,7 @@
 #include "planning/soak_model.h"
 #include "planning/soak_noise.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Soaks of the chamber with what they cost and leave.
 struct SoakPlan {
@@ -104,4 +104,4 @@ constexpr double kHoldLoss = 0.05;  // [-], of the median
 
 constexpr std::size_t kMostSoaks = 20;
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

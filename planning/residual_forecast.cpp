@@ -12,7 +12,7 @@
 #include "planning/random_purposes.h"
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Index;
@@ -157,4 +157,4 @@ ResidualForecast forecast_residual(const SoakModel& model,
              : forecast_of_process(model, shown);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

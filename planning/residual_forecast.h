@@ -6,7 +6,7 @@
 
 #include "planning/soak_model.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The rms over the range [deg/s] of what compensation leaves of the bias: its
 /// quantiles over devices of the population.
@@ -58,4 +58,4 @@ ResidualForecast forecast_residual(const SoakModel& model,
                                    const std::vector<double>& soaks,
                                    const SoakErrors& errors = {});
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

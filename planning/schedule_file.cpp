@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // A basic string of TOML.
@@ -62,4 +62,4 @@ std::string schedule_text(const std::vector<double>& soaks,
   return text;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

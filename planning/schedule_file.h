@@ -6,7 +6,7 @@
 
 #include "planning/chamber_time.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the text of a scenario file that takes a device through the soaks:
 /// from the start at time 0, powered, over the shortest way, in a stirred
@@ -15,4 +15,4 @@ namespace beamgyro {
 std::string schedule_text(const std::vector<double>& soaks,
                           const ChamberTime& time, const std::string& device);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

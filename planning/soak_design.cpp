@@ -9,7 +9,7 @@
 
 #include "planning/chamber_time.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Index;
@@ -109,4 +109,4 @@ std::vector<double> SoakDesign::exchanged(std::vector<double> soaks) const {
   return soaks;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

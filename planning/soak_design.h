@@ -6,7 +6,7 @@
 
 #include "planning/soak_model.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Soaks may be at these temperatures of the chamber [degC], increasing.
 struct DesignLimits {
@@ -61,4 +61,4 @@ class SoakDesign {
   Eigen::MatrixXd equations_;  // H of all candidates
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

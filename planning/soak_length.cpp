@@ -12,7 +12,7 @@
 #include "sim/thermal/thermal_network.h"
 #include "sim/thermal/thermal_run.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kMinute = 60.0;  // [s]
@@ -94,4 +94,4 @@ double mean_lag(const std::vector<SoakRows>& rows, std::size_t minutes,
          hold.rows;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

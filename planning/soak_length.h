@@ -7,7 +7,7 @@
 #include "planning/chamber_time.h"
 #include "sim/thermal/thermal_parameters.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // Rows that scenarios/population/adapted.toml trains on.
 constexpr double kSteady = 0.05;     // [K/min], faster rows are left out
@@ -49,4 +49,4 @@ constexpr double kCapacityMargin = 0.1;  // [-]
 
 constexpr int kLongestSoak = 360;  // [min]
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

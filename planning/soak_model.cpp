@@ -11,7 +11,7 @@
 #include "compensation/models/array_view.h"
 #include "planning/training_noise.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -123,4 +123,4 @@ SoakModel::Lagging SoakModel::lagging(const std::vector<double>& chamber,
   return found;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

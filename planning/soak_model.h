@@ -9,7 +9,7 @@
 #include "compensation/methods/population.h"
 #include "compensation/models/cubic_spline.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Maps temperatures of the chamber [degC] to those that the sensor settles to.
 using SensorOfChamber = std::function<Eigen::ArrayXd(const Eigen::ArrayXd&)>;
@@ -84,4 +84,4 @@ class SoakModel {
   Eigen::MatrixXd weight_, truth_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

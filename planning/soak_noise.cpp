@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 Eigen::MatrixXd slow_noise_root(const SlowNoise& noise,
                                 const std::vector<double>& soaks,
@@ -26,4 +26,4 @@ Eigen::MatrixXd slow_noise_root(const SlowNoise& noise,
   return root;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "planning/chamber_time.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Slow noise of the bias of a device, 1-sigma, as soaks show it.
 struct SlowNoise {
@@ -21,4 +21,4 @@ Eigen::MatrixXd slow_noise_root(const SlowNoise& noise,
                                 const std::vector<double>& soaks,
                                 const ChamberTime& time);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -31,4 +31,4 @@ MatrixXd truth_root(const Population& population) {
          left.eigenvectors().transpose();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

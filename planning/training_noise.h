@@ -5,7 +5,7 @@
 
 #include "compensation/methods/population.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the symmetric root R of the covariance I - V of what devices of a
 /// population really are: c shows them with the slow noise of the sweeps that
@@ -18,4 +18,4 @@ namespace beamgyro {
 /// values on the grid, nothing is taken off: R = I.
 Eigen::MatrixXd truth_root(const Population& population);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Numerator over denominator of AS 241's three rational functions, highest
@@ -204,4 +204,4 @@ void RandomStream::fill_normal(std::span<double> values) {
   for (; i < values.size(); ++i) values[i] = normal();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What a stream of random numbers is for: a number that is part of the data
 /// format. Who draws from a stream names its purpose (random_purposes.h).
@@ -57,4 +57,4 @@ class RandomStream {
   bool has_spare_ = false;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include <iterator>
 #include <map>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::string interval_text(const ConfidenceInterval& interval) {
@@ -97,4 +97,4 @@ std::string noise_table(const NoiseCoefficients& found,
   return text;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

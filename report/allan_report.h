@@ -8,7 +8,7 @@
 #include "compensation/scoring/even_series.h"
 #include "compensation/scoring/noise_coefficients.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns a line about the samples that are used and those that are not.
 std::string series_line(const EvenSeries& series);
@@ -23,4 +23,4 @@ std::string deviation_table(const std::vector<DeviationCurve>& curves,
 std::string noise_table(const NoiseCoefficients& found,
                         const std::string& unit);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::string rows_text(const LogCounts& counts) {
@@ -120,4 +120,4 @@ std::string import_report(const ImportedLog& log, const std::string& path,
   return text;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

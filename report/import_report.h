@@ -5,7 +5,7 @@
 
 #include "dataset/log/log_import.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns what an import read and left out: rows and the reasons why some were
 /// dropped, sampling, ranges of the rate and the temperature. `path` is the
@@ -13,4 +13,4 @@ namespace beamgyro {
 std::string import_report(const ImportedLog& log, const std::string& path,
                           const std::string& joined = "");
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iterator>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -126,4 +126,4 @@ Json plan_json(const PlanResult& result) {
           {"warnings", result.warnings}};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "planning/planner.h"
 #include "planning/residual_forecast.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What `plan` has found.
 struct PlanResult {
@@ -31,4 +31,4 @@ std::string plan_text(const PlanResult& result);
 /// Returns what `plan --json` writes (docs/planning.md).
 nlohmann::ordered_json plan_json(const PlanResult& result);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

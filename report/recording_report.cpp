@@ -9,7 +9,7 @@
 #include <iterator>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 struct Extent {
@@ -77,4 +77,4 @@ std::string recording_report(const std::string& path,
   return text;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Below it the tolerances by themselves leave most of the variance unexplained.
@@ -214,4 +214,4 @@ nlohmann::ordered_json to_json(const DeviceSample& sample,
   return json;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

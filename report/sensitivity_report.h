@@ -10,7 +10,7 @@
 #include "sensitivity/study/device_sample.h"
 #include "sensitivity/study/sensitivity_study.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What a study was made of, for its first lines.
 struct StudyHead {
@@ -33,4 +33,4 @@ nlohmann::ordered_json to_json(const DeviceSample& sample,
                                const StudyHead& head,
                                const std::vector<MeritResult>& results);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

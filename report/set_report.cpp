@@ -13,7 +13,7 @@
 #include "dataset/set/shard/shard_reader.h"
 #include "sim/campaign/campaign.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -183,4 +183,4 @@ std::string info_on_device(const fs::path& path, std::uint32_t device) {
   return text;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

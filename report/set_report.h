@@ -8,7 +8,7 @@
 
 #include "dataset/set/set_writer.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns whether the manifest in the directory of a file lists it.
 bool is_listed_in_set(const std::filesystem::path& path);
@@ -31,4 +31,4 @@ std::string every_device_failed_text(const SetState& state);
 std::string info_on_device(const std::filesystem::path& path,
                            std::uint32_t device);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

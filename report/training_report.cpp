@@ -7,7 +7,7 @@
 #include <optional>
 #include <variant>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::string shown(const std::optional<double>& value) {
@@ -81,4 +81,4 @@ std::string training_report(const TrainResult& result, bool every_group) {
   return text;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

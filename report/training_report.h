@@ -5,10 +5,10 @@
 
 #include "compensation/training/train.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns what a training chose and what it leaves, line by line; with
 /// `every_group` also each group of the cross-validation.
 std::string training_report(const TrainResult& result, bool every_group);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include <optional>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -333,4 +333,4 @@ std::string table(const std::vector<Validation>& methods) {
   return text;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

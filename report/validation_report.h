@@ -7,7 +7,7 @@
 
 #include "compensation/scoring/validation.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns everything in `validation`. Keys name their units; a figure that is
 /// missing or not finite is null.
@@ -30,4 +30,4 @@ std::string table(const Validation& validation);
 /// the same runs.
 std::string table(const std::vector<Validation>& methods);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

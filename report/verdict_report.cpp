@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kReportWidth = 100;
@@ -195,4 +195,4 @@ std::string verdict_report(const ValidationResult& result) {
   return text;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

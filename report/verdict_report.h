@@ -5,7 +5,7 @@
 
 #include "validation/result/validation_result.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns a result for a terminal, in lines of at most 100 columns: the
 /// verdict in words; a table of the metrics before and after compensation and
@@ -13,4 +13,4 @@ namespace beamgyro {
 /// margin; the checks; and the yield of a population.
 std::string verdict_report(const ValidationResult& result);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

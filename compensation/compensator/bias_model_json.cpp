@@ -9,7 +9,7 @@
 #include <iterator>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -81,4 +81,4 @@ BiasModel read_bias_model(const JsonNode& node, const std::string& kind,
   return model;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "compensation/models/parameter_json.h"
 #include "dataset/files/json_node.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Adds the keys of a model, `input_scales`, `bias_scale` and `parameters`
 /// (docs/reference/compensator_file.md), to `json`. Throws as finite_json().
@@ -24,4 +24,4 @@ std::string read_bias_kind(const JsonNode& node);
 BiasModel read_bias_model(const JsonNode& node, const std::string& kind,
                           std::size_t inputs);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

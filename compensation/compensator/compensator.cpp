@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Keeps the intermediate arrays in the cache; the result does not depend on it.
@@ -77,4 +77,4 @@ std::size_t clamped_samples(const Compensator& compensator,
   return count;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

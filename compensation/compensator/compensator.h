@@ -16,7 +16,7 @@
 #include "compensation/uncertainty/bias_sigma.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A file that a compensator was trained on, or that was held out.
 struct SourceFile {
@@ -104,4 +104,4 @@ std::vector<double> baseline_rate(const Compensator& compensator,
 std::size_t clamped_samples(const Compensator& compensator,
                             const Recording& recording);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -17,7 +17,7 @@
 #include "dataset/files/json_node.h"
 #include "dataset/files/text_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -325,4 +325,4 @@ Compensator read_compensator(const std::filesystem::path& file) {
   return parse_compensator(read_text_file(file), file.string());
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

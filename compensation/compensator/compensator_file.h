@@ -6,7 +6,7 @@
 
 #include "compensation/compensator/compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the text of a compensator file: JSON with `filetype`
 /// "beamgyro-compensator" (docs/reference/compensator_file.md). Every number is
@@ -31,4 +31,4 @@ void write_compensator(const Compensator& compensator,
 /// parse_compensator().
 Compensator read_compensator(const std::filesystem::path& file);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 
 #include "compensation/inputs/sample_ranges.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kStretch = 32;  // samples
@@ -117,4 +117,4 @@ bool shares_stretches(const MeasuredSketch& sketch,
   return found >= kLeastFound && 2 * shared >= found;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

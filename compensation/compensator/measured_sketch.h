@@ -6,7 +6,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Hashes of stretches of a recording, ascending. A stretch is 32 powered
 /// samples in a row.
@@ -33,4 +33,4 @@ std::vector<std::uint64_t> stretches_up_to(std::uint64_t limit,
 bool shares_stretches(const MeasuredSketch& sketch,
                       const std::vector<std::uint64_t>& stretches);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

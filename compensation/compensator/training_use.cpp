@@ -11,7 +11,7 @@
 
 #include "dataset/files/sha256.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 void add_text(const std::string& text, Sha256& hash) {
@@ -121,4 +121,4 @@ std::string warning_of_no_training(const Provenance& provenance) {
          "scores may be in-sample";
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include "compensation/rows/run_source.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the SHA-256 of times, status and measured variables, sorted by name.
 /// It is the same for recordings that differ only in attributes, truth or a
@@ -35,4 +35,4 @@ bool may_have_used(const Provenance& provenance, const SetPart& set);
 /// was trained on, so that no run can be told in-sample; else an empty text.
 std::string warning_of_no_training(const Provenance& provenance);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "compensation/uncertainty/bias_sigma.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr int kGrid = 1000;  // steps over the temperatures of sigma
@@ -55,4 +55,4 @@ EkfFigures ekf_figures(const Compensator& c, const RestNoise& noise,
   return figures;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include "compensation/export/rest_noise.h"
 #include "compensation/uncertainty/bias_process.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What the user of a navigation filter chooses.
 struct EkfSettings {
@@ -45,4 +45,4 @@ struct EkfFigures {
 EkfFigures ekf_figures(const Compensator& compensator, const RestNoise& noise,
                        const EkfSettings& settings);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -14,7 +14,7 @@
 #include "compensation/firmware/c_text.h"
 #include "compensation/firmware/runtime.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::string array_text(const FirmwareArray& array) {
@@ -276,4 +276,4 @@ ExportedC export_c(const Compensator& compensator, const std::string& name,
           plugin_source(name, model), found.objections};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "compensation/compensator/compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// C99 source of a compensator for firmware: single precision, no allocation,
 /// no library but memcpy.
@@ -28,4 +28,4 @@ struct ExportedC {
 ExportedC export_c(const Compensator& compensator, const std::string& name,
                    bool force = false);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

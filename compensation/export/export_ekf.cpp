@@ -9,7 +9,7 @@
 
 #include "config/units.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -274,4 +274,4 @@ std::vector<std::string> ekf_warnings(const EkfExport& given) {
   return warnings;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 
 #include "compensation/export/ekf_figures.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A file that figures are computed from.
 struct EkfSource {
@@ -64,4 +64,4 @@ std::vector<std::pair<std::string, std::string>> ekf_texts(
 /// Returns a sentence for each value that a filter would not take.
 std::vector<std::string> ekf_warnings(const EkfExport& given);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "compensation/scoring/validation.h"
 #include "compensation/training/rate_kept.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 ExportFindings findings_of(const Compensator& compensator) {
   ExportFindings found;
@@ -36,4 +36,4 @@ ExportFindings findings_of(const Compensator& compensator) {
   return found;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

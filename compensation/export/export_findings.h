@@ -6,7 +6,7 @@
 
 #include "compensation/compensator/compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Measurements of a compensator that is exported as C, and objections to it.
 struct ExportFindings {
@@ -20,4 +20,4 @@ struct ExportFindings {
 /// (rate_kept() below kCancelledBelow). Throws as firmware_difference().
 ExportFindings findings_of(const Compensator& compensator);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

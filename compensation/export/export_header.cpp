@@ -11,7 +11,7 @@
 #include "compensation/export/firmware_difference.h"
 #include "compensation/firmware/c_text.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kWidth = 79;
@@ -192,4 +192,4 @@ std::string warning_comments(const std::vector<std::string>& warnings) {
   return text;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

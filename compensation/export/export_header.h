@@ -8,7 +8,7 @@
 #include "compensation/export/export_findings.h"
 #include "compensation/export/firmware_model.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns whether the input needs a low-pass of the temperature.
 bool has_filter(const Input& input);
@@ -41,4 +41,4 @@ std::string header_text(const Compensator& compensator, const std::string& name,
 /// Returns C comments, one for each warning.
 std::string warning_comments(const std::vector<std::string>& warnings);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 #include "compensation/methods/autopilot_fits.h"
 #include "config/units.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kCubicTerms = 4;  // of a cubic
@@ -170,4 +170,4 @@ std::string ardupilot_parameters(const std::vector<AutopilotAxis>& axes,
   return text;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "compensation/compensator/compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The gyro of an autopilot that the parameters are for.
 struct AutopilotGyro {
@@ -57,4 +57,4 @@ std::string px4_parameters(const std::vector<AutopilotAxis>& axes,
 std::string ardupilot_parameters(const std::vector<AutopilotAxis>& axes,
                                  const AutopilotGyro& gyro);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 
 #include "include/beamgyro/plugin.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::string filled_sample(const std::string& name, const FirmwareModel& model) {
@@ -89,4 +89,4 @@ void beamgyro_plugin_destroy(void *instance) {{ free(instance); }}
       filled_sample(name, model));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "compensation/export/firmware_model.h"
 #include "compensation/firmware/c_text.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Values of an input in the self-test: low + span u, with u from a linear
@@ -174,4 +174,4 @@ int main(void) {{
       model.tells_sigma() ? sigma_check_text(name) : "");
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "compensation/compensator/compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Number of samples of the self-test, in four power cycles with different
 /// sample rates.
@@ -20,4 +20,4 @@ constexpr int kGoldenStep = 100;
 std::string self_test_source(const Compensator& compensator,
                              const std::string& name);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

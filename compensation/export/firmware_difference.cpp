@@ -10,7 +10,7 @@
 
 #include "compensation/export/firmware_model.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kSamples = 20000, kCycles = 8;
@@ -167,4 +167,4 @@ double firmware_difference(const Compensator& compensator) {
   return firmware_differences(compensator).rate;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include "compensation/compensator/compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Sample periods [s] at which firmware_difference() compares.
 constexpr float kComparedPeriods[] = {0.0005f, 0.01f, 0.1f, 1.0f, 20.0f};
@@ -33,4 +33,4 @@ FirmwareDifference firmware_differences(const Compensator& compensator);
 /// Returns the difference of the rate.
 double firmware_difference(const Compensator& compensator);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -14,7 +14,7 @@
 
 #include "compensation/firmware/runtime.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 int drive_frequency_of(const Compensator& c) {
@@ -235,4 +235,4 @@ float FirmwareModel::step(const FirmwareSample& sample) {
   return rate;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "compensation/compensator/compensator.h"
 #include "compensation/firmware/firmware_arrays.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Signals that a compensator can read, in the order and units of firmware
 /// samples.
@@ -84,4 +84,4 @@ class FirmwareModel {
 /// significant byte first.
 std::uint32_t crc32(const std::vector<float>& values);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -14,7 +14,7 @@
 #include "compensation/scoring/allan_deviation.h"
 #include "compensation/scoring/even_series.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kHeldRate = 1e-9;  // [deg/s]
@@ -110,4 +110,4 @@ RestNoise rest_noise(const Compensator& compensator, const Recording& rest) {
   return noise;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

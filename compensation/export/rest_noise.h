@@ -8,7 +8,7 @@
 #include "compensation/scoring/noise_coefficients.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Noise of a compensated rate at rest, from its overlapping Allan deviation.
 struct RestNoise {
@@ -35,4 +35,4 @@ struct RestNoise {
 /// - when it is too short for coefficients, or shows no angle random walk.
 RestNoise rest_noise(const Compensator& compensator, const Recording& rest);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::string_view kDigits = "0123456789";
@@ -43,4 +43,4 @@ std::string c_comment(const std::string& text) {
   return with_underscores(text, " ().,:;+-=%");
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the shortest decimal C literal that reads back to the same float.
 std::string c_literal(float value);
@@ -17,4 +17,4 @@ std::string c_identifier(const std::string& text);
 /// spaces and ().,:;+-=% become _, so that the text cannot end the comment.
 std::string c_comment(const std::string& text);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

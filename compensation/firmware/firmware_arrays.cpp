@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 const std::vector<float>& FirmwareArrays::values(std::string_view name) const {
   const auto array = std::ranges::find(arrays_, name, &FirmwareArray::name);
@@ -24,4 +24,4 @@ float single(double value) {
   return result;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

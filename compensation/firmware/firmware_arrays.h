@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A row of constants of exported code.
 struct FirmwareArray {
@@ -48,4 +48,4 @@ std::vector<float> singles(const Numbers& numbers) {
   return result;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

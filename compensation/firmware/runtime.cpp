@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::string_view kText =
@@ -38,4 +38,4 @@ std::string runtime_text(std::string_view section) {
   return std::string(kText.substr(from, kText.find(kMark, from) - from));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

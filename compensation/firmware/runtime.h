@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The C functions that exported code calls, compiled with this program. Built
 /// with contraction of multiplications and additions off, exported code gives
@@ -27,4 +27,4 @@ const std::vector<std::string_view>& runtime_sections();
 /// not one of runtime_sections().
 std::string runtime_text(std::string_view section);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

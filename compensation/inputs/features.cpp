@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 const std::vector<double>& input_column(const Input& input,
@@ -123,4 +123,4 @@ Eigen::ArrayXXd features_of(const std::vector<Input>& inputs,
   return result;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 #include "compensation/inputs/input.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Range of temperatures [degC] of a compensator. Others are clamped to it.
 struct TemperatureRange {
@@ -92,4 +92,4 @@ Eigen::ArrayXXd features_of(const std::vector<Input>& inputs,
                             const Recording& recording,
                             const TemperatureRange& range = {});
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

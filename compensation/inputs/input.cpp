@@ -11,7 +11,7 @@
 #include "config/suggestion.h"
 #include "dataset/recording/signals.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::string_view kLowpass = "temperature_lowpass";
@@ -116,4 +116,4 @@ std::vector<std::string> input_names(const std::vector<Input>& inputs) {
   return names;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

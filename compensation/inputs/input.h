@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 enum class InputKind {
   kColumn,              // a measured column as it is
@@ -40,4 +40,4 @@ bool sees_the_rate(const Input& input);
 
 std::vector<std::string> input_names(const std::vector<Input>& inputs);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

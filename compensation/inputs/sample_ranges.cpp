@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::vector<SampleRange> blocks_of(const std::vector<double>& time,
@@ -113,4 +113,4 @@ std::vector<SampleRange> temperature_plateaus(const Recording& recording) {
   return plateaus;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Consecutive samples of a recording: indices begin <= k < end.
 struct SampleRange {
@@ -42,4 +42,4 @@ std::vector<SampleRange> score_blocks(const Recording& recording,
 /// column `temperature` a stretch is one piece.
 std::vector<SampleRange> temperature_plateaus(const Recording& recording);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

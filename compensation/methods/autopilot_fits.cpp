@@ -10,7 +10,7 @@
 
 #include "compensation/models/array_view.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -145,4 +145,4 @@ BiasModel fit_as_ardupilot(const TrainingRows& samples, int least_samples) {
                      array_view(points.bias));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include "compensation/methods/bias_model.h"
 #include "compensation/rows/training_rows.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 constexpr double kArduPilotReference = 35.0;  // [degC]
 constexpr double kArduPilotSpan = 10.0;       // [K], the least it accepts
@@ -27,4 +27,4 @@ BiasModel fit_as_px4(const TrainingRows& samples);
 /// less than kArduPilotSpan or the rises give fewer than 4 points.
 BiasModel fit_as_ardupilot(const TrainingRows& samples, int least_samples);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

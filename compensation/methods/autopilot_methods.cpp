@@ -4,7 +4,7 @@
 #include "compensation/methods/autopilot_fits.h"
 #include "compensation/methods/fit.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 Px4Spec Px4Spec::read(MethodSource&) { return {}; }
 
@@ -25,4 +25,4 @@ Fit ArduPilotSpec::fit(const FitTask& task) const {
   return fit_as_ardupilot(task.rows, least_samples);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include "compensation/methods/method.h"
 #include "compensation/models/polynomial.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The cubic as PX4 fits it; fit_as_px4().
 struct Px4Spec {
@@ -30,4 +30,4 @@ struct ArduPilotSpec {
   Fit fit(const FitTask& task) const;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

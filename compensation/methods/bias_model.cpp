@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 struct Predict {
@@ -94,4 +94,4 @@ EquationOne equation_one(const BiasModel& model) {
   return result;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "compensation/methods/method_list.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// scaled = (value - centre) / half_width
 struct Scale {
@@ -65,4 +65,4 @@ std::vector<double> coefficients_about(const BiasModel& model,
 /// than the temperature.
 EquationOne equation_one(const BiasModel& model);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

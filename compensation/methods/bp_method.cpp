@@ -11,7 +11,7 @@
 #include "compensation/methods/input_scales.h"
 #include "compensation/network/restarts.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 namespace {
 
@@ -172,4 +172,4 @@ Fit BpSpec::fit(const FitTask& task) const {
   return fit;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

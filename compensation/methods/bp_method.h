@@ -7,7 +7,7 @@
 #include "compensation/models/bp_network.h"
 #include "compensation/network/network_training.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Table [bp].
 struct BpSpec {
@@ -27,4 +27,4 @@ struct BpSpec {
   Fit fit(const FitTask& task) const;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

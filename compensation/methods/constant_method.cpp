@@ -5,7 +5,7 @@
 #include "compensation/methods/input_scales.h"
 #include "compensation/models/parameter_json.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 Eigen::ArrayXd NoBias::predict(
     const Eigen::Ref<const Eigen::ArrayXXd>& x) const {
@@ -49,4 +49,4 @@ Fit ConstantSpec::fit(const FitTask& task) const {
   return BiasModel{unscaled(task), {}, ConstantBias{task.rows.bias.mean()}};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include "compensation/methods/method.h"
 #include "compensation/models/bias_function.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// No bias at all: the raw rate.
 struct NoBias {
@@ -53,4 +53,4 @@ struct ConstantSpec {
   Fit fit(const FitTask& task) const;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

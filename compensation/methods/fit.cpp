@@ -8,7 +8,7 @@
 
 #include "compensation/methods/input_scales.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr int kBaselineDegree = 3;
@@ -49,4 +49,4 @@ BiasModel fit_baseline(const TrainingRows& rows) {
       fit_polynomial((T - scale.centre) / scale.half_width, rows.bias, degree)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

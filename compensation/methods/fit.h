@@ -11,7 +11,7 @@
 #include "compensation/methods/bias_model.h"
 #include "compensation/methods/method.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A model fitted to rows.
 struct Fit {
@@ -47,4 +47,4 @@ BiasModel fit_baseline(const TrainingRows& rows);
 /// Returns the name of a method for people: "cubic spline".
 std::string method_name(const FitSpec& kind);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

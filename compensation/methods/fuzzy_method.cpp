@@ -6,7 +6,7 @@
 #include "compensation/methods/fit.h"
 #include "compensation/methods/input_scales.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 FuzzySpec FuzzySpec::read(MethodSource& source) {
   return {
@@ -25,4 +25,4 @@ Fit FuzzySpec::fit(const FitTask& task) const {
                                      task.rows.bias, rules)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include "compensation/methods/method.h"
 #include "compensation/models/takagi_sugeno.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Table [fuzzy].
 struct FuzzySpec {
@@ -19,4 +19,4 @@ struct FuzzySpec {
   Fit fit(const FitTask& task) const;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Temperatures closer than this are one temperature to a polynomial.
@@ -60,4 +60,4 @@ Eigen::ArrayXXd scaled(const Eigen::ArrayXXd& inputs,
   return result;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include "compensation/methods/bias_model.h"
 #include "compensation/methods/method.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Scales that leave the inputs as they are.
 std::vector<Scale> unscaled(const FitTask& task);
@@ -29,4 +29,4 @@ inline Eigen::ArrayXd first_input(const FitTask& task) {
 void check_temperatures(const Eigen::ArrayXd& temperature, int degree);
 int distinct_temperatures(const Eigen::ArrayXd& temperature);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

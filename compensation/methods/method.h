@@ -11,7 +11,7 @@
 #include "compensation/rows/training_rows.h"
 #include "config/document.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct BiasModel;
 struct Fit;
@@ -69,4 +69,4 @@ struct FitTask {
 /// Root of the mean square residual [deg/s] over the rows.
 double rms_residual(const BiasModel& model, const TrainingRows& rows);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 void require_one_temperature(const ConfigTable& root,
@@ -89,4 +89,4 @@ void check_inputs(const ConfigTable& root, const std::vector<Input>& inputs,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "compensation/methods/method.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The inputs that the key `inputs` of a model file names. Throws as
 /// ConfigTable for none, for a name that is not an input and for one that is
@@ -18,4 +18,4 @@ std::vector<Input> read_inputs(const ConfigTable& root);
 void check_inputs(const ConfigTable& root, const std::vector<Input>& inputs,
                   InputRule rule, const std::string& method);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -14,7 +14,7 @@
 #include "compensation/methods/table_method.h"
 #include "compensation/methods/thermistor_method.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Every method of training (method.h). A new one is a unit of this room and a
 /// line here.
@@ -63,4 +63,4 @@ void for_each_alternative(Use&& use) {
   for_each_alternative(static_cast<const Variant*>(nullptr), use);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include "compensation/methods/fit.h"
 #include "compensation/methods/input_scales.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 PolynomialSpec PolynomialSpec::read(MethodSource& source) {
   const ConfigTable table = source.table(kName);
@@ -43,4 +43,4 @@ Fit PolynomialSpec::fit(const FitTask& task) const {
       fit_polynomial(scaled(task.rows.inputs, scales), task.rows.bias, degree)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

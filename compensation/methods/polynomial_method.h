@@ -4,7 +4,7 @@
 #include "compensation/methods/method.h"
 #include "compensation/models/polynomial.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Table [polynomial].
 struct PolynomialSpec {
@@ -20,4 +20,4 @@ struct PolynomialSpec {
   Fit fit(const FitTask& task) const;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

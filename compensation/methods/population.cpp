@@ -10,7 +10,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -276,4 +276,4 @@ CubicSpline bias_curve(const Population& population, const ArrayXd& values) {
                           population.temperatures, SplineEnd::kNotAKnot);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "compensation/rows/training_rows.h"
 #include "compensation/uncertainty/bias_sigma.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Calibration of the 1-sigma of devices that are adapted from a population, on
 /// devices that it was not learned from.
@@ -99,4 +99,4 @@ AdaptedBias adapted_bias(const Population& population,
 CubicSpline bias_curve(const Population& population,
                        const Eigen::ArrayXd& values);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "compensation/models/parameter_json.h"
 #include "compensation/uncertainty/bias_sigma_json.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -105,4 +105,4 @@ Population read_population(const JsonNode& node) {
   return population;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

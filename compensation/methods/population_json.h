@@ -6,7 +6,7 @@
 #include "compensation/methods/population.h"
 #include "dataset/files/json_node.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the value of the key `population` of a compensator file
 /// (docs/reference/compensator_file.md). Throws std::runtime_error for a number
@@ -16,4 +16,4 @@ nlohmann::ordered_json population_json(const Population& population);
 /// Reads a value that population_json() wrote. Throws as JsonNode.
 Population read_population(const JsonNode& node);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -13,7 +13,7 @@
 #include "compensation/methods/method_inputs.h"
 #include "dataset/files/sha256.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 PopulationSpec PopulationSpec::read(MethodSource& source) {
   return {source.table(kName).number_or("grid_K", 5.0, positive())};
@@ -100,4 +100,4 @@ Fit AdaptedSpec::fit(const FitTask& task) const {
   return fit;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

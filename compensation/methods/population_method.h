@@ -4,7 +4,7 @@
 #include "compensation/methods/method.h"
 #include "compensation/methods/population.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Table [population]: what the devices of a set have in common.
 struct PopulationSpec {
@@ -32,4 +32,4 @@ struct AdaptedSpec {
   Fit fit(const FitTask& task) const;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

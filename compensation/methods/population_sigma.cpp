@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -190,4 +190,4 @@ BiasSigma population_sigma(const Population& population) {
   return sigma;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include "compensation/rows/training_rows.h"
 #include "compensation/uncertainty/sigma_calibration.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the rows of devices that the population was not learned from, as
 /// residuals of the spline through the soaks of each device itself: what lags
@@ -37,4 +37,4 @@ BiasSigma adapted_sigma(const Population& population,
 /// Returns sigma over temperature of the mean of the population: its spread.
 BiasSigma population_sigma(const Population& population);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -14,7 +14,7 @@
 #include "compensation/methods/input_scales.h"
 #include "compensation/models/parameter_json.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -214,4 +214,4 @@ Fit RadialBasisSpec::fit(const FitTask& task) const {
                        centres, width_share, ridge)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

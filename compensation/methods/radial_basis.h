@@ -7,7 +7,7 @@
 #include "compensation/methods/method.h"
 #include "compensation/models/bias_function.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Gaussian bells about centres beside a plane (Broomhead and Lowe, Complex
 /// Systems 2, 1988, 321), of scaled inputs x:
@@ -56,4 +56,4 @@ struct RadialBasisSpec {
   Fit fit(const FitTask& task) const;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include "compensation/methods/fit.h"
 #include "compensation/methods/input_scales.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 SplineSpec SplineSpec::read(MethodSource& source) {
   const ConfigTable table = source.table(kName);
@@ -29,4 +29,4 @@ Fit SplineSpec::fit(const FitTask& task) const {
                        spline_knots(temperature, knot_spacing_K), end)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include "compensation/methods/method.h"
 #include "compensation/models/cubic_spline.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Table [spline].
 struct SplineSpec {
@@ -20,4 +20,4 @@ struct SplineSpec {
   Fit fit(const FitTask& task) const;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include "compensation/methods/fit.h"
 #include "compensation/methods/input_scales.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 TableSpec TableSpec::read(MethodSource& source) {
   return {source.table(kName).number_or("bin_width_K", 5.0, positive())};
@@ -23,4 +23,4 @@ Fit TableSpec::fit(const FitTask& task) const {
       fit_lookup_table(first_input(task), task.rows.bias, bin_width_K)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

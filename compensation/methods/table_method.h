@@ -4,7 +4,7 @@
 #include "compensation/methods/method.h"
 #include "compensation/models/lookup_table.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Table [table].
 struct TableSpec {
@@ -19,4 +19,4 @@ struct TableSpec {
   Fit fit(const FitTask& task) const;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

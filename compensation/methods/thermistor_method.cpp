@@ -4,7 +4,7 @@
 #include "compensation/methods/fit.h"
 #include "compensation/methods/input_scales.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 ThermistorSpec ThermistorSpec::read(MethodSource& source) {
   return {source.table(kName).number_or("b_K", 3950.0, positive())};
@@ -19,4 +19,4 @@ Fit ThermistorSpec::fit(const FitTask& task) const {
       fit_thermistor_network(first_input(task), task.rows.bias, b_K)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

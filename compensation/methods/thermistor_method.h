@@ -4,7 +4,7 @@
 #include "compensation/methods/method.h"
 #include "compensation/models/thermistor_network.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Table [thermistor].
 struct ThermistorSpec {
@@ -19,4 +19,4 @@ struct ThermistorSpec {
   Fit fit(const FitTask& task) const;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

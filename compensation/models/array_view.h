@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the values as an array of Eigen, without copying them. They must
 /// outlive it.
@@ -14,4 +14,4 @@ Eigen::Map<const Eigen::ArrayX<Value>> array_view(
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

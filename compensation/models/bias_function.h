@@ -8,7 +8,7 @@
 #include "compensation/firmware/firmware_arrays.h"
 #include "dataset/files/json_node.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// How many inputs a kind of bias function reads.
 enum class InputUse { kNone, kOne, kAny };
@@ -31,4 +31,4 @@ enum class InputUse { kNone, kOne, kAny };
 // by operation, what firmware_value() does. A function that reads no input has
 // neither of the two: its value is the one number of its array, or 0 without.
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

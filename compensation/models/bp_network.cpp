@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -165,4 +165,4 @@ ArrayXd BpNetwork::predict_with_gradient(
   return a.back().col(0);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

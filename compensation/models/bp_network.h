@@ -7,7 +7,7 @@
 #include "compensation/models/bias_function.h"
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Positions of the weights of one layer in the flat vector: W begins at
 /// `weights`, column by column, and b at `biases`.
@@ -74,4 +74,4 @@ class BpNetwork {
   Eigen::VectorXd weights_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

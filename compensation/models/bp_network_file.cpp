@@ -9,7 +9,7 @@
 #include "compensation/models/bp_network.h"
 #include "compensation/models/parameter_json.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Layers of a network as rows: weights of a neuron after one another.
@@ -138,4 +138,4 @@ FirmwareCode BpNetwork::firmware_code(std::size_t) const {
   return code;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -14,7 +14,7 @@
 #include "compensation/models/array_view.h"
 #include "compensation/models/parameter_json.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -177,4 +177,4 @@ FirmwareCode CubicSpline::firmware_code(std::size_t) const {
                       values.size())};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "compensation/models/bias_function.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 enum class SplineEnd {
   kNatural,   // s'' = 0 at both ends
@@ -51,4 +51,4 @@ CubicSpline fit_cubic_spline(const Eigen::Ref<const Eigen::ArrayXd>& x,
 Eigen::ArrayXd spline_knots(const Eigen::Ref<const Eigen::ArrayXd>& x,
                             double spacing);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 #include "compensation/firmware/runtime.h"
 #include "compensation/models/parameter_json.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 using Eigen::Index;
 
@@ -100,4 +100,4 @@ LookupTable read_lookup_table(const JsonNode& node, const std::string& values) {
   return table;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "compensation/models/bias_function.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Values at given temperatures, with straight lines between them and the
 /// outermost values beyond.
@@ -38,4 +38,4 @@ LookupTable fit_lookup_table(const Eigen::Ref<const Eigen::ArrayXd>& x,
                              const Eigen::Ref<const Eigen::ArrayXd>& y,
                              double width);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

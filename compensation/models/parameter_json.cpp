@@ -8,7 +8,7 @@
 
 #include "compensation/models/array_view.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 nlohmann::ordered_json finite_json(double value) {
   if (!std::isfinite(value))
@@ -28,4 +28,4 @@ double read_positive(const JsonNode& node) {
   return number;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "dataset/files/json_node.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the number as JSON. Throws std::runtime_error when it is not finite.
 nlohmann::ordered_json finite_json(double value);
@@ -23,4 +23,4 @@ nlohmann::ordered_json numbers_json(const Numbers& numbers) {
 Eigen::ArrayXd read_array(const JsonNode& node);
 double read_positive(const JsonNode& node);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

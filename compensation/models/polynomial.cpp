@@ -10,7 +10,7 @@
 #include "compensation/firmware/runtime.h"
 #include "compensation/models/parameter_json.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -122,4 +122,4 @@ FirmwareCode Polynomial::firmware_code(std::size_t inputs) const {
   return {{"polynomial"}, body + "  return y;\n"};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

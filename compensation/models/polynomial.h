@@ -6,7 +6,7 @@
 
 #include "compensation/models/bias_function.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// p(x) = c_0 + c_1 x_0 + ... + c_n x_0^n + d_1 x_1 + ... + d_m x_m: a
 /// polynomial of the first input and a straight line in each further one.
@@ -45,4 +45,4 @@ Polynomial fit_polynomial_by_normal_equations(
 /// Returns the coefficients of p about another origin: q(x) = p(x + origin).
 std::vector<double> shifted(std::vector<double> coefficients, double origin);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "compensation/firmware/runtime.h"
 #include "compensation/models/parameter_json.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -124,4 +124,4 @@ FirmwareCode TakagiSugeno::firmware_code(std::size_t inputs) const {
                   centres.size(), inputs)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

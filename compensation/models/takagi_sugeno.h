@@ -5,7 +5,7 @@
 
 #include "compensation/models/bias_function.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Fuzzy model of Takagi and Sugeno (IEEE Trans. SMC 15, 1985, 116): rules "if
 /// x_0 is near c_i then y = a_i0 + a_i1 x_0 + a_i2 x_1 + ...", blended by
@@ -38,4 +38,4 @@ TakagiSugeno fit_takagi_sugeno(const Eigen::Ref<const Eigen::ArrayXXd>& x,
                                const Eigen::Ref<const Eigen::ArrayXd>& y,
                                int rules);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

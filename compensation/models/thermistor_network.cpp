@@ -13,7 +13,7 @@
 #include "compensation/models/parameter_json.h"
 #include "config/units.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -139,4 +139,4 @@ FirmwareCode ThermistorNetwork::firmware_code(std::size_t) const {
   return {{"exp", "thermistor"}, "  return thermistor_at(network, x[0]);\n"};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "compensation/models/bias_function.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Compensation by hardware: an NTC and three resistors divide a reference
 /// voltage, and the divided voltage is added to the output,
@@ -49,4 +49,4 @@ ThermistorNetwork fit_thermistor_network(
     const Eigen::Ref<const Eigen::ArrayXd>& x,
     const Eigen::Ref<const Eigen::ArrayXd>& y, double b_K);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -16,7 +16,7 @@
 #endif
 #define BEAMGYRO_INLINE inline __attribute__((always_inline))
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Index;
@@ -298,4 +298,4 @@ BEAMGYRO_WIDE void tanh_in_place(double* z, Index entries) {
   tanh_lanes(reinterpret_cast<Lane*>(z), entries / kLanes);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "compensation/models/bp_network.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Number of samples in a block of BatchNetwork, a multiple of kLanes.
 constexpr Eigen::Index kBlockSamples = 64;
@@ -57,4 +57,4 @@ void add_products(const double* jacobian, Eigen::Index rows,
 /// number is a multiple of kLanes, and z is aligned to kLanes doubles.
 void tanh_in_place(double* z, Eigen::Index entries);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

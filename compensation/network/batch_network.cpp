@@ -5,7 +5,7 @@
 
 #include "parallel/work_queue.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Index;
@@ -136,4 +136,4 @@ VectorXd BatchNetwork::curvature(const VectorXd& v) {
   });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

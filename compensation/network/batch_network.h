@@ -7,7 +7,7 @@
 #include "compensation/network/batch_kernels.h"
 #include "compensation/network/network_training.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Evaluates a BP network over all rows of a training set, for the trainers.
 /// Its outputs are those of BpNetwork except for rounding. The division of the
@@ -67,4 +67,4 @@ class BatchNetwork {
   std::vector<Chunk> chunks_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Index;
@@ -124,4 +124,4 @@ TrainSummary train_gradient_adaptive(const ScaledRows& rows,
   return summary;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include "compensation/network/network_training.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The learning rate of the full-batch rule: a step after which the error is
 /// more than 1.05 times the old one is discarded and the rate multiplied by
@@ -37,4 +37,4 @@ TrainSummary train_gradient_adaptive(const ScaledRows& rows,
                                      const TrainOptions& options,
                                      BpNetwork& network);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include "compensation/network/batch_network.h"
 #include "compensation/network/rate_penalty.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::MatrixXd;
@@ -136,4 +136,4 @@ TrainSummary train_levenberg_marquardt(const ScaledRows& rows,
   return summary;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include "compensation/network/network_training.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Damped Gauss-Newton on F(w) = mean(e^2) / 2 + decay |w|^2 / 2 with geodesic
 /// acceleration. The step is w -> w + v + a with
@@ -25,4 +25,4 @@ TrainSummary train_levenberg_marquardt(const ScaledRows& rows,
                                        const TrainOptions& options,
                                        BpNetwork& network);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include "compensation/network/gradient_trainer.h"
 #include "compensation/network/levenberg_marquardt.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr Eigen::Index kBlockRows = 1024;  // keeps a block in the cache
@@ -115,4 +115,4 @@ TrainSummary train_network(const ScaledRows& rows, const ScaledRows& held_out,
   return train_levenberg_marquardt(rows, held_out, options, network);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 
 #include "compensation/models/bp_network.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 enum class Trainer { kIncremental, kGradientAdaptive, kLevenbergMarquardt };
 
@@ -134,4 +134,4 @@ TrainSummary train_network(const ScaledRows& rows, const ScaledRows& held_out,
                            const TrainOptions& options, RandomStream& order,
                            BpNetwork& network);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // The random streams that this room draws from. The numbers are part of the
 // data: never change one, never use one twice (all of them are compared by a
@@ -11,4 +11,4 @@ namespace beamgyro {
 inline constexpr RandomPurpose kInitialWeightsStream{6};
 inline constexpr RandomPurpose kSampleOrderStream{7};
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

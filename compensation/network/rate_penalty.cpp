@@ -5,7 +5,7 @@
 #include <iterator>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -66,4 +66,4 @@ void RatePenalty::add_to(const VectorXd& w, MatrixXd& matrix,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

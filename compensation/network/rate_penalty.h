@@ -5,7 +5,7 @@
 
 #include "compensation/network/network_training.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// P = penalty mean(g^2) / 2 over the rows. g is the share of a rate that the
 /// network mistakes for drift between row x and x + s d. d is the change of the
@@ -43,4 +43,4 @@ class RatePenalty {
 constexpr double kPenaltySteps[] = {1e-3, -1.0,  10.0, -100.0,
                                     1.0,  -10.0, 100.0};
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include "compensation/network/rate_penalty.h"
 #include "parallel/work_queue.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 std::size_t best_network(const std::vector<BpNetwork>& networks,
                          const ScaledRows& rows, const ScaledRows& held_out,
@@ -66,4 +66,4 @@ Restarts train_from_restarts(const std::vector<int>& layer_sizes,
   return {std::move(summaries), chosen, std::move(networks[chosen])};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

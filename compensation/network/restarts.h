@@ -7,7 +7,7 @@
 
 #include "compensation/network/network_training.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Trainings of one network from several sets of initial weights.
 struct Restarts {
@@ -34,4 +34,4 @@ Restarts train_from_restarts(const std::vector<int>& layer_sizes,
                              const ScaledRows& rows, const ScaledRows& held_out,
                              const TrainOptions& options, std::uint64_t seed);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include "config/file_error.h"
 #include "dataset/files/sha256.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 RunSource runs_of_files(
     const std::vector<std::string>& paths,
@@ -30,4 +30,4 @@ bool is_set(const std::vector<std::string>& paths) {
   return false;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 
 #include "compensation/rows/run_source.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns a source of recordings that calls `read`, read_recording() for one,
 /// for each file when it is needed. `paths` must outlive the source.
@@ -20,4 +20,4 @@ RunSource runs_of_files(
 /// std::invalid_argument when one of several paths is a directory.
 bool is_set(const std::vector<std::string>& paths);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

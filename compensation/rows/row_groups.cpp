@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXi;
@@ -155,4 +155,4 @@ RowGroups folds_of(const TrainingRows& rows, int least) {
   return group_rows(rows, Grouping::kSegment);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 
 #include "compensation/rows/training_rows.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Kind of group that is held out as a whole. Random samples are not among
 /// them, because neighbours in time share the drift.
@@ -59,4 +59,4 @@ constexpr double kLeastLeg = 0.25;  // [-]
 /// more above kLeastLeg.
 RowGroups folds_of(const TrainingRows& rows, int least);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Table [rows] of a model file: how samples are averaged to training rows.
 struct RowOptions {
@@ -13,4 +13,4 @@ struct RowOptions {
   std::optional<double> steady_K_per_min;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "compensation/rows/run_source.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 RunSource source_of(const std::vector<TrainingRun>& runs) {
   return {runs.size(), [&runs](const RunSource::Visitor& visit) {
@@ -9,4 +9,4 @@ RunSource source_of(const std::vector<TrainingRun>& runs) {
           }};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

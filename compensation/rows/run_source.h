@@ -10,7 +10,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A recording that is trained on or held out.
 struct TrainingRun {
@@ -55,4 +55,4 @@ struct RunSource {
 /// Returns a source of runs in memory, which must outlive the source.
 RunSource source_of(const std::vector<TrainingRun>& runs);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -15,7 +15,7 @@
 #include "dataset/set/manifest.h"
 #include "dataset/set/shard/shard_reader.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Devices of one file of the set.
@@ -153,4 +153,4 @@ RunSource runs_of_set(const std::filesystem::path& directory,
   return source;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

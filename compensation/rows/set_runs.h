@@ -9,7 +9,7 @@
 
 #include "compensation/rows/run_source.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Parts of a set as its files number them (DeviceRow::part).
 enum class SetPartNumber : std::uint8_t { kTrain, kValidation, kTest };
@@ -31,4 +31,4 @@ struct SetSelection {
 RunSource runs_of_set(const std::filesystem::path& directory,
                       const SetSelection& selection);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

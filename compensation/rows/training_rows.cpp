@@ -10,7 +10,7 @@
 
 #include "compensation/models/array_view.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -319,4 +319,4 @@ TrainingRows with_columns(const TrainingRows& rows,
   return result;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

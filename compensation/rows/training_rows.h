@@ -11,7 +11,7 @@
 #include "compensation/rows/row_options.h"
 #include "compensation/rows/run_source.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Means over blocks of samples, to which models are fitted.
 struct TrainingRows {
@@ -73,4 +73,4 @@ TrainingRows with_columns(const TrainingRows& rows,
                           const std::vector<Input>& all,
                           const std::vector<Input>& wanted);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

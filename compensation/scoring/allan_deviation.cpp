@@ -13,7 +13,7 @@
 
 #include "compensation/scoring/angle_sums.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Index;
@@ -286,4 +286,4 @@ nlohmann::ordered_json to_json(const std::vector<DeviationCurve>& curves) {
   return json;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -15,7 +15,7 @@
 #include "compensation/scoring/noise_type.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct AllanPoint {
   double tau;            // [s]
@@ -112,4 +112,4 @@ SampleRange longest_gapless_range(const Recording& recording,
 /// "freedom", "noise"}, ...], "oadev": [...]}
 nlohmann::ordered_json to_json(const std::vector<DeviationCurve>& curves);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <span>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -216,4 +216,4 @@ void AngleSums::add_with_gaps(int order, Index m, Index stride, Index starts,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

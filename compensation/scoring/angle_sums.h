@@ -7,7 +7,7 @@
 
 #include "compensation/scoring/deviation_kind.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Of the differences of one kind at one tau, in units of rates.
 struct RateDifferences {
@@ -55,4 +55,4 @@ class AngleSums {
   Eigen::ArrayXd count_;  // of samples up to each place; empty without a gap
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

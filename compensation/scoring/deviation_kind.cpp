@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 const std::vector<std::string>& deviation_names() {
   static const std::vector<std::string> names{"adev", "oadev", "mdev",
@@ -33,4 +33,4 @@ int order_of(DeviationKind kind) {
   return kind == DeviationKind::kHdev || kind == DeviationKind::kOhdev ? 3 : 2;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

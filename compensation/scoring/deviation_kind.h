@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The deviations of NIST SP 1065. Of rates y_k with the angles x_k (sums of
 /// rates times the interval tau_0), tau = m tau_0, and Delta the difference of
@@ -29,4 +29,4 @@ std::string name_of(DeviationKind kind);
 /// Returns 3 for the Hadamard deviations, which a ramp does not reach, else 2.
 int order_of(DeviationKind kind);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

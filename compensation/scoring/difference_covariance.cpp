@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kDense = 4.0;    // lags on each side of a meeting, one by one
@@ -108,4 +108,4 @@ double variance_of_difference(const std::function<double(double)>& r,
   return covariance_at(r, shifted_terms(differences, differences), 0.0);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

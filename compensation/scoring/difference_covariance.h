@@ -3,7 +3,7 @@
 
 #include <functional>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Differences Delta^order of angles `length` samples apart, one at each of
 /// `starts` samples.
@@ -33,4 +33,4 @@ PairMeans pair_means(const std::function<double(double)>& r,
 double variance_of_difference(const std::function<double(double)>& r,
                               const AngleDifferences& differences);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 
 #include "compensation/scoring/difference_covariance.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kTail = 0.025;       // on either side of a 95 % interval
@@ -127,4 +127,4 @@ double expected_ratio(DeviationKind kind, NoiseType type, double m,
   return 1.0 + slope * m / samples;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include "compensation/scoring/deviation_kind.h"
 #include "compensation/scoring/noise_type.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the degrees of freedom of the chi-squared distribution that has the
 /// relative variance 2/freedom of the square of a deviation of m samples, from
@@ -35,4 +35,4 @@ ConfidenceInterval confidence_interval(double deviation, double freedom);
 double expected_ratio(DeviationKind kind, NoiseType type, double m,
                       double samples);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

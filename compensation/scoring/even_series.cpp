@@ -9,7 +9,7 @@
 
 #include "compensation/inputs/sample_ranges.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kMostPlacesPerSample = 4;
@@ -129,4 +129,4 @@ EvenSeries even_series(const Recording& recording, std::string_view name,
   return series;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

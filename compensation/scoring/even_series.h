@@ -8,7 +8,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Times from <= t <= to [s].
 struct TimeWindow {
@@ -39,4 +39,4 @@ struct EvenSeries {
 EvenSeries even_series(const Recording& recording, std::string_view name,
                        const TimeWindow& window = {});
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/scale_factor.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 struct Line {
@@ -129,4 +129,4 @@ std::optional<Linearity> linearity(const Recording& recording,
   return worst;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 constexpr std::size_t kLeastRatesOfTable = 5;
 
@@ -45,4 +45,4 @@ bool is_rate_table(std::span<const HeldRate> table);
 std::optional<Linearity> linearity(const Recording& recording,
                                    std::span<const double> rate);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

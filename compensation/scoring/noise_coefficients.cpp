@@ -15,7 +15,7 @@
 
 #include "compensation/scoring/difference_covariance.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -436,4 +436,4 @@ nlohmann::ordered_json to_json(const NoiseCoefficients& coefficients,
   return json;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

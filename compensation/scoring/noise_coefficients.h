@@ -9,7 +9,7 @@
 
 #include "compensation/scoring/allan_deviation.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct CoefficientEstimate {
   double value;
@@ -99,4 +99,4 @@ std::vector<CoefficientReport> reports(const NoiseCoefficients& coefficients,
 nlohmann::ordered_json to_json(const NoiseCoefficients& coefficients,
                                const std::string& unit);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

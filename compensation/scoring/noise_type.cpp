@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kLeastAverages = 30.0;
@@ -105,4 +105,4 @@ NoiseType noise_type(std::vector<std::vector<double>> averages,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Noise whose rate has a spectrum that goes with f^exponent.
 enum class NoiseType : int {
@@ -33,4 +33,4 @@ std::string_view name_of(NoiseType type);
 NoiseType noise_type(std::vector<std::vector<double>> averages,
                      NoiseType shorter);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 /// Divided by its largest value, unless that is zero.
@@ -131,4 +131,4 @@ Eigen::VectorXd without_drift(const Eigen::VectorXd& rate,
   return left_over;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

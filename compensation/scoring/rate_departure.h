@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 constexpr double kDriftKnots = 300.0;  // [s]
 // Damping of a term, as a share of the sum of squares of that term with
@@ -29,4 +29,4 @@ Eigen::VectorXd without_drift(const Eigen::VectorXd& rate,
                               const Eigen::VectorXd& temperature,
                               const std::vector<double>& time);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -15,7 +15,7 @@
 #include "compensation/scoring/scale_factor.h"
 #include "compensation/scoring/stated_values.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kDecades = 4.0;         // of the injected rates
@@ -258,4 +258,4 @@ std::optional<double> injected_scale_factor(const RateEstimator& estimator,
   return worse ? std::optional(worse->retained) : std::nullopt;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

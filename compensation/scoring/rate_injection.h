@@ -9,7 +9,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A function that returns the compensated rate [deg/s] of every sample.
 using RateEstimator = std::function<std::vector<double>(const Recording&)>;
@@ -87,4 +87,4 @@ std::optional<double> injected_scale_factor(const RateEstimator& estimator,
                                             const Recording& recording,
                                             double full_scale = kFullScale);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "compensation/inputs/sample_ranges.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 bool is_near(double a, double b) { return std::abs(a - b) <= kRateReach; }
@@ -168,4 +168,4 @@ std::optional<ReplayedScaleFactor> replayed_scale_factor(
   return found;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 #include "compensation/scoring/scale_factor.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Recorded rates that test what a replay cannot: inputs that a replayed rate
 /// does not move, and the values of a scale-factor table.
@@ -70,4 +70,4 @@ std::optional<ReplayedScaleFactor> replayed_scale_factor(
     std::span<const double> answers, double full_scale,
     const ScaleFactorTolerance& tolerance, const RecordedRates& rates);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

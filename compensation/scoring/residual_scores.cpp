@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 std::vector<double> block_residuals(std::span<const SampleRange> blocks,
                                     std::span<const double> rate,
@@ -55,4 +55,4 @@ ResidualScores residual_scores(std::span<const double> residuals) {
           .largest = std::max(std::abs(least), std::abs(most))};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

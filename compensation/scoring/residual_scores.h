@@ -7,7 +7,7 @@
 
 #include "compensation/inputs/sample_ranges.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Scores of n block means r_i of a residual rate. The run was not trained on,
 /// so the variance divides by n.
@@ -32,4 +32,4 @@ std::vector<double> block_residuals(std::span<const SampleRange> blocks,
 /// when there is no block.
 ResidualScores residual_scores(std::span<const double> block_residuals);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -13,7 +13,7 @@
 #include "compensation/models/array_view.h"
 #include "compensation/scoring/rate_departure.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::uint8_t kLeftOut = kUnpowered | kOutputSaturated;
@@ -155,4 +155,4 @@ std::optional<ScaleFactor> scale_factor(const SlopeSums& sums) {
       .largest_departure = sums.largest_departure};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

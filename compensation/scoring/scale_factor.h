@@ -10,7 +10,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 constexpr double kSmallRate = 2.0;           // [deg/s]
 constexpr double kLeastRateDeparture = 0.1;  // [deg/s]
@@ -84,4 +84,4 @@ struct ScaleFactor {
 /// because a slope over a constant rate is noise.
 std::optional<ScaleFactor> scale_factor(const SlopeSums& sums);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -14,7 +14,7 @@
 #include "compensation/models/array_view.h"
 #include "compensation/scoring/allan_deviation.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kWhiteNoiseFall = 0.75;  // [-], deviation at 4 s over 1 s
@@ -226,4 +226,4 @@ std::optional<double> white_noise_ratio(const AnsweredRun& run) {
   return oadev(after, interval, taus)[0].deviation / raw[0].deviation;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

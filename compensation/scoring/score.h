@@ -12,7 +12,7 @@
 #include "compensation/scoring/scale_factor.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A run and the answers of a compensator to it.
 struct AnsweredRun {
@@ -88,4 +88,4 @@ Score score_together(const std::vector<ScoredRun>& runs);
 /// - for less than 10 s.
 std::optional<double> white_noise_ratio(const AnsweredRun& run);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

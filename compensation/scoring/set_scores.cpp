@@ -11,7 +11,7 @@
 
 #include "compensation/compensator/training_use.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 struct MedianAndWorst {
@@ -161,4 +161,4 @@ nlohmann::ordered_json to_json(const std::vector<DeviceScore>& scores) {
   return array;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "compensation/rows/run_source.h"
 #include "compensation/scoring/validation.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Scores of a compensator on one device in one run.
 struct DeviceScore {
@@ -46,4 +46,4 @@ std::vector<std::string> warnings_of(const Compensator& compensator,
 
 nlohmann::ordered_json to_json(const std::vector<DeviceScore>& scores);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "config/config_node.h"
 #include "config/document.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -63,4 +63,4 @@ std::optional<bool> stated_scenario_flag(const Recording& recording,
                     });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

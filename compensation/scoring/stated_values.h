@@ -6,7 +6,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the number with a dotted key in the device file and the overrides of
 /// a recording, or nothing where there is none.
@@ -18,4 +18,4 @@ std::optional<double> stated_device_number(const Recording& recording,
 std::optional<bool> stated_scenario_flag(const Recording& recording,
                                          std::string_view key);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 
 #include "compensation/inputs/sample_ranges.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr TemperatureRange kPlausible = {-100.0, 200.0};  // [degC]
@@ -104,4 +104,4 @@ WorstBlocks worst_over_temperature(const Compensator& compensator,
   return worst;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

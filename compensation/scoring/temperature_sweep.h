@@ -7,7 +7,7 @@
 #include "compensation/scoring/rate_injection.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 constexpr double kSweepStep = 0.02;  // [K]
 
@@ -31,4 +31,4 @@ WorstBlocks worst_over_temperature(const Compensator& compensator,
                                    const Recording& recording,
                                    double full_scale);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

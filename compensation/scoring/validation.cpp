@@ -11,7 +11,7 @@
 #include "compensation/compensator/training_use.h"
 #include "compensation/scoring/temperature_sweep.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kSameRms = 1e-6;  // [-], of two rms: rounding
@@ -303,4 +303,4 @@ Validation validate(const Compensator& compensator, const std::string& method,
   return validation;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "compensation/scoring/score.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Limits that a compensator has to meet.
 struct Specification {
@@ -89,4 +89,4 @@ Validation validate(const Compensator& compensator, const std::string& method,
                     const std::vector<NamedRecording>& runs,
                     const Specification& specification = {});
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 
 #include "compensation/methods/fit.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -230,4 +230,4 @@ std::string objection_to_claim(const std::optional<GroupErrors>& model,
                      figures, error / (rms + plain));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "compensation/rows/training_rows.h"
 #include "compensation/training/cross_validation.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 constexpr double kLeastSpan = 10.0;  // [K]
 constexpr double kWidestGap = 10.5;  // [K], between neighbouring temperatures
@@ -71,4 +71,4 @@ std::string objection_to_claim(const std::optional<GroupErrors>& model,
                                const std::optional<GroupErrors>& constant,
                                double weight = 1.0);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 
 #include "parallel/work_queue.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -172,4 +172,4 @@ std::size_t choose(const std::vector<Scored>& models) {
   return static_cast<std::size_t>(std::min(chosen, best) - models.begin());
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "compensation/methods/fit.h"
 #include "compensation/rows/row_groups.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Mean square residual [(deg/s)^2] of each group.
 using GroupErrors = Eigen::ArrayXd;
@@ -97,4 +97,4 @@ constexpr double kAllowedExcess = 0.02;  // [-]
 /// one by no more than kAllowedExcess. Models are in order, simplest first.
 std::size_t choose(const std::vector<Scored>& models);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 #include "compensation/models/array_view.h"
 #include "compensation/training/cross_validation.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -133,4 +133,4 @@ std::optional<LeftOutSigma> left_out_sigma(const FitSpec& kind,
   return std::nullopt;  // the others do not determine the fit
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

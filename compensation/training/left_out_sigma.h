@@ -12,7 +12,7 @@
 #include "compensation/rows/row_groups.h"
 #include "compensation/rows/training_rows.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the root of the mean of `squares` near each temperature of `at`:
 /// weights exp(-(T - T_k)^2 / 2 w^2), w an eighth of the span of T, and beside
@@ -48,4 +48,4 @@ std::optional<LeftOutSigma> left_out_sigma(const FitSpec& kind,
                                            const Eigen::ArrayXd& at,
                                            std::uint64_t seed);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 #include "compensation/methods/method_inputs.h"
 #include "config/suggestion.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr const char* kAutomatic = "auto";
@@ -220,4 +220,4 @@ ModelSpec read_model(const ConfigDocument& document) {
   return spec;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

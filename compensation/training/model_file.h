@@ -11,7 +11,7 @@
 #include "compensation/rows/row_options.h"
 #include "config/document.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// One of the models of an automatic choice.
 struct Candidate {
@@ -42,4 +42,4 @@ ModelSpec read_model(const ConfigDocument& document);
 /// Makes every network of `spec` tell `observer` about its epochs.
 void observe(ModelSpec& spec, const EpochObserver& observer);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

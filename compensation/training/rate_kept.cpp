@@ -7,7 +7,7 @@
 
 #include "compensation/training/cautions.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -85,4 +85,4 @@ std::optional<double> rate_kept(const Compensator& c) {
                    (2.0 * kSmall);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "compensation/compensator/compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the share of a small rate that a compensator passes in the range of
 /// its training: 1 less the mean slope of its bias over the rate, for rates
@@ -19,4 +19,4 @@ namespace beamgyro {
 /// compensators that use neither input.
 std::optional<double> rate_kept(const Compensator& compensator);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 
 #include "compensation/scoring/scale_factor.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 LookupTable fit_scale_factor(const RunSource& runs, double bin_width) {
   struct Bin {
@@ -40,4 +40,4 @@ LookupTable fit_scale_factor(const RunSource& runs, double bin_width) {
   return table;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

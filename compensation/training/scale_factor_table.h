@@ -4,7 +4,7 @@
 #include "compensation/models/lookup_table.h"
 #include "compensation/rows/run_source.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Fits the scale factor of the gyro over temperature, relative to the nominal
 /// one [-]: the slope of rate over true_rate on every plateau at which the true
@@ -13,4 +13,4 @@ namespace beamgyro {
 /// plateau.
 LookupTable fit_scale_factor(const RunSource& runs, double bin_width);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 
 #include "compensation/training/temperature_effect.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // A candidate, its weight beside a constant, and the residuals of the two.
@@ -321,4 +321,4 @@ Selected select_model(std::vector<Candidate> candidates,
   return result;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

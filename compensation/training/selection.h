@@ -10,7 +10,7 @@
 #include "compensation/training/cross_validation.h"
 #include "compensation/training/model_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The data that models are fitted to and judged on.
 struct SelectionData {
@@ -52,4 +52,4 @@ struct Selected {
 Selected select_model(std::vector<Candidate> candidates,
                       const SelectionData& data);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

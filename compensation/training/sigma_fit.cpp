@@ -14,7 +14,7 @@
 #include "compensation/training/left_out_sigma.h"
 #include "compensation/uncertainty/sigma_calibration.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -200,4 +200,4 @@ std::optional<AdaptationSigma> fit_adaptation_sigma(
           spec->grid_K));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -13,7 +13,7 @@
 #include "compensation/rows/run_source.h"
 #include "compensation/rows/training_rows.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What the sigma of a trained compensator is fitted to.
 struct SigmaTask {
@@ -52,4 +52,4 @@ std::optional<AdaptationSigma> fit_adaptation_sigma(
     const Population& population, const LookupTable* scale_factor,
     const SigmaTask& task);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "compensation/training/temperature_effect.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Index;
@@ -28,4 +28,4 @@ bool moves_more_than_noise(const TrainingRows& rows) {
                                              0.5 * squares / count;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include "compensation/rows/training_rows.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns whether the bias moves more than slow noise would: its variance is
 /// above n s^2 / 20, with n rows and s^2 half the mean square second difference
@@ -13,4 +13,4 @@ namespace beamgyro {
 /// distinguish them.
 bool moves_more_than_noise(const TrainingRows& rows);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

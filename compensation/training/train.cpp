@@ -15,7 +15,7 @@
 #include "compensation/training/selection.h"
 #include "compensation/training/sigma_fit.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -266,4 +266,4 @@ TrainResult train(const ModelSpec& spec, const std::vector<TrainingRun>& runs,
                cross_validation);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 #include "compensation/rows/training_rows.h"
 #include "compensation/training/model_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct TrainResult {
   Compensator compensator;
@@ -48,4 +48,4 @@ TrainResult train(const ModelSpec& spec, const std::vector<TrainingRun>& runs,
                   const std::vector<TrainingRun>& held_out, std::uint64_t seed,
                   std::optional<Grouping> cross_validation = {});
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

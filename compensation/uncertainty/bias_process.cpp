@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 BiasStep bias_step(double before, double after, double temperature_change,
                    double correlation) {
@@ -16,4 +16,4 @@ double bias_walk_per_kelvin(double sigma, double correlation) {
   return 2.0 * sigma * sigma / correlation;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

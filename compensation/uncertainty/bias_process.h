@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Temperature over which the bias that a compensator leaves forgets itself
 /// [K]: its correlation falls to 1/e. It is an assumption, which the metric
@@ -35,4 +35,4 @@ BiasStep bias_step(double before, double after, double temperature_change,
 double bias_walk_per_kelvin(double sigma,
                             double correlation = kBiasCorrelation);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

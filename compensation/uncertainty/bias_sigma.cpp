@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 double time_constant_of(const std::optional<SigmaTerm>& term) {
@@ -65,4 +65,4 @@ std::vector<double> sigma_of(const BiasSigma& sigma,
   return result;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

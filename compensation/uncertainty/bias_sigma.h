@@ -14,7 +14,7 @@
 #include "compensation/models/lookup_table.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What the 1-sigma over temperature was computed from.
 enum class SigmaSource {
@@ -94,4 +94,4 @@ class BiasSigmaStream {
 std::vector<double> sigma_of(const BiasSigma& sigma,
                              const Recording& recording);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

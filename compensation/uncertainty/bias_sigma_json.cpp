@@ -11,7 +11,7 @@
 #include "compensation/models/array_view.h"
 #include "compensation/models/parameter_json.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -139,4 +139,4 @@ BiasSigma read_bias_sigma(const JsonNode& node) {
   return sigma;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include "compensation/uncertainty/bias_sigma.h"
 #include "dataset/files/json_node.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// "posterior", "covariance" or "residuals".
 std::string sigma_source_name(SigmaSource source);
@@ -34,4 +34,4 @@ nlohmann::ordered_json bias_sigma_json(const BiasSigma& sigma);
 /// - a source or level that is not one.
 BiasSigma read_bias_sigma(const JsonNode& node);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

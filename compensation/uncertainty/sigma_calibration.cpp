@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
@@ -148,4 +148,4 @@ void calibrate(BiasSigma& sigma, const ResidualRows& rows) {
   if (!any_soak) sigma.temperature_rate.reset();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "compensation/uncertainty/bias_sigma.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Share of residuals that an interval of sigma is calibrated to cover, and its
 /// half-width in sigmas for normal residuals.
@@ -67,4 +67,4 @@ void calibrate(BiasSigma& sigma, const ResidualRows& rows);
 /// Calibrates a_rate and a_on alone.
 void calibrate_terms(BiasSigma& sigma, const ResidualRows& rows);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

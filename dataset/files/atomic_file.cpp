@@ -24,7 +24,7 @@
 
 #include "config/file_error.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -310,4 +310,4 @@ void remove_partial_files() noexcept {
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

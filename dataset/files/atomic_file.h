@@ -10,7 +10,7 @@
 #include "dataset/files/directory.h"
 #include "dataset/files/open_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A file that appears under its name only when it is complete. It is written
 /// to a partial file in the same directory, whose name contains host and
@@ -88,4 +88,4 @@ void remove_dead_partial_files(const Directory& directory, bool of_any_host,
 /// Returns the name of this machine as used in the names of partial files.
 std::string host_name();
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -18,7 +18,7 @@
 
 #include "config/file_error.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -181,4 +181,4 @@ void Directory::sync() const {
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

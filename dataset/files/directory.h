@@ -9,7 +9,7 @@
 
 #include "dataset/files/open_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Facts about the file of a name, which itself may be a symbolic link.
 struct FileFacts {
@@ -61,4 +61,4 @@ class Directory {
   OpenFile file_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

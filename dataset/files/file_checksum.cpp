@@ -11,7 +11,7 @@
 
 #include "dataset/files/sha256.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::string_view kStart = "\nSHA-256 of all bytes before: ";
@@ -78,4 +78,4 @@ bool has_checksum(OpenFile& file) {
   return !last_line(file, file.size()).empty();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include "dataset/files/open_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // A recording ends with a line that HDF5 ignores: the SHA-256 of all bytes
 // before it. It is verified before HDF5 opens the file, because HDF5 can crash
@@ -29,4 +29,4 @@ bool has_checksum(OpenFile& file);
 /// changes a file.
 bool has_bytes_after_hdf5(OpenFile& file);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 void JsonNode::fail(const std::string& message) const {
   throw std::invalid_argument(
@@ -160,4 +160,4 @@ nlohmann::ordered_json parse_json(std::string_view text,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

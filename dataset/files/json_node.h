@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A value of a JSON file together with its place, "FILE: key.key[2]", for
 /// checked reading. Every error is a std::invalid_argument with that place, the
@@ -57,4 +57,4 @@ class JsonNode {
 nlohmann::ordered_json parse_json(std::string_view text,
                                   const std::string& file);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 
 #include "config/file_error.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 MadeDirectories::MadeDirectories(const std::filesystem::path& path) {
   try {
@@ -39,4 +39,4 @@ void MadeDirectories::remove_empty() noexcept {
   for (; !made_.empty(); made_.pop_back()) rmdir(made_.back().c_str());
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Makes a directory and those above it that are missing. The destructor
 /// removes those that were made and are empty, so that a failure leaves none.
@@ -23,4 +23,4 @@ class MadeDirectories {
   std::vector<std::filesystem::path> made_;  // outer ones first
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

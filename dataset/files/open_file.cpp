@@ -12,7 +12,7 @@
 
 #include "config/file_error.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 [[noreturn]] void fail_opening() {
@@ -128,4 +128,4 @@ void OpenFile::close() {
     fail_opening();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

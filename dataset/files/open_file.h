@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Owner of a file descriptor. Failures are std::system_error without the name
 /// of the file. Calls that a signal interrupts are repeated.
@@ -61,4 +61,4 @@ class OpenFile {
   int descriptor_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

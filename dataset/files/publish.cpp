@@ -18,7 +18,7 @@
 #include "dataset/files/directory.h"
 #include "dataset/files/open_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,4 +87,4 @@ void publish_file(const fs::path& directory, const fs::path& name,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

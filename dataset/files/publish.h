@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <span>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Writes `bytes` to `name` in `directory`, all of them or none. They are
 /// written under a partial name, synchronised with the disk, read back and
@@ -18,4 +18,4 @@ void publish_file(const std::filesystem::path& directory,
                   const std::filesystem::path& name,
                   std::span<const std::byte> bytes);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

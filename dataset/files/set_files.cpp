@@ -14,7 +14,7 @@
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/sha256.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -105,4 +105,4 @@ void remove_unfinished_files(const fs::path& directory, bool of_any_host) {
     remove_below(set.subdirectory("source"), of_any_host);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

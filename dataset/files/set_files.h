@@ -8,7 +8,7 @@
 #include "dataset/files/directory.h"
 #include "dataset/files/open_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // Functions for the files of a set, which may come from somebody else. Files
 // are opened by their names in the directory of the set, below which no
@@ -37,4 +37,4 @@ std::optional<FileFacts> find_in_set(const std::filesystem::path& directory,
 void remove_unfinished_files(const std::filesystem::path& directory,
                              bool of_any_host);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

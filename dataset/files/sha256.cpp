@@ -9,7 +9,7 @@
 
 #include "dataset/files/text_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 void check(int answer) {
@@ -58,4 +58,4 @@ std::string sha256_of_file(const std::filesystem::path& path) {
   return hash.digits();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Computes the SHA-256 (FIPS 180-4) of bytes that come piece by piece.
 class Sha256 {
@@ -37,4 +37,4 @@ std::string sha256(std::string_view bytes);
 /// The same for the content of a file. Throws as read_text_file().
 std::string sha256_of_file(const std::filesystem::path& path);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

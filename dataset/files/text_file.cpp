@@ -11,7 +11,7 @@
 #include "config/file_error.h"
 #include "dataset/files/open_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 void read_in_pieces(const std::filesystem::path& path,
                     const std::function<void(std::string_view)>& take) {
@@ -38,4 +38,4 @@ std::string read_text_file(const std::filesystem::path& path) {
   return text;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

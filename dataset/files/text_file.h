@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the bytes of a file. Throws std::invalid_argument naming the file
 /// when it is missing, a directory or not readable, and FileError when reading
@@ -17,4 +17,4 @@ std::string read_text_file(const std::filesystem::path& path);
 void read_in_pieces(const std::filesystem::path& path,
                     const std::function<void(std::string_view)>& take);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 
 #include "dataset/files/text_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 /// One cell without the blanks around it, and where it starts in its line.
@@ -188,4 +188,4 @@ CsvTable read_csv(const std::filesystem::path& path) {
   return parse_csv(read_text_file(path), path);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

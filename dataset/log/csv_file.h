@@ -9,7 +9,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Numbers of a comma-separated file.
 struct CsvTable {
@@ -40,4 +40,4 @@ CsvTable parse_csv(std::string_view text, const std::filesystem::path& path,
 std::vector<std::string> csv_names(std::string_view text,
                                    const std::filesystem::path& path);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "config/config_node.h"
 #include "dataset/log/log_date.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::string_view kDigits = "0123456789";
@@ -170,4 +170,4 @@ std::string name_advice(const LogText& log, const std::string& column) {
       with_delimiter(log, other), kByNumber);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include "dataset/log/log_quantity.h"
 #include "dataset/log/log_text.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns what is expected in place of `cell`, which is no number, in the
 /// present row of a log: "one such as -12.5", ... `decimal` is the decimal mark
@@ -23,4 +23,4 @@ std::string width_advice(const LogText& log, const LogLayout& layout);
 /// not UTF-8, or its names are not cut. Empty when there is no such cause.
 std::string name_advice(const LogText& log, const std::string& column);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

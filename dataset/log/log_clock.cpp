@@ -9,7 +9,7 @@
 
 #include "config/config_node.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 LogClock::LogClock(LogNumbers& log, const LogTime& time)
     : log_(log), time_(time) {
@@ -118,4 +118,4 @@ void LogClock::fail(const std::string& message) const {
   log_.text().fail_row(message);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "dataset/log/log_numbers.h"
 #include "dataset/log/log_time.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Converts the numbers or date-times of a column, or the numbers of the rows,
 /// to times (LogTime).
@@ -56,4 +56,4 @@ class LogClock {
   std::string text_;                    // of a date and a time
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

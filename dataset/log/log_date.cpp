@@ -8,7 +8,7 @@
 #include <chrono>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::array<std::string_view, 12> kMonths = {
@@ -266,4 +266,4 @@ bool looks_like_date(std::string_view text) {
   return count(":") > 0 || count("-/.") >= 2;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

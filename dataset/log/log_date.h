@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 constexpr std::int64_t kNanosecondsPerSecond = 1000000000;
 constexpr std::int64_t kNanosecondsPerDay = 86400 * kNanosecondsPerSecond;
@@ -44,4 +44,4 @@ class DateFormat {
 /// Returns whether a text looks like a date or a time of the day.
 bool looks_like_date(std::string_view text);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 #include "dataset/log/log_outliers.h"
 #include "dataset/recording/units.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kLeastSpan = 10.0;    // [K]
@@ -174,4 +174,4 @@ void check_time_unit(const Recording& recording,
       duration, kFastestDrift, other_unit(map.time, duration, true)));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

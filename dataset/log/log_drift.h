@@ -10,7 +10,7 @@
 #include "dataset/log/log_map.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 constexpr double kFastestDrift = 1.0;  // [K/s] of a gyro
 
@@ -43,4 +43,4 @@ void check_time_unit(const Recording& recording,
                      const std::vector<std::size_t>& lines, const LogMap& map,
                      const std::string& path);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

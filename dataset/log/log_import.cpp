@@ -17,7 +17,7 @@
 #include "dataset/log/log_numbers.h"
 #include "dataset/log/log_outliers.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -320,4 +320,4 @@ ImportedLog import_log(std::string_view text, const std::filesystem::path& path,
   return log;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "dataset/log/log_report.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct ImportedLog {
   Recording recording;
@@ -38,4 +38,4 @@ ImportedLog import_log(std::string_view text, const std::filesystem::path& path,
                        const LogMap& map,
                        const std::optional<SecondLog>& joined = {});
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "dataset/log/log_outliers.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 JoinedRows::JoinedRows(Recording recording, double longest_gap, double rounding)
     : recording_(std::move(recording)),
@@ -35,4 +35,4 @@ bool JoinedRows::read(double time, double rounding,
 
 double JoinedRows::period() const { return median_step(recording_.time); }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

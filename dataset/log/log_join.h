@@ -6,7 +6,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Interpolates the columns of a recording between its samples k and k + 1:
 ///   x = x_k + (x_{k+1} - x_k) (t - t_k) / (t_{k+1} - t_k).
@@ -32,4 +32,4 @@ class JoinedRows {
   std::size_t next_ = 0;  // the first sample that is not before the time
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

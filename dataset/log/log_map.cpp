@@ -13,7 +13,7 @@
 
 #include "dataset/recording/units.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr long kLongest = std::numeric_limits<std::int32_t>::max();
@@ -284,4 +284,4 @@ LogMap read_log_map(const ConfigDocument& document, const std::string& axis) {
   return map;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

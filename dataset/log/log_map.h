@@ -14,7 +14,7 @@
 #include "dataset/log/log_text.h"
 #include "dataset/log/log_time.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Selects the rows that are read: those whose cell in `column` is `text` or
 /// equals `number`.
@@ -84,4 +84,4 @@ struct LogMap {
 /// for an axis that the map lacks.
 LogMap read_log_map(const ConfigDocument& document, const std::string& axis);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

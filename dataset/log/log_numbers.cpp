@@ -16,7 +16,7 @@
 #include "config/suggestion.h"
 #include "dataset/log/log_advice.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 template <class Number>
@@ -157,4 +157,4 @@ void LogNumbers::fail(std::size_t slot, const std::string& what,
                                shown_cell(text_.cell(slot)), what, expected));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

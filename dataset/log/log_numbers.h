@@ -11,7 +11,7 @@
 #include "dataset/log/log_map.h"
 #include "dataset/log/log_text.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Reads the rows of a log and the numbers in them as the map states. Errors
 /// are std::invalid_argument "file:line:column: ...".
@@ -56,4 +56,4 @@ class LogNumbers {
   std::string path_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 class BurstCheck {
@@ -84,4 +84,4 @@ std::vector<bool> find_outliers(std::span<const double> time,
   return found;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

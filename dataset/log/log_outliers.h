@@ -7,7 +7,7 @@
 
 #include "dataset/log/log_map.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A step of time longer than this many median steps is a gap. The rows between
 /// two gaps are a burst.
@@ -34,4 +34,4 @@ std::vector<bool> find_outliers(std::span<const double> time,
                                 std::span<const double> values,
                                 const OutlierRule& rule);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "dataset/recording/units.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kFastestRate = 20000.0;               // [deg/s]
@@ -115,4 +115,4 @@ LogQuantity read_log_voltage(const ConfigTable& table,
   return voltage;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

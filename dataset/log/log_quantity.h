@@ -9,7 +9,7 @@
 #include "config/table.h"
 #include "dataset/recording/signals.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A column of a log, by its name in the line of names or by its number.
 struct LogColumn {
@@ -56,4 +56,4 @@ LogQuantity read_log_frequency(const ConfigTable& table,
                                std::string_view signal);
 LogQuantity read_log_voltage(const ConfigTable& table, std::string_view signal);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

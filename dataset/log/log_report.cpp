@@ -6,7 +6,7 @@
 
 #include "dataset/log/log_outliers.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 const char* reason_name(DropReason reason) {
   switch (reason) {
@@ -76,4 +76,4 @@ ValueRange range_of(const Recording& recording, std::string_view column) {
   return range;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

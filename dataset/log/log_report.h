@@ -8,7 +8,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Reason why a row of a log was dropped.
 enum class DropReason : std::uint8_t {
@@ -71,4 +71,4 @@ struct ValueRange {
 /// Throws as column_values().
 ValueRange range_of(const Recording& recording, std::string_view column);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

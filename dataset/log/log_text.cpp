@@ -8,7 +8,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
@@ -266,4 +266,4 @@ void LogText::fail_row(const std::string& message) const {
   fail_at(row_.size() + 1, message);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Layout of the text of a log.
 struct LogLayout {
@@ -88,4 +88,4 @@ class LogText {
 /// Returns a cell in the form used in messages.
 std::string shown_cell(std::string_view cell);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

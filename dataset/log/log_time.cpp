@@ -10,7 +10,7 @@
 #include "config/config_node.h"
 #include "dataset/recording/units.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // A time of the log in the form of its column.
@@ -116,4 +116,4 @@ LogTime read_log_time(const ConfigTable& table) {
   return time;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "dataset/log/log_date.h"
 #include "dataset/log/log_quantity.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A time in the unit of the log. Whole numbers keep every digit: nanoseconds
 /// since 1970 do not fit into a double.
@@ -52,4 +52,4 @@ LogTicks whole_ticks(std::int64_t count);
 /// or wrong key.
 LogTime read_log_time(const ConfigTable& table);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -14,7 +14,7 @@
 #include "dataset/recording/signals.h"
 #include "dataset/recording/units.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kEveryStatusBit =
@@ -117,4 +117,4 @@ Recording parse_recording_csv(std::string_view text,
   return recording;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

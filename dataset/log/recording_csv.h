@@ -7,7 +7,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The name of a column of a CSV: "rate [deg/h]" is the column `rate` in the
 /// unit deg/h. Without brackets the unit is empty.
@@ -31,4 +31,4 @@ bool is_recording_csv(std::string_view text);
 Recording parse_recording_csv(std::string_view text,
                               const std::filesystem::path& path);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

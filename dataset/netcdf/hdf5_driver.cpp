@@ -13,7 +13,7 @@
 
 #include "dataset/netcdf/hdf5_write.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr haddr_t kLargest = std::numeric_limits<off_t>::max();
@@ -208,4 +208,4 @@ void check_system_calls() {
   if (failed_call != 0) check_hdf5(-1, "read the file");
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

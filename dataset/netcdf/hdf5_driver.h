@@ -4,7 +4,7 @@
 #include "dataset/files/open_file.h"
 #include "dataset/netcdf/hdf5_id.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // Lets HDF5 read and write through our own file descriptor. Calls that a signal
 // interrupts are repeated, and the reason of a failed system call is kept,
@@ -30,4 +30,4 @@ void check_system_calls();
 /// variable length and views of other files need one.
 bool take_met_global_heap();
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

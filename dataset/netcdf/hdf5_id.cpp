@@ -16,7 +16,7 @@ extern "C" const char* __lsan_default_options() {  // NOLINT
   return "print_suppressions=0";
 }
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 void check_hdf5(herr_t status, const std::string& action) {
   if (status >= 0) return;
@@ -56,4 +56,4 @@ H5Id access_properties() {
   return access;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Thrown when a call of the HDF5 library fails, or when a file cannot be what
 /// it claims to be.
@@ -90,4 +90,4 @@ H5Id property_list(hid_t kind);
 /// releases of 2015 still read.
 H5Id access_properties();
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -17,7 +17,7 @@
 #include "dataset/netcdf/hdf5_driver.h"
 #include "dataset/netcdf/hdf5_storage.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 /// The text that `read` (H5Aread or H5Dread) fills, of one value of `type`, for
@@ -280,4 +280,4 @@ OpenFile open_to_read(const std::filesystem::path& path,
   throw_file_error(path, "cannot read", error.code());
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

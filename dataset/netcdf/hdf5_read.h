@@ -13,7 +13,7 @@
 #include "dataset/netcdf/hdf5_id.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // Functions that read a file which may be damaged or made by somebody else.
 // Everything that is not as expected throws Hdf5Error.
@@ -92,4 +92,4 @@ Hdf5Error read_failure(const std::system_error& error);
 OpenFile open_to_read(const std::filesystem::path& path,
                       const std::string& kind);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

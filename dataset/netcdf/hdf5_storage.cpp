@@ -10,7 +10,7 @@
 
 #include "dataset/netcdf/hdf5_id.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::uint64_t kMostInflated = 1032;  // deflate packs no tighter
@@ -152,4 +152,4 @@ void check_storage(hid_t variable, const std::string& name) {
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Checks how the values of a variable are stored. Throws Hdf5Error unless
 /// - all of them stand in the variable's own file;
@@ -18,4 +18,4 @@ void check_storage(hid_t variable, const std::string& name);
 /// Throws Hdf5Error: the values of `name` are in other files.
 [[noreturn]] void reject_view(const std::string& name);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

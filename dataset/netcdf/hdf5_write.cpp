@@ -10,7 +10,7 @@
 
 #include "dataset/recording/signals.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 H5Id text_type(std::size_t size, H5T_str_t padding) {
@@ -150,4 +150,4 @@ void write_meta(hid_t file, std::span<const NamedText> texts) {
   group.close("close /meta");
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

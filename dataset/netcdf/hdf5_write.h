@@ -9,7 +9,7 @@
 #include "dataset/netcdf/hdf5_id.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // Functions that write the parts of our files: without time stamps, in the
 // order of creation, with texts as fixed-length UTF-8. Each throws Hdf5Error.
@@ -82,4 +82,4 @@ struct NamedText {
 /// 1.10 can crash on damage among texts of variable length.
 void write_meta(hid_t file, std::span<const NamedText> texts);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -18,7 +18,7 @@
 #include "dataset/netcdf/recording_layout.h"
 #include "dataset/recording/recording_defect.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -224,4 +224,4 @@ void write_recording(const Recording& recording, const fs::path& path) {
   file.finish();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Writes a recording block by block, so that memory does not grow with it. The
 /// bytes do not depend on how the recording is cut into blocks. The file
@@ -64,4 +64,4 @@ class RecordingFile {
 void write_recording(const Recording& recording,
                      const std::filesystem::path& path);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

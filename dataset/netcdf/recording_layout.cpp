@@ -15,7 +15,7 @@
 #include "dataset/netcdf/recording_layout.h"
 #include "dataset/netcdf/recording_reader.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 /// Makes variables over one time axis, contiguous and without their values:
@@ -109,4 +109,4 @@ Hdf5Layout make_hdf5_file(const Recording& head, std::size_t samples,
   return make_file(head, samples, file);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

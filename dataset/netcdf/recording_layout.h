@@ -7,7 +7,7 @@
 #include "dataset/files/open_file.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Positions in a file [bytes] at which the values of each variable begin:
 /// little-endian doubles, and the bytes of the status.
@@ -23,4 +23,4 @@ struct Hdf5Layout {
 Hdf5Layout make_hdf5_file(const Recording& head, std::size_t samples,
                           OpenFile& file);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -21,7 +21,7 @@
 #include "dataset/recording/signals.h"
 #include "dataset/recording/units.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 /// Returns the memory that the values of a file may take [bytes]. Deflate
@@ -164,4 +164,4 @@ Recording read_recording(const std::filesystem::path& path,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 inline constexpr const char* kRecordingFiletype = "beamgyro-recording";
 
@@ -26,4 +26,4 @@ inline constexpr int kRecordingFormatVersion = 2;
 Recording read_recording(const std::filesystem::path& path,
                          bool* has_checksum = nullptr);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

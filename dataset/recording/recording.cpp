@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 std::string_view role_name(Role role) {
   switch (role) {
@@ -45,4 +45,4 @@ std::size_t status_position(const Recording& recording) {
   return static_cast<std::size_t>(first - recording.columns.begin());
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Role of a variable: `kMeasured` is measured by the gyro and may be an input
 /// of a compensator, `kTruth` is known to a simulator only, `kCompensated` is
@@ -65,4 +65,4 @@ const std::vector<double>& column_values(const Recording& recording,
 /// column of this index, the first one that is not measured.
 std::size_t status_position(const Recording& recording);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

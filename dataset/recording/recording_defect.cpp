@@ -8,7 +8,7 @@
 #include <set>
 #include <string_view>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Beyond it sums of squares overflow, and no signal of a gyro comes near.
@@ -123,4 +123,4 @@ std::string recording_defect(const Recording& recording) {
   return defect.empty() ? samples_defect(recording, 0) : defect;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the first defect of a recording as one line that names the variable
 /// and the sample, or an empty text. A recording without a defect has
@@ -23,4 +23,4 @@ std::string recording_defect(const Recording& recording);
 std::string head_defect(const Recording& recording);
 std::string samples_defect(const Recording& recording, std::size_t first);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr Role kTruth = Role::kTruth;
@@ -83,4 +83,4 @@ std::string_view standard_name_of(std::string_view name) {
   return known == nullptr ? std::string_view{} : known->standard_name;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A signal that recordings hold, as their files describe it.
 struct RecordedSignal {
@@ -36,4 +36,4 @@ std::string_view unit_of_variable(std::string_view name);
 /// Returns the CF standard name of a variable, empty where there is none.
 std::string_view standard_name_of(std::string_view name);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

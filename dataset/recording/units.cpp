@@ -10,7 +10,7 @@
 
 #include "config/units.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
@@ -70,4 +70,4 @@ UnitConversion unit_conversion(std::string_view unit, std::string_view to) {
                   known.empty() ? std::string(to) : known));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Converts a number from one unit to another:
 ///   value = (number - offset) scale.
@@ -22,4 +22,4 @@ struct UnitConversion {
 /// std::invalid_argument for any other unit and lists those that are known.
 UnitConversion unit_conversion(std::string_view unit, std::string_view to);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -21,7 +21,7 @@
 #include "dataset/files/set_files.h"
 #include "dataset/files/sha256.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // Found by the JSON library by their names.
 static void to_json(nlohmann::ordered_json& json, const SourceEntry& source) {
@@ -369,4 +369,4 @@ void write_manifest(const std::filesystem::path& directory,
   publish_file(directory, name, bytes_of(text));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

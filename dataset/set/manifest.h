@@ -11,7 +11,7 @@
 
 #include "dataset/files/open_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 inline constexpr const char* kManifestName = "manifest.jsonl";
 /// A copy of the first line of the manifest, for the case that the manifest is
@@ -124,4 +124,4 @@ void write_manifest(const std::filesystem::path& directory,
                     const std::filesystem::path& name,
                     const Manifest& manifest);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

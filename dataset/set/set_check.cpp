@@ -16,7 +16,7 @@
 #include "dataset/files/open_file.h"
 #include "dataset/files/sha256.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -236,4 +236,4 @@ std::vector<SetDefect> check_set(const fs::path& directory,
   return Check(directory, manifest, progress).run();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 
 #include "dataset/set/manifest.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct SetDefect {
   std::string file;  // relative to the set
@@ -34,4 +34,4 @@ std::vector<SetDefect> check_set(const std::filesystem::path& directory,
                                  const Manifest& manifest,
                                  const CheckProgress& progress = {});
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -19,7 +19,7 @@
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -179,4 +179,4 @@ SetLock::~SetLock() {
   if (whole_) release(*whole_);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

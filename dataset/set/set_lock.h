@@ -8,7 +8,7 @@
 #include "dataset/files/directory.h"
 #include "dataset/files/open_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Keeps other processes from the same work on a set, also on other hosts that
 /// share the directory. The kernel holds the lock (flock) and releases it when
@@ -57,4 +57,4 @@ class SetLock {
   std::optional<Held> whole_, task_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

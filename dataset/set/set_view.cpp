@@ -16,7 +16,7 @@
 #include "dataset/set/shard/hdf5_variable.h"
 #include "dataset/set/shard/shard_encoding.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 class View {
@@ -140,4 +140,4 @@ ManifestView write_view(const std::filesystem::path& directory,
   return {name, bytes.size(), sha256(bytes)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

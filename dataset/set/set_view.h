@@ -10,7 +10,7 @@
 #include "dataset/set/manifest.h"
 #include "dataset/set/shard/shard.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the bytes that write_view() writes. Throws std::runtime_error when
 /// HDF5 fails.
@@ -28,4 +28,4 @@ ManifestView write_view(const std::filesystem::path& directory,
                         const ShardHead& head,
                         std::span<const ManifestEntry> entries);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

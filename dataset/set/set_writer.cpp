@@ -16,7 +16,7 @@
 #include "dataset/set/shard/shard_reader.h"
 #include "dataset/set/view_check.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -334,4 +334,4 @@ std::string lacking_tasks(const fs::path& directory, const ManifestHead& head,
   return text;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -15,7 +15,7 @@
 #include "dataset/set/set_lock.h"
 #include "dataset/set/source_copies.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// One of several processes that share a directory: it makes the files whose
 /// index mod `of` is `number` - 1. Without `of` a process makes the whole set.
@@ -106,4 +106,4 @@ class SetWriter {
 std::string lacking_tasks(const std::filesystem::path& directory,
                           const ManifestHead& head, std::uint32_t of);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -15,7 +15,7 @@
 #include "dataset/files/sha256.h"
 #include "dataset/set/shard/shard_reader.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -187,4 +187,4 @@ const SourceText& copy_of(const fs::path& path,
   return *best;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 
 #include "dataset/set/manifest.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct SourceText {
   std::filesystem::path path;
@@ -44,4 +44,4 @@ void restore_copies(const std::filesystem::path& directory,
 const SourceText& copy_of(const std::filesystem::path& path,
                           std::span<const SourceText> copies);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "dataset/set/set_view.h"
 #include "dataset/set/shard/shard_reader.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 bool holds(const std::filesystem::path& file, const std::string& hash) {
@@ -52,4 +52,4 @@ std::vector<SetDefect> check_views(const std::filesystem::path& directory,
   return defects;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include "dataset/set/manifest.h"
 #include "dataset/set/set_check.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the views that differ from what write_view() makes of their files,
 /// in the manifest or on the disk. It reads the first file of each run, so a
@@ -17,4 +17,4 @@ std::vector<SetDefect> check_views(const std::filesystem::path& directory,
                                    const Manifest& manifest,
                                    std::span<const SetDefect> known);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

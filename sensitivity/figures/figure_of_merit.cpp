@@ -10,7 +10,7 @@
 #include "compensation/models/polynomial.h"
 #include "sensitivity/figures/settled_samples.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::array kFigures = {
@@ -107,4 +107,4 @@ std::vector<double> device_merits(const Device& device,
   return values;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "sensitivity/figures/static_curve.h"
 #include "sim/device/device.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 enum class Merit {
   kBiasPeakToPeak,
@@ -55,4 +55,4 @@ std::vector<double> device_merits(const Device& device,
                                   std::span<const Merit> merits,
                                   const MeritOptions& options);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "dataset/recording/recording.h"
 #include "dataset/recording/signals.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Long for every filter and warm-up.
@@ -59,4 +59,4 @@ Eigen::ArrayXd settled_residual(const Compensator& compensator,
   return residual;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

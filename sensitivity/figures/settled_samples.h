@@ -7,7 +7,7 @@
 #include "sensitivity/figures/static_curve.h"
 #include "sim/device/device.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns what is left of the bias [deg/s] at each temperature of `curve` when
 /// `compensator` works on a gyro that has settled there: its low-passes have
@@ -18,4 +18,4 @@ namespace beamgyro {
 Eigen::ArrayXd settled_residual(const Compensator& compensator,
                                 const Device& device, const StaticCurve& curve);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

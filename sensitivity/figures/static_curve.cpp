@@ -9,7 +9,7 @@
 #include "sim/thermal/thermal_network.h"
 #include "sim/thermal/thermal_oven.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 double bias_at(const Gyro& gyro, double beam, double board) {
@@ -72,4 +72,4 @@ double warm_up_change(const Gyro& gyro, double ambient) {
   return bias_at(gyro, settled(kBeam), settled(kBoard)) - bias_at(gyro, T, T);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

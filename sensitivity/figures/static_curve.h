@@ -6,7 +6,7 @@
 #include "sim/device/device.h"
 #include "sim/dynamics/gyro.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Temperatures at which a curve is computed, evenly from `low` to `high`
 /// [degC].
@@ -43,4 +43,4 @@ Eigen::ArrayXd scale_factor_curve(const Gyro& gyro, const CurveGrid& grid);
 /// settle.
 double warm_up_change(const Gyro& gyro, double ambient);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 double percentile(const std::vector<double>& sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
@@ -22,4 +22,4 @@ SensitivityIndex with_interval(double value, std::vector<double> replicates) {
   return {value, percentile(replicates, 0.025), percentile(replicates, 0.975)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

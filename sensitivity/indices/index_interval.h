@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A Sobol' index with its interval of 95 %.
 struct SensitivityIndex {
@@ -23,4 +23,4 @@ double percentile(const std::vector<double>& sorted, double share);
 /// without any the interval is `value`.
 SensitivityIndex with_interval(double value, std::vector<double> replicates);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "random/random_stream.h"
 #include "sensitivity/indices/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kNoVariance = 1e-20;  // [-], of the square of the mean
@@ -102,4 +102,4 @@ PickFreezeIndices pick_freeze_indices(const PickFreezeValues& values,
   return indices;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "sensitivity/indices/index_interval.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Values of a function f of independent factors at the rows of A and of B, two
 /// samples that are independent of each other, and of AB_i for each factor i,
@@ -51,4 +51,4 @@ struct PickFreezeIndices {
 PickFreezeIndices pick_freeze_indices(const PickFreezeValues& values,
                                       std::uint64_t seed);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

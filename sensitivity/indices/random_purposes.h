@@ -3,7 +3,7 @@
 
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // The random streams that this room draws from. The numbers are part of the
 // data: never change one, never use one twice (all of them are compared by a
@@ -12,4 +12,4 @@ inline constexpr RandomPurpose kIndexResampleStream{22};
 inline constexpr RandomPurpose kRankResampleStream{23};
 inline constexpr RandomPurpose kRankSampleStream{24};
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

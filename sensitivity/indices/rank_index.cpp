@@ -10,7 +10,7 @@
 #include "random/random_stream.h"
 #include "sensitivity/indices/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kBlockOfPairs = 16, kMostNeighbours = 8192;
@@ -115,4 +115,4 @@ SensitivityIndex rank_index(const std::vector<double>& values,
   return with_interval(all.index(), std::move(replicates));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "sensitivity/indices/index_interval.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Estimates the first-order Sobol' index of one factor from a single sample,
 /// without a value at any further point:
@@ -30,4 +30,4 @@ SensitivityIndex rank_index(const std::vector<double>& values,
                             const Eigen::MatrixXd& numbers, std::uint64_t seed,
                             std::uint32_t stream);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "sim/campaign/scrambled_sobol.h"
 #include "sim/numerics/simulation_failure.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -169,4 +169,4 @@ DeviceSample sample_devices(const Campaign& campaign,
   return sample;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

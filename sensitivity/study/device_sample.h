@@ -14,7 +14,7 @@
 #include "sensitivity/study/factor.h"
 #include "sim/campaign/campaign.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct DeviceSampleOptions {
   std::vector<Merit> merits;
@@ -68,4 +68,4 @@ DeviceSample sample_devices(const Campaign& campaign,
                             const DeviceSampleOptions& options,
                             DeviceSampleCounts& counts);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 
 #include "sim/campaign/distribution.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // The lowest draw that each draw is joined with, itself or an earlier one.
@@ -69,4 +69,4 @@ DrawPlan with_halved(DrawPlan plan, std::size_t index) {
   return plan;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "sim/campaign/draw_plan.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Numbers of a device that are drawn together and independently of all others:
 /// all elements of a key, and all keys that a correlation joins.
@@ -26,4 +26,4 @@ void require_comparable(const std::vector<Factor>& factors,
 /// Returns the plan with draw `index` of half its width (halved()).
 DrawPlan with_halved(DrawPlan plan, std::size_t index);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 
 #include "sensitivity/indices/rank_index.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::vector<double> logarithms(std::vector<double> values) {
@@ -110,4 +110,4 @@ MeritResult analysed(const DeviceSample& sample, std::size_t index,
   return result;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 #include "sensitivity/indices/index_interval.h"
 #include "sensitivity/study/device_sample.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A share of devices with its interval of 95 % (Wilson, 1927).
 struct DeviceShare {
@@ -64,4 +64,4 @@ struct MeritQuestion {
 MeritResult analysed(const DeviceSample& sample, std::size_t index,
                      const MeritQuestion& question, std::uint64_t seed);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 void set_as_built(const Trims& trims, const Gyro& base, Device& device) {
   ReadoutParameters& readout = device.readout;
@@ -23,4 +23,4 @@ void set_as_built(const Trims& trims, const Gyro& base, Device& device) {
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

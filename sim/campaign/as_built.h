@@ -3,7 +3,7 @@
 
 #include "sim/dynamics/gyro.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Which quantities the factory trims at 25 degC.
 struct Trims {
@@ -18,4 +18,4 @@ struct Trims {
 /// Throws SimulationFailure when the drive loop does not lock.
 void set_as_built(const Trims& trims, const Gyro& base, Device& device);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

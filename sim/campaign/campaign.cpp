@@ -14,7 +14,7 @@
 #include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/scenario_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::string one_line(std::string text) {
@@ -120,7 +120,7 @@ const std::vector<DrawnParameter>& Campaign::run_parameters(
 }
 
 bool Campaign::is_drawn(std::string_view device_key) const {
-  return beamgyro::is_drawn(state_->device_plan, *state_->device_document,
+  return internal::is_drawn(state_->device_plan, *state_->device_document,
                             device_key);
 }
 const MovedAxes& Campaign::moved_axes(std::size_t run) const {
@@ -165,4 +165,4 @@ Part Campaign::part(std::uint32_t device) const {
       static_cast<int>(quantile(state_->split, stream.uniform())));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

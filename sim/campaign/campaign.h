@@ -17,7 +17,7 @@
 #include "sim/device/device.h"
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What the data of a device are used for.
 enum class Part : std::uint8_t { kTrain, kValidation, kTest };
@@ -119,4 +119,4 @@ class Campaign {
   std::shared_ptr<const CampaignState> state_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

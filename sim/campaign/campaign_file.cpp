@@ -18,7 +18,7 @@
 #include "sim/device/device_file.h"
 #include "sim/scenario/scenario_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Every device of a run has the same times and kind of file.
@@ -361,4 +361,4 @@ CampaignState read_campaign(std::span<const SourceText> copies,
   return CampaignReader(copies, devices).read();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 #include "sim/campaign/campaign.h"
 #include "sim/scenario/profile_keys.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The contents of a campaign file, read and checked.
 struct CampaignState {
@@ -44,4 +44,4 @@ CampaignState read_campaign(const std::filesystem::path& file,
 CampaignState read_campaign(std::span<const SourceText> copies,
                             std::optional<long> devices);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

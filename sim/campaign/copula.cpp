@@ -8,7 +8,7 @@
 #include "random/random_stream.h"
 #include "sim/campaign/distribution.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 Eigen::MatrixXd correlation_factor(const Eigen::MatrixXd& correlation) {
   if (correlation != correlation.transpose() ||
@@ -38,4 +38,4 @@ void correlate(const CorrelatedGroup& group, std::span<double> numbers) {
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Numbers of one draw that are correlated by a Gaussian copula: z = L z',
 /// correlation = L L^T, where each z is the normal quantile of a number.
@@ -24,4 +24,4 @@ Eigen::MatrixXd correlation_factor(const Eigen::MatrixXd& correlation);
 /// stays uniform.
 void correlate(const CorrelatedGroup& group, std::span<double> numbers);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Ends in standard deviations.
@@ -114,4 +114,4 @@ double quantile(const Distribution& d, double u) {
   return 0;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The distribution of one number of a unit or a run.
 struct Distribution {
@@ -44,4 +44,4 @@ double share_inside(const Distribution& distribution);
 /// Returns the distribution function of the standard normal distribution.
 double normal_cumulative(double z);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include <array>
 #include <string>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Kind = Distribution::Kind;
@@ -113,4 +113,4 @@ FileDistribution read_distribution(const ConfigTable& table,
   return read_discrete(keys);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

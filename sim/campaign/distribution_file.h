@@ -8,7 +8,7 @@
 #include "config/table.h"
 #include "sim/campaign/distribution.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A distribution. A discrete one also has its choices as they stand in the
 /// file.
@@ -23,4 +23,4 @@ struct FileDistribution {
 FileDistribution read_distribution(const ConfigTable& table,
                                    std::string_view key);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

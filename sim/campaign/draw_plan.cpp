@@ -6,7 +6,7 @@
 
 #include <utility>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 ConfigNode drawn_element(const Draw& draw, double uniform,
@@ -74,4 +74,4 @@ Overrides overrides_of(const DrawPlan& plan,
   return overrides;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 #include "sim/campaign/distribution.h"
 #include "sim/campaign/uniform_source.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A number that is drawn for each device. Sets store it as a variable over
 /// device. The name is an identifier such as "patches_offset_m_0".
@@ -67,4 +67,4 @@ DrawnValues drawn_values(const DrawPlan& plan, std::vector<double> uniform);
 Overrides overrides_of(const DrawPlan& plan,
                        const std::vector<ConfigNode>& values);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

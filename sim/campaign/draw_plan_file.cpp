@@ -11,7 +11,7 @@
 #include "sim/campaign/distribution_file.h"
 #include "sim/campaign/parameter_units.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 [[noreturn]] void reject(const std::string& place, const std::string& message) {
@@ -254,4 +254,4 @@ std::vector<CorrelatedGroup> read_correlated(
   return groups;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "config/document.h"
 #include "sim/campaign/draw_plan.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The file whose keys are drawn, and how it is read: `read` throws
 /// std::invalid_argument for a document with a value that is not allowed.
@@ -39,4 +39,4 @@ void check_medians(const DrawPlan& plan, const DrawnFile& file);
 std::vector<CorrelatedGroup> read_correlated(
     const std::vector<ConfigTable>& tables, const DrawPlan& plan);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

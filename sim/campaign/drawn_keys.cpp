@@ -8,7 +8,7 @@
 #include "config/overrides.h"
 #include "sim/scenario/scenario_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::array<std::string_view, 2> kCrossKeys = {"cross_rate.x",
@@ -100,4 +100,4 @@ MovedAxes moved_axes(const Scenario& scenario, const ConfigDocument& document,
   return axes;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "sim/scenario/profile_keys.h"
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns whether devices may differ in `key` of `document`, whose keys `plan`
 /// draws. In a drawn table they differ unless every choice has the value of the
@@ -29,4 +29,4 @@ struct MovedAxes {
 MovedAxes moved_axes(const Scenario& scenario, const ConfigDocument& document,
                      const DrawPlan& plan, const ProfileTables& profiles);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "parallel/work_queue.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 void generate_shards(const ShardPlan& plan,
                      const std::vector<std::uint32_t>& files, unsigned jobs,
@@ -22,4 +22,4 @@ void generate_shards(const ShardPlan& plan,
                 });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "sim/campaign/shard_making.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Receives a finished shard file. It is called from several threads at once.
 using ShardSink =
@@ -20,4 +20,4 @@ void generate_shards(const ShardPlan& plan,
                      const std::vector<std::uint32_t>& files, unsigned jobs,
                      GenerationCounts& counts, const ShardSink& publish);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

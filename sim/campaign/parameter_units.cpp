@@ -5,7 +5,7 @@
 
 #include <map>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Names = std::map<std::string_view, std::string_view>;
@@ -53,4 +53,4 @@ std::string units_of(std::string_view key) {
   return units;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

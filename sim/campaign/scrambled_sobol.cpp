@@ -10,7 +10,7 @@
 #include "random/random_stream.h"
 #include "sim/campaign/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 ScrambledSobol::ScrambledSobol(std::size_t dimensions, std::uint64_t seed)
     : seed_(seed), directions_(dimensions * kIndexBits) {
@@ -70,4 +70,4 @@ double ScrambledSobol::at(std::uint32_t point, std::size_t dimension) const {
   return uniform_number(scrambled(digits(point, dimension), dimension));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Sobol' points with the direction numbers of Joe and Kuo (2008) in Gray-code
 /// order, point 0 the origin, and Owen's nested uniform scrambling (1995): each
@@ -34,4 +34,4 @@ class ScrambledSobol {
   std::vector<std::uint64_t> directions_;  // dimension x index bit
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

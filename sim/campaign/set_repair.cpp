@@ -12,7 +12,7 @@
 #include "dataset/files/set_files.h"
 #include "dataset/files/sha256.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -113,4 +113,4 @@ void SetRepair::add(std::uint32_t file, const MadeShard& shard) {
   set_->add(file, shard.bytes, shard.failures);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -13,7 +13,7 @@
 #include "dataset/set/set_writer.h"
 #include "sim/campaign/generation.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns what belongs to the set of a directory, by its manifest or by those
 /// of the tasks that are not merged yet. Of a set whose manifests are lost the
@@ -56,4 +56,4 @@ class SetRepair {
   std::optional<SetWriter> set_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

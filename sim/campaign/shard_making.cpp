@@ -10,7 +10,7 @@
 #include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/simulation.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::string first_line(const std::string& text) {
@@ -135,4 +135,4 @@ MadeShard ShardMaker::make(std::uint32_t file, GenerationCounts& counts) {
   return made;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

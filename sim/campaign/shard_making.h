@@ -17,7 +17,7 @@
 #include "sim/dynamics/gyro.h"
 #include "sim/scenario/run_recorder.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Counts of the work that is done so far. Other threads may read them.
 struct GenerationCounts {
@@ -65,4 +65,4 @@ class ShardMaker {
   std::vector<PreparedDevice> prepared_;  // devices of the range made last
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -18,7 +18,7 @@
 #include "dataset/files/sha256.h"
 #include "sim/scenario/simulation.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // The converter of a measured signal: value = count * step + offset.
@@ -258,4 +258,4 @@ double ShardPlan::largest_file() const {
   return largest;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

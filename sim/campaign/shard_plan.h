@@ -9,7 +9,7 @@
 #include "dataset/set/shard/shard.h"
 #include "sim/campaign/campaign.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Version and revision of the program that makes a set. Files contain them.
 struct ProgramRevision {
@@ -51,4 +51,4 @@ class ShardPlan {
   std::vector<std::vector<std::string>> columns_;  // names, one list per run
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include "random/random_stream.h"
 #include "sim/campaign/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 std::uint32_t stream_number(std::string_view name) {
   constexpr std::uint32_t kPolynomial = 0xEDB88320;
@@ -23,4 +23,4 @@ double UniformSource::number(std::uint32_t device, std::uint32_t stream,
   return RandomStream(seed, device, stream, kDeviceDrawStream).uniform();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

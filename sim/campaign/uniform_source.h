@@ -8,7 +8,7 @@
 
 #include "sim/campaign/scrambled_sobol.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the number of the stream called `name` (CRC-32 of ISO 3309).
 std::uint32_t stream_number(std::string_view name);
@@ -25,4 +25,4 @@ struct UniformSource {
                 std::size_t dimension) const;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

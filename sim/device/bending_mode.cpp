@@ -9,7 +9,7 @@
 
 #include "sim/numerics/simulation_failure.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Matrix4d;
@@ -181,4 +181,4 @@ double deflection(const std::vector<BeamElement>& elements,
   throw std::invalid_argument("deflection: a beam without elements");
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "sim/numerics/symmetric_band.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A stretch of beam with constant section, one finite element.
 struct BeamElement {
@@ -56,4 +56,4 @@ double deflection(const std::vector<BeamElement>& elements,
 /// Root b L of cos(bL) cosh(bL) = 1 for the first bending mode (1.2).
 inline constexpr double kFreeFreeRoot = 4.730040744862704;
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 #include "sim/signal/temperature_sensor.h"
 #include "sim/thermal/thermal_parameters.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Patches in the order of every per-patch array: drive on +x, feedback on -x,
 /// readout on +y, damping or rebalance on -y.
@@ -132,4 +132,4 @@ struct Device {
 /// Calibration temperature T_0 of every expansion and trim [K].
 inline constexpr double kCalibrationTemperature = 298.15;
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 #include "sim/memory/memory_file.h"
 #include "sim/thermal/thermal_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr Range kCelsius{-kZeroCelsius, 1000, true, false};
@@ -281,4 +281,4 @@ Device read_device(const ConfigDocument& document) {
   };
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

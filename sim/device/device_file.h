@@ -4,7 +4,7 @@
 #include "config/document.h"
 #include "sim/device/device.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Reads one unit from a device file and checks every key
 /// (docs/reference/device_file.md). Throws std::invalid_argument naming file,
@@ -12,4 +12,4 @@ namespace beamgyro {
 /// the command is read.
 Device read_device(const ConfigDocument& document);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

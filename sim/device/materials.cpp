@@ -8,7 +8,7 @@
 #include "sim/memory/bond_relaxation.h"
 #include "sim/memory/gas_constant.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kVacuumPermittivity = 8.8541878128e-12;  // [F/m]
@@ -145,4 +145,4 @@ Complex mount_share(const MountParameters& mount, double T, double omega) {
          (1.0 + z);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

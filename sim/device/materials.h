@@ -6,7 +6,7 @@
 #include "sim/device/device.h"
 #include "sim/memory/memory_state.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 using Complex = std::complex<double>;
 
@@ -60,4 +60,4 @@ Complex shear_lag(const PatchParameters& patches, double bond_thickness,
 /// elastomer node mount as a share of the modal stiffness (1.3).
 Complex mount_share(const MountParameters& mount, double T, double omega);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

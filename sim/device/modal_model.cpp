@@ -12,7 +12,7 @@
 #include "sim/numerics/simulation_failure.h"
 #include "sim/thermal/material_range.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Matrix2cd;
@@ -246,4 +246,4 @@ void require_passive_memory(const Device& device, const ProjectedBeam& beam) {
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

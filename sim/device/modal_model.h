@@ -8,7 +8,7 @@
 #include "sim/device/materials.h"
 #include "sim/device/projected_beam.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The two coupled modes at one temperature:
 ///   m q'' + C q' + K q = sum_p Theta_p V_p + Coriolis...   (2.1)
@@ -56,4 +56,4 @@ void require_passive_memory(const Device& device, const ProjectedBeam& beam);
 /// between them.
 std::vector<double> modal_kinks(const Device& device);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // Distance of a patch centre from the beam axis along its face normal [m].
 double lever_arm(const Device& device, double bond_thickness) {
@@ -136,4 +136,4 @@ ProjectedBeam project_beam(const Device& device, int elements) {
   return beam;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include "sim/device/bending_mode.h"
 #include "sim/device/device.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Distance of a patch centre from the beam axis along its face normal,
 /// h_p = a/2 + t_b + t_p/2 [m].
@@ -48,4 +48,4 @@ ProjectedBeam project_beam(const Device& device, int elements = kBeamElements);
 /// Position of the two supports, as a share of the beam length from its ends.
 inline constexpr double kSupportPosition = 0.231;
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include "sim/dynamics/complex_form.h"
 #include "sim/dynamics/envelope.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Index;
@@ -99,4 +99,4 @@ void CarrierOde::rate(double t, const CaseMotion& motion,
   dydt(kCarrierPhase) = drive.frequency - w;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include "sim/dynamics/modal_table.h"
 #include "sim/dynamics/mode_forces.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Indices of the state vector of CarrierOde. Those of the electronics are as
 /// in EnvelopeState. Positions are divided by A_ref, velocities by w_nom A_ref.
@@ -65,4 +65,4 @@ class CarrierOde {
   std::complex<double> turn_;               // e^{i phi_el}
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 
 #include "config/units.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 void append_row(std::string& csv, const Gyro& gyro, double celsius) {
@@ -44,4 +44,4 @@ std::string characteristic_csv(const Gyro& gyro,
   return csv;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

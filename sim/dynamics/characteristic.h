@@ -6,7 +6,7 @@
 
 #include "sim/dynamics/gyro.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the static characteristic of a gyro at rest as CSV text: a line of
 /// names with units, then a line for each beam temperature [degC]. Free of
@@ -15,4 +15,4 @@ namespace beamgyro {
 std::string characteristic_csv(const Gyro& gyro,
                                std::span<const double> temperatures);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

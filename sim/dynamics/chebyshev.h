@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Chebyshev node i of n on [-1, 1].
 inline double chebyshev_node(int i, int n) {
@@ -34,4 +34,4 @@ inline Eigen::MatrixXd chebyshev_transform(int n) {
   return transform;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <complex>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 inline constexpr std::complex<double> kI(0, 1);
 
@@ -41,4 +41,4 @@ inline Eigen::Matrix4d real_form(const Eigen::Matrix2cd& matrix) {
   return real;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "sim/dynamics/complex_form.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Index;
@@ -136,4 +136,4 @@ void EnvelopeOde::rate(const EnvelopeInputs& inputs, const State& y,
   put(dydt, kRebalance, loops_.rebalance ? m.r2 : Complex(0));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

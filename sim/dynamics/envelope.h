@@ -9,7 +9,7 @@
 #include "sim/dynamics/modal_memory.h"
 #include "sim/thermal/thermal_ode.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Indices of the state vector of EnvelopeOde. A complex number takes two
 /// entries, real part first. Amplitudes are divided by A_ref; signals are rates
@@ -99,4 +99,4 @@ class EnvelopeOde {
   double mass_amplitude_;  // m A_ref [kg m]
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

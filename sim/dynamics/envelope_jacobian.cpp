@@ -4,7 +4,7 @@
 #include "sim/dynamics/complex_form.h"
 #include "sim/dynamics/envelope.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Index;
@@ -207,4 +207,4 @@ void EnvelopeOde::add_temperature_slopes(const ModalChannels& modal_slope,
               (turning * m.V_B_rate));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

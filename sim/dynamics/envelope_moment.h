@@ -6,7 +6,7 @@
 #include "sim/dynamics/loop_electronics.h"
 #include "sim/dynamics/modal_table.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The couplings at a point of the modal table, or their slopes over
 /// temperature.
@@ -39,4 +39,4 @@ struct EnvelopeMoment {
 /// Below this amplitude the slope of |i + jq| is taken as 0.
 inline constexpr double kNoAmplitude = 1e-12;
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

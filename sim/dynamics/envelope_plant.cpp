@@ -6,7 +6,7 @@
 
 #include "sim/dynamics/complex_form.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Matrix2cd;
@@ -50,4 +50,4 @@ EnvelopePlant::Slope EnvelopePlant::by(const Matrix2d& stiffness,
   return slope(dP, stiffness.cast<std::complex<double>>() + kI * omega_ * dP);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The slow manifold of two modes, second order (2.13), per mass:
 ///
@@ -40,4 +40,4 @@ class EnvelopePlant {
   Eigen::Matrix2cd r_, s_, a_, b_, d_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "sim/numerics/simulation_failure.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 Complex signal(const Gyro& gyro, const ModalParameters& modal,
@@ -156,4 +156,4 @@ Electronics electronics_at(const Gyro& gyro, double board_temperature) {
           gyro.offset + (readout.offset_tc + readout.offset_tc2 * dT) * dT};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include "sim/dynamics/lock_path.h"
 #include "sim/dynamics/static_solution.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// One unit after the factory: the device, its projected beam, and the trims
 /// and references that are set once with board and beam at T_0 (2.4, 2.6).
@@ -108,4 +108,4 @@ double in_phase_rate(const MountParameters& mount,
 std::complex<double> rate_response(const Gyro& gyro,
                                    const ModalParameters& modal);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include "sim/dynamics/gyro.h"
 #include "sim/numerics/simulation_failure.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kStep = 1;             // [K]
@@ -83,4 +83,4 @@ StaticSolution static_solution(const Gyro& gyro, const ModalParameters& modal,
   return static_solution(gyro, modal, motion, path, guess);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "sim/dynamics/static_solution.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct Gyro;
 
@@ -33,4 +33,4 @@ StaticSolution static_solution(const Gyro& gyro, const ModalParameters& modal,
 StaticSolution static_solution(const Gyro& gyro, const ModalParameters& modal,
                                const CaseMotion& motion, double guess = 0);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

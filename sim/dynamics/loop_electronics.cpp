@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // lam and H_0 of force rebalance at T_0 (2.5): the sense mode seen from V_B
@@ -81,4 +81,4 @@ DriveSignals drive_signals(const LoopElectronics& loops, double i2, double q2,
   return s;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "sim/dynamics/gyro.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The loops around the beam (2.1, 2.5), shared by envelope and carrier. (i, q)
 /// are the (cos, sin) parts of the demodulated feedback s_F = -Theta_F^T q /
@@ -84,4 +84,4 @@ struct DriveSignals {
 DriveSignals drive_signals(const LoopElectronics& loops, double i2, double q2,
                            double xi, double eta);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

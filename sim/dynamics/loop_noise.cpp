@@ -8,7 +8,7 @@
 #include "sim/dynamics/complex_form.h"
 #include "sim/dynamics/mechanical_noise.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Index;
@@ -135,4 +135,4 @@ Eigen::Vector2d drive_noise_rms(const LoopElectronics& loops,
   return (drive_channels(loops) * stationary_root(system)).rowwise().norm();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include "sim/dynamics/envelope.h"
 #include "sim/signal/linear_noise.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the steady state of amplitudes, loops and filters with the beam at
 /// `T_beam` and the board at `T_board` [K]. Throws as static_solution().
@@ -35,4 +35,4 @@ Eigen::Vector2d drive_noise(const LoopElectronics& loops,
 Eigen::Vector2d drive_noise_rms(const LoopElectronics& loops,
                                 const NoiseSystem& system);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

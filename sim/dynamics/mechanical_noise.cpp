@@ -11,7 +11,7 @@
 
 #include "sim/dynamics/complex_form.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Matrix2cd;
@@ -205,4 +205,4 @@ RateNoiseDensity low_frequency_noise(const Gyro& gyro, double beam_temperature,
           std::sqrt(charge * density.amplifier)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

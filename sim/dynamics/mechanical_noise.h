@@ -5,7 +5,7 @@
 
 #include "sim/dynamics/gyro.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 inline constexpr double kBoltzmann = 1.380649e-23;  // k_B, exact [J/K]
 
@@ -76,4 +76,4 @@ struct RateNoiseDensity {
 RateNoiseDensity low_frequency_noise(const Gyro& gyro, double beam_temperature,
                                      double board_temperature);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sim/dynamics/modal_memory.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 ModalMemory::ModalMemory(const Gyro& gyro, const MemoryTrajectory& memory)
     : memory_(memory) {
@@ -34,4 +34,4 @@ ModalChannels ModalMemory::at(double t, double beam,
   return sum;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

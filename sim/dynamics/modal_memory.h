@@ -4,7 +4,7 @@
 #include "sim/dynamics/modal_table.h"
 #include "sim/memory/memory_trajectory.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What the memory of one unit adds to the coefficients of its ModalTable over
 /// a run. At each knot of the trajectory it is the difference of the exact
@@ -26,4 +26,4 @@ class ModalMemory {
   SmoothCourse<ModalChannels> without_hysteresis_, per_hysteresis_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

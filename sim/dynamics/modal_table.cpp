@@ -9,7 +9,7 @@
 #include "config/units.h"
 #include "sim/numerics/simulation_failure.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 Eigen::Matrix2d stiffness_of(const ModalChannels& channels) {
   Eigen::Matrix2d K;
@@ -151,4 +151,4 @@ ModalParameters ModalTable::parameters(const ModalChannels& channels) const {
   return modal;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

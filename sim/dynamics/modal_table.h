@@ -8,7 +8,7 @@
 
 #include "sim/dynamics/gyro.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The coefficients of (2.1) that depend on the beam's temperature, divided by
 /// the modal mass: K/m [1/s2] and C/m [1/s] as xx, xy, yy; then Theta_p/m [N/(V
@@ -75,4 +75,4 @@ inline constexpr double kModalGrid = 0.25;      // [K]
 inline constexpr double kColdestBeam = 173.15;  // [K]
 inline constexpr double kHottestBeam = 473.15;  // [K]
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

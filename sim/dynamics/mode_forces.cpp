@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sim/dynamics/mode_forces.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 ModeForces mode_forces(const Eigen::Matrix2d& stiffness,
                        const Eigen::Matrix2d& damping, double gain,
@@ -23,4 +23,4 @@ Eigen::Matrix2d euler_force(double gain, const CaseMotion& motion) {
   return force;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

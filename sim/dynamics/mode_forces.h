@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Inertial motion of the case: rotation about x, y and z (the input axis), and
 /// the in-phase term that its acceleration causes.
@@ -33,4 +33,4 @@ ModeForces mode_forces(const Eigen::Matrix2d& stiffness,
 /// Returns what the Euler force adds to `position`: gamma Omega_z' J2 [1/s2].
 Eigen::Matrix2d euler_force(double gain, const CaseMotion& motion);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 
 #include "sim/dynamics/chebyshev.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // channels() of one sample, at its rate.
 Eigen::Vector4d StaticMap::value(const Piece& piece, double T, double rate,
@@ -189,4 +189,4 @@ void StaticMap::sample(std::span<const double> T, std::span<const double> rate,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 #include "sim/dynamics/gyro.h"
 #include "sim/memory/memory_trajectory.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Static response of one gyro, tabulated over a range of beam temperatures and
 /// rates, so that a sample costs some ten nanoseconds. The table holds
@@ -139,4 +139,4 @@ class StaticMap {
   std::vector<Piece> pieces_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -16,7 +16,7 @@
 #include "sim/dynamics/static_map.h"
 #include "sim/numerics/simulation_failure.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // The node opposite to number `index` along the first axis of two nodes where
@@ -331,4 +331,4 @@ void StaticMap::refine(double low, double high) {
   refine(middle, high);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

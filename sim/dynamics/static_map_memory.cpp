@@ -7,7 +7,7 @@
 #include "sim/dynamics/chebyshev.h"
 #include "sim/dynamics/static_map.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // The error a table may have in frequency [rad/s] and voltage [V], per rad/s of
 // the signal's tolerance: 1e-6 deg/s go with 1e-6 Hz and 1e-7 V.
@@ -126,4 +126,4 @@ void StaticMap::prune(Piece& piece) const {
   });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -13,7 +13,7 @@
 #include "sim/dynamics/complex_form.h"
 #include "sim/numerics/simulation_failure.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Matrix2cd;
@@ -292,4 +292,4 @@ StaticSolution static_solution(const ModalParameters& modal,
   return solution;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

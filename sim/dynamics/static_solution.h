@@ -7,7 +7,7 @@
 #include "sim/device/modal_model.h"
 #include "sim/dynamics/mode_forces.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The quantities that the loops hold constant (2.1, 2.5).
 struct DriveLoop {
@@ -50,4 +50,4 @@ StaticSolution static_solution(const ModalParameters& modal,
                                const DriveLoop& loop, double feedthrough,
                                const CaseMotion& motion, double guess = 0);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "sim/memory/gas_constant.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 double ageing_rate(double activation, double T) {
   return std::exp(-activation / kGasConstant *
@@ -36,4 +36,4 @@ double Ageing::decades() const {
   return std::log1p(after) / std::numbers::ln10;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include "sim/memory/memory_parameters.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Temperature at which the effective age runs as fast as time, T_0 [K].
 inline constexpr double kAgeingTemperature = 298.15;
@@ -30,4 +30,4 @@ class Ageing {
   double age_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "sim/memory/gas_constant.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::array<double, BondRelaxation::kModes> kFitted = {
@@ -130,4 +130,4 @@ double reference_fictive_temperature(double T, double glass_transition) {
   return std::max(T, glass_transition);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

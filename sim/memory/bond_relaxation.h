@@ -6,7 +6,7 @@
 
 #include "sim/memory/memory_parameters.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Structural relaxation of the bond after Tool, Narayanaswamy and Moynihan,
 /// equation (12.1), with all temperatures in K:
@@ -63,4 +63,4 @@ class BondRelaxation {
 /// T_f,ref = max(T, T_g) [K].
 double reference_fictive_temperature(double T, double glass_transition);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "config/units.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kHour = 3600;  // [s]
@@ -86,4 +86,4 @@ MemoryParameters read_memory(const ConfigTable& memory) {
   return parameters;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

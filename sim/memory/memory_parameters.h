@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Structural relaxation of the bond, equations (12.1) and (12.2).
 struct RelaxationParameters {
@@ -50,4 +50,4 @@ struct MemoryParameters {
   bool any() const { return relaxation || hysteresis || ageing; }
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What a unit remembers at one moment, as far as its static response depends
 /// on it. All zeros is the unit as the factory trimmed it, with the bond in the
@@ -14,4 +14,4 @@ struct MemoryState {
   bool operator==(const MemoryState&) const = default;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // A component of a step and its slope by Horner's rule.
@@ -287,4 +287,4 @@ MemoryRange MemoryTrajectory::range(double low, double high) const {
   return {{least, *soft, *young}, {most, *stiff, *old}};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "sim/memory/unit_memory.h"
 #include "sim/thermal/thermal_run.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct MemoryRange {
   MemoryState low, high;
@@ -80,4 +80,4 @@ class MemoryTrajectory {
   std::vector<double> least_glass_, most_glass_;  // of each interval
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

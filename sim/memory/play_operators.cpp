@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 PlayOperators::PlayOperators(const HysteresisParameters& parameters,
                              double start)
@@ -39,4 +39,4 @@ double PlayOperators::share(const States& states, double T) const {
   return value(states, T) / largest_;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "sim/memory/memory_parameters.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Rate-independent hysteresis of Prandtl and Ishlinskii, equation (12.3). Each
 /// play operator follows the temperature only when it is pushed:
@@ -41,4 +41,4 @@ class PlayOperators {
   States states_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

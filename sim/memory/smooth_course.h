@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A quantity over time that is known at knots, with cubics between them whose
 /// slopes come from the parabola through three knots. At a break the slope may
@@ -81,4 +81,4 @@ inline std::size_t interval_of(const std::vector<double>& times, double t,
   return std::min(k, last);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

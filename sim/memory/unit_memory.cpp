@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Temperatures of a history in which the bond is cooled from above T_g.
@@ -89,4 +89,4 @@ MemoryState UnitMemory::state(double patches) const {
   return state;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

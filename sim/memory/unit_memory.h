@@ -9,7 +9,7 @@
 #include "sim/memory/play_operators.h"
 #include "sim/numerics/piecewise_linear.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What lies behind a unit when a run begins.
 struct UnitHistory {
@@ -55,4 +55,4 @@ class UnitMemory {
   std::optional<Ageing> ageing_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

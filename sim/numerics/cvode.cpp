@@ -14,7 +14,7 @@
 #include "sim/numerics/simulation_failure.h"
 #include "sim/numerics/sundials_objects.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr Eigen::Index kHighestOrder = 12;  // of CVODE's Adams formulas
@@ -228,4 +228,4 @@ double Cvode::time() const { return impl_->time; }
 const Eigen::VectorXd& Cvode::state() const { return impl_->y; }
 const CvodeStatistics& Cvode::statistics() const { return impl_->statistics; }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 
 #include "sim/numerics/ode.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 enum class OdeMethod {
   kAdams,  // non-stiff: resolved vibration
@@ -92,4 +92,4 @@ class Cvode {
   std::unique_ptr<Impl> impl_;  // stable address: CVODE keeps a pointer to it
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

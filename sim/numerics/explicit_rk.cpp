@@ -9,7 +9,7 @@
 
 #include "sim/numerics/sundials_objects.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 struct FreeArkStep {
@@ -126,4 +126,4 @@ const Eigen::VectorXd& ExplicitRk::state() const { return impl_->y; }
 long ExplicitRk::steps() const { return impl_->steps(); }
 long ExplicitRk::rhs_evaluations() const { return impl_->rhs_evaluations; }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "sim/numerics/ode.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 enum class RkTable {
   kDormandPrince,  // 7 stages, order 5
@@ -55,4 +55,4 @@ class ExplicitRk {
   std::unique_ptr<Impl> impl_;  // stable address: ARKODE keeps a pointer to it
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

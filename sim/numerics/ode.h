@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <functional>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// dy/dt = f(t, y); must fill every entry of `dydt`. May throw.
 using OdeRhs =
@@ -16,4 +16,4 @@ using OdeJacobian =
     std::function<void(double t, const Eigen::Ref<const Eigen::VectorXd>& y,
                        Eigen::Ref<Eigen::MatrixXd> df_dy)>;
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 void require_points(const std::vector<double>& time,
@@ -109,4 +109,4 @@ std::vector<Border> PiecewiseLinear::borders() const {
   return borders;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

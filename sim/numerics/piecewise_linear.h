@@ -6,7 +6,7 @@
 
 #include "sim/numerics/timeline.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A straight line between two times.
 struct LinearStretch {
@@ -53,4 +53,4 @@ class PiecewiseLinear {
   std::vector<double> value_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

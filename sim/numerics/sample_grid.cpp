@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sim/numerics/sample_grid.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 std::vector<double> SampleGrid::times(std::size_t first, std::size_t n) const {
   std::vector<double> times(n);
@@ -20,4 +20,4 @@ std::size_t SampleGrid::first_from(double t) const {
   return k;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The times k / rate of samples k = 0 .. count - 1.
 struct SampleGrid {
@@ -21,4 +21,4 @@ struct SampleGrid {
   std::size_t first_from(double t) const;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

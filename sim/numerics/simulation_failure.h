@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Thrown when one device cannot be simulated in one run: its equations have no
 /// solution, its loops do not lock, or an integrator does not reach the end. In
@@ -14,4 +14,4 @@ class SimulationFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -13,7 +13,7 @@
 
 #include "sim/numerics/simulation_failure.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Vector = Eigen::Map<Eigen::VectorXd>;
@@ -198,4 +198,4 @@ OwnedSolver make_dense_solver(Eigen::Index size, SUNContext context) {
   return solver;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

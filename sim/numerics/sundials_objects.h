@@ -12,7 +12,7 @@
 #include <type_traits>
 
 // Only the files of this folder that call SUNDIALS include this header.
-namespace beamgyro {
+namespace beamgyro::internal {
 
 static_assert(std::is_same_v<sunrealtype, double>);
 
@@ -90,4 +90,4 @@ OwnedMatrix make_dense_matrix(Eigen::Index size, SUNContext context);
 /// LU with partial pivoting.
 OwnedSolver make_dense_solver(Eigen::Index size, SUNContext context);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Index;
@@ -84,4 +84,4 @@ std::optional<VectorXd> solved(const SymmetricBand& A, VectorXd b) {
   return b;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

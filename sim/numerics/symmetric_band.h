@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A symmetric matrix with half bandwidth 3.
 struct SymmetricBand {
@@ -27,4 +27,4 @@ struct SymmetricBand {
 std::optional<Eigen::VectorXd> solved(const SymmetricBand& A,
                                       Eigen::VectorXd b);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

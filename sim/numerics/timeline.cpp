@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 bool is_same_time(double a, double b) {
   constexpr double kShortest = 1e-9;  // [s]
@@ -33,4 +33,4 @@ std::vector<Piece> pieces_until(double end, std::vector<Border> borders) {
   return pieces;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A time at which an input or its slope jumps.
 struct Border {
@@ -30,4 +30,4 @@ struct Piece {
 /// before `end` has made none.
 std::vector<Piece> pieces_until(double end, std::vector<Border> borders);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -13,7 +13,7 @@
 
 #include "sim/scenario/aligned_borders.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kSmallestSwing = 0.05;  // [-], of the range of a profile
@@ -192,4 +192,4 @@ std::vector<std::string> aliasing_warnings(const Scenario& scenario) {
   return texts;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns one warning for each motion that the samples do not show:
 /// - a sine of half the output rate or more;
@@ -16,4 +16,4 @@ namespace beamgyro {
 ///   range of the profile counts as noise.
 std::vector<std::string> aliasing_warnings(const Scenario& scenario);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Borders at one time, and where they move.
@@ -126,4 +126,4 @@ Scenario with_aligned_borders(const Scenario& scenario) {
   return aligned;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

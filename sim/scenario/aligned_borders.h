@@ -3,7 +3,7 @@
 
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the scenario with times that only rounding keeps apart
 /// (is_same_time()) made equal. Power switches, jumps and bends of profiles at
@@ -16,4 +16,4 @@ namespace beamgyro {
 /// and are not changed.
 Scenario with_aligned_borders(const Scenario& scenario);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -21,7 +21,7 @@
 #include "sim/scenario/sensing_noise.h"
 #include "sim/scenario/unpowered_bias.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::VectorXd;
@@ -260,4 +260,4 @@ void simulate_carrier(const Scenario& given, const Gyro& gyro,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

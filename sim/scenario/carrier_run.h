@@ -5,7 +5,7 @@
 #include "sim/scenario/run_recorder.h"
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Carrier run (L3): integrates every vibration (CarrierOde) by Fehlberg's
 /// method of order 8, with an error below 1e-4 deg/s. The temperatures come
@@ -24,4 +24,4 @@ inline constexpr double kCarrierTick = 1e-3;  // [s]
 /// cost of a powered second (bench/README.md).
 double carrier_cost(const Scenario& scenario);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 
 #include "sim/numerics/simulation_failure.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 bool is_locked(const DriveSignals& drive) {
   return !drive.limited &&
@@ -51,4 +51,4 @@ void require_lock(const Scenario& scenario, const Recording& block) {
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 #include "sim/dynamics/loop_electronics.h"
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 inline constexpr double kLockTime = 1.0;               // [s] after power-on
 inline constexpr double kAmplitudeErrorLocked = 0.01;  // of the set value
@@ -27,4 +27,4 @@ std::vector<Border> power_borders(const Scenario& scenario);
 /// although that is due. The message has its time, temperature and voltage.
 void require_lock(const Scenario& scenario, const Recording& block);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -14,7 +14,7 @@
 #include "sim/scenario/sensing_noise.h"
 #include "sim/scenario/unpowered_bias.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 void simulate_envelope(const Scenario& scenario, const Device& device,
                        const RunKey& key, const BlockSink& on_block) {
@@ -56,4 +56,4 @@ void simulate_envelope(const Scenario& given, const Gyro& gyro,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 #include "sim/scenario/run_recorder.h"
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Envelope run (L2): integrates the amplitudes of both modes, the drive loop,
 /// the rebalance loop, demodulators, output filter and thermal network
@@ -18,4 +18,4 @@ void simulate_envelope(const Scenario& scenario, const Gyro& gyro,
 void simulate_envelope(const Scenario& scenario, const Device& device,
                        const RunKey& key, const BlockSink& on_block);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "sim/scenario/drive_lock.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Index;
@@ -234,4 +234,4 @@ RunSamples EnvelopeTrajectory::advance(std::span<const double> times) {
   return samples;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -14,7 +14,7 @@
 #include "sim/scenario/run_recorder.h"
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The envelope of one gyro in one scenario, integrated in order of time. It
 /// starts at rest at time 0; the integrator restarts at every jump of an input.
@@ -67,4 +67,4 @@ class EnvelopeTrajectory {
   std::unique_ptr<ExplicitRk> explicit_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include "sim/scenario/square_acceleration.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 FilteredMotion::FilteredMotion(const Gyro& gyro, const Motion& motion,
                                double output_rate)
@@ -45,4 +45,4 @@ CaseMotion FilteredMotion::at(std::size_t k) const {
   return motion;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

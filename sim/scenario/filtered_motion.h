@@ -8,7 +8,7 @@
 #include "sim/scenario/motion.h"
 #include "sim/signal/output_filter.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The motion of the case behind the output filter, sample by sample, for a
 /// static response to it.
@@ -36,4 +36,4 @@ class FilteredMotion {
   Filtered square_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "sim/scenario/run_recorder.h"
 #include "sim/thermal/material_range.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 bool is_outside(double T) {
@@ -67,4 +67,4 @@ bool MaterialLimits::stand(const TemperatureRange& range) {
   return !is_outside(range.low) && !is_outside(range.high);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

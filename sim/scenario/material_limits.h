@@ -8,7 +8,7 @@
 #include "sim/scenario/scenario.h"
 #include "sim/thermal/thermal_trajectory.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Refuses the runs of one gyro in one scenario whose heat the materials do not
 /// stand: SimulationFailure says which part leaves kMaterialTemperatures when,
@@ -39,4 +39,4 @@ class MaterialLimits {
   double electronics_power_;  // [W]
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

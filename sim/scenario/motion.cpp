@@ -7,7 +7,7 @@
 
 #include "sim/scenario/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 double value(const AxisSegment& s, double since, double t) {
@@ -137,4 +137,4 @@ void Motion::sample(RunSamples& samples) const {
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "sim/scenario/run_recorder.h"
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// a + b (t - start) + amplitude sin(omega t + phase)
 struct AxisSegment {
@@ -71,4 +71,4 @@ class Motion {
   MountParameters mount_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 
 #include "config/file_error.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 struct Knots {
@@ -108,4 +108,4 @@ PiecewiseLinear read_profile_file(const ConfigTable& table,
   return profile_of(read_csv(path), unit);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

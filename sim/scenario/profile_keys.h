@@ -11,7 +11,7 @@
 #include "dataset/log/csv_file.h"
 #include "sim/numerics/piecewise_linear.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Unit of the numbers of a profile in files: value = file value x factor +
 /// offset. `range` limits the file value.
@@ -48,4 +48,4 @@ PiecewiseLinear read_profile_file(const ConfigTable& table,
                                   const ProfileUnit& unit,
                                   const ProfileFolder& folder);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

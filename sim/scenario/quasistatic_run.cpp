@@ -25,7 +25,7 @@
 #include "sim/signal/readout.h"
 #include "sim/thermal/thermal_trajectory.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Samples = std::vector<double>;
@@ -279,4 +279,4 @@ void simulate_quasistatic(const Scenario& given, const Gyro& gyro,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

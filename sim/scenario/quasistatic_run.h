@@ -5,7 +5,7 @@
 #include "sim/scenario/run_recorder.h"
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Quasi-static run (L1). It integrates the thermal network and takes the exact
 /// static response (2.10) at the beam's temperature and the filtered rate, then
@@ -22,4 +22,4 @@ void simulate_quasistatic(const Scenario& scenario, const Gyro& gyro,
 void simulate_quasistatic(const Scenario& scenario, const Device& device,
                           const RunKey& key, const BlockSink& on_block);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

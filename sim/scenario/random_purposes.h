@@ -3,7 +3,7 @@
 
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // The random streams that this room draws from. The numbers are part of the
 // data: never change one, never use one twice (all of them are compared by a
@@ -18,4 +18,4 @@ inline constexpr RandomPurpose kAccelerationZStream{14};
 inline constexpr RandomPurpose kDriveFrequencyNoiseStream{20};
 inline constexpr RandomPurpose kDriveVoltageNoiseStream{21};
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

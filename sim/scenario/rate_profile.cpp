@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // The pair of poles w is -3 dB where (1 + (2 pi f/w)^2)^2 = 2.
@@ -88,4 +88,4 @@ PiecewiseLinear realised(const RandomRate& random, double duration,
   return {std::move(time), std::move(value)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 #include "sim/scenario/random_purposes.h"
 #include "sim/signal/output_filter.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Gaussian rate of a given rms: white noise through two equal real poles w,
 /// which together are -3 dB at `bandwidth`. R(t) = rms^2 e^{-w|t|}(1 + w|t|).
@@ -49,4 +49,4 @@ PiecewiseLinear realised(const RandomRate& random, double duration,
                          std::uint32_t run,
                          RandomPurpose purpose = kRateProfileStream);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

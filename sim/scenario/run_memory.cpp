@@ -3,7 +3,7 @@
 
 #include "sim/scenario/run_temperatures.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 std::unique_ptr<MemoryTrajectory> memory_at_start(const Scenario& scenario,
                                                   const Gyro& gyro) {
@@ -25,4 +25,4 @@ std::unique_ptr<MemoryTrajectory> memory_of_run(const Scenario& scenario,
   return memory;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

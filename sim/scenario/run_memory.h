@@ -7,7 +7,7 @@
 #include "sim/memory/memory_trajectory.h"
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the memory of a unit at the start of a scenario, to be driven by its
 /// thermal solution, or null for a unit without memory effects.
@@ -18,4 +18,4 @@ std::unique_ptr<MemoryTrajectory> memory_at_start(const Scenario& scenario,
 std::unique_ptr<MemoryTrajectory> memory_of_run(const Scenario& scenario,
                                                 const Gyro& gyro);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

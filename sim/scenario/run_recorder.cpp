@@ -16,7 +16,7 @@
 #include "sim/memory/bond_relaxation.h"
 #include "sim/signal/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -235,4 +235,4 @@ void RunRecorder::add_truth(Recording& block, RunSamples& samples) const {
       scaled(scenario_.ambient.sample(block.time), 1, -kZeroCelsius));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

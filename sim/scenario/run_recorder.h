@@ -14,7 +14,7 @@
 #include "sim/signal/readout.h"
 #include "sim/signal/temperature_sensor.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Device and run number, which select the random streams of a run together
 /// with the seed of its scenario.
@@ -103,4 +103,4 @@ class RunRecorder {
   Readout readout_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "sim/scenario/material_limits.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 ThermalLoad thermal_load(const Scenario& scenario, const Gyro& gyro) {
   const DriveHeating heating = drive_heating(gyro);
@@ -41,4 +41,4 @@ double RunTemperatures::at(ThermalNode node, double t) const {
                    place - static_cast<double>(left));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include "sim/dynamics/gyro.h"
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns what heats and cools a gyro in a scenario (4.1): the ambient, and
 /// electronics and drive while powered.
@@ -23,4 +23,4 @@ class RunTemperatures {
   ThermalHistory history_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

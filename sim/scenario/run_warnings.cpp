@@ -11,7 +11,7 @@
 #include "sim/scenario/drive_lock.h"
 #include "sim/thermal/material_range.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::string soaks_text(const Scenario& scenario) {
@@ -147,4 +147,4 @@ std::vector<std::string> RunWarnings::texts() const {
   return texts;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "sim/device/device.h"
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What the user of a run should know and no error says. Each warning is one
 /// sentence with counts and the likely cause:
@@ -54,4 +54,4 @@ class RunWarnings {
   Temperatures clamped_;     // beyond the linear range of the ceramic
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 std::string_view fidelity_name(Fidelity fidelity) {
   switch (fidelity) {
@@ -54,4 +54,4 @@ double highest_output_rate(Fidelity fidelity) {
   return 0;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

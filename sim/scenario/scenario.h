@@ -15,7 +15,7 @@
 #include "sim/scenario/rate_profile.h"
 #include "sim/thermal/thermal_run.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 enum class Fidelity {
   kQuasistatic,  // thermal network and static response at every sample
@@ -67,4 +67,4 @@ std::vector<double> sample_times(const Scenario& scenario);
 /// Returns the highest output rate [Hz] that a fidelity allows.
 double highest_output_rate(Fidelity fidelity);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -16,7 +16,7 @@
 #include "sim/scenario/profile_keys.h"
 #include "sim/thermal/material_range.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kHour = 3600;               // [s]
@@ -250,4 +250,4 @@ std::vector<std::filesystem::path> profile_files(
   return files;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

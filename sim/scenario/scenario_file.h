@@ -8,7 +8,7 @@
 #include "sim/scenario/profile_keys.h"
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Reads a scenario and checks every key (docs/reference/scenario_file.md).
 /// Files that it names are relative to its own folder; `device_file` is
@@ -22,4 +22,4 @@ Scenario read_scenario(const ConfigDocument& document,
 std::vector<std::filesystem::path> profile_files(
     const ConfigDocument& document);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "sim/scenario/drive_lock.h"
 #include "sim/scenario/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 bool has_channel_noise(const Scenario& scenario, const Device& device) {
   return scenario.noise_enabled && device.loop_channels &&
@@ -115,4 +115,4 @@ RunNoise SlowDriveNoise::rms() {
   return {.drive_frequency = sigma(0), .drive_voltage = sigma(1)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

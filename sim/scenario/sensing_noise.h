@@ -9,7 +9,7 @@
 #include "sim/signal/linear_noise.h"
 #include "sim/thermal/thermal_trajectory.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns whether the channels of the drive loop carry noise in this run.
 bool has_channel_noise(const Scenario& scenario, const Device& device);
@@ -72,4 +72,4 @@ class SlowDriveNoise {
 
 inline constexpr double kNoiseRefresh = 2.0;  // [K]
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

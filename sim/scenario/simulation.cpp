@@ -8,7 +8,7 @@
 #include "sim/scenario/envelope_run.h"
 #include "sim/scenario/quasistatic_run.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 void reserve(Recording& recording, std::size_t samples) {
@@ -69,4 +69,4 @@ Recording simulated(const Scenario& scenario, const Device& device,
   return simulated(scenario, make_gyro(device), key);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

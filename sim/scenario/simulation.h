@@ -5,7 +5,7 @@
 #include "sim/scenario/run_recorder.h"
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Simulates a run at the fidelity of its scenario, block by block. Throws as
 /// simulate_quasistatic(), simulate_envelope() and simulate_carrier().
@@ -18,4 +18,4 @@ Recording simulated(const Scenario& scenario, const Gyro& gyro,
 Recording simulated(const Scenario& scenario, const Device& device,
                     const RunKey& key = {});
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "sim/device/device_file.h"
 #include "sim/scenario/scenario_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 LoadedDevice load_device(const std::filesystem::path& path,
                          const std::vector<std::string>& overrides) {
@@ -43,4 +43,4 @@ LoadedScenario load_scenario(const std::filesystem::path& path,
           unit.text(), set.text(), std::move(files)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

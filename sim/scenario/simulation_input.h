@@ -8,7 +8,7 @@
 #include "sim/device/device.h"
 #include "sim/scenario/scenario.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A device, with the overrides of the command applied.
 struct LoadedDevice {
@@ -30,4 +30,4 @@ struct LoadedScenario {
 LoadedScenario load_scenario(const std::filesystem::path& path,
                              const std::vector<std::string>& overrides);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include <utility>
 #include <variant>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Samples = std::vector<double>;
@@ -129,4 +129,4 @@ SampleStream filtered_square_acceleration(const std::array<Signal, 3>& axes,
   };
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

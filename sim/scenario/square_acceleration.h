@@ -5,7 +5,7 @@
 
 #include "sim/scenario/rate_profile.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns |a|^2 [m2/s4] behind the output filter, two equal poles `corner`
 /// [rad/s], at the times k / output_rate. The mechanics rectify a vibration in
@@ -16,4 +16,4 @@ namespace beamgyro {
 SampleStream filtered_square_acceleration(const std::array<Signal, 3>& axes,
                                           double corner, double output_rate);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

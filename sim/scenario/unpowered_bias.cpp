@@ -5,7 +5,7 @@
 
 #include "sim/dynamics/static_map.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 UnpoweredBias::UnpoweredBias(const Scenario& scenario, const Gyro& gyro,
                              const Motion& motion,
@@ -65,4 +65,4 @@ void UnpoweredBias::fill_still(const std::vector<std::size_t>& unpowered,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

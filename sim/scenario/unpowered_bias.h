@@ -8,7 +8,7 @@
 #include "sim/memory/memory_trajectory.h"
 #include "sim/scenario/filtered_motion.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The bias of samples without power. A gyro without power has no output; its
 /// bias there is the one that it would settle to at its temperatures, which is
@@ -37,4 +37,4 @@ class UnpoweredBias {
   std::optional<FilteredMotion> motion_;  // of axes other than the input axis
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 
 #include "sim/signal/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // 1 - e^-x
@@ -170,4 +170,4 @@ void FlickerNoise::add_next(std::span<double> rate) {
   state_ = state;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

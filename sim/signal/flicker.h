@@ -9,7 +9,7 @@
 
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The flicker bank: 23 independent Ornstein-Uhlenbeck processes of decay rates
 ///   lam_k = 2 pi 1e-5 2^k rad/s, k = 0..22,
@@ -60,4 +60,4 @@ class FlickerNoise {
   std::array<double, kFlickerSlots> pole_{}, gain_{}, state_{};
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

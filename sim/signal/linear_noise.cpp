@@ -12,7 +12,7 @@
 
 #include "sim/numerics/simulation_failure.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Eigen::Index;
@@ -244,4 +244,4 @@ void LinearNoise::refresh(const NoiseSystem& system) {
   step_ << sampled.transition, sampled.root;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

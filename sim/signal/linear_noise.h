@@ -5,7 +5,7 @@
 
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A linear system driven by white noise,
 ///   dz = A z dt + B dW,
@@ -69,4 +69,4 @@ class LinearNoise {
   Eigen::Index next_;        // its first unused column
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

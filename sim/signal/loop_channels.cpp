@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 double value_or_0(std::span<const double> values, std::size_t k) {
@@ -56,4 +56,4 @@ std::vector<double> measured_quadrature(const LoopChannelParameters& channels,
   return shown;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Errors of the electronics that measure the channels of the loops.
 struct LoopChannelParameters {
@@ -43,4 +43,4 @@ std::vector<double> measured_quadrature(const LoopChannelParameters& channels,
                                         std::span<const double> noise,
                                         std::span<const double> dT);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

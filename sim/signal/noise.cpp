@@ -10,7 +10,7 @@
 
 #include "sim/signal/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 void require_non_negative(double value, const char* name, const char* unit) {
@@ -113,4 +113,4 @@ std::vector<double> turn_on_transients(const NoiseParameters& parameters,
   return transients;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

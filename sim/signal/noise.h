@@ -11,7 +11,7 @@
 #include "sim/signal/flicker.h"
 #include "sim/signal/walk_since_trim.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Noise of the rate signal, IEEE-952 two-sided conventions: Allan variance
 ///   sigma^2(tau) = N^2 / tau + (2 ln 2 / pi) B^2 + K^2 tau / 3.
@@ -78,4 +78,4 @@ std::vector<double> turn_on_transients(const NoiseParameters& parameters,
                                        std::uint64_t seed, std::uint32_t device,
                                        std::uint32_t run);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;  // [rad]
@@ -175,4 +175,4 @@ std::vector<double> OutputFilter::response(const Signal& input,
   return output;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 
 #include "sim/numerics/piecewise_linear.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// offset + amplitude sin(2 pi frequency t + phase)
 struct SineSignal {
@@ -56,4 +56,4 @@ class OutputFilter {
   double corner_;  // [rad/s]
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // The random streams that this room draws from. The numbers are part of the
 // data: never change one, never use one twice (all of them are compared by a
@@ -17,4 +17,4 @@ inline constexpr RandomPurpose kWalkSinceTrimStream{17};
 inline constexpr RandomPurpose kTurnOnTransientStream{18};
 inline constexpr RandomPurpose kQuadratureNoiseStream{19};
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 double quantise(double value, double resolution) {
   quantise({&value, 1}, resolution);
@@ -51,4 +51,4 @@ ReadoutSample Readout::sample(double rate) const {
           std::abs(rate) > full_scale_ || ideal_code > highest_};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns std::round(value) to the last bit, without a call, so that loops
 /// vectorise.
@@ -50,4 +50,4 @@ class Readout {
   double scale_factor_, offset_;  // [V/(rad/s)] [V]
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

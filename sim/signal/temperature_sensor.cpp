@@ -10,7 +10,7 @@
 #include "sim/signal/random_purposes.h"
 #include "sim/signal/readout.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 TemperatureSensor::TemperatureSensor(
     const TemperatureSensorParameters& parameters, bool noise_enabled,
@@ -40,4 +40,4 @@ std::vector<double> TemperatureSensor::readings(
   return readings;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct TemperatureSensorParameters {
   double noise = 0.0;       // one sigma, white from sample to sample [K]
@@ -37,4 +37,4 @@ class TemperatureSensor {
   RandomStream stream_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 
 #include "sim/signal/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kLongestWalk = 0x1p32, kWalkGrid = 1;  // [s]
@@ -50,4 +50,4 @@ double WalkSinceTrim::at(double age) {
   return i.first + (i.last - i.first) * ((age - i.start) / i.length);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The Wiener path W(age) [sqrt(s)] of one device since its factory trim, W(0)
 /// = 0: values at two ages differ by a normal of their distance as variance. It
@@ -40,4 +40,4 @@ class WalkSinceTrim {
   std::vector<Interval> path_;  // each but the first is half of the one before
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include "config/range.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Temperatures that the materials of a gyro stand [degC]. Files, options and
 /// runs are held against this one range.
@@ -23,4 +23,4 @@ inline constexpr Range kLinearCeramic{-40, 80};
 inline constexpr const char* kMaterialReason =
     "the temperatures that ceramic and bond stand";
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

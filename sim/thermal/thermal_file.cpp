@@ -3,7 +3,7 @@
 
 #include <span>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 template <class Parameters>
@@ -28,4 +28,4 @@ ThermalParameters read_thermal(const ConfigTable& thermal) {
   return parameters;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

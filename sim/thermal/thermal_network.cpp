@@ -6,7 +6,7 @@
 
 #include "sim/numerics/simulation_failure.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kStefanBoltzmann = 5.670374419e-8;  // [W/(m^2 K^4)], CODATA
@@ -111,4 +111,4 @@ NodeVector ThermalNetwork::steady_state(
   throw SimulationFailure("thermal steady state: no convergence");
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

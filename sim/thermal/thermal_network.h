@@ -7,7 +7,7 @@
 
 #include "sim/thermal/thermal_parameters.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 enum ThermalNode { kBeam, kPzt, kMount, kHousing, kBoard, kSensor };
 inline constexpr int kThermalNodeCount = 6;
@@ -75,4 +75,4 @@ class ThermalNetwork {
   double forced_conductance_;     // [W/K]
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

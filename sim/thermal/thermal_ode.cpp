@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "sim/thermal/thermal_ode.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 ThermalOde::ThermalOde(const ThermalNetwork& network, double mechanical,
                        double dielectric)
@@ -46,4 +46,4 @@ void ThermalOde::jacobian(const ThermalSurroundings& surroundings, bool powered,
       action.integral_rate_per_integral;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

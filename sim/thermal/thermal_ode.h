@@ -6,7 +6,7 @@
 #include "sim/thermal/thermal_network.h"
 #include "sim/thermal/thermal_oven.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The network with its sources as a differential equation: the state is the
 /// temperature of every node [K], followed by the oven's integral [W] if there
@@ -38,4 +38,4 @@ class ThermalOde {
   NodeVector powered_heating_;  // [W]
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

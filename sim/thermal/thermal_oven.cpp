@@ -6,7 +6,7 @@
 
 #include "sim/numerics/simulation_failure.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 OvenAction oven_action(const ThermalOven& oven, double mount_temperature,
                        double integral) {
@@ -64,4 +64,4 @@ OvenSteadyState oven_steady_state(const ThermalNetwork& network,
   throw SimulationFailure("oven steady state: no convergence");
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

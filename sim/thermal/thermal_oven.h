@@ -3,7 +3,7 @@
 
 #include "sim/thermal/thermal_network.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What an oven does at one moment, with its slopes for a Jacobian.
 struct OvenAction {
@@ -39,4 +39,4 @@ OvenSteadyState oven_steady_state(const ThermalNetwork& network,
                                   const NodeVector& power,
                                   const ThermalSurroundings& surroundings);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "config/units.h"
 #include "sim/thermal/material_range.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -116,4 +116,4 @@ void require_valid(const ThermalParameters& parameters) {
   require_joined(parameters);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "config/range.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Heater and controller of an oven around beam and mount; equation (4.3) in
 /// thermal_oven.h. Its can and insulation are conductances of the network.
@@ -62,4 +62,4 @@ std::span<const ThermalField<ThermalOven>> oven_fields();
 /// number in its range, or the node no conductance joins to the housing.
 void require_valid(const ThermalParameters& parameters);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

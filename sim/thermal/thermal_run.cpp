@@ -11,7 +11,7 @@
 
 #include "sim/thermal/thermal_ode.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 [[noreturn]] void reject(const std::string& message) {
@@ -178,4 +178,4 @@ ThermalHistory simulate_temperatures(const ThermalNetwork& network,
   return history;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 #include "sim/numerics/piecewise_linear.h"
 #include "sim/thermal/thermal_network.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Powered from `on` to `off`.
 struct PowerInterval {
@@ -71,4 +71,4 @@ ThermalHistory simulate_temperatures(const ThermalNetwork& network,
                                      std::span<const double> times,
                                      const ThermalRunOptions& options = {});
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kNodes = kThermalNodeCount;
@@ -109,4 +109,4 @@ void ThermalTrajectory::sample(ThermalNode node, std::size_t first,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "sim/numerics/sample_grid.h"
 #include "sim/thermal/thermal_run.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct TemperatureRange {
   double low, high;  // [K]
@@ -58,4 +58,4 @@ class ThermalTrajectory {
   std::vector<double> data_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -13,7 +13,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro::compensation_of_a_gyro_test {
+namespace beamgyro::internal::compensation_of_a_gyro_test {
 namespace {
 
 ModelSpec shipped_model(const std::string& name) {
@@ -97,4 +97,4 @@ TEST(Verification, V44ANetworkOnTheOutputCancelsTheRate) {
 }
 
 }  // namespace
-}  // namespace beamgyro::compensation_of_a_gyro_test
+}  // namespace beamgyro::internal::compensation_of_a_gyro_test

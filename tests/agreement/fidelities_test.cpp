@@ -14,7 +14,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro::fidelities_test {
+namespace beamgyro::internal::fidelities_test {
 namespace {
 
 const std::string kRebalance = "readout.mode=\"force_rebalance\"";
@@ -28,7 +28,7 @@ Recording simulated(Scenario scenario, Fidelity fidelity,
                     const Device& device) {
   scenario.fidelity = fidelity;
   scenario.noise_enabled = false;
-  return beamgyro::simulated(scenario, device);
+  return internal::simulated(scenario, device);
 }
 
 // Largest difference of a column between two times [s].
@@ -204,13 +204,13 @@ TEST(Agreement, NoiseOfEnvelopeAndQuasistaticAreOneAtLowFrequencies) {
     return std::sqrt(sum / (2.0 * static_cast<double>(count - 1)));
   };
   scenario.noise_enabled = true;
-  const double slow = deviation(beamgyro::simulated(scenario, device));
+  const double slow = deviation(internal::simulated(scenario, device));
   scenario.fidelity = Fidelity::kEnvelope;
-  const double fast = deviation(beamgyro::simulated(scenario, device));
+  const double fast = deviation(internal::simulated(scenario, device));
   // 999 means: 3 sigma of an Allan deviation are 8 %, of a ratio 11 %.
   EXPECT_NEAR(fast / slow, 1, 0.11);
   EXPECT_NEAR(slow * std::sqrt(2.0), 5.9e-5, 0.08 * 5.9e-5);
 }
 
 }  // namespace
-}  // namespace beamgyro::fidelities_test
+}  // namespace beamgyro::internal::fidelities_test

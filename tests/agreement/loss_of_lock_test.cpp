@@ -14,13 +14,13 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro::loss_of_lock_test {
+namespace beamgyro::internal::loss_of_lock_test {
 namespace {
 
 Recording run_at(Scenario scenario, Fidelity fidelity, const Device& device) {
   scenario.fidelity = fidelity;
   scenario.noise_enabled = false;
-  return beamgyro::simulated(scenario, device);
+  return internal::simulated(scenario, device);
 }
 
 std::string ambient(const std::string& profile) {
@@ -186,4 +186,4 @@ TEST(MaterialRange, BelongsToEveryFidelity) {
 }
 
 }  // namespace
-}  // namespace beamgyro::loss_of_lock_test
+}  // namespace beamgyro::internal::loss_of_lock_test

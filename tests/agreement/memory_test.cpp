@@ -12,7 +12,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro::memory_test {
+namespace beamgyro::internal::memory_test {
 namespace {
 
 constexpr char kQuiet[] = "[noise]\nenabled = false\n";
@@ -216,4 +216,4 @@ TEST(Memory, DoesNotDependOnTheOutputRate) {
 }
 
 }  // namespace
-}  // namespace beamgyro::memory_test
+}  // namespace beamgyro::internal::memory_test

@@ -12,7 +12,7 @@
 #include "sim/signal/random_purposes.h"
 #include "validation/metrics/random_purposes.h"
 
-namespace beamgyro::random_purposes_test {
+namespace beamgyro::internal::random_purposes_test {
 namespace {
 
 TEST(RandomPurposes, AreAllDifferentAndWhatTheyWere) {
@@ -48,4 +48,4 @@ TEST(RandomPurposes, AreAllDifferentAndWhatTheyWere) {
 }
 
 }  // namespace
-}  // namespace beamgyro::random_purposes_test
+}  // namespace beamgyro::internal::random_purposes_test

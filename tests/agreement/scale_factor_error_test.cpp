@@ -10,7 +10,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro::scale_factor_error_test {
+namespace beamgyro::internal::scale_factor_error_test {
 namespace {
 
 constexpr double kError = 0.04;
@@ -66,4 +66,4 @@ TEST_P(ScaleFactorError, TrimsHoldWhateverItIs) {
 }
 
 }  // namespace
-}  // namespace beamgyro::scale_factor_error_test
+}  // namespace beamgyro::internal::scale_factor_error_test

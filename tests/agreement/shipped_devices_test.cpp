@@ -14,7 +14,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro::shipped_devices_test {
+namespace beamgyro::internal::shipped_devices_test {
 namespace {
 
 Device shipped(const std::string& name) {
@@ -135,4 +135,4 @@ TEST(ShippedDevices, RebalancePaysWithThePatchThatPushesBack) {
 }
 
 }  // namespace
-}  // namespace beamgyro::shipped_devices_test
+}  // namespace beamgyro::internal::shipped_devices_test

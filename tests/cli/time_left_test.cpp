@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace beamgyro::time_left_test {
+namespace beamgyro::internal::time_left_test {
 namespace {
 
 TEST(TimeLeft, IsUnknownBeforeTheWorkAdvances) {
@@ -51,4 +51,4 @@ TEST(TimeLeft, IsShownAsAClock) {
 }
 
 }  // namespace
-}  // namespace beamgyro::time_left_test
+}  // namespace beamgyro::internal::time_left_test

@@ -5,7 +5,7 @@
 #include <complex>
 #include <numbers>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kOmega = 2.0 * std::numbers::pi * 9156.0;  // [rad/s]
@@ -50,4 +50,4 @@ ScaledRows curve_rows(const Eigen::ArrayXd& temperature, double noise,
   return rows;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "compensation/network/network_training.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A made-up bias [deg/s] of the temperature [degC] with two relaxations on top
 /// of a parabola: 3.9 deg/s p-p over -40 ... 50 degC, 4 extrema, a feature
@@ -24,4 +24,4 @@ ScaledRows curve_rows(const Eigen::ArrayXd& temperature, double noise,
 
 constexpr double kCurveUnit = 2.0;  // [deg/s] per unit of curve_rows().target
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

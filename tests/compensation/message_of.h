@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Text of the std::invalid_argument that `call` throws; "no error" when it
 /// does not throw.
@@ -18,4 +18,4 @@ std::string message_of(const Call& call) {
   return "no error";
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

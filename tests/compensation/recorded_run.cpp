@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 Recording RecordedRun::recording() const {
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -39,4 +39,4 @@ SignalOfTime rate_table(double full_scale, int rates, double hold) {
   };
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

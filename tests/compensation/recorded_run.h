@@ -5,7 +5,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 using SignalOfTime = std::function<double(double)>;
 
@@ -27,4 +27,4 @@ struct RecordedRun {
 /// [s], over and over.
 SignalOfTime rate_table(double full_scale, int rates, double hold);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

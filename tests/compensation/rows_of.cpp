@@ -3,7 +3,7 @@
 
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 TrainingRows rows_of(const std::vector<Leg>& legs,
                      const std::function<double(double, int)>& bias) {
@@ -40,4 +40,4 @@ std::vector<double> white(int count, std::uint32_t run) {
   return values;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

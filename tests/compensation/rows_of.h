@@ -7,7 +7,7 @@
 
 #include "compensation/rows/training_rows.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Temperatures from `from` to `to` [degC] in even steps, of one leg.
 struct Leg {
@@ -23,4 +23,4 @@ TrainingRows rows_of(const std::vector<Leg>& legs,
 /// Normal numbers of mean 0 and deviation 1, the same for the same `run`.
 std::vector<double> white(int count, std::uint32_t run);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

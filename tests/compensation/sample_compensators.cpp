@@ -4,7 +4,7 @@
 #include "compensation/network/random_purposes.h"
 #include "tests/compensation/bias_curve.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 BiasModel baseline() {
@@ -147,4 +147,4 @@ std::vector<NamedCompensator> one_of_each_kind() {
   };
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

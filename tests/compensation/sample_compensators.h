@@ -6,7 +6,7 @@
 
 #include "compensation/compensator/compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Network 3-6-4-1 on temperature, a low-pass and the time since power-on.
 Compensator network_compensator();
@@ -26,4 +26,4 @@ struct NamedCompensator {
 /// table and every input.
 std::vector<NamedCompensator> one_of_each_kind();
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "config/config_node.h"
 #include "tests/config/rejection.h"
 
-namespace beamgyro::document_test {
+namespace beamgyro::internal::document_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -115,4 +115,4 @@ TEST(Document, ArraysOfTablesAreReadAndCheckedOneByOne) {
 }
 
 }  // namespace
-}  // namespace beamgyro::document_test
+}  // namespace beamgyro::internal::document_test

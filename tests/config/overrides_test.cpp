@@ -7,7 +7,7 @@
 #include "config/document.h"
 #include "tests/config/rejection.h"
 
-namespace beamgyro::overrides_test {
+namespace beamgyro::internal::overrides_test {
 namespace {
 
 constexpr const char* kScenario =
@@ -212,4 +212,4 @@ TEST(Overrides, AnAddedValueIsBlamedAtItsPlace) {
 }
 
 }  // namespace
-}  // namespace beamgyro::overrides_test
+}  // namespace beamgyro::internal::overrides_test

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The message with which `work` rejects its input.
 template <class Work>
@@ -20,4 +20,4 @@ std::string rejection(const Work& work) {
   return {};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

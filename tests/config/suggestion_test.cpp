@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace beamgyro::suggestion_test {
+namespace beamgyro::internal::suggestion_test {
 namespace {
 
 const std::vector<std::string> kKeys = {"length_m", "side_m", "loss_factor",
@@ -49,4 +49,4 @@ TEST(Suggestion, TakesTheFirstOfEquallyNearCandidates) {
 }
 
 }  // namespace
-}  // namespace beamgyro::suggestion_test
+}  // namespace beamgyro::internal::suggestion_test

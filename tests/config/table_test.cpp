@@ -9,7 +9,7 @@
 #include "config/document.h"
 #include "tests/config/rejection.h"
 
-namespace beamgyro::table_test {
+namespace beamgyro::internal::table_test {
 namespace {
 
 constexpr const char* kDevice = R"(name = "unit 7"
@@ -215,4 +215,4 @@ TEST(Numbers, NanAndInfinityAreRejectedWhereverTheyStand) {
 }
 
 }  // namespace
-}  // namespace beamgyro::table_test
+}  // namespace beamgyro::internal::table_test

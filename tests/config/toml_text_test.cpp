@@ -6,7 +6,7 @@
 #include "config/overrides.h"
 #include "tests/config/rejection.h"
 
-namespace beamgyro::toml_text_test {
+namespace beamgyro::internal::toml_text_test {
 namespace {
 
 std::string rejection_of(const std::string& text) {
@@ -138,4 +138,4 @@ TEST(TomlText, LongAndStrangeValuesAreShownOnOneLine) {
 }
 
 }  // namespace
-}  // namespace beamgyro::toml_text_test
+}  // namespace beamgyro::internal::toml_text_test

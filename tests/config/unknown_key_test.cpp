@@ -4,7 +4,7 @@
 #include "config/document.h"
 #include "tests/config/rejection.h"
 
-namespace beamgyro::unknown_key_test {
+namespace beamgyro::internal::unknown_key_test {
 namespace {
 
 /// Reads what a small device file may hold.
@@ -91,4 +91,4 @@ TEST(UnknownKey, AWrongTypeCountsAsRead) {
 }
 
 }  // namespace
-}  // namespace beamgyro::unknown_key_test
+}  // namespace beamgyro::internal::unknown_key_test

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The message of the `Error` that `work` throws.
 template <class Error = std::invalid_argument, class Work>
@@ -20,4 +20,4 @@ std::string rejection(const Work& work) {
   return {};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

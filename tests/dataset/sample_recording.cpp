@@ -3,7 +3,7 @@
 
 #include <limits>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 struct Variable {
@@ -73,4 +73,4 @@ Recording sample_recording(std::size_t samples) {
   return recording;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

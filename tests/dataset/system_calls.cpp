@@ -12,7 +12,7 @@
 #include <mutex>
 #include <optional>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 struct Watch {
@@ -65,7 +65,7 @@ std::vector<std::string> SystemCalls::made() const {
   return watch->made;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal
 
 // In place of those of the C library.
 extern "C" {
@@ -75,7 +75,8 @@ int open(const char* path, int flags, ...) {
   va_start(arguments, flags);
   const int mode = va_arg(arguments, int);  // nonsense without O_CREAT
   va_end(arguments);
-  return beamgyro::passed_on("open", SYS_openat, AT_FDCWD, path, flags, mode);
+  return beamgyro::internal::passed_on("open", SYS_openat, AT_FDCWD, path,
+                                       flags, mode);
 }
 
 int openat(int directory, const char* path, int flags, ...) {
@@ -83,22 +84,26 @@ int openat(int directory, const char* path, int flags, ...) {
   va_start(arguments, flags);
   const int mode = va_arg(arguments, int);
   va_end(arguments);
-  return beamgyro::passed_on("openat", SYS_openat, directory, path, flags,
-                             mode);
+  return beamgyro::internal::passed_on("openat", SYS_openat, directory, path,
+                                       flags, mode);
 }
 
-int close(int file) { return beamgyro::passed_on("close", SYS_close, file); }
+int close(int file) {
+  return beamgyro::internal::passed_on("close", SYS_close, file);
+}
 
-int fsync(int file) { return beamgyro::passed_on("fsync", SYS_fsync, file); }
+int fsync(int file) {
+  return beamgyro::internal::passed_on("fsync", SYS_fsync, file);
+}
 
 int flock(int file, int operation) {
-  return beamgyro::passed_on("flock", SYS_flock, file, operation);
+  return beamgyro::internal::passed_on("flock", SYS_flock, file, operation);
 }
 
 int renameat(int from, const char* old_name, int to,
              const char* new_name) noexcept {
-  return beamgyro::passed_on("renameat", SYS_renameat, from, old_name, to,
-                             new_name);
+  return beamgyro::internal::passed_on("renameat", SYS_renameat, from, old_name,
+                                       to, new_name);
 }
 
 }  // extern "C"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Calls of the system by this test program, which pass through here. While one
 /// of these lives they are counted, and may be told to fail.
@@ -22,4 +22,4 @@ class SystemCalls {
   std::vector<std::string> made() const;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

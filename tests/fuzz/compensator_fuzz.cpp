@@ -10,7 +10,7 @@
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace beamgyro;
+  using namespace beamgyro::internal;
   static const Recording recording = sample_recording(20);
   accept_or_reject([&] {
     const Compensator compensator =

@@ -5,7 +5,7 @@
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace beamgyro;
+  using namespace beamgyro::internal;
   accept_or_reject([&] {
     const ConfigDocument document =
         ConfigDocument::parse(text_of(data, size), "fuzz.toml");

@@ -10,7 +10,7 @@
 
 #include "dataset/files/open_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -64,4 +64,4 @@ fs::path scratch_file(std::string_view name, std::string_view bytes) {
   return path;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 std::string_view text_of(const std::uint8_t* data, std::size_t size);
 
@@ -35,7 +35,7 @@ void accept_or_reject(Read&& read) {
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal
 
 /// One target; libFuzzer and the replay of the corpus call it. libFuzzer asks
 /// for the name.

@@ -5,7 +5,7 @@
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace beamgyro;
+  using namespace beamgyro::internal;
   const auto [map, log] = split(text_of(data, size));
   accept_or_reject([&, map = map, log = log] {
     const ImportedLog imported =

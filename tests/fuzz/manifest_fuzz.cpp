@@ -18,10 +18,10 @@ std::string with_checksums(std::string_view lines) {
     std::string line(lines.substr(0, end));
     lines.remove_prefix(end == std::string_view::npos ? lines.size() : end + 1);
     if (line == "end")
-      line = "{\"sha256_before\":\"" + beamgyro::sha256(text) + "\"}";
+      line = "{\"sha256_before\":\"" + beamgyro::internal::sha256(text) + "\"}";
     if (line.ends_with('}')) {
       line.pop_back();
-      line += ",\"check\":\"" + beamgyro::sha256(line).substr(0, 16) + "\"}";
+      line += ",\"check\":\"" + beamgyro::internal::sha256(line).substr(0, 16) + "\"}";
     }
     text += line + '\n';
   }
@@ -31,7 +31,7 @@ std::string with_checksums(std::string_view lines) {
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace beamgyro;
+  using namespace beamgyro::internal;
   const std::filesystem::path set = scratch_folder() / "set";
   std::filesystem::create_directory(set);
   scratch_file("set/manifest.jsonl", with_checksums(text_of(data, size)));

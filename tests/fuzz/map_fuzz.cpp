@@ -4,7 +4,7 @@
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace beamgyro;
+  using namespace beamgyro::internal;
   for (const char* axis : {"", "x", "z"}) {
     accept_or_reject([&] {
       static_cast<void>(read_log_map(

@@ -4,7 +4,7 @@
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace beamgyro;
+  using namespace beamgyro::internal;
   accept_or_reject([&] {
     static_cast<void>(read_model(ConfigDocument::parse(
         text_of(data, size), (scratch_folder() / "fuzz.toml").string())));

@@ -6,7 +6,7 @@
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace beamgyro;
+  using namespace beamgyro::internal;
   const std::string_view text = text_of(data, size);
   accept_or_reject([&] { static_cast<void>(parse_csv(text, "fuzz.csv")); });
   const std::filesystem::path file = scratch_file("fuzz.csv", text);

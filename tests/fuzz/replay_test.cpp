@@ -24,7 +24,7 @@ int fuzz_shard(const std::uint8_t* data, std::size_t size);
 int fuzz_toml(const std::uint8_t* data, std::size_t size);
 }
 
-namespace beamgyro::replay_test {
+namespace beamgyro::internal::replay_test {
 namespace {
 
 struct Target {
@@ -64,4 +64,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& target) { return target.param.name; });
 
 }  // namespace
-}  // namespace beamgyro::replay_test
+}  // namespace beamgyro::internal::replay_test

@@ -4,7 +4,7 @@
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace beamgyro;
+  using namespace beamgyro::internal;
   const std::filesystem::path file =
       scratch_file("shard.h5", text_of(data, size));
   accept_or_reject([&] {

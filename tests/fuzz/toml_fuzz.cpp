@@ -9,7 +9,7 @@
 
 namespace {
 
-using namespace beamgyro;
+using namespace beamgyro::internal;
 
 std::vector<std::string> lines_of(std::string_view text) {
   std::vector<std::string> lines;

@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-namespace beamgyro::work_queue_test {
+namespace beamgyro::internal::work_queue_test {
 namespace {
 
 class WorkQueue : public testing::TestWithParam<std::size_t> {};
@@ -107,4 +107,4 @@ TEST(WorkQueueThreads, ThatTheSystemDoesNotGrantAreFewerThreads) {
 }
 
 }  // namespace
-}  // namespace beamgyro::work_queue_test
+}  // namespace beamgyro::internal::work_queue_test

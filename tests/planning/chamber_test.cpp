@@ -13,7 +13,7 @@
 #include "planning/soak_length.h"
 #include "sim/thermal/thermal_parameters.h"
 
-namespace beamgyro::chamber_test {
+namespace beamgyro::internal::chamber_test {
 namespace {
 
 TEST(ChamberTime, WayStartsAtTheNearerEnd) {
@@ -96,4 +96,4 @@ TEST(ScheduleText, NamesTheDeviceInTomlAndEndsWithTheLastSoak) {
 }
 
 }  // namespace
-}  // namespace beamgyro::chamber_test
+}  // namespace beamgyro::internal::chamber_test

@@ -14,7 +14,7 @@
 #include "planning/training_noise.h"
 #include "tests/planning/small_population.h"
 
-namespace beamgyro::residual_forecast_test {
+namespace beamgyro::internal::residual_forecast_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -161,4 +161,4 @@ TEST(ResidualForecast, IsTheSameEveryTime) {
 }
 
 }  // namespace
-}  // namespace beamgyro::residual_forecast_test
+}  // namespace beamgyro::internal::residual_forecast_test

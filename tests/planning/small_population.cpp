@@ -9,7 +9,7 @@
 #include "compensation/rows/training_rows.h"
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr int kKelvins = 41, kShapes = 4;
@@ -63,4 +63,4 @@ SoakModel model_of(const Population& population, bool bias_only) {
           {.range = population.range(), .noise = {}, .bias_only = bias_only}};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

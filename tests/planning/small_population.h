@@ -4,7 +4,7 @@
 #include "compensation/methods/population.h"
 #include "planning/soak_model.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A population on every kelvin from 0 to 40 degC with one channel: four smooth
 /// modes that are steep in the cold, and coefficients of `devices` devices,
@@ -18,4 +18,4 @@ Eigen::ArrayXd same_temperature(const Eigen::ArrayXd& chamber);
 /// The model of a population in such a chamber, over all of its range.
 SoakModel model_of(const Population& population, bool bias_only = false);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -14,7 +14,7 @@
 #include "planning/soak_length.h"
 #include "tests/planning/small_population.h"
 
-namespace beamgyro::soak_design_test {
+namespace beamgyro::internal::soak_design_test {
 namespace {
 
 const Population& population() {
@@ -154,4 +154,4 @@ TEST(SoakModel, RefusesARangeThatThePopulationDoesNotKnow) {
 }
 
 }  // namespace
-}  // namespace beamgyro::soak_design_test
+}  // namespace beamgyro::internal::soak_design_test

@@ -17,8 +17,8 @@ USER = """\
 #include "sim/scenario/simulation_input.h"
 
 int main(int, char** argv) {
-  const auto input = beamgyro::load_scenario(argv[1], {});
-  const auto run = beamgyro::simulated(input.scenario, input.device);
+  const auto input = beamgyro::internal::load_scenario(argv[1], {});
+  const auto run = beamgyro::internal::simulated(input.scenario, input.device);
   std::printf("%zu samples\\n", run.time.size());
 }
 """

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace beamgyro::random_stream_test {
+namespace beamgyro::internal::random_stream_test {
 namespace {
 
 constexpr auto kPurpose = RandomPurpose{3};
@@ -140,4 +140,4 @@ TEST(RandomStream, EveryWordOfItsNameGivesAnIndependentStream) {
 }
 
 }  // namespace
-}  // namespace beamgyro::random_stream_test
+}  // namespace beamgyro::internal::random_stream_test

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace beamgyro::sensitivity_report_test {
+namespace beamgyro::internal::sensitivity_report_test {
 namespace {
 
 FactorResult factor(const std::string& key, double first, double total) {
@@ -64,4 +64,4 @@ TEST(SensitivityReport, AYieldOfAChoiceHasNoHalf) {
 }
 
 }  // namespace
-}  // namespace beamgyro::sensitivity_report_test
+}  // namespace beamgyro::internal::sensitivity_report_test

@@ -10,7 +10,7 @@
 
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::validation_report_test {
+namespace beamgyro::internal::validation_report_test {
 namespace {
 
 const Recording& table_run() {
@@ -112,4 +112,4 @@ TEST(ValidationReport, RefusesToCompareScoresOfDifferentRuns) {
 }
 
 }  // namespace
-}  // namespace beamgyro::validation_report_test
+}  // namespace beamgyro::internal::validation_report_test

@@ -22,7 +22,7 @@
 #include "dataset/files/text_file.h"
 #include "dataset/set/source_copies.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -288,4 +288,4 @@ std::vector<BundleDifference> different_outputs(
   return different;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

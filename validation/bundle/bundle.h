@@ -7,7 +7,7 @@
 
 #include "validation/result/validator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 inline constexpr const char* kBundleFile = "bundle.json";
 inline constexpr const char* kBundleFiletype = "beamgyro-bundle";
@@ -77,4 +77,4 @@ std::vector<BundleDifference> different_outputs(
     const Bundle& bundle, const Validator& validator,
     const std::vector<BundleOutput>& outputs);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

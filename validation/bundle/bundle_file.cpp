@@ -12,7 +12,7 @@
 #include "dataset/files/text_file.h"
 #include "validation/bundle/bundle.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -155,4 +155,4 @@ Bundle read_bundle(const fs::path& directory) {
   return bundle;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "compensation/scoring/scale_factor.h"
 #include "parallel/work_queue.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kMostMissing = 0.01;  // [-], of the powered samples
@@ -135,4 +135,4 @@ CheckResult not_tested(std::string why) {
   return {.outcome = CheckOutcome::kNotTested, .words = std::move(why)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

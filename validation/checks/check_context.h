@@ -11,7 +11,7 @@
 
 #include "validation/checks/checks.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the answers with those that are missing at powered samples replaced
 /// by the recorded rate less the last correction, so that one missing answer
@@ -118,4 +118,4 @@ CheckResult check_real_time(const CheckContext& context);
 /// Returns a result without a figure; `why` is a sentence.
 CheckResult not_tested(std::string why);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

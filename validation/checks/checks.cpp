@@ -9,7 +9,7 @@
 #include "validation/checks/check_context.h"
 #include "validation/checks/random_response.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 namespace {
 
@@ -131,4 +131,4 @@ CheckOutcome outcome_of(const std::vector<CheckResult>& results) {
   return tested ? CheckOutcome::kPassed : CheckOutcome::kNotTested;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

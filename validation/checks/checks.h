@@ -14,7 +14,7 @@
 #include "validation/evidence/evidence.h"
 #include "validation/external/tested_compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A run as the compensator answered it.
 struct CheckedRun {
@@ -80,4 +80,4 @@ bool may_be_untested(const CheckResult& result);
 /// tested was not, else kPassed.
 CheckOutcome outcome_of(const std::vector<CheckResult>& results);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -15,7 +15,7 @@
 #include "validation/checks/white_number.h"
 #include "validation/external/answer_checks.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 CheckResult count_result(std::size_t count, const std::string& passed,
@@ -247,4 +247,4 @@ CheckResult check_real_time(const CheckContext& context) {
   return result;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -14,7 +14,7 @@
 #include "validation/checks/gain_judge.h"
 #include "validation/checks/white_number.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kLeastTemperatures = 5;
@@ -395,4 +395,4 @@ CheckResult check_rate_correlation(const CheckContext& context) {
   return *worst;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 /// Departures of less than the resolution count as none.
@@ -77,4 +77,4 @@ double GainJudge::limit() const {
 
 const AddedRate& GainJudge::worst() const { return *judged().where; }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

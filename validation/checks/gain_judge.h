@@ -7,7 +7,7 @@
 
 #include "validation/checks/check_context.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 constexpr double kGainTolerance = 1e-3;       // [-]
 constexpr double kCorrectedTolerance = 5e-3;  // [-], of a corrected one
@@ -61,4 +61,4 @@ class GainJudge {
   std::size_t count_ = 0;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

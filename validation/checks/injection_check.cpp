@@ -13,7 +13,7 @@
 #include "validation/checks/gain_judge.h"
 #include "validation/checks/random_response.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kLowestSine = 0.01;   // [Hz]
@@ -162,4 +162,4 @@ CheckResult check_injection(const CheckContext& context) {
   return result;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

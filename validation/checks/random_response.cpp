@@ -9,7 +9,7 @@
 #include "validation/checks/gain_judge.h"
 #include "validation/checks/white_number.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kLongestRandom = 20000;  // samples
@@ -108,4 +108,4 @@ std::optional<RandomResponse> random_response(const CheckContext& context) {
   return response;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

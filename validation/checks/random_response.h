@@ -7,7 +7,7 @@
 
 #include "validation/checks/check_context.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 constexpr double kAddedShare = 0.1;  // [-], of full scale: sines, random rates
 
@@ -32,4 +32,4 @@ std::size_t fastest_run(const CheckContext& context);
 /// for a run of one sample, and for one that no rate can be added to.
 std::optional<RandomResponse> random_response(const CheckContext& context);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

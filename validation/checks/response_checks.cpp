@@ -12,7 +12,7 @@
 #include "validation/checks/gain_judge.h"
 #include "validation/checks/random_response.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kJacobianHold = 4.0;    // [s]
@@ -190,4 +190,4 @@ CheckResult check_shuffled_output(const CheckContext& context) {
   return result;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Number k of a sequence in [-1, 1) without correlation between its members:
 /// k^2 times the golden section, modulo 1 (Weyl, Mathematische Annalen 77
@@ -16,4 +16,4 @@ inline double white_number(std::size_t k) {
   return 2.0 * turns - 1.0;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

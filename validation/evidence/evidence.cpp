@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::array<std::pair<RunPurpose, std::string_view>, 12> kPurposes = {{
@@ -47,4 +47,4 @@ std::vector<const EvidenceRun*> runs_for(
   return found;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

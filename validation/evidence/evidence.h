@@ -9,7 +9,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What a run of a qualification shows.
 enum class RunPurpose {
@@ -56,4 +56,4 @@ struct Evidence {
 std::vector<const EvidenceRun*> runs_for(
     const Evidence& evidence, const std::vector<RunPurpose>& purposes);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

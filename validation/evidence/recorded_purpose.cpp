@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kLongHold = 300.0;  // [s]
@@ -138,4 +138,4 @@ RunPurpose recorded_purpose(const Recording& recording) {
   return purpose_at_rest(recording);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include "dataset/recording/recording.h"
 #include "validation/evidence/evidence.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns what a recording shows, told from its columns:
 /// - a rate that is held at seven values or more, or at five for less than five
@@ -24,4 +24,4 @@ RunPurpose recorded_purpose(const Recording& recording);
 /// A recording at rest shows noise and not warm-up from here on [s].
 constexpr double kRestBegins = 7200.0;
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

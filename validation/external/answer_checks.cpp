@@ -12,7 +12,7 @@
 
 #include "validation/external/answering.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 bool is_powered(const Recording& run, std::size_t k) {
@@ -153,4 +153,4 @@ AnswerDifference difference_of(const Answer& one, const Answer& other) {
   return found;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "validation/external/tested_compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Answers the run twice in one process with a reset between. Returns a fault
 /// kKeepsState when a bit of an answer differs; nothing when all are the same,
@@ -37,4 +37,4 @@ struct AnswerDifference {
 /// those of the compensator file that it was exported from.
 AnswerDifference difference_of(const Answer& one, const Answer& other);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

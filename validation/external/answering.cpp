@@ -8,7 +8,7 @@
 
 #include "compensation/inputs/sample_ranges.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 std::string sample_words(const Recording& run, std::size_t sample) {
   return fmt::format("sample {} ({:.6g} s)", sample, run.time[sample]);
@@ -54,4 +54,4 @@ void add_fault_of_speed(const Recording& run, Answer& answer) {
                    duration / static_cast<double>(run.time.size()))});
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "validation/external/tested_compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Measures wall clock.
 class Stopwatch {
@@ -35,4 +35,4 @@ void add_fault_of_speed(const Recording& run, Answer& answer);
 /// Returns the time from the first to the last sample, with the usual step [s].
 double duration_with_last_sample(const Recording& run);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

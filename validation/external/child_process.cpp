@@ -22,7 +22,7 @@
 
 extern char** environ;
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using std::chrono::milliseconds;
@@ -222,4 +222,4 @@ NoBrokenPipeSignal::~NoBrokenPipeSignal() {
   pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 
 #include "dataset/files/open_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// How a process ended.
 struct ProcessEnd {
@@ -83,4 +83,4 @@ class NoBrokenPipeSignal {
   sigset_t before_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -15,7 +15,7 @@
 #include "validation/external/conversation.h"
 #include "validation/external/measured_signals.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::string_view trimmed(std::string_view text) {
@@ -139,4 +139,4 @@ std::unique_ptr<TestedCompensator> open_command(const std::string& argument,
       command_process(argument, limits).words, limits);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

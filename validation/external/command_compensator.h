@@ -7,7 +7,7 @@
 #include "validation/external/process_stream.h"
 #include "validation/external/tested_compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns how the command of an argument "cmd:PROGRAM ARGS" is run. Throws
 /// std::invalid_argument for an empty command.
@@ -21,4 +21,4 @@ AnsweringProcess command_process(const std::string& argument,
 std::unique_ptr<TestedCompensator> open_command(const std::string& argument,
                                                 const ProcessLimits& limits);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

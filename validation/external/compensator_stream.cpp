@@ -10,7 +10,7 @@
 #include "validation/external/library_compensator.h"
 #include "validation/external/process_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::vector<Input> with_temperature(std::vector<Input> inputs) {
@@ -78,4 +78,4 @@ std::unique_ptr<CompensatorStream> open_compensator_stream(
   return std::make_unique<FileStream>(read_compensator(argument));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

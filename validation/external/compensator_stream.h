@@ -11,7 +11,7 @@
 #include "dataset/recording/recording.h"
 #include "validation/external/tested_compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The answer to a sample.
 struct StreamAnswer {
@@ -61,4 +61,4 @@ std::unique_ptr<CompensatorStream> open_compensator_stream(
     const std::string& argument, const ProcessLimits& limits,
     std::optional<double> period);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -14,7 +14,7 @@
 #include "validation/external/answering.h"
 #include "validation/external/error_text.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kSentBytes = 1 << 16;      // made ready at a time
@@ -268,4 +268,4 @@ bool converse(ChildProcess& process, AnswerLanguage& language,
   return Conversation(process, language, stretches, limits).run();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 #include "validation/external/child_process.h"
 #include "validation/external/tested_compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Powered samples of a run from a power-on to the next loss of power, and
 /// where the answers to them go.
@@ -52,4 +52,4 @@ bool converse(ChildProcess& process, AnswerLanguage& language,
               const std::vector<AskedStretch>& stretches,
               const ProcessLimits& limits);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kTail = 4096;        // bytes
@@ -46,4 +46,4 @@ std::optional<EndFault> fault_of_end(const ProcessEnd& end,
   return EndFault{AnswerFault::kCrashed, end_words(end)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include "validation/external/child_process.h"
 #include "validation/external/tested_compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Keeps the end of what a process wrote on standard error.
 void keep_tail(std::string& text);
@@ -28,4 +28,4 @@ struct EndFault {
 std::optional<EndFault> fault_of_end(const ProcessEnd& end,
                                      const std::string& error);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

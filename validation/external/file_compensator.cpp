@@ -6,7 +6,7 @@
 
 #include "validation/external/answering.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 class FileCompensator : public TestedCompensator {
@@ -47,4 +47,4 @@ std::unique_ptr<TestedCompensator> tested(Compensator compensator) {
   return std::make_unique<FileCompensator>(std::move(compensator));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

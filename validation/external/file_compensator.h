@@ -6,10 +6,10 @@
 #include "compensation/compensator/compensator.h"
 #include "validation/external/tested_compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns a trained compensator as one to be validated. It is evaluated in
 /// this process.
 std::unique_ptr<TestedCompensator> tested(Compensator compensator);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -17,7 +17,7 @@
 #include "validation/external/measured_signals.h"
 #include "validation/external/plugin_host.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 class HostLanguage : public AnswerLanguage {
@@ -203,4 +203,4 @@ AnsweringProcess library_process(const std::filesystem::path& library,
           true};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include "validation/external/process_stream.h"
 #include "validation/external/tested_compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Opens a shared library with the interface of beamgyro/plugin.h. It is loaded
 /// by processes of limits.program only. Throws std::invalid_argument with its
@@ -19,4 +19,4 @@ std::unique_ptr<TestedCompensator> open_library(
 AnsweringProcess library_process(const std::filesystem::path& library,
                                  const ProcessLimits& limits);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 
 #include "dataset/recording/signals.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::string_view kStatus = "status";
@@ -54,4 +54,4 @@ MeasuredSignals::MeasuredSignals(const Recording& run,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Throws std::invalid_argument for a name that is known not to be measured,
 /// such as that of a truth.
@@ -38,4 +38,4 @@ class MeasuredSignals {
   const std::uint8_t* status_ = nullptr;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

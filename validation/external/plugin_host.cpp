@@ -23,7 +23,7 @@
 #include "dataset/files/open_file.h"
 #include "include/beamgyro/plugin.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kBatchBytes = 1 << 16;
@@ -247,4 +247,4 @@ int host_plugin(const std::vector<std::string>& words) try {
   return 1;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

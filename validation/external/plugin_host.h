@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// First word of the command line of a program that is to call host_plugin()
 /// with the rest.
@@ -34,4 +34,4 @@ enum class HostRecord { kStep = 0, kReset = 1 };
 /// 2 when it is no library of this kind.
 int host_plugin(const std::vector<std::string>& words);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -12,7 +12,7 @@
 #include "validation/external/answering.h"
 #include "validation/external/error_text.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 class ProcessStream : public CompensatorStream {
@@ -201,4 +201,4 @@ std::unique_ptr<CompensatorStream> process_stream(
   return std::make_unique<ProcessStream>(std::move(answering), limits, period);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

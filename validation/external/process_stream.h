@@ -9,7 +9,7 @@
 #include "validation/external/compensator_stream.h"
 #include "validation/external/conversation.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// How a process is started and spoken to that answers samples.
 struct AnsweringProcess {
@@ -24,4 +24,4 @@ std::unique_ptr<CompensatorStream> process_stream(AnsweringProcess answering,
                                                   const ProcessLimits& limits,
                                                   std::optional<double> period);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 #include "validation/external/file_compensator.h"
 #include "validation/external/library_compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::string_view kCommandPrefix = "cmd:";
@@ -42,4 +42,4 @@ std::string tested_name(const std::string& argument) {
   return std::filesystem::path(argument).filename().string();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

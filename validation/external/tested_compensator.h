@@ -10,7 +10,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What can be wrong with the way a compensator answers.
 enum class AnswerFault {
@@ -92,4 +92,4 @@ bool is_library(std::string_view argument);
 /// for a file, whole for a command.
 std::string tested_name(const std::string& argument);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 #include "validation/metrics/rate_noise_model.h"
 #include "validation/metrics/segments.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // What the filter reads of a run.
@@ -108,4 +108,4 @@ std::vector<Innovation> filter_innovations(const EvidenceRun& run) {
   return innovations;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include "compensation/uncertainty/bias_process.h"
 #include "validation/evidence/evidence.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 constexpr double kFilterAverage = 1.0;  // [s], of a measurement
 // [K], between measurements: so long that the correlation that is assumed
@@ -57,4 +57,4 @@ class BiasFilter {
 /// are waited for.
 std::vector<Innovation> filter_innovations(const EvidenceRun& run);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include "validation/metrics/evaluations.h"
 #include "validation/metrics/noisy_means.h"
 
-namespace beamgyro::evaluation {
+namespace beamgyro::internal::evaluation {
 namespace {
 
 // Runs without a rate, or with one that is held for minutes.
@@ -129,4 +129,4 @@ std::optional<Estimate> in_run_stability(const Evidence& evidence) {
   });
 }
 
-}  // namespace beamgyro::evaluation
+}  // namespace beamgyro::internal::evaluation

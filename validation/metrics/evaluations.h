@@ -6,7 +6,7 @@
 #include "validation/metrics/metric.h"
 
 /// How each metric of the table is evaluated; metric_table.cpp says what it is.
-namespace beamgyro::evaluation {
+namespace beamgyro::internal::evaluation {
 
 std::optional<Estimate> bias(const Evidence& evidence);
 std::optional<Estimate> bias_pp(const Evidence& evidence);
@@ -63,4 +63,4 @@ std::optional<Estimate> soak_pit_distance(const Evidence& evidence);
 std::optional<Estimate> ramp_pit_distance(const Evidence& evidence);
 std::optional<Estimate> bias_filter_nis(const Evidence& evidence);
 
-}  // namespace beamgyro::evaluation
+}  // namespace beamgyro::internal::evaluation

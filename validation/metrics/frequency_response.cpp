@@ -9,7 +9,7 @@
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/scale_factor.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr int kFirstNeighbour = 2, kLastNeighbour = 6;
@@ -263,4 +263,4 @@ std::optional<Crossing> first_crossing(std::span<const ResponsePoint> points,
   return std::nullopt;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

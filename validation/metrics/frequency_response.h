@@ -8,7 +8,7 @@
 
 #include "validation/evidence/evidence.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Response at one frequency.
 struct ResponsePoint {
@@ -59,4 +59,4 @@ std::optional<Crossing> first_crossing(std::span<const ResponsePoint> points,
                                        std::span<const double> sigmas,
                                        double common_sigma);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

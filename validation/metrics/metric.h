@@ -9,7 +9,7 @@
 
 #include "validation/evidence/evidence.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The 95 % interval of a value.
 struct Interval {
@@ -46,4 +46,4 @@ const Metric* find_metric(std::string_view name);
 /// definition, with tabs between.
 std::string metric_list();
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include "validation/metrics/evaluations.h"
 #include "validation/metrics/metric.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::vector<Metric> made_table() {
@@ -369,4 +369,4 @@ std::string metric_list() {
   return lines;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include "validation/metrics/evaluations.h"
 #include "validation/metrics/noisy_means.h"
 
-namespace beamgyro::evaluation {
+namespace beamgyro::internal::evaluation {
 namespace {
 
 constexpr double kGravity = 9.80665;      // [m/s2] in a g
@@ -262,4 +262,4 @@ std::optional<Estimate> extrapolated_share(const Evidence& evidence) {
   return Estimate{share, Interval{share, share}};
 }
 
-}  // namespace beamgyro::evaluation
+}  // namespace beamgyro::internal::evaluation

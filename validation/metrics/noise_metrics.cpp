@@ -10,7 +10,7 @@
 #include "validation/metrics/evaluations.h"
 #include "validation/metrics/segments.h"
 
-namespace beamgyro::evaluation {
+namespace beamgyro::internal::evaluation {
 namespace {
 
 constexpr double kHour = 3600.0;  // [s]
@@ -158,7 +158,7 @@ std::optional<Estimate> white_noise_ratio(const Evidence& evidence) {
   std::optional<Estimate> farthest;
   for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kRest})) {
     const AnsweredRun answered{run->name, run->recording, run->rate, {}, {}};
-    const std::optional<double> ratio = beamgyro::white_noise_ratio(answered);
+    const std::optional<double> ratio = internal::white_noise_ratio(answered);
     if (!ratio) continue;
     const bool farther = !farthest || std::abs(std::log(*ratio)) >
                                           std::abs(std::log(farthest->value));
@@ -171,4 +171,4 @@ std::optional<Estimate> white_noise_ratio(const Evidence& evidence) {
   return farthest;
 }
 
-}  // namespace beamgyro::evaluation
+}  // namespace beamgyro::internal::evaluation

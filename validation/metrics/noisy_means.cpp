@@ -7,7 +7,7 @@
 
 #include "validation/metrics/random_purposes.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kManySegments = 500;
@@ -233,4 +233,4 @@ Estimate estimate_of_noise(const NoisyMeans& means,
                           std::max(value, value * std::exp(-shift + half))}};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

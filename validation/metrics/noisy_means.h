@@ -9,7 +9,7 @@
 #include "validation/metrics/metric.h"
 #include "validation/metrics/rate_noise_model.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 constexpr double kNormal975 = 1.959963984540054;  // [-], normal quantile
 
@@ -71,4 +71,4 @@ Estimate estimate_beneath_noise(const NoisyMeans& means,
 /// the root of the mean square over many draws; e are logarithms of ratios.
 Estimate estimate_of_noise(const NoisyMeans& means, const Statistic& statistic);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "compensation/scoring/stated_values.h"
 #include "sim/signal/flicker.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kThirdDifferences = 20.0;  // [-], variance, of white noise
@@ -232,4 +232,4 @@ void SegmentNoise::draw(RandomStream& random, std::span<double> means) const {
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

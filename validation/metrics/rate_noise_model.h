@@ -8,7 +8,7 @@
 #include "random/random_stream.h"
 #include "validation/metrics/segments.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Noise of a rate, of the same law as that of the simulator: white noise,
 /// flicker, a random walk from time 0 on, an offset at each power-on.
@@ -75,4 +75,4 @@ class SegmentNoise {
   std::vector<double> deviations_;  // [deg/s]
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include "validation/metrics/frequency_response.h"
 #include "validation/metrics/segments.h"
 
-namespace beamgyro::evaluation {
+namespace beamgyro::internal::evaluation {
 namespace {
 
 constexpr double kHalfPower = 20.0 * 0.15051499783199057;  // [dB], 10 log10(2)
@@ -175,4 +175,4 @@ std::optional<Estimate> added_delay(const Evidence& evidence) {
   return std::nullopt;
 }
 
-}  // namespace beamgyro::evaluation
+}  // namespace beamgyro::internal::evaluation

@@ -8,7 +8,7 @@
 #include "validation/metrics/evaluations.h"
 #include "validation/metrics/noisy_means.h"
 
-namespace beamgyro::evaluation {
+namespace beamgyro::internal::evaluation {
 namespace {
 
 constexpr double kPpm = 1e6;
@@ -232,4 +232,4 @@ std::optional<Estimate> scale_factor_retained_small(const Evidence& evidence) {
   return retained(evidence, kSmallRate);
 }
 
-}  // namespace beamgyro::evaluation
+}  // namespace beamgyro::internal::evaluation

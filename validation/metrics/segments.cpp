@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 double mean_over(const SampleRange& range, std::span<const double> values) {
@@ -81,4 +81,4 @@ SampleRange settled(const Recording& recording, SampleRange range,
   return range;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

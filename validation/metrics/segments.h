@@ -8,7 +8,7 @@
 #include "compensation/inputs/sample_ranges.h"
 #include "validation/evidence/evidence.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 constexpr double kNoTolerance = 1e-9;  // of a value that is held
 
@@ -43,4 +43,4 @@ std::vector<SampleRange> held_ranges(
 SampleRange settled(const Recording& recording, SampleRange range,
                     double settling);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

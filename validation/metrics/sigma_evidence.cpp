@@ -9,7 +9,7 @@
 #include "validation/metrics/segments.h"
 #include "validation/metrics/soaks.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kMovingSlope = 0.05;  // [K/min]
@@ -128,4 +128,4 @@ SigmaEvidence sigma_evidence(const Evidence& evidence) {
   return {soak_errors(evidence), ramp_errors(evidence), filter_runs(evidence)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include "validation/evidence/evidence.h"
 #include "validation/metrics/bias_filter.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Mean residuals over the sigma that is stated for them, z. Those of a group
 /// share their cause and count as one.
@@ -53,4 +53,4 @@ std::vector<FilterRun> filter_runs(const Evidence& evidence);
 /// Returns all three.
 SigmaEvidence sigma_evidence(const Evidence& evidence);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

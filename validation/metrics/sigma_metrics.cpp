@@ -5,7 +5,7 @@
 #include "validation/metrics/sigma_evidence.h"
 #include "validation/metrics/sigma_report.h"
 
-namespace beamgyro::evaluation {
+namespace beamgyro::internal::evaluation {
 namespace {
 
 std::optional<Estimate> percent(std::optional<Estimate> share) {
@@ -60,4 +60,4 @@ std::optional<Estimate> bias_filter_nis(const Evidence& evidence) {
   return mean_normalised(filter_runs(evidence));
 }
 
-}  // namespace beamgyro::evaluation
+}  // namespace beamgyro::internal::evaluation

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kIntervalTail = 0.025;  // [-], on each side of an interval
@@ -164,4 +164,4 @@ SigmaReport sigma_report(const SigmaEvidence& evidence) {
   return report;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "validation/metrics/metric.h"
 #include "validation/metrics/sigma_evidence.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Probabilities of the intervals whose coverage is counted.
 inline constexpr std::array<double, 3> kCoverageLevels = {0.5, 0.9, 0.95};
@@ -61,4 +61,4 @@ struct SigmaReport {
 
 SigmaReport sigma_report(const SigmaEvidence& evidence);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "validation/metrics/segments.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kLeastSoak = 600.0;    // [s]
@@ -54,4 +54,4 @@ std::vector<Soak> soaks_of(const Recording& recording) {
   return soaks;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

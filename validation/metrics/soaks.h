@@ -6,7 +6,7 @@
 #include "compensation/inputs/sample_ranges.h"
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Where a soak was reached from: from below, or from above.
 enum class Direction { kNone, kUp, kDown };
@@ -23,4 +23,4 @@ struct Soak {
 /// no longer moves from minute to minute.
 std::vector<Soak> soaks_of(const Recording& recording);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include "validation/metrics/noisy_means.h"
 #include "validation/metrics/random_purposes.h"
 
-namespace beamgyro::evaluation {
+namespace beamgyro::internal::evaluation {
 namespace {
 
 constexpr double kWarmUpBand = 0.05;      // [-], of the whole change
@@ -266,4 +266,4 @@ std::optional<Estimate> heading_error_10_min(const Evidence& evidence) {
   return worst_power_on(evidence, 600.0, &heading_error);
 }
 
-}  // namespace beamgyro::evaluation
+}  // namespace beamgyro::internal::evaluation

@@ -8,7 +8,7 @@
 #include "validation/metrics/noisy_means.h"
 #include "validation/metrics/soaks.h"
 
-namespace beamgyro::evaluation {
+namespace beamgyro::internal::evaluation {
 namespace {
 
 constexpr double kSameSoakTemperature = 0.5;  // [K]
@@ -260,4 +260,4 @@ std::optional<Estimate> hysteresis_rms(const Evidence& evidence) {
   return ramp_figure(evidence, &rms_difference, Growth::kSquare);
 }
 
-}  // namespace beamgyro::evaluation
+}  // namespace beamgyro::internal::evaluation

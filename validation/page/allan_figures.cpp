@@ -11,7 +11,7 @@
 #include "validation/metrics/segments.h"
 #include "validation/page/figure_makers.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 /// Overlapping Allan deviations of the residual, none without answers.
@@ -98,4 +98,4 @@ std::vector<Figure> allan_figures(const ComparedEvidence& both) {
   return {std::move(figure)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

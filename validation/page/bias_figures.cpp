@@ -12,7 +12,7 @@
 #include "validation/page/figure_makers.h"
 #include "validation/page/residual_means.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kMinute = 60.0;                 // [s]
@@ -218,4 +218,4 @@ std::vector<Figure> residual_histogram_figures(const ComparedEvidence& both) {
   return {std::move(figure)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 double with_six_digits(double value) {
@@ -114,4 +114,4 @@ std::vector<Figure> close_up(const Figure& whole, const std::string& role,
   return {std::move(closer)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 
 #include "validation/metrics/metric.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 struct FigureAxis {
   std::string label, unit;
@@ -49,4 +49,4 @@ std::vector<Figure> close_up(const Figure& whole, const std::string& role,
                              const std::string& id_suffix,
                              const std::string& title);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include "validation/evidence/evidence.h"
 #include "validation/page/figure.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The same runs with the rate before and after compensation.
 struct ComparedEvidence {
@@ -39,4 +39,4 @@ std::vector<Figure> frequency_response_figures(const ComparedEvidence& both);
 std::vector<Figure> rate_step_figures(const ComparedEvidence& both);
 std::vector<Figure> allan_figures(const ComparedEvidence& both);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

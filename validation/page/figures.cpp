@@ -13,7 +13,7 @@
 
 #include "validation/page/figure_makers.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 void check_runs(const Evidence& before, const Evidence& after) {
@@ -99,4 +99,4 @@ nlohmann::ordered_json population_figure(const PopulationFigure& population) {
   return to_json(figure);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "validation/evidence/evidence.h"
 #include "validation/metrics/sigma_report.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The most points of a series of a figure.
 constexpr std::size_t kFigurePoints = 300;
@@ -38,4 +38,4 @@ nlohmann::ordered_json population_figure(const PopulationFigure& figure);
 /// Returns the figures of a sigma, "sigma_pit" and "sigma_coverage".
 nlohmann::ordered_json sigma_figures(const SigmaReport& report);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

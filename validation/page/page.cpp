@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr std::string_view kPageTemplate =
@@ -61,4 +61,4 @@ std::string page_of(const nlohmann::ordered_json& result) {
   return page;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

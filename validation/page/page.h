@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the page of a report (HTML): page.html with `result` and Chart.js in
 /// it, which loads nothing else. `result` is what `validate --json` writes
@@ -13,4 +13,4 @@ namespace beamgyro {
 /// holds. The same result gives the same bytes.
 std::string page_of(const nlohmann::ordered_json& result);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -16,7 +16,7 @@
 #include "validation/metrics/segments.h"
 #include "validation/page/figure_makers.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kMillion = 1e6;      // [ppm]
@@ -273,4 +273,4 @@ std::vector<Figure> rate_step_figures(const ComparedEvidence& both) {
   return {std::move(figure)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

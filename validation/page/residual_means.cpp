@@ -8,7 +8,7 @@
 #include "validation/metrics/segments.h"
 #include "validation/page/figures.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 std::vector<ResidualMean> residual_means(const EvidenceRun& run, double least) {
   const auto& time = run.recording->time;
@@ -27,4 +27,4 @@ std::vector<ResidualMean> residual_means(const EvidenceRun& run, double least) {
   return means;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "validation/evidence/evidence.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Means over a block of samples of a run.
 struct ResidualMean {
@@ -19,4 +19,4 @@ struct ResidualMean {
 /// left out.
 std::vector<ResidualMean> residual_means(const EvidenceRun& run, double least);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include "validation/page/figure.h"
 #include "validation/page/figures.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kInPercent = 100.0;
@@ -80,4 +80,4 @@ nlohmann::ordered_json sigma_figures(const SigmaReport& report) {
   return figures;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

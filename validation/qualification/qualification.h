@@ -9,7 +9,7 @@
 #include "sim/scenario/scenario.h"
 #include "validation/evidence/evidence.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A scenario that every qualified device goes through.
 struct QualificationRun {
@@ -38,4 +38,4 @@ struct Qualification {
   std::vector<std::filesystem::path> files;  // all that were read
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -17,7 +17,7 @@
 #include "sim/scenario/scenario_file.h"
 #include "validation/metrics/metric.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::vector<std::string> dotted_parts(const std::string& key) {
@@ -214,4 +214,4 @@ Qualification read_qualification(const std::filesystem::path& file) {
   return QualificationReader(file).read();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 
 #include "validation/qualification/qualification.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Reads a qualification and its scenarios
 /// (docs/reference/qualification_file.md). Scenarios are named relative to the
@@ -20,4 +20,4 @@ namespace beamgyro {
 ///   has a purpose that the metric does not read.
 Qualification read_qualification(const std::filesystem::path& file);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

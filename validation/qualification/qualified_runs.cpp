@@ -8,7 +8,7 @@
 #include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/simulation.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 std::vector<Recording> qualified_runs(const std::vector<QualificationRun>& runs,
                                       const QualifiedDevice& device,
@@ -34,4 +34,4 @@ std::vector<Recording> qualified_runs(const std::vector<QualificationRun>& runs,
   return recordings;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "sim/device/device.h"
 #include "validation/qualification/qualification.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A device that goes through a qualification.
 struct QualifiedDevice {
@@ -29,4 +29,4 @@ std::vector<Recording> qualified_runs(
     const std::vector<QualificationRun>& runs, const QualifiedDevice& device,
     std::size_t threads, const std::function<void()>& on_done = {});
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

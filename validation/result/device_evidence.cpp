@@ -16,7 +16,7 @@
 #include "config/units.h"
 #include "parallel/work_queue.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 struct BaselineModel {
@@ -208,4 +208,4 @@ DeviceEvidence device_evidence(const Qualification& qualification,
       threads, on_done);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -13,7 +13,7 @@
 #include "validation/qualification/qualification.h"
 #include "validation/qualification/qualified_runs.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A method that a compensator is compared with, trained on the same runs.
 struct Baseline {
@@ -95,4 +95,4 @@ DeviceEvidence device_evidence(const Qualification& qualification,
                                std::size_t threads,
                                const ProgressOfWork& progress = {});
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

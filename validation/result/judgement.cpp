@@ -11,7 +11,7 @@
 #include "validation/metrics/sigma_evidence.h"
 #include "validation/metrics/sigma_report.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Evaluates a metric on the runs that the qualification names for it. A metric
@@ -165,4 +165,4 @@ void judge(const JudgedBy& by, const DeviceEvidence& found, std::size_t threads,
   result.words = std::move(verdict.words);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

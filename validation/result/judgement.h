@@ -11,7 +11,7 @@
 #include "validation/result/validation_result.h"
 #include "validation/specification/specification_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Evaluates metrics before, after and of every baseline, each on the
 /// `runs` that are named for it, or on all. `names` are those to evaluate;
@@ -55,4 +55,4 @@ void judge(const JudgedBy& by, const DeviceEvidence& found, std::size_t threads,
 CheckedCompensator checked_runs(const DeviceEvidence& found,
                                 const TestedCompensator& compensator);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -16,7 +16,7 @@
 #include "validation/external/file_compensator.h"
 #include "validation/result/judgement.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Returns the qualification with the runs that the metrics read.
@@ -173,4 +173,4 @@ PopulationYield population_yield(const PopulationTask& task,
   return result;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

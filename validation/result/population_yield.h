@@ -10,7 +10,7 @@
 #include "validation/result/validation_result.h"
 #include "validation/specification/specification_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the 95 % interval of Clopper and Pearson for the probability of a
 /// success that was seen `successes` times in `trials`, more than 0.
@@ -34,4 +34,4 @@ PopulationYield population_yield(const PopulationTask& task,
                                  std::size_t threads,
                                  const ProgressOfWork& progress = {});
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

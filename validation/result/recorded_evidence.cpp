@@ -14,7 +14,7 @@
 #include "parallel/work_queue.h"
 #include "validation/evidence/recorded_purpose.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 Recording read_any(const std::filesystem::path& path) {
@@ -83,4 +83,4 @@ DeviceEvidence recorded_evidence(std::vector<TrainingRun> runs,
                      threads);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

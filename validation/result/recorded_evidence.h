@@ -11,7 +11,7 @@
 #include "validation/external/tested_compensator.h"
 #include "validation/result/device_evidence.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Who answers recordings, and how.
 struct RecordedAnswering {
@@ -36,4 +36,4 @@ DeviceEvidence recorded_evidence(std::vector<TrainingRun> runs,
                                  const RecordedAnswering& answering,
                                  std::size_t threads);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -201,4 +201,4 @@ nlohmann::ordered_json to_json(const ValidationResult& result) {
   return json;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "validation/result/validation_result.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns a result as `validate --json` writes it
 /// (docs/reference/validation_result.md). A figure that is missing or not
@@ -20,4 +20,4 @@ nlohmann::ordered_json sigma_json(const SigmaReport& report);
 nlohmann::ordered_json metrics_json(const std::vector<MetricResult>& metrics,
                                     const std::vector<DecidedLimit>& limits);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

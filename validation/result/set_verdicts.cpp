@@ -15,7 +15,7 @@
 #include "validation/result/judgement.h"
 #include "validation/result/population_yield.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 bool is_more_severe(Conformity one, Conformity other) {
@@ -128,4 +128,4 @@ SetVerdicts set_verdicts(const RunSource& set,
   return judge.finish();
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

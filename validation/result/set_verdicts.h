@@ -8,7 +8,7 @@
 #include "validation/result/validation_result.h"
 #include "validation/specification/specification_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The verdict on the devices of a set.
 struct SetVerdicts {
@@ -28,4 +28,4 @@ SetVerdicts set_verdicts(const RunSource& set,
                          std::size_t threads,
                          const ProgressOfWork& progress = {});
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -14,7 +14,7 @@
 #include "validation/specification/decision.h"
 #include "validation/specification/limit.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The value of a metric that a baseline leaves.
 struct BaselineEstimate {
@@ -112,4 +112,4 @@ struct ValidationResult {
   ResultProvenance provenance = {};
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -21,7 +21,7 @@
 #include "validation/result/recorded_evidence.h"
 #include "validation/result/set_verdicts.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Without a specification: some drift must be removed. The checks ask the rest.
@@ -280,4 +280,4 @@ CompletedValidation Validator::validate(std::size_t threads,
   return done;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -13,7 +13,7 @@
 #include "validation/result/device_evidence.h"
 #include "validation/result/validation_result.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What `validate` is asked for. Files are named as the user does.
 struct ValidationRequest {
@@ -78,4 +78,4 @@ class Validator {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -173,4 +173,4 @@ Decision decide(const Limit& limit, const std::optional<Estimate>& after,
   return decision;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

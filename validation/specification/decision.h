@@ -9,7 +9,7 @@
 #include "validation/metrics/metric.h"
 #include "validation/specification/limit.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What a measured value says about a limit, after ASME B89.7.3.1: stringent
 /// acceptance and stringent rejection, with a guard band on both sides of the
@@ -59,4 +59,4 @@ Decision decide(const Limit& limit, const std::optional<Estimate>& after,
                 const std::optional<Estimate>& reference = {},
                 double risk = kFalseAcceptRisk);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

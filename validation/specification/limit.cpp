@@ -3,7 +3,7 @@
 
 #include <fmt/core.h>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 bool Limit::contains(double value) const {
   return (!least || value >= *least) && (!most || value <= *most);
@@ -25,4 +25,4 @@ std::string text_of(const Limit& limit) {
   return text;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What a metric may be, in its unit.
 struct Limit {
@@ -26,4 +26,4 @@ struct Limit {
 /// Returns the limit in words: "at most 0.1", "0.98 to 1.02".
 std::string text_of(const Limit& limit);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

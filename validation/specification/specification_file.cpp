@@ -8,7 +8,7 @@
 #include "config/document.h"
 #include "config/suggestion.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 [[noreturn]] void fail_unknown(const ConfigTable& limits,
@@ -80,4 +80,4 @@ SpecificationFile parse_specification_file(std::string_view text,
   return specification_of(ConfigDocument::parse(text, name));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

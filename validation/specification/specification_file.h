@@ -9,7 +9,7 @@
 #include "validation/specification/decision.h"
 #include "validation/specification/limit.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// What a user asks of a compensated gyro (docs/reference/specification_file).
 struct SpecificationFile {
@@ -33,4 +33,4 @@ SpecificationFile read_specification_file(const std::filesystem::path& file);
 SpecificationFile parse_specification_file(std::string_view text,
                                            const std::string& name);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

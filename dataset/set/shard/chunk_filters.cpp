@@ -8,7 +8,7 @@
 #include <cstring>
 #include <new>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
@@ -119,4 +119,4 @@ PackedChunk ChunkPacker::pack(std::span<const std::byte> values,
   return chunk;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // HDF5's filters shuffle, deflate and fletcher32, computed outside of HDF5,
 // whose lock admits one thread at a time.
@@ -48,4 +48,4 @@ class ChunkPacker {
   std::vector<std::byte> shuffled_, packed_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

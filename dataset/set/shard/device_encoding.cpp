@@ -10,7 +10,7 @@
 #include "dataset/recording/recording_defect.h"
 #include "dataset/set/shard/shard_encoding.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 /// The row of one variable as it goes into the file, cut into chunks if it is
@@ -107,4 +107,4 @@ EncodedDevice encode_device(const ShardHead& head, std::uint32_t position,
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 #include "dataset/set/shard/chunk_filters.h"
 #include "dataset/set/shard/shard.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Thrown for samples of a recording that a set cannot hold: not finite, or
 /// beyond their storage type.
@@ -40,4 +40,4 @@ struct EncodedDevice {
 EncodedDevice encode_device(const ShardHead& head, std::uint32_t position,
                             const DeviceRow& row, const Recording* recording);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 
 #include "dataset/netcdf/hdf5_write.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 H5Id make_image() {
   constexpr std::size_t kIncrement = std::size_t{1} << 20;  // [byte]
@@ -33,4 +33,4 @@ std::span<const std::byte> image_bytes(const H5Id& file) {
           static_cast<std::size_t>(size)};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

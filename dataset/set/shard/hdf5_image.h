@@ -6,7 +6,7 @@
 
 #include "dataset/netcdf/hdf5_id.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Makes a new HDF5 file in memory. Throws Hdf5Error.
 H5Id make_image();
@@ -15,4 +15,4 @@ H5Id make_image();
 /// change. All its variables must be closed. Throws Hdf5Error.
 std::span<const std::byte> image_bytes(const H5Id& file);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

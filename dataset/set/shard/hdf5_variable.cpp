@@ -10,7 +10,7 @@
 #include "dataset/netcdf/hdf5_write.h"
 #include "dataset/set/shard/shard_encoding.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 /// flag_values 0, 1, ... with their meanings.
@@ -88,4 +88,4 @@ void write_all(hid_t variable, const std::string& name, hid_t memory_type,
       "write " + name);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include "dataset/netcdf/hdf5_write.h"
 #include "dataset/set/shard/shard.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 // The layout that files of a set and views over them have in common. Each
 // function throws Hdf5Error.
@@ -31,4 +31,4 @@ void write_root_attributes(hid_t file, const ShardHead& head);
 void write_all(hid_t variable, const std::string& name, hid_t memory_type,
                const void* values);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

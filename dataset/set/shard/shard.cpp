@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "dataset/set/shard/shard.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 std::vector<double> slow_times(const ShardHead& head) {
   std::vector<double> times;
@@ -20,4 +20,4 @@ std::size_t chunk_length(std::size_t values) {
   return (values + chunks - 1) / chunks;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

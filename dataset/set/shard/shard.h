@@ -8,7 +8,7 @@
 
 #include "dataset/recording/recording.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 inline constexpr const char* kSetFiletype = "beamgyro-set";
 inline constexpr int kSetFormatVersion = 2;
@@ -69,4 +69,4 @@ std::size_t slow_length(const ShardHead& head);
 /// divided into equal parts of up to 128 Ki values.
 std::size_t chunk_length(std::size_t values);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

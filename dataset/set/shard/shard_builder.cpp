@@ -15,7 +15,7 @@
 #include "dataset/set/shard/hdf5_variable.h"
 #include "dataset/set/shard/shard_encoding.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 /// How a variable of rows of `length` values is stored.
@@ -260,4 +260,4 @@ std::span<const std::byte> ShardBuilder::finish() {
   return image_->finish(rows_);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

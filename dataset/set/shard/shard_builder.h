@@ -9,7 +9,7 @@
 
 #include "dataset/set/shard/device_encoding.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Makes a file of a set in memory, as an HDF5 image without a file behind it,
 /// so that HDF5 never meets a full disk. The bytes depend on the input alone.
@@ -45,4 +45,4 @@ class ShardBuilder {
   std::unique_ptr<Image> image_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -11,7 +11,7 @@
 
 #include "dataset/recording/recording_defect.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -186,4 +186,4 @@ std::vector<double> decoded_values(const SetVariable& variable,
   });
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

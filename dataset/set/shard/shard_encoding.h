@@ -6,7 +6,7 @@
 
 #include "dataset/set/shard/shard.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns the size of one value [byte].
 std::size_t width_of(Storage storage);
@@ -28,4 +28,4 @@ std::vector<std::byte> fill_values(const SetVariable& variable,
 std::vector<double> decoded_values(const SetVariable& variable,
                                    const std::vector<std::byte>& bytes);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -23,7 +23,7 @@
 #include "dataset/set/shard/hdf5_variable.h"
 #include "dataset/set/shard/shard_encoding.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 int rank_of(hid_t variable, const std::string& name) {
@@ -321,4 +321,4 @@ Recording ShardFile::read(std::uint32_t position, bool slow) const {
   }
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 #include "dataset/recording/recording.h"
 #include "dataset/set/shard/shard.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Returns whether `path` is an HDF5 file with the file type of a set.
 bool is_shard_file(const std::filesystem::path& path);
@@ -55,4 +55,4 @@ class ShardFile {
   std::unique_ptr<File> file_;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -13,7 +13,7 @@
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/sample_compensators.h"
 
-namespace beamgyro::compensator_file_test {
+namespace beamgyro::internal::compensator_file_test {
 namespace {
 
 std::vector<std::uint64_t> bits(const std::vector<double>& values) {
@@ -262,4 +262,4 @@ TEST(CompensatorFile, FilesLargerThanACompensatorAreNotRead) {
 }
 
 }  // namespace
-}  // namespace beamgyro::compensator_file_test
+}  // namespace beamgyro::internal::compensator_file_test

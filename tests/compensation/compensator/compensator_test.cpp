@@ -10,7 +10,7 @@
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/sample_compensators.h"
 
-namespace beamgyro::compensator_test {
+namespace beamgyro::internal::compensator_test {
 namespace {
 
 // bias = 1 + 0.1 T, baseline = 2, between 0 and 40 degC
@@ -137,4 +137,4 @@ TEST(Compensator, NoKindAnswersWhereThereIsNoPower) {
 }
 
 }  // namespace
-}  // namespace beamgyro::compensator_test
+}  // namespace beamgyro::internal::compensator_test

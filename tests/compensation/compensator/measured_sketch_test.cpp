@@ -9,7 +9,7 @@
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/rows_of.h"
 
-namespace beamgyro::measured_sketch_test {
+namespace beamgyro::internal::measured_sketch_test {
 namespace {
 
 constexpr int kSamples = 2000;
@@ -101,4 +101,4 @@ TEST(MeasuredSketch, IsEmptyWithoutNoiseToTellDaysApart) {
 }
 
 }  // namespace
-}  // namespace beamgyro::measured_sketch_test
+}  // namespace beamgyro::internal::measured_sketch_test

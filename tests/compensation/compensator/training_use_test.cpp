@@ -8,7 +8,7 @@
 
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::training_use_test {
+namespace beamgyro::internal::training_use_test {
 namespace {
 
 Recording some_run() {
@@ -97,4 +97,4 @@ TEST(TrainingUse, KnowsDevicesOfASetByCampaignAndSeed) {
 }
 
 }  // namespace
-}  // namespace beamgyro::training_use_test
+}  // namespace beamgyro::internal::training_use_test

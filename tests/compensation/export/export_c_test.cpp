@@ -13,7 +13,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/sample_compensators.h"
 
-namespace beamgyro::export_c_test {
+namespace beamgyro::internal::export_c_test {
 namespace {
 
 bool holds(const std::string& text, const std::string& part) {
@@ -197,4 +197,4 @@ TEST(CText, IdentifiersStartWithALetterAndHoldLettersDigitsUnderscores) {
 }
 
 }  // namespace
-}  // namespace beamgyro::export_c_test
+}  // namespace beamgyro::internal::export_c_test

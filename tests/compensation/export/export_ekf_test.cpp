@@ -14,7 +14,7 @@
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/sample_compensators.h"
 
-namespace beamgyro::export_ekf_test {
+namespace beamgyro::internal::export_ekf_test {
 namespace {
 
 constexpr double kRad = std::numbers::pi / 180.0;  // [rad/deg]
@@ -208,4 +208,4 @@ TEST(RestNoise, RefusesWhatIsNoRest) {
 }
 
 }  // namespace
-}  // namespace beamgyro::export_ekf_test
+}  // namespace beamgyro::internal::export_ekf_test

@@ -12,7 +12,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/sample_compensators.h"
 
-namespace beamgyro::export_parameters_test {
+namespace beamgyro::internal::export_parameters_test {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
@@ -342,4 +342,4 @@ TEST(ArduPilotParameters, RangesTheFirmwareRefusesAreRefused) {
 }
 
 }  // namespace
-}  // namespace beamgyro::export_parameters_test
+}  // namespace beamgyro::internal::export_parameters_test

@@ -6,7 +6,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/sample_compensators.h"
 
-namespace beamgyro::firmware_difference_test {
+namespace beamgyro::internal::firmware_difference_test {
 namespace {
 
 // A network whose output weights are `weight` and -weight in turn.
@@ -82,4 +82,4 @@ TEST(FirmwareDifference, AnswersThatAreNotFiniteInSingleAreRefused) {
 }
 
 }  // namespace
-}  // namespace beamgyro::firmware_difference_test
+}  // namespace beamgyro::internal::firmware_difference_test

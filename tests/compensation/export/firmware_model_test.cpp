@@ -16,7 +16,7 @@
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/sample_compensators.h"
 
-namespace beamgyro::firmware_model_test {
+namespace beamgyro::internal::firmware_model_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -322,4 +322,4 @@ TEST(FirmwareRuntime, SectionsAreFoundByName) {
 }
 
 }  // namespace
-}  // namespace beamgyro::firmware_model_test
+}  // namespace beamgyro::internal::firmware_model_test

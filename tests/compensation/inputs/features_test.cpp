@@ -10,7 +10,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::features_test {
+namespace beamgyro::internal::features_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -272,4 +272,4 @@ TEST(Features, PlayStartsAtTheTemperatureOfEachPowerOn) {
 }
 
 }  // namespace
-}  // namespace beamgyro::features_test
+}  // namespace beamgyro::internal::features_test

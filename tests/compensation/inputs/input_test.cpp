@@ -7,7 +7,7 @@
 
 #include "tests/compensation/message_of.h"
 
-namespace beamgyro::input_test {
+namespace beamgyro::internal::input_test {
 namespace {
 
 TEST(Input, NameReadsBackToTheSameInput) {
@@ -84,4 +84,4 @@ TEST(Input, FilterNeedsOnePositiveTimeConstant) {
 }
 
 }  // namespace
-}  // namespace beamgyro::input_test
+}  // namespace beamgyro::internal::input_test

@@ -8,7 +8,7 @@
 
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::sample_ranges_test {
+namespace beamgyro::internal::sample_ranges_test {
 namespace {
 
 using testing::ElementsAre;
@@ -109,4 +109,4 @@ TEST(SampleRanges, RefusesAStatusOfAnotherLength) {
 }
 
 }  // namespace
-}  // namespace beamgyro::sample_ranges_test
+}  // namespace beamgyro::internal::sample_ranges_test

@@ -12,7 +12,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::autopilot_fits_test {
+namespace beamgyro::internal::autopilot_fits_test {
 namespace {
 
 // Monotone from -20 to 60 degC, so that a median leaves it as it is.
@@ -293,4 +293,4 @@ TEST(FitAsArduPilot, RefusesWhatItsCalibrationRefuses) {
 }
 
 }  // namespace
-}  // namespace beamgyro::autopilot_fits_test
+}  // namespace beamgyro::internal::autopilot_fits_test

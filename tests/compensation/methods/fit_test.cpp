@@ -9,7 +9,7 @@
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/message_of.h"
 
-namespace beamgyro::fit_test {
+namespace beamgyro::internal::fit_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -182,4 +182,4 @@ TEST(Fit, AnInputThatNeverVariesIsNamed) {
 }
 
 }  // namespace
-}  // namespace beamgyro::fit_test
+}  // namespace beamgyro::internal::fit_test

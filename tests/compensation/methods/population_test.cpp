@@ -8,7 +8,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/rows_of.h"
 
-namespace beamgyro::population_test {
+namespace beamgyro::internal::population_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -217,4 +217,4 @@ TEST(Population, RefusesWhatTellsNothingOfDevices) {
 }
 
 }  // namespace
-}  // namespace beamgyro::population_test
+}  // namespace beamgyro::internal::population_test

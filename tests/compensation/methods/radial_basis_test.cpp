@@ -8,7 +8,7 @@
 
 #include "compensation/methods/fit.h"
 
-namespace beamgyro::radial_basis_test {
+namespace beamgyro::internal::radial_basis_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -80,4 +80,4 @@ TEST(RadialBasis, EqualPointsAreOneCentreAndASinglePlaceIsRefused) {
 }
 
 }  // namespace
-}  // namespace beamgyro::radial_basis_test
+}  // namespace beamgyro::internal::radial_basis_test

@@ -8,7 +8,7 @@
 #include "compensation/network/random_purposes.h"
 #include "tests/compensation/message_of.h"
 
-namespace beamgyro::bp_network_test {
+namespace beamgyro::internal::bp_network_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -134,4 +134,4 @@ TEST(BpNetwork, RejectsImpossibleSizes) {
 }
 
 }  // namespace
-}  // namespace beamgyro::bp_network_test
+}  // namespace beamgyro::internal::bp_network_test

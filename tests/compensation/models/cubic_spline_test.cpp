@@ -9,7 +9,7 @@
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/message_of.h"
 
-namespace beamgyro::cubic_spline_test {
+namespace beamgyro::internal::cubic_spline_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -135,4 +135,4 @@ TEST(CubicSpline, RejectsKnotsTheDataCannotDetermine) {
 }
 
 }  // namespace
-}  // namespace beamgyro::cubic_spline_test
+}  // namespace beamgyro::internal::cubic_spline_test

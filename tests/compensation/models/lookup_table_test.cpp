@@ -9,7 +9,7 @@
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/message_of.h"
 
-namespace beamgyro::lookup_table_test {
+namespace beamgyro::internal::lookup_table_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -87,4 +87,4 @@ TEST(LookupTable, NeedsPointsAndAWidth) {
 }
 
 }  // namespace
-}  // namespace beamgyro::lookup_table_test
+}  // namespace beamgyro::internal::lookup_table_test

@@ -9,7 +9,7 @@
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/message_of.h"
 
-namespace beamgyro::polynomial_test {
+namespace beamgyro::internal::polynomial_test {
 namespace {
 
 BiasModel fit_scaled(const Eigen::ArrayXd& T, const Eigen::ArrayXd& bias,
@@ -164,4 +164,4 @@ TEST(BiasModel, ConstantInputCannotBeScaled) {
 }
 
 }  // namespace
-}  // namespace beamgyro::polynomial_test
+}  // namespace beamgyro::internal::polynomial_test

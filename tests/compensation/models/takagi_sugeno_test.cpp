@@ -8,7 +8,7 @@
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/message_of.h"
 
-namespace beamgyro::takagi_sugeno_test {
+namespace beamgyro::internal::takagi_sugeno_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -98,4 +98,4 @@ TEST(TakagiSugeno, NeedsTwoRulesAndARow) {
 }
 
 }  // namespace
-}  // namespace beamgyro::takagi_sugeno_test
+}  // namespace beamgyro::internal::takagi_sugeno_test

@@ -8,7 +8,7 @@
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/message_of.h"
 
-namespace beamgyro::thermistor_network_test {
+namespace beamgyro::internal::thermistor_network_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -98,4 +98,4 @@ TEST(ThermistorNetwork, NeedsThreePointsOfSeveralTemperatures) {
 }
 
 }  // namespace
-}  // namespace beamgyro::thermistor_network_test
+}  // namespace beamgyro::internal::thermistor_network_test

@@ -8,7 +8,7 @@
 
 #include "compensation/network/random_purposes.h"
 
-namespace beamgyro::batch_network_test {
+namespace beamgyro::internal::batch_network_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -125,4 +125,4 @@ TEST(BatchNetwork, TanhIsThatOfTheLibraryToFiveUnitsInTheLastPlace) {
 }
 
 }  // namespace
-}  // namespace beamgyro::batch_network_test
+}  // namespace beamgyro::internal::batch_network_test

@@ -9,7 +9,7 @@
 #include "compensation/network/random_purposes.h"
 #include "tests/compensation/bias_curve.h"
 
-namespace beamgyro::gradient_trainer_test {
+namespace beamgyro::internal::gradient_trainer_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -158,4 +158,4 @@ TEST(GradientTrainers, BothLearnTheBiasCurveFarBetterThanACubic) {
 }
 
 }  // namespace
-}  // namespace beamgyro::gradient_trainer_test
+}  // namespace beamgyro::internal::gradient_trainer_test

@@ -9,7 +9,7 @@
 #include "compensation/network/restarts.h"
 #include "tests/compensation/bias_curve.h"
 
-namespace beamgyro::levenberg_marquardt_test {
+namespace beamgyro::internal::levenberg_marquardt_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -179,4 +179,4 @@ TEST(Restarts, WhereHeldOutRowsCannotTellAllRowsChoose) {
 }
 
 }  // namespace
-}  // namespace beamgyro::levenberg_marquardt_test
+}  // namespace beamgyro::internal::levenberg_marquardt_test

@@ -14,7 +14,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::rate_penalty_test {
+namespace beamgyro::internal::rate_penalty_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -200,4 +200,4 @@ TEST(RatePenalty, ALargerOneLeavesMoreOfTheRate) {
 }
 
 }  // namespace
-}  // namespace beamgyro::rate_penalty_test
+}  // namespace beamgyro::internal::rate_penalty_test

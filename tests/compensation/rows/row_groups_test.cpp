@@ -5,7 +5,7 @@
 
 #include "tests/compensation/rows_of.h"
 
-namespace beamgyro::row_groups_test {
+namespace beamgyro::internal::row_groups_test {
 namespace {
 
 double no_bias(double /*temperature*/, int /*row*/) { return 0.0; }
@@ -119,4 +119,4 @@ TEST(CoarsestGroups, MayLeaveAHole) {
 }
 
 }  // namespace
-}  // namespace beamgyro::row_groups_test
+}  // namespace beamgyro::internal::row_groups_test

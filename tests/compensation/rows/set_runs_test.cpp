@@ -13,7 +13,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::set_runs_test {
+namespace beamgyro::internal::set_runs_test {
 namespace {
 
 constexpr std::uint32_t kDevices = 6, kPerFile = 4;
@@ -169,4 +169,4 @@ TEST_F(SetRuns, RefuseWhatTheSetDoesNotHave) {
 }
 
 }  // namespace
-}  // namespace beamgyro::set_runs_test
+}  // namespace beamgyro::internal::set_runs_test

@@ -9,7 +9,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::training_rows_test {
+namespace beamgyro::internal::training_rows_test {
 namespace {
 
 const std::vector<Input> kTemperature{parse_input("temperature")};
@@ -262,4 +262,4 @@ TEST(TrainingRows, ColumnsAreTakenByTheNameOfTheirInput) {
 }
 
 }  // namespace
-}  // namespace beamgyro::training_rows_test
+}  // namespace beamgyro::internal::training_rows_test

@@ -18,7 +18,7 @@
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/scoring/noise_samples.h"
 
-namespace beamgyro::allan_deviation_test {
+namespace beamgyro::internal::allan_deviation_test {
 namespace {
 
 const std::vector<double> kNbs14{892, 809, 823, 798, 671, 644, 883, 903, 677};
@@ -285,4 +285,4 @@ TEST(AllanDeviation, JsonHasTheKeysPromised) {
 }
 
 }  // namespace
-}  // namespace beamgyro::allan_deviation_test
+}  // namespace beamgyro::internal::allan_deviation_test

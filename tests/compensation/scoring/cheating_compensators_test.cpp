@@ -10,7 +10,7 @@
 #include "compensation/scoring/validation.h"
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::cheating_compensators_test {
+namespace beamgyro::internal::cheating_compensators_test {
 namespace {
 
 constexpr double kOffset = 1.5;  // [deg/s], most of the drift there is
@@ -195,4 +195,4 @@ TEST(CheatingCompensators, RecordedRatesMoveWhatAReplayCannot) {
 }
 
 }  // namespace
-}  // namespace beamgyro::cheating_compensators_test
+}  // namespace beamgyro::internal::cheating_compensators_test

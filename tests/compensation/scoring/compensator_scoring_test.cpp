@@ -10,7 +10,7 @@
 #include "compensation/training/train.h"
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::compensator_scoring_test {
+namespace beamgyro::internal::compensator_scoring_test {
 namespace {
 
 /// Bias that the temperature determines, not a cubic [deg/s].
@@ -132,4 +132,4 @@ TEST(CompensatorScoring, TheCubicIsAHundredPercentOfItself) {
 }
 
 }  // namespace
-}  // namespace beamgyro::compensator_scoring_test
+}  // namespace beamgyro::internal::compensator_scoring_test

@@ -12,7 +12,7 @@
 #include "compensation/scoring/allan_deviation.h"
 #include "tests/compensation/scoring/noise_samples.h"
 
-namespace beamgyro::equivalent_freedom_test {
+namespace beamgyro::internal::equivalent_freedom_test {
 namespace {
 
 using enum DeviationKind;
@@ -122,4 +122,4 @@ TEST(EquivalentFreedom, IntervalsHoldTheDeviationIn95OfAHundredRecords) {
 }
 
 }  // namespace
-}  // namespace beamgyro::equivalent_freedom_test
+}  // namespace beamgyro::internal::equivalent_freedom_test

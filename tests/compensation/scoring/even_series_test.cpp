@@ -10,7 +10,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::even_series_test {
+namespace beamgyro::internal::even_series_test {
 namespace {
 
 // A sample a second for 100 s, without power from 30 to 40 s.
@@ -111,4 +111,4 @@ TEST(EvenSeries, OfASteadyRampHasItsDeviationInEveryStretch) {
 }
 
 }  // namespace
-}  // namespace beamgyro::even_series_test
+}  // namespace beamgyro::internal::even_series_test

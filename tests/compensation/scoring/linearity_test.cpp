@@ -8,7 +8,7 @@
 
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::linearity_test {
+namespace beamgyro::internal::linearity_test {
 namespace {
 
 const RecordedRun kTable{
@@ -95,4 +95,4 @@ TEST(Linearity, RefusesAnAnswerOfAnotherLength) {
 }
 
 }  // namespace
-}  // namespace beamgyro::linearity_test
+}  // namespace beamgyro::internal::linearity_test

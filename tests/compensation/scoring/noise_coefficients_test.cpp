@@ -13,7 +13,7 @@
 #include "random/random_stream.h"
 #include "tests/compensation/scoring/noise_samples.h"
 
-namespace beamgyro::noise_coefficients_test {
+namespace beamgyro::internal::noise_coefficients_test {
 namespace {
 
 constexpr double kInterval = 0.01;         // [s]
@@ -52,7 +52,7 @@ std::vector<double> band_limited(std::vector<double> rates) {
 }
 
 EvenSeries series_of(const std::vector<double>& rates) {
-  return beamgyro::series_of(rates, kInterval);
+  return internal::series_of(rates, kInterval);
 }
 
 // One sample in seven lacks.
@@ -299,7 +299,7 @@ void expect_coverage(Find coefficient, double truth, Make rates) {
   double squares = 0.0, uncertainties = 0.0;
   for (std::uint32_t run = 0; run < kRecords; ++run) {
     const NoiseSamples samples(2048, 0.1, run);
-    const auto of_run = found_in(beamgyro::series_of(rates(samples), 0.1));
+    const auto of_run = found_in(internal::series_of(rates(samples), 0.1));
     const auto& estimate = of_run.*coefficient;
     if (!estimate) continue;
     ++found;
@@ -378,4 +378,4 @@ TEST(NoiseCoefficients, RefuseACurveOfTooFewPoints) {
 }
 
 }  // namespace
-}  // namespace beamgyro::noise_coefficients_test
+}  // namespace beamgyro::internal::noise_coefficients_test

@@ -10,7 +10,7 @@
 #include "compensation/scoring/even_series.h"
 #include "random/random_stream.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Rates of one type of noise, sampled every `interval` [s]: of the coefficient
 /// one in seconds, and of the run `run`.
@@ -92,4 +92,4 @@ inline EvenSeries series_of(const std::vector<double>& rates, double interval) {
   return series;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

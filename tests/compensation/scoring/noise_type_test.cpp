@@ -9,7 +9,7 @@
 
 #include "tests/compensation/scoring/noise_samples.h"
 
-namespace beamgyro::noise_type_test {
+namespace beamgyro::internal::noise_type_test {
 namespace {
 
 using enum NoiseType;
@@ -54,4 +54,4 @@ TEST(NoiseType, OfFewAveragesIsThatOfAShorterTau) {
 }
 
 }  // namespace
-}  // namespace beamgyro::noise_type_test
+}  // namespace beamgyro::internal::noise_type_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <ctime>
 
-namespace beamgyro::rate_departure_test {
+namespace beamgyro::internal::rate_departure_test {
 namespace {
 
 struct Samples {
@@ -90,4 +90,4 @@ TEST(RateDeparture, CostGrowsNoFasterThanTheLengthOfThePlateau) {
 }
 
 }  // namespace
-}  // namespace beamgyro::rate_departure_test
+}  // namespace beamgyro::internal::rate_departure_test

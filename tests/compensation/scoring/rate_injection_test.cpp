@@ -11,7 +11,7 @@
 
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::rate_injection_test {
+namespace beamgyro::internal::rate_injection_test {
 namespace {
 
 const RecordedRun kDrifting{
@@ -186,4 +186,4 @@ TEST(RateInjection, RefusesAnOutputThatIsNoLineOverTheRate) {
 }
 
 }  // namespace
-}  // namespace beamgyro::rate_injection_test
+}  // namespace beamgyro::internal::rate_injection_test

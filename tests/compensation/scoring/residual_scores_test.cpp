@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace beamgyro::residual_scores_test {
+namespace beamgyro::internal::residual_scores_test {
 namespace {
 
 using testing::DoubleEq;
@@ -68,4 +68,4 @@ TEST(ResidualScores, RefuseNoBlockAtAll) {
 }
 
 }  // namespace
-}  // namespace beamgyro::residual_scores_test
+}  // namespace beamgyro::internal::residual_scores_test

@@ -10,7 +10,7 @@
 #include "compensation/scoring/rate_departure.h"
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::scale_factor_test {
+namespace beamgyro::internal::scale_factor_test {
 namespace {
 
 const RecordedRun kTable{
@@ -174,4 +174,4 @@ TEST(ScaleFactor, RefusesAnAnswerOfAnotherLengthAndARunWithoutTruth) {
 }
 
 }  // namespace
-}  // namespace beamgyro::scale_factor_test
+}  // namespace beamgyro::internal::scale_factor_test

@@ -10,7 +10,7 @@
 #include "random/random_stream.h"
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::score_test {
+namespace beamgyro::internal::score_test {
 namespace {
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -191,4 +191,4 @@ TEST(Score, RefusesARunItCannotScoreAndSaysWhich) {
 }
 
 }  // namespace
-}  // namespace beamgyro::score_test
+}  // namespace beamgyro::internal::score_test

@@ -10,7 +10,7 @@
 
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::validation_test {
+namespace beamgyro::internal::validation_test {
 namespace {
 
 double drift(double t) { return 1.5 - std::exp(-t / 500.0); }
@@ -165,4 +165,4 @@ TEST(Validation, RefusesToValidateOnNothing) {
 }
 
 }  // namespace
-}  // namespace beamgyro::validation_test
+}  // namespace beamgyro::internal::validation_test

@@ -10,7 +10,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::adapted_model_test {
+namespace beamgyro::internal::adapted_model_test {
 namespace {
 
 // Unit k of a population: a parabola and a quadrature that tells its bend.
@@ -171,4 +171,4 @@ TEST_F(AdaptedModel, RefusesADamagedPopulation) {
 }
 
 }  // namespace
-}  // namespace beamgyro::adapted_model_test
+}  // namespace beamgyro::internal::adapted_model_test

@@ -10,7 +10,7 @@
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::cautions_test {
+namespace beamgyro::internal::cautions_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -229,4 +229,4 @@ TEST(Cautions, AClaimNeedsAGainAboveItsStandardError) {
 }
 
 }  // namespace
-}  // namespace beamgyro::cautions_test
+}  // namespace beamgyro::internal::cautions_test

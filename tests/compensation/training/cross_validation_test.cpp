@@ -10,7 +10,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/rows_of.h"
 
-namespace beamgyro::cross_validation_test {
+namespace beamgyro::internal::cross_validation_test {
 namespace {
 
 const std::vector<Input> kTemperature = {parse_input("temperature")};
@@ -217,4 +217,4 @@ TEST(StackingWeight, IsTheBestOfAllAverages) {
 }
 
 }  // namespace
-}  // namespace beamgyro::cross_validation_test
+}  // namespace beamgyro::internal::cross_validation_test

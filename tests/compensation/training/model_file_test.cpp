@@ -9,7 +9,7 @@
 #include "compensation/methods/fit.h"
 #include "tests/compensation/message_of.h"
 
-namespace beamgyro::model_file_test {
+namespace beamgyro::internal::model_file_test {
 namespace {
 
 ModelSpec parse(const std::string& text) {
@@ -338,4 +338,4 @@ TEST(ModelFile, CandidatesThatAreNoneAreRefused) {
 }
 
 }  // namespace
-}  // namespace beamgyro::model_file_test
+}  // namespace beamgyro::internal::model_file_test

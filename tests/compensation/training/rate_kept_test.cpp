@@ -11,7 +11,7 @@
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/sample_compensators.h"
 
-namespace beamgyro::rate_kept_test {
+namespace beamgyro::internal::rate_kept_test {
 namespace {
 
 // A ramp at rest, or under rates that the bias has nothing to do with. What the
@@ -85,4 +85,4 @@ TEST(RateKept, TrainingOnRatesKeepsThem) {
 }
 
 }  // namespace
-}  // namespace beamgyro::rate_kept_test
+}  // namespace beamgyro::internal::rate_kept_test

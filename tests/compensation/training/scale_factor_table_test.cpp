@@ -13,7 +13,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::scale_factor_table_test {
+namespace beamgyro::internal::scale_factor_table_test {
 namespace {
 
 constexpr double kSoak = 1320.0;  // [s], two rounds of 11 rates of 60 s
@@ -152,4 +152,4 @@ TEST(ScaleFactorTable, TheBiasIsWhatTheCorrectedRateLeaves) {
 }
 
 }  // namespace
-}  // namespace beamgyro::scale_factor_table_test
+}  // namespace beamgyro::internal::scale_factor_table_test

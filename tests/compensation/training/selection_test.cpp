@@ -11,7 +11,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/rows_of.h"
 
-namespace beamgyro::selection_test {
+namespace beamgyro::internal::selection_test {
 namespace {
 
 const std::vector<Input> kTemperature = {parse_input("temperature")};
@@ -311,4 +311,4 @@ TEST(Selection, RefusesWhenNoCandidateIsLeft) {
 }
 
 }  // namespace
-}  // namespace beamgyro::selection_test
+}  // namespace beamgyro::internal::selection_test

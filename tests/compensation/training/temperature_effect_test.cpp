@@ -7,7 +7,7 @@
 
 #include "tests/compensation/rows_of.h"
 
-namespace beamgyro::temperature_effect_test {
+namespace beamgyro::internal::temperature_effect_test {
 namespace {
 
 double no_bias(double /*temperature*/, int /*row*/) { return 0.0; }
@@ -50,4 +50,4 @@ TEST(MovesMoreThanNoise, LooksAtDifferencesWithinACycle) {
 }
 
 }  // namespace
-}  // namespace beamgyro::temperature_effect_test
+}  // namespace beamgyro::internal::temperature_effect_test

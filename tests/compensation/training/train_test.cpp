@@ -12,7 +12,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 
-namespace beamgyro::train_test {
+namespace beamgyro::internal::train_test {
 namespace {
 
 // Soaks of 2 min every `step` K, without ramps between them.
@@ -232,4 +232,4 @@ TEST(Train, RefusesWhatCannotBeTrainedOn) {
 }
 
 }  // namespace
-}  // namespace beamgyro::train_test
+}  // namespace beamgyro::internal::train_test

@@ -11,7 +11,7 @@
 #include "tests/compensation/message_of.h"
 #include "tests/compensation/sample_compensators.h"
 
-namespace beamgyro::bias_sigma_json_test {
+namespace beamgyro::internal::bias_sigma_json_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -131,4 +131,4 @@ TEST(BiasSigmaJson, NumbersBeyondDoubleAreNamed) {
 }
 
 }  // namespace
-}  // namespace beamgyro::bias_sigma_json_test
+}  // namespace beamgyro::internal::bias_sigma_json_test

@@ -13,7 +13,7 @@
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/sample_compensators.h"
 
-namespace beamgyro::bias_sigma_test {
+namespace beamgyro::internal::bias_sigma_test {
 namespace {
 
 constexpr double kRounding = 1e-12;  // of sums of squares of order 1
@@ -124,4 +124,4 @@ TEST(CompensatedRateSigma, IsEmptyWithoutOneAndOverTheScaleFactor) {
 }
 
 }  // namespace
-}  // namespace beamgyro::bias_sigma_test
+}  // namespace beamgyro::internal::bias_sigma_test

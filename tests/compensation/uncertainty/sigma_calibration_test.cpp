@@ -9,7 +9,7 @@
 #include "random/random_stream.h"
 #include "tests/compensation/message_of.h"
 
-namespace beamgyro::sigma_calibration_test {
+namespace beamgyro::internal::sigma_calibration_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -165,4 +165,4 @@ TEST(Calibrate, RowsOfRampsAloneCalibrateTheFactor) {
 }
 
 }  // namespace
-}  // namespace beamgyro::sigma_calibration_test
+}  // namespace beamgyro::internal::sigma_calibration_test

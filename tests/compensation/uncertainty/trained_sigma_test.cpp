@@ -13,7 +13,7 @@
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/rows_of.h"
 
-namespace beamgyro::trained_sigma_test {
+namespace beamgyro::internal::trained_sigma_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -257,4 +257,4 @@ TEST(AdaptedSigma, AddsTheTurnOnOfTwoRunsOutsideTheFactor) {
 }
 
 }  // namespace
-}  // namespace beamgyro::trained_sigma_test
+}  // namespace beamgyro::internal::trained_sigma_test

@@ -18,7 +18,7 @@
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/system_calls.h"
 
-namespace beamgyro::atomic_file_test {
+namespace beamgyro::internal::atomic_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -288,4 +288,4 @@ TEST_F(AtomicFileTest, ManyFilesAfterEachOtherAreNoProblem) {
 }
 
 }  // namespace
-}  // namespace beamgyro::atomic_file_test
+}  // namespace beamgyro::internal::atomic_file_test

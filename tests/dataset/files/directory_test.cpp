@@ -19,7 +19,7 @@
 
 #include "dataset/files/atomic_file.h"
 
-namespace beamgyro::directory_test {
+namespace beamgyro::internal::directory_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -146,4 +146,4 @@ INSTANTIATE_TEST_SUITE_P(, DirectoryTest, ::testing::Values(true, false),
                          });
 
 }  // namespace
-}  // namespace beamgyro::directory_test
+}  // namespace beamgyro::internal::directory_test

@@ -17,7 +17,7 @@
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/sample_recording.h"
 
-namespace beamgyro::file_checksum_test {
+namespace beamgyro::internal::file_checksum_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -97,4 +97,4 @@ TEST_F(FileChecksumLine, AFileWithoutTheLineIsReadAndHasNoChecksum) {
 }
 
 }  // namespace
-}  // namespace beamgyro::file_checksum_test
+}  // namespace beamgyro::internal::file_checksum_test

@@ -16,7 +16,7 @@
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/sample_recording.h"
 
-namespace beamgyro::full_disk_test {
+namespace beamgyro::internal::full_disk_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,4 +108,4 @@ TEST_P(FullDisk, ABlockThatFailedMayComeAgain) {
 INSTANTIATE_TEST_SUITE_P(Kinds, FullDisk, testing::Values(".h5", ".csv"));
 
 }  // namespace
-}  // namespace beamgyro::full_disk_test
+}  // namespace beamgyro::internal::full_disk_test

@@ -16,7 +16,7 @@
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/system_calls.h"
 
-namespace beamgyro::open_file_test {
+namespace beamgyro::internal::open_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -74,4 +74,4 @@ TEST_F(OpenFileTest, AFailingDiskIsNoWrongInput) {
 }
 
 }  // namespace
-}  // namespace beamgyro::open_file_test
+}  // namespace beamgyro::internal::open_file_test

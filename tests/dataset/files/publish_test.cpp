@@ -17,7 +17,7 @@
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/set/set_directory.h"
 
-namespace beamgyro::publish_test {
+namespace beamgyro::internal::publish_test {
 namespace {
 
 using Publish = SetDirectory;
@@ -123,4 +123,4 @@ TEST_F(Publish, OnlyPartialFilesOfTheDeadAreRemoved) {
 }
 
 }  // namespace
-}  // namespace beamgyro::publish_test
+}  // namespace beamgyro::internal::publish_test

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 
-namespace beamgyro::sha256_test {
+namespace beamgyro::internal::sha256_test {
 namespace {
 
 // Digests from the example values published with FIPS 180-4.
@@ -48,4 +48,4 @@ TEST(Sha256, OfAFileIsThatOfItsBytes) {
 }
 
 }  // namespace
-}  // namespace beamgyro::sha256_test
+}  // namespace beamgyro::internal::sha256_test

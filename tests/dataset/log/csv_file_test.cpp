@@ -14,7 +14,7 @@
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/sample_recording.h"
 
-namespace beamgyro::csv_file_test {
+namespace beamgyro::internal::csv_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -159,4 +159,4 @@ TEST(CsvFile, ADefectiveRecordingIsNotWritten) {
 }
 
 }  // namespace
-}  // namespace beamgyro::csv_file_test
+}  // namespace beamgyro::internal::csv_file_test

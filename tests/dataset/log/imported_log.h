@@ -9,7 +9,7 @@
 #include "dataset/log/log_import.h"
 #include "dataset/recording/recording_defect.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The columns of a log whose rate is "w" and whose temperature is "T".
 inline const std::string kGyroAndTemperature = R"([gyro]
@@ -33,4 +33,4 @@ inline ImportedLog imported(const std::string& map, const std::string& text,
   return log;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

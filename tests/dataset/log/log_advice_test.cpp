@@ -5,7 +5,7 @@
 #include "tests/dataset/log/imported_log.h"
 #include "tests/dataset/rejection.h"
 
-namespace beamgyro::log_advice_test {
+namespace beamgyro::internal::log_advice_test {
 namespace {
 
 using Readings = std::vector<double>;
@@ -212,4 +212,4 @@ TEST(LogAdvice, AColumnThatIsMostlyBlankIsNamed) {
 }
 
 }  // namespace
-}  // namespace beamgyro::log_advice_test
+}  // namespace beamgyro::internal::log_advice_test

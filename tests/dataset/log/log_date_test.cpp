@@ -5,7 +5,7 @@
 
 #include "tests/dataset/rejection.h"
 
-namespace beamgyro::log_date_test {
+namespace beamgyro::internal::log_date_test {
 namespace {
 
 constexpr std::int64_t kSecond = kNanosecondsPerSecond;
@@ -93,4 +93,4 @@ TEST(LooksLikeDate, TellsDatesFromNumbers) {
 }
 
 }  // namespace
-}  // namespace beamgyro::log_date_test
+}  // namespace beamgyro::internal::log_date_test

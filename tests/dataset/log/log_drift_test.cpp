@@ -10,7 +10,7 @@
 
 #include "dataset/log/log_import.h"
 
-namespace beamgyro::log_drift_test {
+namespace beamgyro::internal::log_drift_test {
 namespace {
 
 using Temperature = std::function<double(double)>;  // [degC] over [s]
@@ -136,4 +136,4 @@ TEST(LogDrift, ALogOfYearsIsAskedAbout) {
 }
 
 }  // namespace
-}  // namespace beamgyro::log_drift_test
+}  // namespace beamgyro::internal::log_drift_test

@@ -8,7 +8,7 @@
 #include "tests/dataset/log/imported_log.h"
 #include "tests/dataset/rejection.h"
 
-namespace beamgyro::log_import_test {
+namespace beamgyro::internal::log_import_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -295,4 +295,4 @@ TEST(LogImport, TooFewRowsAreNoRecording) {
 }
 
 }  // namespace
-}  // namespace beamgyro::log_import_test
+}  // namespace beamgyro::internal::log_import_test

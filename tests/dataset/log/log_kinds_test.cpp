@@ -8,7 +8,7 @@
 #include "tests/dataset/log/imported_log.h"
 #include "tests/dataset/rejection.h"
 
-namespace beamgyro::log_kinds_test {
+namespace beamgyro::internal::log_kinds_test {
 namespace {
 
 using Numbers = std::vector<double>;
@@ -255,4 +255,4 @@ TEST(LogKinds, JoinsThatCannotBe) {
 }
 
 }  // namespace
-}  // namespace beamgyro::log_kinds_test
+}  // namespace beamgyro::internal::log_kinds_test

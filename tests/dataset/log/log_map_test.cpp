@@ -8,7 +8,7 @@
 
 #include "tests/dataset/rejection.h"
 
-namespace beamgyro::log_map_test {
+namespace beamgyro::internal::log_map_test {
 namespace {
 
 const std::string kMap = R"(powered_s = 5
@@ -251,4 +251,4 @@ TEST(LogMap, RefusesKeysThatMeanNothing) {
 }
 
 }  // namespace
-}  // namespace beamgyro::log_map_test
+}  // namespace beamgyro::internal::log_map_test

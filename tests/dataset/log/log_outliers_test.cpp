@@ -8,7 +8,7 @@
 #include "dataset/log/log_report.h"
 #include "tests/dataset/rejection.h"
 
-namespace beamgyro::log_outliers_test {
+namespace beamgyro::internal::log_outliers_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -116,4 +116,4 @@ TEST(LogReport, CountsRowsAndTheirFirstLine) {
 }
 
 }  // namespace
-}  // namespace beamgyro::log_outliers_test
+}  // namespace beamgyro::internal::log_outliers_test

@@ -5,7 +5,7 @@
 
 #include "tests/dataset/rejection.h"
 
-namespace beamgyro::log_text_test {
+namespace beamgyro::internal::log_text_test {
 namespace {
 
 using Cells = std::vector<std::string>;
@@ -113,4 +113,4 @@ TEST(LogText, ShowsCellsOnOneLine) {
 }
 
 }  // namespace
-}  // namespace beamgyro::log_text_test
+}  // namespace beamgyro::internal::log_text_test

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace beamgyro::recording_csv_test {
+namespace beamgyro::internal::recording_csv_test {
 namespace {
 
 std::string message_for(const std::string& text) {
@@ -73,4 +73,4 @@ TEST(RecordingCsv, OnlyANameOfTimeAndStatusMakesARecording) {
 }
 
 }  // namespace
-}  // namespace beamgyro::recording_csv_test
+}  // namespace beamgyro::internal::recording_csv_test

@@ -17,7 +17,7 @@
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/sample_recording.h"
 
-namespace beamgyro::hdf5_hostile_test {
+namespace beamgyro::internal::hdf5_hostile_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -340,4 +340,4 @@ TEST_F(HostileHdf5, NumbersOfKindsThatNoProcessorHasAreNotConverted) {
 }
 
 }  // namespace
-}  // namespace beamgyro::hdf5_hostile_test
+}  // namespace beamgyro::internal::hdf5_hostile_test

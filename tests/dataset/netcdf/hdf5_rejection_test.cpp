@@ -15,7 +15,7 @@
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/sample_recording.h"
 
-namespace beamgyro::hdf5_rejection_test {
+namespace beamgyro::internal::hdf5_rejection_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -236,4 +236,4 @@ TEST_F(Hdf5Rejection, AFileWithoutMetaHasEmptyTexts) {
 }
 
 }  // namespace
-}  // namespace beamgyro::hdf5_rejection_test
+}  // namespace beamgyro::internal::hdf5_rejection_test

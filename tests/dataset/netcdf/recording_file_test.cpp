@@ -19,7 +19,7 @@
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/sample_recording.h"
 
-namespace beamgyro::recording_file_test {
+namespace beamgyro::internal::recording_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -182,4 +182,4 @@ INSTANTIATE_TEST_SUITE_P(Kinds, RecordingFileOf,
                          testing::Values(".h5", ".csv"));
 
 }  // namespace
-}  // namespace beamgyro::recording_file_test
+}  // namespace beamgyro::internal::recording_file_test

@@ -17,7 +17,7 @@
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/sample_recording.h"
 
-namespace beamgyro::recording_reader_test {
+namespace beamgyro::internal::recording_reader_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -173,4 +173,4 @@ TEST_F(Hdf5File, AFullDiskIsNoticedWhereverItStrikes) {
 }
 
 }  // namespace
-}  // namespace beamgyro::recording_reader_test
+}  // namespace beamgyro::internal::recording_reader_test

@@ -8,7 +8,7 @@
 
 #include "tests/dataset/sample_recording.h"
 
-namespace beamgyro::recording_defect_test {
+namespace beamgyro::internal::recording_defect_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -88,4 +88,4 @@ TEST_F(Defect, TextsHoldNoNul) {
 }
 
 }  // namespace
-}  // namespace beamgyro::recording_defect_test
+}  // namespace beamgyro::internal::recording_defect_test

@@ -8,7 +8,7 @@
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/sample_recording.h"
 
-namespace beamgyro::recording_test {
+namespace beamgyro::internal::recording_test {
 namespace {
 
 TEST(Recording, FindsAColumnByItsName) {
@@ -43,4 +43,4 @@ TEST(Recording, RolesAreSpelledAsInFiles) {
 }
 
 }  // namespace
-}  // namespace beamgyro::recording_test
+}  // namespace beamgyro::internal::recording_test

@@ -8,7 +8,7 @@
 
 #include "dataset/recording/units.h"
 
-namespace beamgyro::signals_test {
+namespace beamgyro::internal::signals_test {
 namespace {
 
 TEST(Signals, HaveNamesOfTheirOwnAndUnitsThatFilesMayState) {
@@ -45,4 +45,4 @@ TEST(Signals, AColumnIsDescribedByTheTable) {
 }
 
 }  // namespace
-}  // namespace beamgyro::signals_test
+}  // namespace beamgyro::internal::signals_test

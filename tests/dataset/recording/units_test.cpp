@@ -9,7 +9,7 @@
 
 #include "tests/dataset/rejection.h"
 
-namespace beamgyro::units_test {
+namespace beamgyro::internal::units_test {
 namespace {
 
 TEST(Units, NumbersBecomeThoseOfARecording) {
@@ -34,4 +34,4 @@ TEST(Units, AnotherQuantityIsNoUnit) {
 }
 
 }  // namespace
-}  // namespace beamgyro::units_test
+}  // namespace beamgyro::internal::units_test

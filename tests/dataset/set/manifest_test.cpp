@@ -12,7 +12,7 @@
 #include "tests/dataset/set/sample_set.h"
 #include "tests/dataset/set/set_directory.h"
 
-namespace beamgyro::manifest_test {
+namespace beamgyro::internal::manifest_test {
 namespace {
 
 class ManifestFile : public SetDirectory {
@@ -275,4 +275,4 @@ TEST_F(ManifestFile, KnowsTheNamesOfItsFiles) {
 }
 
 }  // namespace
-}  // namespace beamgyro::manifest_test
+}  // namespace beamgyro::internal::manifest_test

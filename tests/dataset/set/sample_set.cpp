@@ -12,7 +12,7 @@
 #include "dataset/set/shard/shard_builder.h"
 #include "dataset/set/source_copies.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -163,4 +163,4 @@ Manifest write_sample_set(const std::filesystem::path& directory) {
   return manifest;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

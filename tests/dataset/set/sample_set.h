@@ -9,7 +9,7 @@
 #include "dataset/set/manifest.h"
 #include "dataset/set/shard/shard.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Variables of every storage and role, slow ones too if `slow_step` is not 1.
 ShardHead sample_head(std::uint32_t devices, std::size_t samples,
@@ -26,4 +26,4 @@ DeviceRow sample_row(const ShardHead& head, std::uint32_t device);
 /// views and one source. Returns its manifest as written.
 Manifest write_sample_set(const std::filesystem::path& directory);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

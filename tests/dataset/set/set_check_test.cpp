@@ -11,7 +11,7 @@
 #include "tests/dataset/set/sample_set.h"
 #include "tests/dataset/set/set_directory.h"
 
-namespace beamgyro::set_check_test {
+namespace beamgyro::internal::set_check_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -178,4 +178,4 @@ TEST_F(CheckSet, AHeadMayClaimMoreFilesThanMemoryHolds) {
 }
 
 }  // namespace
-}  // namespace beamgyro::set_check_test
+}  // namespace beamgyro::internal::set_check_test

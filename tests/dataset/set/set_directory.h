@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A test with an empty directory, whose name has a space in it.
 class SetDirectory : public ::testing::Test {
@@ -31,4 +31,4 @@ class SetDirectory : public ::testing::Test {
   std::filesystem::path directory;
 };
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -23,7 +23,7 @@
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/set/set_directory.h"
 
-namespace beamgyro::set_lock_test {
+namespace beamgyro::internal::set_lock_test {
 namespace {
 
 using Lock = SetDirectory;
@@ -242,4 +242,4 @@ TEST_F(Lock, AMissingDirectoryIsNamed) {
 }
 
 }  // namespace
-}  // namespace beamgyro::set_lock_test
+}  // namespace beamgyro::internal::set_lock_test

@@ -9,7 +9,7 @@
 #include "tests/dataset/set/sample_set.h"
 #include "tests/dataset/set/set_directory.h"
 
-namespace beamgyro::set_view_test {
+namespace beamgyro::internal::set_view_test {
 namespace {
 
 using SetView = SetDirectory;
@@ -32,4 +32,4 @@ TEST_F(SetView, IsTheSameEveryTimeAndNoFileOfTheSet) {
 }
 
 }  // namespace
-}  // namespace beamgyro::set_view_test
+}  // namespace beamgyro::internal::set_view_test

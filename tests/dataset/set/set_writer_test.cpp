@@ -12,7 +12,7 @@
 #include "tests/dataset/set/sample_set.h"
 #include "tests/dataset/set/set_directory.h"
 
-namespace beamgyro::set_writer_test {
+namespace beamgyro::internal::set_writer_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -151,4 +151,4 @@ TEST_F(WriteSet, ADirectoryThatWasRefusedIsNotLeftBehind) {
 }
 
 }  // namespace
-}  // namespace beamgyro::set_writer_test
+}  // namespace beamgyro::internal::set_writer_test

@@ -9,7 +9,7 @@
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/set/set_directory.h"
 
-namespace beamgyro::source_copies_test {
+namespace beamgyro::internal::source_copies_test {
 namespace {
 
 using Sources = SetDirectory;
@@ -89,4 +89,4 @@ TEST_F(Sources, CopiesAreReadWholeOrNotAtAll) {
 }
 
 }  // namespace
-}  // namespace beamgyro::source_copies_test
+}  // namespace beamgyro::internal::source_copies_test

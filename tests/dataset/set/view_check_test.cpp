@@ -14,7 +14,7 @@
 #include "tests/dataset/set/sample_set.h"
 #include "tests/dataset/set/set_directory.h"
 
-namespace beamgyro::view_check_test {
+namespace beamgyro::internal::view_check_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -115,4 +115,4 @@ TEST_F(ViewCheck, GoingOnWithASetThatLostAViewMakesIt) {
 }
 
 }  // namespace
-}  // namespace beamgyro::view_check_test
+}  // namespace beamgyro::internal::view_check_test

@@ -17,7 +17,7 @@
 #include "sim/numerics/simulation_failure.h"
 #include "sim/thermal/thermal_run.h"
 
-namespace beamgyro::device_merits_test {
+namespace beamgyro::internal::device_merits_test {
 namespace {
 
 Device nominal() {
@@ -128,4 +128,4 @@ TEST(DeviceMerits, ADeviceThatDoesNotLockFails) {
 }
 
 }  // namespace
-}  // namespace beamgyro::device_merits_test
+}  // namespace beamgyro::internal::device_merits_test

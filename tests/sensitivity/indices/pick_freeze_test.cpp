@@ -10,7 +10,7 @@
 
 #include "tests/sensitivity/indices/sampled_function.h"
 
-namespace beamgyro::pick_freeze_test {
+namespace beamgyro::internal::pick_freeze_test {
 namespace {
 
 constexpr std::size_t kRows = 2048;
@@ -113,4 +113,4 @@ TEST(PickFreezeIndices, WhatDoesNotVaryHasIndicesOfZero) {
 }
 
 }  // namespace
-}  // namespace beamgyro::pick_freeze_test
+}  // namespace beamgyro::internal::pick_freeze_test

@@ -9,7 +9,7 @@
 
 #include "tests/sensitivity/indices/sampled_function.h"
 
-namespace beamgyro::rank_index_test {
+namespace beamgyro::internal::rank_index_test {
 namespace {
 
 TEST(RankIndex, OfIshigamisFunctionLiesInItsInterval) {
@@ -59,4 +59,4 @@ TEST(RankIndex, WhatDoesNotVaryHasTheIndexZero) {
 }
 
 }  // namespace
-}  // namespace beamgyro::rank_index_test
+}  // namespace beamgyro::internal::rank_index_test

@@ -8,7 +8,7 @@
 #include "sensitivity/indices/random_purposes.h"
 #include "sim/campaign/scrambled_sobol.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 double ishigami(const std::vector<double>& u) {
   const auto x = [&](std::size_t i) {
@@ -64,4 +64,4 @@ IndependentSample independent_sample(const UnitFunction& f,
   return sample;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -9,7 +9,7 @@
 
 #include "sensitivity/indices/pick_freeze.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A function of independent numbers that are uniform on (0, 1).
 using UnitFunction = std::function<double(const std::vector<double>&)>;
@@ -35,4 +35,4 @@ IndependentSample independent_sample(const UnitFunction& f,
                                      std::size_t dimensions, std::size_t rows,
                                      std::uint64_t seed);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -13,7 +13,7 @@
 #include "sim/campaign/scrambled_sobol.h"
 #include "tests/sim/campaign/campaign_folder.h"
 
-namespace beamgyro::device_sample_test {
+namespace beamgyro::internal::device_sample_test {
 namespace {
 
 constexpr const char* kTolerances =
@@ -143,4 +143,4 @@ TEST(HalvedDistribution, EveryValueIsHalfAsFarFromTheCentre) {
 }
 
 }  // namespace
-}  // namespace beamgyro::device_sample_test
+}  // namespace beamgyro::internal::device_sample_test

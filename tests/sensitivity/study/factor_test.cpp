@@ -8,7 +8,7 @@
 
 #include "tests/sim/campaign/campaign_folder.h"
 
-namespace beamgyro::factor_test {
+namespace beamgyro::internal::factor_test {
 namespace {
 
 constexpr const char* kTolerances =
@@ -58,4 +58,4 @@ TEST(Factor, OneOrNoneCannotBeCompared) {
 }
 
 }  // namespace
-}  // namespace beamgyro::factor_test
+}  // namespace beamgyro::internal::factor_test

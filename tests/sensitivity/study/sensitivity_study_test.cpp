@@ -15,7 +15,7 @@
 
 #include "tests/sensitivity/indices/sampled_function.h"
 
-namespace beamgyro::sensitivity_study_test {
+namespace beamgyro::internal::sensitivity_study_test {
 namespace {
 
 constexpr std::size_t kRows = 1024;
@@ -108,4 +108,4 @@ TEST(DeviceShare, HasWilsonsInterval) {
 }
 
 }  // namespace
-}  // namespace beamgyro::sensitivity_study_test
+}  // namespace beamgyro::internal::sensitivity_study_test

@@ -9,7 +9,7 @@
 
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::as_built_test {
+namespace beamgyro::internal::as_built_test {
 namespace {
 
 constexpr Trims kNone{false, false, false};
@@ -73,4 +73,4 @@ INSTANTIATE_TEST_SUITE_P(ForceRebalance, AsBuilt,
                          testing::Values("readout.mode=\"force_rebalance\""));
 
 }  // namespace
-}  // namespace beamgyro::as_built_test
+}  // namespace beamgyro::internal::as_built_test

@@ -12,7 +12,7 @@
 #include "tests/sim/campaign/campaign_folder.h"
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::campaign_file_test {
+namespace beamgyro::internal::campaign_file_test {
 namespace {
 
 constexpr const char* kOffset =
@@ -396,4 +396,4 @@ TEST(CampaignFile, TheShippedCampaignsCanBeRead) {
 }
 
 }  // namespace
-}  // namespace beamgyro::campaign_file_test
+}  // namespace beamgyro::internal::campaign_file_test

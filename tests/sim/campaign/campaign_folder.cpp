@@ -7,7 +7,7 @@
 #include <atomic>
 #include <fstream>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 CampaignFolder::CampaignFolder() {
   static std::atomic<int> count = 0;
@@ -54,4 +54,4 @@ std::string with_tolerances(const std::string& tolerances,
   return campaign_text("[tolerances]\n" + tolerances, keys);
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 
 #include "sim/campaign/campaign.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A folder of its own with the nominal device, a short scenario at 25 degC
 /// and what a test writes into it; deleted at the end.
@@ -36,4 +36,4 @@ std::string campaign_text(const std::string& tables,
 std::string with_tolerances(const std::string& tolerances,
                             const std::string& keys = "");
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 
 #include "sim/campaign/parameter_units.h"
 
-namespace beamgyro::distribution_test {
+namespace beamgyro::internal::distribution_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -115,4 +115,4 @@ TEST(ParameterUnits, AreWhatTheKeyEndsIn) {
 }
 
 }  // namespace
-}  // namespace beamgyro::distribution_test
+}  // namespace beamgyro::internal::distribution_test

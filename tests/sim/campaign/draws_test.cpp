@@ -14,7 +14,7 @@
 #include "tests/sim/campaign/kolmogorov_smirnov.h"
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::draws_test {
+namespace beamgyro::internal::draws_test {
 namespace {
 
 constexpr const char* kOffset =
@@ -265,4 +265,4 @@ TEST_P(EitherSampling, CorrelatedKeysHaveTheirCorrelationAndMargins) {
 }
 
 }  // namespace
-}  // namespace beamgyro::draws_test
+}  // namespace beamgyro::internal::draws_test

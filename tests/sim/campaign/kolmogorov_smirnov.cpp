@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 double kolmogorov_smirnov(std::vector<double> shares) {
   std::sort(shares.begin(), shares.end());
@@ -17,4 +17,4 @@ double kolmogorov_smirnov(std::vector<double> shares) {
   return distance * (std::sqrt(n) + 0.12 + 0.11 / std::sqrt(n));
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

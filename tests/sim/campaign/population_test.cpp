@@ -16,7 +16,7 @@
 #include "tests/sim/campaign/kolmogorov_smirnov.h"
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::population_test {
+namespace beamgyro::internal::population_test {
 namespace {
 
 double phi(double z) { return 0.5 * std::erfc(-z / std::sqrt(2)); }
@@ -142,4 +142,4 @@ TEST_P(Population, DriftsByAFewDegreesPerSecond) {
 }
 
 }  // namespace
-}  // namespace beamgyro::population_test
+}  // namespace beamgyro::internal::population_test

@@ -13,7 +13,7 @@
 #include "random/random_stream.h"
 #include "sim/campaign/random_purposes.h"
 
-namespace beamgyro::scrambled_sobol_test {
+namespace beamgyro::internal::scrambled_sobol_test {
 namespace {
 
 // Joe and Kuo's generator, in 1/1024; scipy.stats.qmc.Sobol 1.10 without
@@ -151,4 +151,4 @@ TEST(ScrambledSobol, MoreDimensionsThanTheTableAreRefused) {
 }
 
 }  // namespace
-}  // namespace beamgyro::scrambled_sobol_test
+}  // namespace beamgyro::internal::scrambled_sobol_test

@@ -9,7 +9,7 @@
 
 #include "tests/sim/campaign/campaign_folder.h"
 
-namespace beamgyro::shard_making_test {
+namespace beamgyro::internal::shard_making_test {
 namespace {
 
 std::string about_x(const std::string& rates) {
@@ -63,4 +63,4 @@ TEST(ShardMaking, HasTheTrueDriveFrequencyWhereItsErrorsAreDrawn) {
 }
 
 }  // namespace
-}  // namespace beamgyro::shard_making_test
+}  // namespace beamgyro::internal::shard_making_test

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-namespace beamgyro::bending_mode_test {
+namespace beamgyro::internal::bending_mode_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -169,4 +169,4 @@ TEST(BendingMode, MassOfTheBeamIsThatOfItsRigidTranslation) {
 }
 
 }  // namespace
-}  // namespace beamgyro::bending_mode_test
+}  // namespace beamgyro::internal::bending_mode_test

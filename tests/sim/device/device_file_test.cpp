@@ -7,7 +7,7 @@
 
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::device_file_test {
+namespace beamgyro::internal::device_file_test {
 namespace {
 
 TEST(DeviceFile, NominalUnitIsReadInSiUnits) {
@@ -63,4 +63,4 @@ INSTANTIATE_TEST_SUITE_P(
                  "temperature_sensor.noise_K"}));
 
 }  // namespace
-}  // namespace beamgyro::device_file_test
+}  // namespace beamgyro::internal::device_file_test

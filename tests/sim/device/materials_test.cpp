@@ -8,7 +8,7 @@
 
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::materials_test {
+namespace beamgyro::internal::materials_test {
 namespace {
 
 constexpr double kDriveOmega = 2 * std::numbers::pi * 9081.5;  // [rad/s]
@@ -109,4 +109,4 @@ TEST(Materials, CeramicCoefficientsAreHeldOutsideTheirRange) {
 }
 
 }  // namespace
-}  // namespace beamgyro::materials_test
+}  // namespace beamgyro::internal::materials_test

@@ -11,7 +11,7 @@
 
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::modal_model_test {
+namespace beamgyro::internal::modal_model_test {
 namespace {
 
 using Eigen::Matrix2cd;
@@ -155,4 +155,4 @@ TEST(ModalModel, AnActiveMaterialIsRefused) {
 }
 
 }  // namespace
-}  // namespace beamgyro::modal_model_test
+}  // namespace beamgyro::internal::modal_model_test

@@ -6,7 +6,7 @@
 
 #include "sim/device/device_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The shipped nominal unit, with `overrides` as on the command line.
 inline Device nominal_device(const std::vector<std::string>& overrides = {}) {
@@ -28,4 +28,4 @@ inline Device verification_device(std::vector<std::string> overrides = {}) {
 inline constexpr double kDegree = 3.14159265358979323846 / 180;  // [rad]
 inline constexpr double kZeroCelsius = 273.15;                   // [K]
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -13,7 +13,7 @@
 
 #include "tests/sim/dynamics/carrier_unit.h"
 
-namespace beamgyro::carrier_loops_test {
+namespace beamgyro::internal::carrier_loops_test {
 namespace {
 
 using Eigen::Matrix4d;
@@ -238,4 +238,4 @@ TEST(Verification, V32AmplitudeLoopOfTheCarrierAnswersAStepAsItsLinearModel) {
 }
 
 }  // namespace
-}  // namespace beamgyro::carrier_loops_test
+}  // namespace beamgyro::internal::carrier_loops_test

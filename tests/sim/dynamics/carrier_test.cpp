@@ -12,7 +12,7 @@
 
 #include "tests/sim/dynamics/carrier_unit.h"
 
-namespace beamgyro::carrier_test {
+namespace beamgyro::internal::carrier_test {
 namespace {
 
 using Eigen::Matrix2d;
@@ -204,4 +204,4 @@ TEST(Carrier, PhaseIsAsFineAfterADayOfWindowsAsAtFirst) {
 }
 
 }  // namespace
-}  // namespace beamgyro::carrier_test
+}  // namespace beamgyro::internal::carrier_test

@@ -12,7 +12,7 @@
 #include "sim/numerics/explicit_rk.h"
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 inline Complex complex_at(const Eigen::VectorXd& y, Eigen::Index i) {
   return {y(i), y(i + 1)};
@@ -96,4 +96,4 @@ inline Eigen::VectorXd mean_over_cycle(ExplicitRk& rk, double frequency) {
   return mean;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

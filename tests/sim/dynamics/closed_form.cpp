@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 // Strength and direction of a patch: Theta_p = theta e^{i phi} (along, across).
@@ -74,4 +74,4 @@ double closed_form_output(const Gyro& gyro, double T) {
          offset;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

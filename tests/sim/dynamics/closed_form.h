@@ -3,7 +3,7 @@
 
 #include "sim/dynamics/gyro.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// The zero-rate terms and the output of a split-mode gyro with the drive
 /// locked, first order in every small quantity: (2.20)-(2.23). Written apart
@@ -26,4 +26,4 @@ ClosedForm closed_form(const ModalParameters& modal, const DriveLoop& loop,
 /// T_0, by (2.23).
 double closed_form_output(const Gyro& gyro, double T);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

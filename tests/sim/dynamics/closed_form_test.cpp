@@ -9,7 +9,7 @@
 
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::closed_form_test {
+namespace beamgyro::internal::closed_form_test {
 namespace {
 
 constexpr double kT0 = kCalibrationTemperature;
@@ -110,4 +110,4 @@ TEST(Verification, V42ClosedFormOverTemperature) {
 }
 
 }  // namespace
-}  // namespace beamgyro::closed_form_test
+}  // namespace beamgyro::internal::closed_form_test

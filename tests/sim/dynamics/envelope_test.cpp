@@ -11,7 +11,7 @@
 #include "sim/dynamics/loop_noise.h"
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::envelope_test {
+namespace beamgyro::internal::envelope_test {
 namespace {
 
 const std::string kRebalanceMode = "readout.mode=\"force_rebalance\"";
@@ -92,4 +92,4 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(std::string("readout.mode=\"open_loop\""), kRebalanceMode));
 
 }  // namespace
-}  // namespace beamgyro::envelope_test
+}  // namespace beamgyro::internal::envelope_test

@@ -9,7 +9,7 @@
 
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::gyro_test {
+namespace beamgyro::internal::gyro_test {
 namespace {
 
 constexpr double kT0 = kCalibrationTemperature;
@@ -84,4 +84,4 @@ TEST(Gyro, AnImpossibleTrimIsReported) {
 }
 
 }  // namespace
-}  // namespace beamgyro::gyro_test
+}  // namespace beamgyro::internal::gyro_test

@@ -20,7 +20,7 @@
 #include "sim/dynamics/static_map.h"
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::lock_path_test {
+namespace beamgyro::internal::lock_path_test {
 namespace {
 
 constexpr double kHertz = 2 * std::numbers::pi;  // [rad/s]
@@ -206,4 +206,4 @@ TEST(StaticMap, OfStronglyCoupledModesAgreesWithTheExactSolution) {
 }
 
 }  // namespace
-}  // namespace beamgyro::lock_path_test
+}  // namespace beamgyro::internal::lock_path_test

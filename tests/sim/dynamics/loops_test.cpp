@@ -14,7 +14,7 @@
 #include "sim/numerics/explicit_rk.h"
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::loops_test {
+namespace beamgyro::internal::loops_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -268,4 +268,4 @@ TEST(Carrier, PhaseIsKeptOverAChangeOfWindow) {
 }
 
 }  // namespace
-}  // namespace beamgyro::loops_test
+}  // namespace beamgyro::internal::loops_test

@@ -19,7 +19,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/signal/allan_deviation.h"
 
-namespace beamgyro::mechanical_noise_test {
+namespace beamgyro::internal::mechanical_noise_test {
 namespace {
 
 using Eigen::Index;
@@ -329,4 +329,4 @@ TEST(MechanicalNoise, RejectsBadInput) {
 }
 
 }  // namespace
-}  // namespace beamgyro::mechanical_noise_test
+}  // namespace beamgyro::internal::mechanical_noise_test

@@ -13,7 +13,7 @@
 #include "sim/numerics/simulation_failure.h"
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::memory_map_test {
+namespace beamgyro::internal::memory_map_test {
 namespace {
 
 // The nominal unit with every memory effect at its default constants.
@@ -151,4 +151,4 @@ TEST(V58Memory, AHysteresisThatCreatesEnergyIsRefused) {
 }
 
 }  // namespace
-}  // namespace beamgyro::memory_map_test
+}  // namespace beamgyro::internal::memory_map_test

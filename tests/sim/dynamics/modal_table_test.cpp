@@ -8,7 +8,7 @@
 
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::modal_table_test {
+namespace beamgyro::internal::modal_table_test {
 namespace {
 
 TEST(ModalTable, GivesTheOutputOfTheExactSolution) {
@@ -45,4 +45,4 @@ TEST(ModalTable, RefusesABeamOutsideTheModel) {
 }
 
 }  // namespace
-}  // namespace beamgyro::modal_table_test
+}  // namespace beamgyro::internal::modal_table_test

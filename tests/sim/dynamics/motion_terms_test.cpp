@@ -7,7 +7,7 @@
 #include "sim/dynamics/gyro.h"
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::motion_terms_test {
+namespace beamgyro::internal::motion_terms_test {
 namespace {
 
 constexpr double kT0 = kCalibrationTemperature;
@@ -112,4 +112,4 @@ TEST(InPhaseRate, ShowsInTheOutputAsARateDoes) {
 }
 
 }  // namespace
-}  // namespace beamgyro::motion_terms_test
+}  // namespace beamgyro::internal::motion_terms_test

@@ -11,7 +11,7 @@
 #include "sim/dynamics/mode_forces.h"
 #include "sim/numerics/explicit_rk.h"
 
-namespace beamgyro::rotating_frame_test {
+namespace beamgyro::internal::rotating_frame_test {
 namespace {
 
 using Eigen::Matrix2d;
@@ -179,4 +179,4 @@ TEST(Verification, V19DrivenVibrationIsTheAlgebraicSolution) {
 }
 
 }  // namespace
-}  // namespace beamgyro::rotating_frame_test
+}  // namespace beamgyro::internal::rotating_frame_test

@@ -9,7 +9,7 @@
 
 #include "sim/dynamics/envelope_plant.h"
 
-namespace beamgyro::slow_manifold_test {
+namespace beamgyro::internal::slow_manifold_test {
 namespace {
 
 using Eigen::Matrix2cd;
@@ -96,4 +96,4 @@ TEST(Verification, V21OrdersAreOneAndTwo) {
 }
 
 }  // namespace
-}  // namespace beamgyro::slow_manifold_test
+}  // namespace beamgyro::internal::slow_manifold_test

@@ -10,7 +10,7 @@
 
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::static_map_test {
+namespace beamgyro::internal::static_map_test {
 namespace {
 
 class StaticMapAccuracy : public testing::TestWithParam<double> {};
@@ -93,4 +93,4 @@ TEST(StaticMap, AVoltageLimitActsAsInTheExactSolution) {
 }
 
 }  // namespace
-}  // namespace beamgyro::static_map_test
+}  // namespace beamgyro::internal::static_map_test

@@ -11,7 +11,7 @@
 #include "sim/dynamics/gyro.h"
 #include "tests/sim/device/nominal_device.h"
 
-namespace beamgyro::static_solution_test {
+namespace beamgyro::internal::static_solution_test {
 namespace {
 
 constexpr double kT0 = kCalibrationTemperature;
@@ -119,4 +119,4 @@ TEST(StaticSolution, AVoltageAtItsLimitScalesTheMotionAndSaysSo) {
 }
 
 }  // namespace
-}  // namespace beamgyro::static_solution_test
+}  // namespace beamgyro::internal::static_solution_test

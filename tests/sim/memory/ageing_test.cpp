@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace beamgyro::ageing_test {
+namespace beamgyro::internal::ageing_test {
 namespace {
 
 constexpr double kHour = 3600, kDay = 24 * kHour;
@@ -55,4 +55,4 @@ TEST(Ageing, OverARampIsTheIntegralOfItsRate) {
 }
 
 }  // namespace
-}  // namespace beamgyro::ageing_test
+}  // namespace beamgyro::internal::ageing_test

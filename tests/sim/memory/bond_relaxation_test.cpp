@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace beamgyro::bond_relaxation_test {
+namespace beamgyro::internal::bond_relaxation_test {
 namespace {
 
 constexpr double kZero = 273.15, kGlass = 311.15;  // [K]
@@ -100,4 +100,4 @@ TEST(BondRelaxation, DoesNotDependOnHowAHistoryIsCutIntoSteps) {
 }
 
 }  // namespace
-}  // namespace beamgyro::bond_relaxation_test
+}  // namespace beamgyro::internal::bond_relaxation_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace beamgyro::memory_trajectory_test {
+namespace beamgyro::internal::memory_trajectory_test {
 namespace {
 
 constexpr double kZero = 273.15, kGlass = 311.15;  // [K]
@@ -169,4 +169,4 @@ TEST(UnitMemory, AgesFromItsTrimOn) {
 }
 
 }  // namespace
-}  // namespace beamgyro::memory_trajectory_test
+}  // namespace beamgyro::internal::memory_trajectory_test

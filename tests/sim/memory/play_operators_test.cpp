@@ -8,7 +8,7 @@
 #include <initializer_list>
 #include <vector>
 
-namespace beamgyro::play_operators_test {
+namespace beamgyro::internal::play_operators_test {
 namespace {
 
 constexpr HysteresisParameters kNominal{.half_width = {0.5, 1.5, 4, 10},
@@ -130,4 +130,4 @@ TEST(PlayOperators, GiveTheValueAtAnyPointOfAMonotoneMove) {
 }
 
 }  // namespace
-}  // namespace beamgyro::play_operators_test
+}  // namespace beamgyro::internal::play_operators_test

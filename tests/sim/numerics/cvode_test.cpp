@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace beamgyro::cvode_test {
+namespace beamgyro::internal::cvode_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -340,4 +340,4 @@ TEST(Verification, V47IntegratorsInTwoThreadsGiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace beamgyro::cvode_test
+}  // namespace beamgyro::internal::cvode_test

@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace beamgyro::explicit_rk_test {
+namespace beamgyro::internal::explicit_rk_test {
 namespace {
 
 // A pendulum that turns over, with a drag that depends on time: nonlinear, not
@@ -103,4 +103,4 @@ TEST(ExplicitRk, CarriesExceptionsAndRefusesWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace beamgyro::explicit_rk_test
+}  // namespace beamgyro::internal::explicit_rk_test

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace beamgyro::piecewise_linear_test {
+namespace beamgyro::internal::piecewise_linear_test {
 namespace {
 
 std::string rejection(std::vector<double> time, std::vector<double> value) {
@@ -96,4 +96,4 @@ TEST(PiecewiseLinear, RejectsWhatIsNoProfile) {
 }
 
 }  // namespace
-}  // namespace beamgyro::piecewise_linear_test
+}  // namespace beamgyro::internal::piecewise_linear_test

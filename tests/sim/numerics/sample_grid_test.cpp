@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace beamgyro::sample_grid_test {
+namespace beamgyro::internal::sample_grid_test {
 namespace {
 
 TEST(SampleGrid, FindsTheFirstSampleFromATimeOn) {
@@ -26,4 +26,4 @@ TEST(SampleGrid, FindsTheFirstSampleFromATimeOn) {
 }
 
 }  // namespace
-}  // namespace beamgyro::sample_grid_test
+}  // namespace beamgyro::internal::sample_grid_test

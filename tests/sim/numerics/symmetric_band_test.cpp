@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace beamgyro::symmetric_band_test {
+namespace beamgyro::internal::symmetric_band_test {
 namespace {
 
 using Eigen::Index;
@@ -64,4 +64,4 @@ TEST(SymmetricBand, ASingularMatrixHasNoSolution) {
 }
 
 }  // namespace
-}  // namespace beamgyro::symmetric_band_test
+}  // namespace beamgyro::internal::symmetric_band_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace beamgyro::timeline_test {
+namespace beamgyro::internal::timeline_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -53,4 +53,4 @@ TEST(Timeline, BordersARoundingFromEitherEndMakeNoPiece) {
 }
 
 }  // namespace
-}  // namespace beamgyro::timeline_test
+}  // namespace beamgyro::internal::timeline_test

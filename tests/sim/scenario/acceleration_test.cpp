@@ -14,7 +14,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro::acceleration_test {
+namespace beamgyro::internal::acceleration_test {
 namespace {
 
 constexpr double kRectification = 0.002;  // [deg/s/g^2]
@@ -141,4 +141,4 @@ TEST(CrossRate, ShowsInTheQuadratureOfARun) {
 }
 
 }  // namespace
-}  // namespace beamgyro::acceleration_test
+}  // namespace beamgyro::internal::acceleration_test

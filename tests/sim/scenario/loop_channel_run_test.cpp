@@ -17,7 +17,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro::loop_channel_run_test {
+namespace beamgyro::internal::loop_channel_run_test {
 namespace {
 
 // A unit that makes no heat, with channels that are not quantised.
@@ -262,4 +262,4 @@ TEST(LoopChannelRun, TheTransientOfATurnOnSettles) {
 }
 
 }  // namespace
-}  // namespace beamgyro::loop_channel_run_test
+}  // namespace beamgyro::internal::loop_channel_run_test

@@ -15,7 +15,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro::motion_axes_test {
+namespace beamgyro::internal::motion_axes_test {
 namespace {
 
 constexpr double kGravity = 9.80665;  // [m/s2]
@@ -46,7 +46,7 @@ AxisCase acceleration_axis(const std::string& name, std::size_t i) {
           1, [i](const RunSamples& s) -> const auto& {return s.acceleration[i];
 }
 };  // namespace
-}  // namespace beamgyro::motion_axes_test
+}  // namespace beamgyro::internal::motion_axes_test
 
 std::vector<AxisCase> axes() {
   return {
@@ -203,4 +203,4 @@ TEST(RandomAxes, LeaveTheRateAboutTheInputAxisAsItIsAlone) {
 }
 
 }  // namespace
-}  // namespace beamgyro::motion_axes_test
+}  // namespace beamgyro::internal::motion_axes_test

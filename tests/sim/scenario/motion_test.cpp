@@ -11,7 +11,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro::motion_test {
+namespace beamgyro::internal::motion_test {
 namespace {
 
 const Gyro& nominal_gyro() {
@@ -162,4 +162,4 @@ TEST(ScenarioFile, NamesWhatIsWrongWithTheMotionOfAnAxis) {
 }
 
 }  // namespace
-}  // namespace beamgyro::motion_test
+}  // namespace beamgyro::internal::motion_test

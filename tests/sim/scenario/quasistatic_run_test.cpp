@@ -14,7 +14,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro::quasistatic_run_test {
+namespace beamgyro::internal::quasistatic_run_test {
 namespace {
 
 const std::vector<double>& values(const Recording& recording,
@@ -235,4 +235,4 @@ TEST(QuasistaticRun, WhiteNoiseHasTheDensityOfTheDeviceAtAnyOutputRate) {
 }
 
 }  // namespace
-}  // namespace beamgyro::quasistatic_run_test
+}  // namespace beamgyro::internal::quasistatic_run_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace beamgyro::rate_profile_test {
+namespace beamgyro::internal::rate_profile_test {
 namespace {
 
 TEST(RandomRate, HasTheRmsAndTheCorrelationItSays) {
@@ -58,4 +58,4 @@ TEST(Signal, IsShownUnfilteredAndFiltered) {
 }
 
 }  // namespace
-}  // namespace beamgyro::rate_profile_test
+}  // namespace beamgyro::internal::rate_profile_test

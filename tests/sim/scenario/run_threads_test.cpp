@@ -11,7 +11,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro::run_threads_test {
+namespace beamgyro::internal::run_threads_test {
 namespace {
 
 constexpr std::size_t kDevices = 8;
@@ -94,4 +94,4 @@ TEST(PreparedGyro, ServesManyRunsLikeTheDeviceItself) {
 }
 
 }  // namespace
-}  // namespace beamgyro::run_threads_test
+}  // namespace beamgyro::internal::run_threads_test

@@ -8,7 +8,7 @@
 
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro::scenario_file_test {
+namespace beamgyro::internal::scenario_file_test {
 namespace {
 
 constexpr double kZeroCelsius = 273.15;  // [K]
@@ -151,4 +151,4 @@ TEST(ScenarioFile, TheShiftedAmbientStaysInRange) {
 }
 
 }  // namespace
-}  // namespace beamgyro::scenario_file_test
+}  // namespace beamgyro::internal::scenario_file_test

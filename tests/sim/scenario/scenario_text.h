@@ -5,7 +5,7 @@
 
 #include "sim/scenario/scenario_file.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A short scenario at 25 degC and rest with `extra` TOML after it.
 inline Scenario scenario_from(
@@ -24,4 +24,4 @@ inline Scenario scenario_from(
   return scenario;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-namespace beamgyro::square_acceleration_test {
+namespace beamgyro::internal::square_acceleration_test {
 namespace {
 
 constexpr double kCorner = 2 * std::numbers::pi * 60;  // w_o [rad/s]
@@ -99,4 +99,4 @@ TEST(SquareAcceleration, OfASineIsThatOfItsPointsOnceSettled) {
 }
 
 }  // namespace
-}  // namespace beamgyro::square_acceleration_test
+}  // namespace beamgyro::internal::square_acceleration_test

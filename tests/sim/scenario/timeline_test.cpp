@@ -18,7 +18,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro::timeline_test {
+namespace beamgyro::internal::timeline_test {
 namespace {
 
 const Gyro& fine_gyro() {
@@ -235,4 +235,4 @@ INSTANTIATE_TEST_SUITE_P(Fidelities, BordersARoundingApart,
                                          Fidelity::kCarrier));
 
 }  // namespace
-}  // namespace beamgyro::timeline_test
+}  // namespace beamgyro::internal::timeline_test

@@ -8,7 +8,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro::warm_up_test {
+namespace beamgyro::internal::warm_up_test {
 namespace {
 
 // Smallest time after which the bias stays within 5 % of its whole change.
@@ -48,4 +48,4 @@ TEST(WarmUp, ChangeOfTheBiasDependsOnTheAmbient) {
 }
 
 }  // namespace
-}  // namespace beamgyro::warm_up_test
+}  // namespace beamgyro::internal::warm_up_test

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Plain Allan deviation over clusters of `cluster` samples, and 3 sigma of it
 /// for white noise, whose successive differences are the most alike (-1/2) of
@@ -31,4 +31,4 @@ inline AllanDeviation allan_deviation(std::span<const double> rate,
   return {value, 3.0 * 0.87 / std::sqrt(static_cast<double>(clusters)) * value};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -10,7 +10,7 @@
 
 #include "tests/sim/signal/allan_deviation.h"
 
-namespace beamgyro::flicker_test {
+namespace beamgyro::internal::flicker_test {
 namespace {
 
 constexpr double kB = 0.01;  // [rad/s]
@@ -182,4 +182,4 @@ TEST(FlickerFilter, RejectsBadParameters) {
 }
 
 }  // namespace
-}  // namespace beamgyro::flicker_test
+}  // namespace beamgyro::internal::flicker_test

@@ -14,7 +14,7 @@
 
 #include "sim/scenario/random_purposes.h"
 
-namespace beamgyro::linear_noise_test {
+namespace beamgyro::internal::linear_noise_test {
 namespace {
 
 using Eigen::Index;
@@ -339,4 +339,4 @@ TEST(LinearNoise, RejectsBadInput) {
 }
 
 }  // namespace
-}  // namespace beamgyro::linear_noise_test
+}  // namespace beamgyro::internal::linear_noise_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace beamgyro::loop_channels_test {
+namespace beamgyro::internal::loop_channels_test {
 namespace {
 
 const std::vector<double> kWarming = {0, -65, 10};         // [K]
@@ -50,4 +50,4 @@ TEST(LoopChannels, TheQuadratureHasAnOffsetOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace beamgyro::loop_channels_test
+}  // namespace beamgyro::internal::loop_channels_test

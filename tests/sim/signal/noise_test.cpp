@@ -12,7 +12,7 @@
 #include "sim/signal/readout.h"
 #include "tests/sim/signal/allan_deviation.h"
 
-namespace beamgyro::noise_test {
+namespace beamgyro::internal::noise_test {
 namespace {
 
 constexpr double kN = 2e-4, kB = 1e-4, kK = 3e-6, kOn = 5e-4;
@@ -270,4 +270,4 @@ TEST(RateNoise, RejectsBadParameters) {
 }
 
 }  // namespace
-}  // namespace beamgyro::noise_test
+}  // namespace beamgyro::internal::noise_test

@@ -14,7 +14,7 @@
 #include "random/random_stream.h"
 #include "sim/scenario/random_purposes.h"
 
-namespace beamgyro::output_filter_test {
+namespace beamgyro::internal::output_filter_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -181,4 +181,4 @@ TEST(OutputFilter, AnswersInPiecesAsInOne) {
 }
 
 }  // namespace
-}  // namespace beamgyro::output_filter_test
+}  // namespace beamgyro::internal::output_filter_test

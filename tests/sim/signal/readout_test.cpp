@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace beamgyro::readout_test {
+namespace beamgyro::internal::readout_test {
 namespace {
 
 TEST(Quantise, GivesTheNearestMultipleWithHalvesAwayFromZero) {
@@ -122,4 +122,4 @@ TEST(Readout, RejectsBadParameters) {
 }
 
 }  // namespace
-}  // namespace beamgyro::readout_test
+}  // namespace beamgyro::internal::readout_test

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace beamgyro::temperature_sensor_test {
+namespace beamgyro::internal::temperature_sensor_test {
 namespace {
 
 constexpr TemperatureSensorParameters kSensor = {
@@ -94,4 +94,4 @@ TEST(TemperatureSensor, RejectsBadParameters) {
 }
 
 }  // namespace
-}  // namespace beamgyro::temperature_sensor_test
+}  // namespace beamgyro::internal::temperature_sensor_test

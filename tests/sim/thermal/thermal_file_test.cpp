@@ -9,7 +9,7 @@
 #include "config/document.h"
 #include "sim/thermal/thermal_network.h"
 
-namespace beamgyro::thermal_file_test {
+namespace beamgyro::internal::thermal_file_test {
 namespace {
 
 constexpr char kOven[] =
@@ -115,4 +115,4 @@ TEST(ThermalFile, RejectsAnUnknownKey) {
 }
 
 }  // namespace
-}  // namespace beamgyro::thermal_file_test
+}  // namespace beamgyro::internal::thermal_file_test

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace beamgyro::thermal_network_test {
+namespace beamgyro::internal::thermal_network_test {
 namespace {
 
 NodeVector warm_state() {
@@ -173,4 +173,4 @@ TEST(ThermalNetwork, RejectsANodeThatNothingJoins) {
 }
 
 }  // namespace
-}  // namespace beamgyro::thermal_network_test
+}  // namespace beamgyro::internal::thermal_network_test

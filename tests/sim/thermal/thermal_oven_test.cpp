@@ -9,7 +9,7 @@
 
 #include "sim/thermal/thermal_run.h"
 
-namespace beamgyro::thermal_oven_test {
+namespace beamgyro::internal::thermal_oven_test {
 namespace {
 
 constexpr double kZeroCelsius = 273.15;  // [K]
@@ -164,4 +164,4 @@ TEST(ThermalOven, IntegralRestsInSaturationAndRecoversFromIt) {
 }
 
 }  // namespace
-}  // namespace beamgyro::thermal_oven_test
+}  // namespace beamgyro::internal::thermal_oven_test

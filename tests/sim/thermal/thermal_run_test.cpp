@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-namespace beamgyro::thermal_run_test {
+namespace beamgyro::internal::thermal_run_test {
 namespace {
 
 std::vector<double> at_rate(double rate, double duration) {
@@ -188,4 +188,4 @@ TEST(ThermalRun, RejectsALoadThatIsOutOfOrder) {
 }
 
 }  // namespace
-}  // namespace beamgyro::thermal_run_test
+}  // namespace beamgyro::internal::thermal_run_test

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace beamgyro::thermal_trajectory_test {
+namespace beamgyro::internal::thermal_trajectory_test {
 namespace {
 
 const ThermalNetwork& network() {
@@ -51,4 +51,4 @@ TEST(ThermalTrajectory, HoldsTheTemperaturesOfTheSamplesToTheLastBit) {
 }
 
 }  // namespace
-}  // namespace beamgyro::thermal_trajectory_test
+}  // namespace beamgyro::internal::thermal_trajectory_test

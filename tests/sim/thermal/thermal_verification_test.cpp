@@ -9,7 +9,7 @@
 
 #include "sim/thermal/thermal_run.h"
 
-namespace beamgyro::thermal_verification_test {
+namespace beamgyro::internal::thermal_verification_test {
 namespace {
 
 constexpr double kBeamNodePower = 1e-4;  // [W]
@@ -190,4 +190,4 @@ TEST(RampLag, SensorLeadsTheBeamByTheStatedKelvins) {
 }
 
 }  // namespace
-}  // namespace beamgyro::thermal_verification_test
+}  // namespace beamgyro::internal::thermal_verification_test

@@ -20,7 +20,7 @@
 #include "validation/specification/decision.h"
 #include "validation/specification/specification_file.h"
 
-namespace beamgyro::planted_faults_test {
+namespace beamgyro::internal::planted_faults_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -429,4 +429,4 @@ TEST(PlantedFaults, APerfectCompensatorMeetsEveryShippedLimit) {
 }
 
 }  // namespace
-}  // namespace beamgyro::planted_faults_test
+}  // namespace beamgyro::internal::planted_faults_test

@@ -10,7 +10,7 @@
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::string constant_ambient(double celsius) {
@@ -126,4 +126,4 @@ Evidence recorded_evidence() {
   return evidence;
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

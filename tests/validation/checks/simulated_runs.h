@@ -11,7 +11,7 @@
 #include "validation/evidence/evidence.h"
 #include "validation/external/tested_compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// Runs of the nominal device at 10 Hz, simulated once: soaks, a rate table at
 /// five temperatures, random rates and a rest.
@@ -57,4 +57,4 @@ std::vector<std::string> failed_checks(const CheckedCompensator& compensator);
 Evidence evidence_of(const CheckedCompensator& compensator);
 Evidence recorded_evidence();
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace beamgyro::evidence_test {
+namespace beamgyro::internal::evidence_test {
 
 TEST(Evidence, EveryPurposeIsFoundByItsName) {
   for (int k = 0; k <= static_cast<int>(RunPurpose::kVibration); ++k) {
@@ -24,4 +24,4 @@ TEST(Evidence, RunsAreFoundByPurposeInTheirOrder) {
   EXPECT_EQ(found[1]->name, "c");
 }
 
-}  // namespace beamgyro::evidence_test
+}  // namespace beamgyro::internal::evidence_test

@@ -10,7 +10,7 @@
 #include "validation/qualification/qualification_file.h"
 #include "validation/qualification/qualified_runs.h"
 
-namespace beamgyro::recorded_purpose_test {
+namespace beamgyro::internal::recorded_purpose_test {
 namespace {
 
 const std::filesystem::path kScenarios = BEAMGYRO_SCENARIOS;
@@ -58,4 +58,4 @@ TEST(RecordedPurpose, OfALogIsToldFromTheMeasuredTemperature) {
   EXPECT_THROW(recorded_purpose(log), std::invalid_argument);
 }
 
-}  // namespace beamgyro::recorded_purpose_test
+}  // namespace beamgyro::internal::recorded_purpose_test

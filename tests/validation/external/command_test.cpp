@@ -16,7 +16,7 @@
 #include "validation/external/answering.h"
 #include "validation/external/file_compensator.h"
 
-namespace beamgyro::command_test {
+namespace beamgyro::internal::command_test {
 namespace {
 
 // A Python program that corrects 0.01 deg/s/K. {} are what it does before the
@@ -260,4 +260,4 @@ TEST(AnswerDifference, IsTheLargestAndTheRms) {
   EXPECT_DOUBLE_EQ(found.rms, std::sqrt((0.25 + 1.0) / 3.0));
 }
 
-}  // namespace beamgyro::command_test
+}  // namespace beamgyro::internal::command_test

@@ -14,7 +14,7 @@
 #include "validation/external/answer_checks.h"
 #include "validation/external/answering.h"
 
-namespace beamgyro::library_test {
+namespace beamgyro::internal::library_test {
 namespace {
 
 constexpr std::size_t kFaultySample = 700;  // of faulty_plugin.c
@@ -177,4 +177,4 @@ TEST(LibraryCompensator, LeavesNoDescriptorAndNoProcess) {
   EXPECT_EQ(errno, ECHILD);
 }
 
-}  // namespace beamgyro::library_test
+}  // namespace beamgyro::internal::library_test

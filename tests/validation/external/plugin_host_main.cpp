@@ -3,5 +3,5 @@
 #include "validation/external/plugin_host.h"
 
 int main(int argc, char** argv) {
-  return beamgyro::host_plugin({argv + 2, argv + argc});
+  return beamgyro::internal::host_plugin({argv + 2, argv + argc});
 }

@@ -7,7 +7,7 @@
 
 #include "dataset/recording/signals.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 Recording tested_run(double duration) {
   RecordedRun run;
@@ -46,4 +46,4 @@ SeenFault only_fault(const TestedCompensator& compensator,
                                : answer.faults[0];
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include "tests/compensation/recorded_run.h"
 #include "validation/external/tested_compensator.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A run at 100 Hz at a changing rate, with the power off from 9 s to 9.5 s.
 Recording tested_run(double duration = 10.0);
@@ -23,4 +23,4 @@ std::unique_ptr<TestedCompensator> faulty_plugin(const std::string& fault);
 SeenFault only_fault(const TestedCompensator& compensator,
                      const Recording& run = tested_run());
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include "random/random_stream.h"
 #include "tests/validation/metrics/metric_scene.h"
 
-namespace beamgyro::metric_coverage_test {
+namespace beamgyro::internal::metric_coverage_test {
 namespace {
 
 using enum RunPurpose;
@@ -423,4 +423,4 @@ TEST(MetricCoverage, AddedDelay) {
 }
 
 }  // namespace
-}  // namespace beamgyro::metric_coverage_test
+}  // namespace beamgyro::internal::metric_coverage_test

@@ -6,7 +6,7 @@
 
 #include "sim/signal/noise.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 namespace {
 
 std::vector<double>& rate_of(Recording& recording) {
@@ -108,4 +108,4 @@ SceneRun tumble_run(double drift, const std::array<double, 3>& sensitivities) {
            {"true_acceleration_z", axis(2)}}};
 }
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

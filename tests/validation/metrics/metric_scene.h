@@ -11,7 +11,7 @@
 #include "validation/metrics/metric.h"
 #include "validation/metrics/rate_noise_model.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
 /// A run of a gyro whose signals are known, with noise that its device states.
 struct SceneRun {
@@ -52,4 +52,4 @@ inline constexpr double kStandardGravity = 9.80665;  // [m/s2]
 /// `sensitivities` [deg/s/g].
 SceneRun tumble_run(double drift, const std::array<double, 3>& sensitivities);
 
-}  // namespace beamgyro
+}  // namespace beamgyro::internal

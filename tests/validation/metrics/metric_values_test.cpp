@@ -12,7 +12,7 @@
 #include "tests/sim/scenario/scenario_text.h"
 #include "tests/validation/metrics/metric_scene.h"
 
-namespace beamgyro::metric_values_test {
+namespace beamgyro::internal::metric_values_test {
 namespace {
 
 using enum RunPurpose;
@@ -458,4 +458,4 @@ TEST(MetricValues, OneMissingAnswerOfAHundredThousandIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace beamgyro::metric_values_test
+}  // namespace beamgyro::internal::metric_values_test

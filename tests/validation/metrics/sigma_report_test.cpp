@@ -16,7 +16,7 @@
 #include "validation/metrics/bias_filter.h"
 #include "validation/metrics/sigma_evidence.h"
 
-namespace beamgyro::sigma_report_test {
+namespace beamgyro::internal::sigma_report_test {
 namespace {
 
 using enum RunPurpose;
@@ -256,4 +256,4 @@ TEST(BiasFilter, ForgetsOverTheCorrelationOfTheTemperature) {
 }
 
 }  // namespace
-}  // namespace beamgyro::sigma_report_test
+}  // namespace beamgyro::internal::sigma_report_test

@@ -18,7 +18,7 @@
 #include "random/random_stream.h"
 #include "validation/page/page.h"
 
-namespace beamgyro::figures_test {
+namespace beamgyro::internal::figures_test {
 
 constexpr double kPi = std::numbers::pi;
 // Figures have six significant digits.
@@ -301,4 +301,4 @@ TEST(Figures, AYieldRisesToTheShareOfDevicesThatHaveAFigure) {
   EXPECT_EQ(figure["series"][2]["role"], "limit");
 }
 
-}  // namespace beamgyro::figures_test
+}  // namespace beamgyro::internal::figures_test

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace beamgyro::page_test {
+namespace beamgyro::internal::page_test {
 
 std::size_t occurrences(const std::string& text, const std::string& part) {
   std::size_t count = 0;
@@ -67,4 +67,4 @@ TEST(ReportPage, IsSmallWithEveryFigureFull) {
   EXPECT_LT(page_of(result).size(), 2'000'000u);
 }
 
-}  // namespace beamgyro::page_test
+}  // namespace beamgyro::internal::page_test

@@ -7,7 +7,7 @@
 
 #include "validation/result/result_json.h"
 
-namespace beamgyro::judgement_test {
+namespace beamgyro::internal::judgement_test {
 namespace {
 
 DecidedLimit decided(const char* metric, Conformity result) {
@@ -103,4 +103,4 @@ TEST(ResultJson, SaysNullForWhatIsNotThere) {
   EXPECT_EQ(json["limits"][0]["relative_to"], "cubic");
 }
 
-}  // namespace beamgyro::judgement_test
+}  // namespace beamgyro::internal::judgement_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace beamgyro::population_yield_test {
+namespace beamgyro::internal::population_yield_test {
 namespace {
 
 // Returns the probability of `low` to `high` successes in `n` trials.
@@ -43,4 +43,4 @@ TEST(ClopperPearson, OfNoneAndOfAllReachesTheEnd) {
   EXPECT_EQ(all.high, 1.0);
 }
 
-}  // namespace beamgyro::population_yield_test
+}  // namespace beamgyro::internal::population_yield_test

@@ -12,7 +12,7 @@
 #include "random/random_stream.h"
 #include "validation/metrics/metric.h"
 
-namespace beamgyro::decision_test {
+namespace beamgyro::internal::decision_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -274,4 +274,4 @@ TEST(Decision, DevicesAtTheLimitPassAsOftenAsTheRiskSays) {
 }
 
 }  // namespace
-}  // namespace beamgyro::decision_test
+}  // namespace beamgyro::internal::decision_test

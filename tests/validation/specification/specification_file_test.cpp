@@ -8,7 +8,7 @@
 
 #include "validation/metrics/metric.h"
 
-namespace beamgyro::specification_file_test {
+namespace beamgyro::internal::specification_file_test {
 namespace {
 
 SpecificationFile parsed(const std::string& text) {
@@ -156,4 +156,4 @@ TEST(SpecificationFile, ShippedOnesAreReadAndNameTheirSources) {
 }
 
 }  // namespace
-}  // namespace beamgyro::specification_file_test
+}  // namespace beamgyro::internal::specification_file_test

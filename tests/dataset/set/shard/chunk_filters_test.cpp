@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-namespace beamgyro::chunk_filters_test {
+namespace beamgyro::internal::chunk_filters_test {
 namespace {
 
 std::vector<std::byte> noise(std::size_t size) {
@@ -89,4 +89,4 @@ TEST(ChunkPacker, ShrinksSmoothValuesAndIsTheSameEveryTime) {
 }
 
 }  // namespace
-}  // namespace beamgyro::chunk_filters_test
+}  // namespace beamgyro::internal::chunk_filters_test

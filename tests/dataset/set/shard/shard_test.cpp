@@ -15,7 +15,7 @@
 #include "tests/dataset/set/sample_set.h"
 #include "tests/dataset/set/set_directory.h"
 
-namespace beamgyro::shard_test {
+namespace beamgyro::internal::shard_test {
 namespace {
 
 class Shard : public SetDirectory {
@@ -338,4 +338,4 @@ TEST_F(Shard, OtherFilesAreRejected) {
 }
 
 }  // namespace
-}  // namespace beamgyro::shard_test
+}  // namespace beamgyro::internal::shard_test
