@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Gyros: what a device file says, and the steady state that follows from it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace beamgyro {
+
+/// A gyro, read from a device file (docs/reference/device_file.md) and checked.
+/// Immutable; copies share their state, and many threads may use one at once.
+class Device {
+ public:
+  struct State;
+
+  /// Reads a device file. `overrides` replace keys of it: KEY=VALUE with a
+  /// dotted key and any TOML value, as "beam.length_m=0.041". Throws
+  /// std::invalid_argument "file:line:column: key: ..." for what is wrong in
+  /// the file, and "--set KEY=VALUE: ..." for an override.
+  static Device read(const std::filesystem::path& file,
+                     const std::vector<std::string>& overrides = {});
+
+  /// The same for a text in memory, called `name` in messages.
+  static Device parse(const std::string& text,
+                      const std::string& name = "device",
+                      const std::vector<std::string>& overrides = {});
+
+  /// Returns the device with further keys replaced. A key that was replaced
+  /// before takes the new value. Throws as read().
+  Device with(const std::vector<std::string>& overrides) const;
+
+  const std::string& text() const;  ///< byte for byte as read
+  const std::string& name() const;  ///< of the file, in messages
+  const std::vector<std::string>& overrides() const;  ///< in their order
+
+  explicit Device(std::shared_ptr<const State> state);
+  const State& state() const { return *state_; }
+
+ private:
+  std::shared_ptr<const State> state_;
+};
+
+/// A quantity over the temperatures of a Characteristic.
+struct CharacteristicColumn {
+  std::string name;   ///< "bias", "drive_frequency", ...
+  std::string units;  ///< as in recordings: degree/s, Hz, V; 1: a number
+  std::vector<double> values;
+};
+
+/// The steady state of a gyro at rest over the temperature of its beam, without
+/// noise.
+struct Characteristic {
+  std::vector<double> temperature;  ///< [degC], of the beam
+  /// bias, with its parts in_phase and quadrature [degree/s], drive_frequency
+  /// and split of the modes [Hz], q_drive and q_sense [1], drive_voltage [V],
+  /// scale_factor over that at the trim temperature [1].
+  std::vector<CharacteristicColumn> columns;
+  std::vector<std::string> warnings;
+  std::string csv;  ///< byte for byte what `beamgyro characterise` writes
+};
+
+/// Computes the steady state at beam temperatures [degC], in their order.
+/// Throws std::invalid_argument for a temperature beyond -100 to 150 degC or
+/// that is not finite, and std::runtime_error when the drive loop cannot lock.
+Characteristic characterise(const Device& device,
+                            std::span<const double> temperatures_degC);
+
+}  // namespace beamgyro

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Compensators as C source, autopilot parameters and noise of filters.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "beamgyro/compensator.h"
+
+namespace beamgyro {
+
+struct ExportOptions {
+  std::string name = {};  ///< of files and functions; else of the compensator
+  /// Of the autopilot's gyro for each compensator, or of the robot: "x", "y",
+  /// "z"; z for one compensator, x, y, z for three without.
+  std::vector<std::string> axes = {};
+  bool force = false;      ///< c: also where the firmware would be wrong
+  bool fit_cubic = false;  ///< px4, ardupilot: the cubic of the same rows
+  std::optional<int> instance = {};                ///< px4, ardupilot
+  std::optional<std::int64_t> device_id = {};      ///< px4
+  std::optional<std::filesystem::path> rest = {};  ///< ekf: recording at rest
+  std::optional<double> ramp_K_per_min = {};       ///< ekf; 1 without
+  std::optional<double> correlation_K = {};        ///< ekf; 10 without
+  std::optional<double> temperature_degC = {};     ///< ekf
+};
+
+/// A text file without its folder.
+struct ExportedFile {
+  std::string name, text;
+};
+
+struct ExportResult {
+  std::vector<ExportedFile> files;
+  std::vector<std::string> warnings;
+};
+
+/// Returns the files that `beamgyro export` writes. `format` is "c", "px4",
+/// "ardupilot" or "ekf"; px4 and ardupilot take up to three compensators, one
+/// for each axis. Throws std::invalid_argument for an option that the format
+/// does not have, and for a compensator that it cannot express.
+ExportResult export_files(const std::vector<Compensator>& compensators,
+                          const std::string& format,
+                          const ExportOptions& options = {});
+
+}  // namespace beamgyro

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// How long work tells how far it is, and how it is stopped.
+#pragma once
+
+#include <functional>
+#include <stdexcept>
+
+namespace beamgyro {
+
+/// Is told the share of the work that is done, 0 .. 1, and returns whether to
+/// go on. It is called from any thread, but never by two at once. An empty
+/// function asks for nothing. An exception that it throws ends the work, too,
+/// and reaches the caller.
+using Progress = std::function<bool(double share)>;
+
+/// Thrown where a Progress returned false. Nothing that was under way is left
+/// under its final name; the finished files of a set stay.
+class Cancelled : public std::runtime_error {
+ public:
+  Cancelled();
+};
+
+}  // namespace beamgyro

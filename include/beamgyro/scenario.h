@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Scenarios: what happens to a gyro over time.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "beamgyro/device.h"
+
+namespace beamgyro {
+
+/// A scenario file (docs/reference/scenario_file.md) and the device that it is
+/// about, read and checked. Immutable; copies share their state, and many
+/// threads may use one at once.
+class Scenario {
+ public:
+  struct State;
+
+  /// Reads a scenario and the device that it names. `overrides` replace keys of
+  /// either: KEY=VALUE with a dotted key and any TOML value, as "seed=2",
+  /// "fidelity=\"carrier\"" or "beam.length_m=0.041". Throws
+  /// std::invalid_argument "file:line:column: key: ..." for what is wrong in a
+  /// file, and "--set KEY=VALUE: ..." for an override.
+  static Scenario read(const std::filesystem::path& file,
+                       const std::vector<std::string>& overrides = {});
+
+  /// The same for texts in memory. The file that the scenario names as its
+  /// device is not read. `name` is the name of the scenario in messages;
+  /// profiles that the scenario names are relative to its folder.
+  static Scenario parse(const std::string& text, const Device& device,
+                        const std::vector<std::string>& overrides = {},
+                        const std::string& name = "scenario");
+
+  /// Returns the scenario with further keys of it or of its device replaced. A
+  /// key that was replaced before takes the new value. Throws as read().
+  Scenario with(const std::vector<std::string>& overrides) const;
+
+  /// Returns the scenario with another device, whose overrides go along; those
+  /// of the scenario that are about a device are kept, and win.
+  Scenario with_device(const Device& device) const;
+
+  const std::string& text() const;  ///< byte for byte as read
+  const std::string& name() const;  ///< of the file, in messages
+  Device device() const;            ///< without the overrides of the scenario
+  const std::vector<std::string>& overrides() const;  ///< in their order
+  /// All files that were read.
+  const std::vector<std::filesystem::path>& files() const;
+
+  std::string title() const;
+  double duration() const;       ///< [s]
+  double output_rate() const;    ///< [Hz]
+  std::size_t samples() const;   ///< floor(duration output_rate)
+  std::string fidelity() const;  ///< "quasistatic", "envelope" or "carrier"
+  std::uint64_t seed() const;
+  /// Estimated processor time of a carrier run [s]; 0 for the other fidelities.
+  double estimated_seconds() const;
+
+  explicit Scenario(std::shared_ptr<const State> state);
+  const State& state() const { return *state_; }
+
+ private:
+  std::shared_ptr<const State> state_;
+};
+
+}  // namespace beamgyro

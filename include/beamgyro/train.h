@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Training: from recordings to a compensator.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "beamgyro/compensator.h"
+#include "beamgyro/recording.h"
+#include "beamgyro/set.h"
+
+namespace beamgyro {
+
+/// What to train, read from a model file (docs/reference/model_file.md) and
+/// checked. Immutable; copies share their state, and many threads may use one
+/// at once.
+class Model {
+ public:
+  struct State;
+
+  /// Reads a model file. Throws std::invalid_argument "file:line:column: key:
+  /// ..." for what is wrong in it.
+  static Model read(const std::filesystem::path& file);
+  /// The same for a text in memory, called `name` in messages. A population
+  /// that it adapts is named relative to the folder of `name`.
+  static Model parse(const std::string& text,
+                     const std::string& name = "model.toml");
+
+  const std::string& text() const;  ///< byte for byte as read
+  const std::string& name() const;  ///< of the file, in messages
+  const std::vector<std::filesystem::path>& files() const;  ///< that were read
+
+  explicit Model(std::shared_ptr<const State> state);
+  const State& state() const { return *state_; }
+
+ private:
+  std::shared_ptr<const State> state_;
+};
+
+/// How far the training of a network is.
+struct TrainingProgress {
+  std::size_t restart = 0, restarts = 0;
+  std::size_t epoch = 0, max_epochs = 0;
+  double rms = 0;  ///< [deg/s], over the training rows
+};
+
+struct TrainingOptions {
+  std::uint64_t seed = 0;  ///< of the initial weights
+  /// Groups that are held out in turn: "run", "cycle", "leg"; empty: none.
+  std::string cross_validation = {};
+  /// Is told of each epoch of a network, and returns whether to go on. It is
+  /// called from any thread, but never by two at once.
+  std::function<bool(const TrainingProgress&)> progress = {};
+};
+
+/// A recording that is trained on or held out. `name` stands in messages and in
+/// the provenance of the compensator.
+struct NamedRecording {
+  std::string name;
+  Recording recording;
+};
+
+/// Part of a set that is trained on.
+struct SetChoice {
+  std::vector<std::string> runs = {};  ///< names; none: all
+  /// None: the training devices are fitted, the validation devices held out.
+  /// Otherwise these are fitted, and nothing is held out.
+  std::vector<std::uint32_t> devices = {};
+};
+
+struct TrainedCompensator {
+  Compensator compensator;
+  std::vector<std::string> warnings;  ///< what the data do not support
+  std::string text;                   ///< what `beamgyro train` prints
+};
+
+/// Fits a model to recordings. A network stops early on those that are held
+/// out. The result does not depend on the number of threads; the text of the
+/// compensator is byte for byte what `beamgyro train` writes for the same
+/// files. All throw std::invalid_argument when
+/// - a recording lacks an input, or is both fitted and held out;
+/// - the temperatures are too few or too close together, or an input never
+///   varies;
+/// - a network has neither held-out recordings nor cross-validation;
+/// std::runtime_error when the fit fails, and Cancelled.
+TrainedCompensator train(
+    const Model& model, const std::vector<std::filesystem::path>& files,
+    const std::vector<std::filesystem::path>& held_out = {},
+    const TrainingOptions& options = {});
+
+/// The same for recordings in memory. The provenance has no checksums of files
+/// then, but those of what was measured.
+TrainedCompensator train(const Model& model,
+                         const std::vector<NamedRecording>& recordings,
+                         const std::vector<NamedRecording>& held_out = {},
+                         const TrainingOptions& options = {});
+
+/// The same for the devices of a set. Also throws std::invalid_argument for a
+/// run or device that it does not have, and for cross-validation.
+TrainedCompensator train(const Model& model, const Set& set,
+                         const SetChoice& choice = {},
+                         const TrainingOptions& options = {});
+
+}  // namespace beamgyro
