@@ -23,19 +23,6 @@ H5Id text_type(std::size_t size, H5T_str_t padding) {
 
 }  // namespace
 
-std::string source_text(std::string_view fidelity,
-                        std::string_view program_version,
-                        std::string_view git_revision) {
-  const std::string what =
-      fidelity == "imported" ? "log of a gyro, imported"
-      : fidelity == "csv"
-          ? "signals of a gyro, read from CSV"
-          : fmt::format("{} simulation of a virtual gyro", fidelity);
-  return program_version.empty() ? what
-                                 : fmt::format("{} by beamgyro {} ({})", what,
-                                               program_version, git_revision);
-}
-
 H5Id scalar_space() {
   return {H5Screate(H5S_SCALAR), H5Sclose, "create a scalar"};
 }
@@ -117,15 +104,8 @@ H5Id make_variable(hid_t file, const VariableAbout& about, hid_t type,
   return variable;
 }
 
-VariableAbout status_about() {
-  return {"status", "1", "state of the gyro", Role::kMeasured};
-}
-
 void write_status_bits(hid_t status) {
-  constexpr std::array<std::uint8_t, 3> kMasks = {kUnpowered, kOutputSaturated,
-                                                  kLoopNotLocked};
-  write_flags(status, "flag_masks", kMasks,
-              "unpowered output_saturated loop_not_locked");
+  write_flags(status, "flag_masks", kStatusMasks, kStatusMeanings);
 }
 
 void write_meta(hid_t file, std::span<const NamedText> texts) {

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "dataset/netcdf/hdf5_id.h"
+#include "dataset/recording/attributes.h"
 #include "dataset/recording/recording.h"
 
 namespace beamgyro::internal {
@@ -25,16 +26,11 @@ void write_attribute(hid_t object, const char* name, hid_t type, hid_t space,
                      const void* value);
 void write_text(hid_t object, const char* name, std::string_view text);
 
-/// Returns the CF attribute `source`: how the data were made, and by what.
-std::string source_text(std::string_view fidelity,
-                        std::string_view program_version,
-                        std::string_view git_revision);
-
 /// Writes the root attributes that a Recording and a ShardHead share.
 template <class Head>
 void write_origin(hid_t file, const char* filetype, std::int32_t version,
                   const Head& head) {
-  write_text(file, "Conventions", "CF-1.10");
+  write_text(file, "Conventions", kConventions);
   write_text(file, "filetype", filetype);
   write_attribute(file, "format_version", H5T_STD_I32LE, scalar_space(),
                   &version);
@@ -55,13 +51,6 @@ void write_flags(hid_t variable, const char* attribute,
 
 H5Id space_of(std::span<const hsize_t> lengths);
 
-/// A variable over the dimension scales `axes`, with its attributes.
-struct VariableAbout {
-  std::string name, units, long_name;
-  Role role = Role::kMeasured;
-  std::string comment = {};  // no attribute when empty
-};
-
 /// Makes a variable. `properties` are those of its creation. `axes` are
 /// dimension scales, one for each dimension, or none for a variable that
 /// becomes a scale itself.
@@ -69,8 +58,7 @@ H5Id make_variable(hid_t file, const VariableAbout& about, hid_t type,
                    hid_t space, hid_t properties,
                    std::span<const H5Id* const> axes);
 
-/// The variable `status`, with the attributes that name its bits.
-VariableAbout status_about();
+/// Writes the attributes that name the bits of `status`.
 void write_status_bits(hid_t status);
 
 struct NamedText {
