@@ -2,10 +2,16 @@
 include(CMakePackageConfigHelpers)
 set(PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/beamgyro)
 
-install(TARGETS beamgyro RUNTIME)
-install(DIRECTORY scenarios specs DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro)
-install(PROGRAMS scripts/plan_figure.py scripts/validation_figures.py scripts/sensitivity_figures.py DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro/scripts)
-install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Components: runtime, dev (what names none), python.
+install(TARGETS beamgyro RUNTIME COMPONENT runtime)
+install(DIRECTORY scenarios specs DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro COMPONENT runtime)
+install(PROGRAMS scripts/plan_figure.py scripts/validation_figures.py scripts/sensitivity_figures.py
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro/scripts COMPONENT runtime)
+install(FILES README.md CITATION.cff THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime FILES_MATCHING REGEX "[.](md|png|svg)$")
+install(DIRECTORY ${BEAMGYRO_HELP_PAGES}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT runtime)
+install(DIRECTORY ${BEAMGYRO_HELP_PAGES}/completions DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion
+  COMPONENT runtime)
 
 # Everything at once. The name of the program is taken within this build.
 add_library(beamgyro_everything INTERFACE)

@@ -11,7 +11,8 @@ build=(g++ cmake ninja-build libeigen3-dev libsundials-dev libhdf5-dev
        python3 python3-matplotlib python3-h5py)
 tests=(libgtest-dev libbenchmark-dev clang-format clang-tidy netcdf-bin
        python3-pytest python3-pytest-xdist
-       python3-xarray python3-h5netcdf python3-netcdf4 python3-scipy)
+       python3-xarray python3-h5netcdf python3-netcdf4 python3-scipy
+       dpkg-dev lintian man-db)
 
 case "${1:-}" in
   demo) wanted=("${build[@]}") ;;

@@ -1,0 +1,209 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""The Debian packages of the build that the program comes from."""
+
+import gzip
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from program import PROGRAM, ROOT
+
+sys.path.insert(0, str(ROOT / "packaging"))
+# pylint: disable-next=wrong-import-position
+from help_pages import read_help  # noqa: E402
+
+BUILD = PROGRAM.parent
+
+
+def said(*command, **options):
+    """What a command prints; a failure shows all of it."""
+    answer = subprocess.run([str(part) for part in command], text=True,
+                            capture_output=True, check=False, **options)
+    if answer.returncode != 0:
+        raise AssertionError(answer.stdout + answer.stderr)
+    return answer.stdout
+
+
+def commands():
+    """Names of all commands."""
+    return re.findall(r"^  ([a-z]+)  ", said(PROGRAM, "--help"), re.MULTILINE)
+
+
+@unittest.skipUnless((BUILD / "CPackConfig.cmake").exists(),
+                     "the program does not stand in its build")
+class Packages(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="packages ")
+        cls.addClassCleanup(folder.cleanup)
+        cls.dir = pathlib.Path(folder.name)
+        said(ROOT / "scripts/package.sh", BUILD, cls.dir / "debs")
+        cls.debs = {path.name.split("_")[0]: path
+                    for path in sorted((cls.dir / "debs").glob("*.deb"))}
+        for name, path in cls.debs.items():
+            said("dpkg-deb", "-x", path, cls.dir / name)
+
+    def files(self, package):
+        """What a package installs, without the directories."""
+        root = self.dir / package
+        return {str(path.relative_to(root)): path
+                for path in root.rglob("*") if not path.is_dir()}
+
+    def field(self, package, name):
+        return said("dpkg-deb", "-f", self.debs[package], name)
+
+    def test_another_time_and_place_give_the_same_bytes(self):
+        elsewhere = self.dir / "another place"
+        said(ROOT / "scripts/package.sh", BUILD, elsewhere, umask=0o077,
+             env={**os.environ, "TZ": "Asia/Tokyo", "LC_ALL": "C.UTF-8"})
+        self.assertGreater(len(self.debs), 1)
+        for path in self.debs.values():
+            with self.subTest(path.name):
+                self.assertEqual(path.read_bytes(),
+                                 (elsewhere / path.name).read_bytes())
+
+    def test_no_file_tells_where_it_was_built(self):
+        for package in self.debs:
+            for name, path in self.files(package).items():
+                with self.subTest(name):
+                    data = path.read_bytes()
+                    self.assertNotIn(str(ROOT).encode() + b"/", data)
+                    self.assertNotIn(str(BUILD).encode(), data)
+
+    def test_lintian_finds_no_error(self):
+        for path in self.debs.values():
+            with self.subTest(path.name):
+                found = said("lintian", "--allow-root", "--fail-on", "error",
+                             path)
+                self.assertNotRegex(found, "(?m)^E:")
+
+    def test_no_file_is_in_two_packages(self):
+        names = [name for package in self.debs
+                 for name in self.files(package)]
+        self.assertEqual(len(names), len(set(names)))
+
+    def test_the_packages_depend_on_what_they_need(self):
+        needed = {"beamgyro": ["libhdf5-103-1", "libsundials-cvode6",
+                               "libfmt9"],
+                  "libbeamgyro-dev": ["libeigen3-dev", "libhdf5-dev"],
+                  "python3-beamgyro": ["python3-numpy", "python3-xarray",
+                                       "libhdf5-103-1", "python3 (<< 3.12~)"]}
+        for package in self.debs:
+            depends = self.field(package, "Depends")
+            for name in needed[package]:
+                with self.subTest(f"{package}: {name}"):
+                    self.assertIn(name, depends)
+            self.assertNotIn("-dev", self.field("beamgyro", "Depends"))
+
+    def test_the_unpacked_program_runs_an_unpacked_scenario(self):
+        usr = self.dir / "beamgyro/usr"
+        said(usr / "bin/beamgyro", "run",
+             usr / "share/beamgyro/scenarios/ten_minutes.toml", "-o", "run.h5",
+             cwd=self.dir)
+        header = said("readelf", "-d", usr / "bin/beamgyro")
+        self.assertNotIn("RUNPATH", header)
+        self.assertNotIn("RPATH", header)
+
+    def test_every_command_has_a_page_of_the_manual(self):
+        pages = self.dir / "beamgyro/usr/share/man/man1"
+        self.assertEqual(
+            {path.name for path in pages.iterdir()},
+            {"beamgyro.1.gz", *(f"beamgyro-{command}.1.gz"
+                                for command in commands())})
+        for page in pages.iterdir():
+            with self.subTest(page.name):
+                answer = subprocess.run(
+                    ["man", "--warnings", "-l", page], text=True, check=True,
+                    capture_output=True, env={**os.environ, "MANWIDTH": "80"})
+                self.assertEqual(answer.stderr, "")
+                # Neither name, flags nor time stamp: as of gzip -9n.
+                self.assertEqual(page.read_bytes()[3:9], bytes(5) + b"\2")
+
+    def test_a_page_says_all_that_the_help_says(self):
+        pages = self.dir / "beamgyro/usr/share/man/man1"
+        for command in commands():
+            page = gzip.open(pages / f"beamgyro-{command}.1.gz", "rt").read()
+            page = page.replace("\\fB", "").replace("\\fR", "").replace(
+                "\\-", "-").replace("\\(aq", "'").replace("\\e", "\\")
+            text = read_help(said(PROGRAM, "help", command))
+            self.assertGreater(len(text.sections), 2)
+            for section in text.sections:
+                for left, right in section.entries:
+                    with self.subTest(f"{command}: {left}"):
+                        self.assertIn(left, page)
+                        self.assertIn(right, page)
+
+    def completed(self, *words):
+        """What bash offers for the last word."""
+        script = ('. "$0"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1));'
+                  '_beamgyro; printf "%s\\n" "${COMPREPLY[@]}"')
+        file = (self.dir / "beamgyro/usr/share/bash-completion/completions"
+                / "beamgyro")
+        return said("bash", "-c", script, file, "beamgyro", *words,
+                    cwd=ROOT).split()
+
+    def test_bash_completes_commands_options_values_and_files(self):
+        self.assertEqual(self.completed(""), ["help", *commands()])
+        self.assertEqual(self.completed("help", "al"), ["allan"])
+        for command in commands():
+            with self.subTest(command):
+                listed = re.findall(r"^  (?:-\w, )?(--[\w-]+)",
+                                    said(PROGRAM, "help", command),
+                                    re.MULTILINE)
+                self.assertEqual(self.completed(command, "--"), listed)
+        levels = ["quasistatic", "envelope", "carrier"]
+        self.assertEqual(self.completed("run", "--fidelity", ""), levels)
+        self.assertEqual(self.completed("run", "--fidelity", "=", "e"),
+                         levels[1:2])
+        self.assertEqual(self.completed("run", "--fidelity", "="), levels)
+        self.assertIn("scenarios/warm_up.toml",
+                      self.completed("run", "scenarios/w"))
+        self.assertEqual(self.completed("verify", "scenarios/dev"),
+                         ["scenarios/devices"])
+        self.assertEqual(self.completed("run", "README"), [])
+
+    def test_the_documents_of_a_package_are_those_of_debian(self):
+        for package in self.debs:
+            documents = self.dir / package / "usr/share/doc" / package
+            text = gzip.open(documents / "changelog.gz", "rt").read()
+            self.assertEqual(text, (ROOT / "CHANGELOG.md").read_text())
+            debian = gzip.open(documents / "changelog.Debian.gz", "rt").read()
+            version = self.field(package, "Version").strip()
+            self.assertTrue(debian.startswith(f"beamgyro ({version})"))
+            self.assertIn("License: Expat",
+                          (documents / "copyright").read_text())
+
+
+class ThirdParty(unittest.TestCase):
+    def test_the_licences_are_those_that_the_packages_state(self):
+        rows = re.findall(r"^\| .+ \| (\S+) \| (.+) \|$",
+                          (ROOT / "THIRD_PARTY.md").read_text(), re.MULTILINE)
+        rows = [row for row in rows if row[0] != "Debian"]
+        self.assertGreater(len(rows), 15)
+        for package, licences in rows:
+            file = pathlib.Path("/usr/share/doc") / package / "copyright"
+            if not file.exists():  # not needed for a build
+                continue
+            for licence in licences.removesuffix(", changed").split(", "):
+                with self.subTest(f"{package}: {licence}"):
+                    self.assertIn(licence.lower(), file.read_text().lower())
+
+    def test_every_library_that_is_linked_is_listed(self):
+        listed = (ROOT / "THIRD_PARTY.md").read_text()
+        packages = (ROOT / "scripts/setup.sh").read_text()
+        build = packages.split("build=(")[1].split(")")[0].split()
+        self.assertIn("libeigen3-dev", build)
+        for name in build:
+            if re.match(r"lib|nlohmann|pybind", name):
+                with self.subTest(name):
+                    self.assertIn(name.replace("libboost-dev",
+                                               "libboost1.74-dev"), listed)
+
+
+if __name__ == "__main__":
+    unittest.main()
