@@ -24,5 +24,6 @@ void add_plan(CommandLine& program);
 void add_allan(CommandLine& program);
 void add_verify(CommandLine& program);
 void add_info(CommandLine& program);
+void add_plot(CommandLine& program);
 
 }  // namespace beamgyro::internal

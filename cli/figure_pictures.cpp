@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
@@ -19,7 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLongestDrawing = 120.0;  // [s]
+constexpr const char* kScript = "python/beamgyro/plots/__main__.py";
+constexpr const char* kPython = "/usr/bin/python3";
+constexpr double kLongestDrawing = 600.0;  // [s]
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+// How the script ends when it says why in one line.
+constexpr int kRefused = 2, kNotPossible = 3;
 
 // What an ended process wrote to its standard error.
 std::string errors_of(ChildProcess& process) {
@@ -30,29 +34,51 @@ std::string errors_of(ChildProcess& process) {
   return text;
 }
 
-fs::path script_of(const FigureScript& drawn_by) {
-  fs::path script = shipped_file(drawn_by.script);
-  if (script.empty())
-    throw std::runtime_error(
-        fmt::format("{} needs {}, which is not beside this program",
-                    drawn_by.option, drawn_by.script));
-  return script;
+// The last line, as matplotlib may have warned before.
+std::string last_line(std::string text) {
+  text.erase(text.find_last_not_of('\n') + 1);
+  return text.substr(text.find_last_of('\n') + 1);
 }
 
-// Runs a script that draws, and waits for it.
-void draw(const fs::path& script, std::vector<std::string> words) {
-  words.insert(words.begin(), script.string());
-  ChildProcess process(words);
+// Runs the script with `words`, and waits for it.
+void run_script(const std::vector<std::string>& words, double most_seconds) {
+  const fs::path script = shipped_file(kScript);
+  if (script.empty())
+    throw std::runtime_error(fmt::format(
+        "pictures need {}, which is not beside this program", kScript));
+  // -B: no compiled files in the place of an installation.
+  std::vector<std::string> command = {kPython, "-B", script.string()};
+  command.insert(command.end(), words.begin(), words.end());
+  ChildProcess process(command);
   process.input().reset();
-  const auto end = process.wait(kLongestDrawing);
+  const auto end = process.wait(most_seconds);
   if (!end)
     throw std::runtime_error(fmt::format("{}: still draws after {:.0f} s",
-                                         script.string(), kLongestDrawing));
+                                         script.string(), most_seconds));
   if (end->status == 0 && end->signal == 0) return;
-  throw std::runtime_error(fmt::format(
-      "{}: {} (it needs Python 3 with matplotlib, python3-matplotlib in "
-      "Debian){}",
-      script.string(), end_words(*end), last_words(errors_of(process))));
+  const std::string errors = errors_of(process);
+  if (end->status == kRefused) throw std::invalid_argument(last_line(errors));
+  if (end->status == kNotPossible) throw std::runtime_error(last_line(errors));
+  throw std::runtime_error(fmt::format("{}: {}{}", script.string(),
+                                       end_words(*end), last_words(errors)));
+}
+
+void draw_into(AtomicFile& picture, const fs::path& path,
+               std::vector<std::string> words) {
+  words.push_back("--output=" + picture.partial_path().string());
+  words.push_back("--format=" + path.extension().string().substr(1));
+  run_script(words, kLongestDrawing);
+  picture.publish();
+}
+
+std::vector<std::string> script_words(const std::vector<std::string>& files,
+                                      bool compare) {
+  std::vector<std::string> words;
+  if (compare) words.emplace_back("--compare");
+  // A file may be called "-o".
+  for (const std::string& file : files)
+    words.push_back(file.starts_with('-') ? "./" + file : file);
+  return words;
 }
 
 }  // namespace
@@ -66,33 +92,38 @@ fs::path shipped_file(const fs::path& name) {
   return {};
 }
 
-void draw_figures(const FigureScript& drawn_by, const std::string& result,
-                  const fs::path& directory) {
-  const fs::path script = script_of(drawn_by);
+void draw_figures(const std::string& result, const fs::path& directory) {
   const fs::path json = directory / "result.json";
   write_text_file(json, result);
-  draw(script, {json.string()});
+  run_script({json.string(), "--each", directory.string()}, kLongestDrawing);
 }
 
-void require_picture_name(const fs::path& path) {
+void require_picture_name(std::string_view option, const fs::path& path) {
   const std::string ending = path.extension().string();
   if (ending != ".png" && ending != ".svg")
     throw std::invalid_argument(fmt::format(
-        "--picture {}: unknown kind of picture \"{}\"; expected a name that "
-        "ends in .png or .svg",
-        path.string(), ending));
+        "{} {}: unknown kind of picture \"{}\"; expected a name that ends in "
+        ".png or .svg",
+        option, path.string(), ending));
 }
 
 void draw_plan(const std::string& result, const fs::path& path) {
-  const fs::path script = script_of({"--picture", "scripts/plan_figure.py"});
   AtomicFile picture(path);
   // The result lies beside the picture only as long as it is drawn.
   fs::path name = path;
   AtomicFile json(name += ".json");
   json.file().write(std::as_bytes(std::span(result)));
-  draw(script, {json.partial_path().string(), picture.partial_path().string(),
-                path.extension().string().substr(1)});
-  picture.publish();
+  draw_into(picture, path, {json.partial_path().string()});
+}
+
+void draw_files(const std::vector<std::string>& files, bool compare,
+                const fs::path& picture) {
+  AtomicFile file(picture);
+  draw_into(file, picture, script_words(files, compare));
+}
+
+void show_files(const std::vector<std::string>& files, bool compare) {
+  run_script(script_words(files, compare), kNoLimit);
 }
 
 }  // namespace beamgyro::internal

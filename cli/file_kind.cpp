@@ -48,7 +48,9 @@ constexpr KnownKind kKnownKinds[] = {
      "beamgyro compensate, validate or export"},
     {FileKind::kRecordingTable, "a recording as CSV",
      "beamgyro info, allan, train, compensate or validate"},
-    {FileKind::kCharacteristic, "a table that characterise wrote", ""},
+    {FileKind::kCharacteristic, "a table that characterise wrote",
+     "beamgyro plot"},
+    {FileKind::kResult, "a result that --json wrote", "beamgyro plot"},
     {FileKind::kProfile, "a profile over time",
      "the key \"file\" of a scenario"},
     {FileKind::kLog, "a log", "beamgyro import"},
@@ -89,6 +91,20 @@ std::vector<FileKind> kinds_of_toml(const fs::path& path) {
   return kinds;
 }
 
+std::vector<FileKind> kinds_of_json(std::string_view head) {
+  const auto holds = [&](std::string_view word) {
+    return head.find(word) != head.npos;
+  };
+  if (holds("\"beamgyro-compensator\"")) return {FileKind::kCompensator};
+  // Of validate, its scores, allan, plan and sensitivity.
+  if (std::ranges::any_of(
+          std::array{"\"beamgyro-validation\"", "\"corrects_scale_factor\"",
+                     "\"clusters\"", "\"trade_off\"", "\"indices\""},
+          holds))
+    return {FileKind::kResult};
+  return {};
+}
+
 std::vector<FileKind> kinds_of_text(const fs::path& path,
                                     std::string_view head) {
   const std::string_view line = head.substr(0, head.find_first_of("\r\n"));
@@ -97,10 +113,7 @@ std::vector<FileKind> kinds_of_text(const fs::path& path,
   if (line.starts_with("time_s,")) return {FileKind::kProfile};
   if (is_recording_csv(line))
     return {FileKind::kRecordingTable, FileKind::kRecording};
-  if (head.starts_with('{')) {
-    if (head.find("beamgyro-compensator") == head.npos) return {};
-    return {FileKind::kCompensator};
-  }
+  if (head.starts_with('{')) return kinds_of_json(head);
   try {
     return kinds_of_toml(path);
   } catch (const std::invalid_argument&) {
@@ -123,6 +136,10 @@ std::vector<FileKind> kinds_of(const fs::path& path) {
 }
 
 }  // namespace
+
+bool is_of_kind(const fs::path& path, FileKind kind) {
+  return std::ranges::count(kinds_of(path), kind) != 0;
+}
 
 void require_kind(const fs::path& path, const ExpectedKinds& expected) {
   std::vector<FileKind> kinds;

@@ -20,6 +20,7 @@ enum class FileKind {
   kCompensator,
   kRecordingTable,  // a recording as CSV
   kCharacteristic,  // what characterise writes
+  kResult,          // what --json writes
   kProfile,         // a CSV that a scenario names
   kLog,             // any text: no file is recognised as one
 };
@@ -28,6 +29,9 @@ enum class FileKind {
 struct ExpectedKinds {
   std::vector<FileKind> kinds, also = {};
 };
+
+/// Returns whether the file is of that kind, as far as its first bytes tell.
+bool is_of_kind(const std::filesystem::path& path, FileKind kind);
 
 /// Throws std::invalid_argument when the file is of a kind that is known but
 /// not expected. The message says what it is and which command takes it. A

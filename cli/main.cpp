@@ -35,6 +35,7 @@ int run_program(const std::vector<std::string>& words) {
   add_plan(program);
   add_import(program);
   add_info(program);
+  add_plot(program);
   add_verify(program);
   add_allan(program);
   const Action action = program.parse(words);

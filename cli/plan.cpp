@@ -198,7 +198,8 @@ void check_outputs(const PlanArguments& arguments) {
     if (!output.empty()) require_output(output, inputs);
   if (!arguments.output.empty()) require_ending(arguments.output, {".toml"});
   if (!arguments.json.empty()) require_json_name(arguments.json);
-  if (!arguments.picture.empty()) require_picture_name(arguments.picture);
+  if (!arguments.picture.empty())
+    require_picture_name("--picture", arguments.picture);
 }
 
 int run_plan(const PlanArguments& arguments) {

@@ -184,8 +184,7 @@ int sensitivity(const SensitivityArguments& arguments) {
   if (!arguments.json.empty()) write_text_file(arguments.json, json);
   if (!arguments.pictures.empty()) {
     const MadeDirectories made(arguments.pictures);
-    draw_figures({"--pictures", "scripts/sensitivity_figures.py"}, json,
-                 arguments.pictures);
+    draw_figures(json, arguments.pictures);
   }
   return 0;
 }

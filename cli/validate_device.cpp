@@ -139,8 +139,7 @@ std::vector<std::function<void()>> writers_of(
   if (!arguments.figures.empty())
     writers.emplace_back([&] {
       const MadeDirectories made(arguments.figures);
-      draw_figures({"--figures", "scripts/validation_figures.py"},
-                   outputs[0].text, arguments.figures);
+      draw_figures(outputs[0].text, arguments.figures);
     });
   return writers;
 }

@@ -5,8 +5,9 @@ set(PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/beamgyro)
 # Components: runtime, dev (what names none), python.
 install(TARGETS beamgyro RUNTIME COMPONENT runtime)
 install(DIRECTORY scenarios specs DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro COMPONENT runtime)
-install(PROGRAMS scripts/plan_figure.py scripts/validation_figures.py scripts/sensitivity_figures.py
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro/scripts COMPONENT runtime)
+# What `beamgyro plot` runs.
+install(DIRECTORY python/beamgyro/plots DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro/python/beamgyro
+  COMPONENT runtime USE_SOURCE_PERMISSIONS FILES_MATCHING PATTERN *.py PATTERN __pycache__ EXCLUDE)
 install(FILES README.md CITATION.cff THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime FILES_MATCHING REGEX "[.](md|png|svg)$")
 install(DIRECTORY ${BEAMGYRO_HELP_PAGES}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT runtime)

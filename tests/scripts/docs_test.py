@@ -16,6 +16,7 @@ ROOMS = ["cli", "compensation", "config", "dataset", "parallel", "random",
 
 PAGES = [*ROOT.glob("*.md"), *sorted(ROOT.glob("docs/**/*.md")),
          *sorted(ROOT.glob("bench/*.md")),
+         *sorted(ROOT.glob("python/**/*.md")),
          *[page for room in ROOMS for page in ROOT.glob(f"{room}/**/*.md")]]
 
 

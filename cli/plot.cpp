@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/figure_pictures.h"
+#include "cli/file_kind.h"
+#include "cli/inputs.h"
+#include "cli/progress.h"
+#include "compensation/compensator/compensator_file.h"
+
+namespace beamgyro::internal {
+namespace {
+
+struct PlotArguments {
+  std::vector<std::string> files;
+  std::string output;
+  bool compare = false;
+};
+
+// Damage and values that no command would take are refused as elsewhere.
+void require_whole(const std::string& file) {
+  if (is_of_kind(file, FileKind::kRecording))
+    load_recording(file);
+  else if (is_of_kind(file, FileKind::kCompensator))
+    read_compensator(file);
+}
+
+int plot(const PlotArguments& arguments) {
+  if (!arguments.output.empty()) {
+    require_picture_name("-o", arguments.output);
+    require_output(arguments.output,
+                   {arguments.files.begin(), arguments.files.end()});
+  }
+  for (const std::string& file : arguments.files) require_whole(file);
+  if (arguments.output.empty()) {
+    show_files(arguments.files, arguments.compare);
+    return 0;
+  }
+  const Progress progress("drawing " + arguments.files.front());
+  draw_files(arguments.files, arguments.compare, arguments.output);
+  return 0;
+}
+
+}  // namespace
+
+void add_plot(CommandLine& program) {
+  auto arguments = std::make_shared<PlotArguments>();
+  Command& command = program.add(
+      "plot", kFiles,
+      "Draws a file that this program wrote; needs Python with matplotlib");
+  command.arguments({"FILE", "",
+                     "Recording, table of `characterise`, compensator, set, or "
+                     "what --json of allan, validate, plan or sensitivity "
+                     "wrote"},
+                    arguments->files);
+  command.reads({{FileKind::kRecording, FileKind::kCharacteristic,
+                  FileKind::kCompensator, FileKind::kSet, FileKind::kResult},
+                 {FileKind::kSetFile}});
+  command.text({"-o,--output", "PICTURE.png|svg", "Picture to write",
+                "a window for each file"},
+               arguments->output);
+  command.flag({"--compare", "",
+                "Draws files of one kind over each other: recordings, tables, "
+                "Allan deviations or compensators"},
+               arguments->compare);
+  command.example("beamgyro plot warm_up.h5 -o warm_up.png",
+                  "Rate, temperature and drive loop over time");
+  command.example("beamgyro plot cubic.json bp.json --compare -o bias.svg",
+                  "What two compensators take away over temperature");
+  command.action([arguments] { return plot(*arguments); });
+}
+
+}  // namespace beamgyro::internal

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: MIT
+"""Pictures of what beamgyro writes.
+
+    from beamgyro import plots
+    plots.plot("warm_up.h5").savefig("warm_up.png")
+    plots.plot(["cubic.json", "bp.json"], compare=True)
+
+Each function returns a matplotlib Figure. It needs no compiled part of the
+package: numpy, h5py and matplotlib are enough.
+"""
+
+from __future__ import annotations
+
+import os
+import pathlib
+from typing import Any, Mapping, Sequence, Union
+
+import matplotlib
+from matplotlib.figure import Figure
+
+from .errors import PlotError
+from .kinds import KINDS, figure_of, kind_of
+from .recording import Run
+from .style import STYLE, save
+
+__all__ = ["PlotError", "kind_of", "plot", "plot_allan", "plot_compensator",
+           "plot_plan", "plot_recording", "plot_sensitivity", "plot_table",
+           "plot_validation", "save", "save_each"]
+
+Path = Union[str, "os.PathLike[str]"]
+
+
+def plot(files: Path | Sequence[Path] | Mapping[Any, Any],
+         compare: bool = False) -> Figure:
+    """The picture of a file or of the directory of a set; with `compare` of
+    several files of one kind over each other. A recording may also be an
+    xarray.Dataset. Raises PlotError, a ValueError, for a file that has no
+    picture."""
+    if isinstance(files, Mapping):
+        return plot_recording(files)
+    paths = [pathlib.Path(files)] if isinstance(files, (str, os.PathLike)) \
+        else [pathlib.Path(file) for file in files]
+    if not paths:
+        raise PlotError("no file to plot; expected one or more")
+    kinds = [kind_of(path) for path in paths]
+    _require_comparable(paths, kinds, compare)
+    sources = [KINDS[kinds[0]].read(path) for path in paths]
+    try:
+        return _plotted(kinds[0], *sources)
+    except (KeyError, TypeError, IndexError) as error:
+        if not isinstance(sources[0], dict):
+            raise
+        raise PlotError(f"{paths[0]}: {_said(error)}; expected the file as "
+                        "the command wrote it") from error
+
+
+def _said(error: Exception) -> str:
+    return f"no key {error}" if isinstance(error, KeyError) else str(error)
+
+
+def _require_comparable(paths: Sequence[Any], kinds: Sequence[str],
+                        compare: bool) -> None:
+    if len(paths) == 1:
+        if compare:
+            raise PlotError(f"{paths[0]}: one file is compared with nothing; "
+                            "expected two or more with --compare")
+        return
+    if not compare:
+        raise PlotError(f"{paths[1]}: a second file for one picture; expected "
+                        "--compare, which draws files of one kind over each "
+                        "other")
+    first = KINDS[kinds[0]]
+    for path, kind in zip(paths[1:], kinds[1:]):
+        if kind != kinds[0]:
+            raise PlotError(
+                f"{path}: a file of the kind {KINDS[kind].name} cannot be "
+                f"compared with {paths[0]}, which is of the kind "
+                f"{first.name}; expected one kind")
+    if not first.compares:
+        known = ", ".join(one.name for one in KINDS.values() if one.compares)
+        raise PlotError(f"{paths[0]}: files of the kind {first.name} cannot "
+                        f"be compared; expected one of: {known}")
+
+
+def _plotted(kind: str, *sources: Any) -> Figure:
+    with matplotlib.rc_context(STYLE):
+        return figure_of(kind, sources)
+
+
+def _named(data: Mapping[str, Any], name: str) -> dict[str, Any]:
+    return {"name": name, **data} if name else dict(data)
+
+
+def plot_recording(*recordings: Any, names: Sequence[str] = ()) -> Figure:
+    """One recording, or several over each other: xarray.Dataset, or mappings
+    from the names of variables to arrays in deg/s, degC, Hz and s."""
+    names = [*names, *[f"recording {k + 1}" if len(recordings) > 1 else ""
+                       for k in range(len(names), len(recordings))]]
+    return _plotted("recording", *map(Run, recordings, names))
+
+
+def plot_table(*tables: Any, names: Sequence[str] = ()) -> Figure:
+    """Tables of `characterise`: mappings from column names to arrays."""
+    names = [*names, *["device"] * (len(tables) - len(names))]
+    return _plotted("table", *({"name": name, **{key: table[key]
+                                                 for key in table}}
+                               for table, name in zip(tables, names)))
+
+
+def plot_allan(*results: Mapping[str, Any], names: Sequence[str] = ()
+               ) -> Figure:
+    """Results of `allan --json`, as dicts."""
+    names = [*names, *["Allan deviation"] * (len(results) - len(names))]
+    return _plotted("allan", *map(_named, results, names))
+
+
+def plot_compensator(*compensators: Mapping[str, Any],
+                     names: Sequence[str] = ()) -> Figure:
+    """Compensators or populations, as dicts of their JSON."""
+    names = [*names, *["compensator"] * (len(compensators) - len(names))]
+    return _plotted("compensator", *map(_named, compensators, names))
+
+
+def plot_validation(result: Mapping[str, Any]) -> Figure:
+    """The result of `validate --json`, as a dict."""
+    return _plotted("validation" if "figures" in result else "scores", result)
+
+
+def plot_plan(plan: Mapping[str, Any]) -> Figure:
+    """The result of `plan --json`, as a dict."""
+    return _plotted("plan", plan)
+
+
+def plot_sensitivity(study: Mapping[str, Any]) -> Figure:
+    """The result of `sensitivity --json`, as a dict."""
+    return _plotted("sensitivity", study)
+
+
+def save_each(file: Path, folder: Path) -> list[str]:
+    """Writes a PNG of every figure of a validation or sensitivity study by
+    itself to a directory, and returns their names."""
+    path = pathlib.Path(file)
+    kind = KINDS[kind_of(path)]
+    if kind.each is None:
+        raise PlotError(f"{path}: one picture only; expected the --json of "
+                        "validate or sensitivity")
+    names = []
+    with matplotlib.rc_context(STYLE):
+        for name, figure in kind.each(kind.read(path)):
+            names.append(f"{name}.png")
+            save(figure, pathlib.Path(folder) / names[-1])
+    return names

@@ -1,0 +1,102 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Draws files of beamgyro. `beamgyro plot` runs this script.
+
+__main__.py FILE... [-o PICTURE [--format png|svg]] [--compare]
+__main__.py RESULT.json --each DIR
+"""
+
+import argparse
+import importlib.util
+import os
+import pathlib
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+WRONG_INPUT, NOT_POSSIBLE = 2, 3
+
+
+def load_package():
+    """The package that this script belongs to, without the one around it,
+    which needs its compiled part."""
+    sys.path[:] = [folder for folder in sys.path
+                   if pathlib.Path(folder or ".").resolve() != HERE]
+    spec = importlib.util.spec_from_file_location(
+        "beamgyro_plots", HERE / "__init__.py",
+        submodule_search_locations=[str(HERE)])
+    package = importlib.util.module_from_spec(spec)
+    sys.modules["beamgyro_plots"] = package
+    spec.loader.exec_module(package)
+    return package
+
+
+def fail(status, message):
+    print(message, file=sys.stderr)
+    sys.exit(status)
+
+
+def require_window():
+    """Ends unless a window can be opened."""
+    if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        fail(WRONG_INPUT, "no display for a window; expected "
+             "-o PICTURE.png or -o PICTURE.svg")
+    import matplotlib
+    from matplotlib import pyplot
+    try:
+        pyplot.switch_backend(matplotlib.rcParams["backend"])
+    except ImportError as error:
+        fail(NOT_POSSIBLE, f"no window: {error} (python3-tk in Debian); or "
+             "use -o PICTURE.png")
+    if pyplot.get_backend().lower() not in map(
+            str.lower, matplotlib.rcsetup.interactive_bk):
+        fail(NOT_POSSIBLE, "no window: matplotlib has none here (python3-tk "
+             "in Debian); or use -o PICTURE.png")
+
+
+def show(figures):
+    """Opens a window for each figure and waits until all are closed."""
+    from matplotlib import pyplot
+    for figure in figures:
+        manager = pyplot.figure().canvas.manager
+        figure.set_canvas(manager.canvas)
+        manager.canvas.figure = figure
+    pyplot.show()
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("files", nargs="+")
+    parser.add_argument("-o", "--output")
+    parser.add_argument("--format", choices=["png", "svg"])
+    parser.add_argument("--compare", action="store_true")
+    parser.add_argument("--each", type=pathlib.Path)
+    parser.add_argument("--dpi", type=float)
+    arguments = parser.parse_args()
+    try:
+        plots = load_package()
+    except ImportError as error:
+        fail(NOT_POSSIBLE, f"{error}; pictures need Python 3 with matplotlib "
+             "and h5py (python3-matplotlib and python3-h5py in Debian)")
+    try:
+        draw(plots, arguments)
+    except plots.PlotError as error:
+        fail(WRONG_INPUT, error)
+    except ModuleNotFoundError as error:
+        fail(NOT_POSSIBLE, f"{error}; pictures need python3-{error.name}")
+
+
+def draw(plots, arguments):
+    if arguments.each:
+        plots.save_each(arguments.files[0], arguments.each)
+    elif arguments.output:
+        figure = plots.plot(arguments.files, arguments.compare)
+        plots.save(figure, arguments.output, arguments.format, arguments.dpi)
+    else:
+        require_window()
+        groups = [arguments.files] if arguments.compare \
+            else [[file] for file in arguments.files]
+        show([plots.plot(group, arguments.compare) for group in groups])
+
+
+if __name__ == "__main__":
+    main()

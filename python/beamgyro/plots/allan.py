@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: MIT
+"""Allan deviations and the noise terms fitted to them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+from matplotlib import ticker
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from . import style
+from .errors import PlotError
+
+KINDS = {"oadev": "overlapping Allan", "adev": "Allan",
+         "mdev": "modified Allan", "totdev": "total",
+         "ohdev": "overlapping Hadamard", "hdev": "Hadamard"}
+# Each term as docs/reference/allan_deviation.md has it.
+TERMS = {"Q": lambda t, q: math.sqrt(3) * q / t,
+         "N": lambda t, n: n / np.sqrt(t),
+         "B": lambda t, b: math.sqrt(2 * math.log(2) / math.pi) * b + 0 * t,
+         "K": lambda t, k: k * np.sqrt(t / 3),
+         "R": lambda t, r: r * t / math.sqrt(2)}
+HEIGHT = 5.2
+
+
+def kinds_in(data: Mapping[str, Any]) -> list[str]:
+    return [kind for kind in KINDS if data.get(kind)]
+
+
+def _curve(axes: Axes, points: Sequence[Mapping[str, Any]], k: int,
+           label: str, interval: bool = True) -> None:
+    tau, deviation = (np.array([point[key] for point in points], dtype=float)
+                      for key in ("tau_s", "deviation"))
+    ends = np.array([point.get("interval") or (np.nan, np.nan)
+                     for point in points], dtype=float).T
+    color = style.COLORS[k % len(style.COLORS)]
+    axes.plot(tau, deviation, color=color, label=label, ms=4,
+              marker=style.MARKERS[k % len(style.MARKERS)],
+              ls=style.DASHES[k % len(style.DASHES)])
+    if interval:
+        axes.fill_between(tau, *ends, color=color, alpha=0.2, lw=0)
+
+
+def _terms(axes: Axes, data: Mapping[str, Any], kind: str) -> None:
+    """The asymptotes of the fitted terms where the picture shows them."""
+    tau = np.geomspace(data[kind][0]["tau_s"], data[kind][-1]["tau_s"], 200)
+    low, high = axes.get_ylim()
+    words = []
+    for symbol, law in TERMS.items():
+        term = ((data.get("noise") or {}).get(symbol) or {}).get("per_second")
+        if not term:
+            continue
+        words.append(f"{symbol} = {term['value']:.3g} "
+                     f"{style.spoken(term['unit'])}")
+        line = law(tau, term["value"])
+        seen = (line > low) & (line < high)
+        axes.plot(tau[seen], line[seen], ":", color=style.WORDS, lw=1.2,
+                  zorder=1.5)
+        if seen.any():  # named at its low end, where no curve is
+            falls = symbol in "QN"
+            axes.annotate(symbol, (tau[seen][-1 if falls else 0],
+                                   line[seen][-1 if falls else 0]),
+                          xytext=(-6 if falls else 6, 6), ha="center",
+                          textcoords="offset points", color=style.WORDS)
+    axes.text(0.02, 0.04, "\n".join(words), transform=axes.transAxes,
+              fontsize=9, color=style.WORDS, linespacing=1.5)
+
+
+def draw(figure: Figure, results: Sequence[Mapping[str, Any]]) -> None:
+    """Every deviation of one result, or one deviation of several."""
+    axes = figure.subplots()
+    names = style.shortened([str(one.get("name", "")) for one in results])
+    kinds = [kind for kind in KINDS
+             if all(kind in kinds_in(one) for one in results)]
+    if not kinds:
+        raise PlotError(
+            f"{names[0]}: no deviation in common with {', '.join(names[1:])}; "
+            "expected results of the same --kind" if len(results) > 1 else
+            f"{names[0]}: no deviation; expected one of {', '.join(KINDS)}")
+    units = [(one.get("series") or {}).get("unit", "deg/s") for one in results]
+    if len(set(units)) > 1:
+        raise PlotError(f"{names[0]}: deviations in {' and '.join(units)} "
+                        "cannot be compared; expected one unit")
+    if len(results) == 1:
+        for k, kind in enumerate(kinds):
+            _curve(axes, results[0][kind], k, KINDS[kind] + " deviation",
+                   k == 0)
+    else:
+        for k, (one, name) in enumerate(zip(results, names)):
+            _curve(axes, one[kinds[0]], k, name)
+    axes.set(xscale="log", yscale="log", xlabel="averaging time τ [s]",
+             ylabel=style.quantity("deviation" if len(kinds) > 1 else
+                                   KINDS[kinds[0]] + " deviation", units[0]))
+    shown = [point["deviation"] for one in results for kind in kinds
+             for point in one[kind]]
+    axes.set_ylim(min(shown) / 3, max(shown) * 3)
+    if len(results) == 1:
+        _terms(axes, results[0], kinds[0])
+    if math.log10(axes.get_ylim()[1] / axes.get_ylim()[0]) < 3:
+        axes.yaxis.set_major_locator(ticker.LogLocator(subs=[1, 2, 5]))
+        axes.yaxis.set_minor_formatter(ticker.NullFormatter())
+    axes.yaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+    axes.xaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+    if len(results) == 1:
+        axes.legend(loc="upper right")
+    else:
+        style.legend_above(axes, 3)
+    _title(figure, results, names)
+
+
+def _title(figure: Figure, results: Sequence[Mapping[str, Any]],
+           names: Sequence[str]) -> None:
+    if len(results) > 1:
+        style.titled(figure, f"{len(results)} Allan deviations",
+                     "bands: intervals of 95 %")
+        return
+    series = results[0].get("series") or {}
+    about = "band: interval of 95 %"
+    if results[0].get("noise"):
+        about += "; dotted: the fitted terms of the noise"
+    if series:
+        hours = (series["to_s"] - series["from_s"]) / 3600
+        about = (f"{series['dataset']}, {series['samples']:,} samples at "
+                 f"{series['rate_Hz']:g} Hz over {hours:.3g} h; ") + about
+    style.titled(figure, names[0], about)

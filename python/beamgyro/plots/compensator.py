@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: MIT
+"""A compensator: its bias over temperature, its sigma, what it leaves; or a
+population: the mean of its devices and how they differ."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from . import style
+from .bias_curve import KINDS, bias, other_inputs, sigma, steady_inputs
+from .errors import PlotError
+
+BEYOND = 0.08  # of the range, drawn at both ends
+POINTS = 300
+SCORES = [("constant", "constant", style.GREY),
+          ("cubic", "baseline", style.YELLOW), ("compensator", "", style.AFTER)]
+Document = Mapping[str, Any]
+
+
+def height(compensators: Sequence[Document]) -> float:
+    if len(compensators) == 1 and "population" in compensators[0]:
+        return 6.6
+    return 7.2 if any("sigma" in one for one in compensators) else 6.0
+
+
+def draw(figure: Figure, compensators: Sequence[Document]) -> None:
+    for one in compensators:
+        if one["kind"] not in KINDS:
+            raise PlotError(f"{one.get('name', '')}: kind: \"{one['kind']}\"; "
+                            f"expected {', '.join(KINDS)}")
+    if len(compensators) == 1 and "population" in compensators[0]:
+        _population(figure, compensators[0])
+    elif len(compensators) == 1:
+        _one(figure, compensators[0])
+    else:
+        _several(figure, compensators)
+
+
+def _temperatures(low: float, high: float) -> Any:
+    reach = BEYOND * (high - low) or 1.0
+    return np.linspace(low - reach, high + reach, POINTS)
+
+
+def _curve(axes: Axes, one: Document, color: str, label: str,
+           band: bool = True, **options: Any) -> bool:
+    """Bias over temperature, where that is all the compensator sees."""
+    if other_inputs(one):
+        return False
+    low, high = one["temperature_range_degC"]
+    T = _temperatures(low, high)
+    values = bias(one, steady_inputs(one, np.clip(T, low, high)))
+    axes.plot(T, values, color=color, label=label, **options)
+    if band and "sigma" in one:
+        s = sigma(one["sigma"], T)
+        axes.fill_between(T, values - s, values + s, color=color, alpha=0.25,
+                          lw=0, label="±1σ stated")
+    return True
+
+
+def _range(axes: Axes, low: float, high: float) -> None:
+    """Shades what lies beyond the temperatures of the training."""
+    ends = axes.get_xlim()
+    for begin, end in [(ends[0], low), (high, ends[1])]:
+        if end > begin:
+            axes.axvspan(begin, end, color="#ececec", lw=0, zorder=0.5)
+    axes.set_xlim(ends)
+
+
+def _one(figure: Figure, one: Document) -> None:
+    stated = "sigma" in one
+    rows = figure.subplots(2 + stated, 1,
+                           height_ratios=[3, 1.6, 1.3] if stated else [3, 1.3])
+    low, high = one["temperature_range_degC"]
+    T = _temperatures(low, high)
+    drawn = _curve(rows[0], one, style.AFTER, "bias taken away", zorder=3)
+    baseline = one.get("baseline")
+    if baseline:
+        inside = np.clip(T, low, high)
+        rows[0].plot(T, bias(baseline, inside[:, None]), color=style.YELLOW,
+                     ls=(0, (4, 2)), label="cubic of the same training",
+                     lw=2.2, zorder=2.5)
+    rows[0].set(ylabel="bias [°/s]", xlim=(T[0], T[-1]))
+    words = "shaded: beyond the training, where the temperature is clamped"
+    if not drawn:
+        words = (f"its bias follows {' and '.join(other_inputs(one))}, not "
+                 "the temperature alone: no curve")
+    _range(rows[0], low, high)
+    style.legend_above(rows[0])
+    if stated:
+        s = sigma(one["sigma"], T)
+        rows[1].plot(T, s, color=style.AFTER)
+        rows[1].set(ylabel="stated σ [°/s]", ylim=(0, 1.15 * s.max()),
+                    xlim=(T[0], T[-1]))
+        _range(rows[1], low, high)
+    rows[int(stated)].set_xlabel("measured temperature [°C]")
+    _scores(rows[-1], one)
+    figure.align_ylabels(rows)
+    training = one["training"]
+    style.titled(figure, f"{one.get('name', 'Compensator')}: "
+                 f"{training['method']}",
+                 f"at steady temperatures, long after power-on; {words}"
+                 if drawn else words)
+
+
+def _scores(axes: Axes, one: Document) -> None:
+    """The residuals that training found, beside those of two baselines."""
+    training = one["training"]
+    samples = [("in-sample", "in_sample_rms_deg_per_s"),
+               ("held out", "held_out_rms_deg_per_s")]
+    shown = [(words, key) for words, key in samples
+             if training.get(key) is not None]
+    validated = training.get("cross_validation")
+    for k, (words, prefix, color) in enumerate(SCORES):
+        values = [training.get(f"{prefix}_{key}" if prefix else key)
+                  for _, key in shown]
+        if validated:
+            values.append({"constant": validated.get("constant_rms_deg_per_s"),
+                           "baseline": None,
+                           "": validated.get("rms_deg_per_s")}[prefix])
+        places = [j + 0.26 * (k - 1) for j in range(len(values))]
+        drawn = [(p, v) for p, v in zip(places, values) if v is not None]
+        for number, (place, value) in enumerate(drawn):
+            axes.barh(place, value, 0.24, color=color,
+                      label=None if number else words)
+            axes.annotate(f"{value:.3g}", (value, place), xytext=(4, 0),
+                          textcoords="offset points", va="center", fontsize=8)
+    labels = [words for words, _ in shown]
+    if validated:
+        labels.append("cross-validation")
+    axes.set_yticks(range(len(labels)), labels)
+    axes.set_ylim(len(labels) - 0.5, -0.5)
+    axes.set_xlabel("rms left [°/s]")
+    axes.set_xlim(0, 1.15 * axes.dataLim.x1 or 1.0)
+    axes.grid(axis="y", visible=False)
+    style.legend_above(axes)
+
+
+def _several(figure: Figure, compensators: Sequence[Document]) -> None:
+    stated = any("sigma" in one for one in compensators)
+    rows = figure.subplots(2 if stated else 1, 1, squeeze=False, sharex=True,
+                           height_ratios=[3, 1.6] if stated else [1])[:, 0]
+    names = style.shortened([str(one.get("name", "")) for one in compensators])
+    without = []
+    for k, (one, name) in enumerate(zip(compensators, names)):
+        look: dict[str, Any] = {"ls": style.DASHES[k % len(style.DASHES)]}
+        color = style.COLORS[k % len(style.COLORS)]
+        if not _curve(rows[0], one, color, name, band=False, **look):
+            without.append(name)
+        if "sigma" in one:
+            T = _temperatures(*one["temperature_range_degC"])
+            rows[1].plot(T, sigma(one["sigma"], T), color=color, label=name
+                         if other_inputs(one) else None, **look)
+    rows[0].set_ylabel("bias [°/s]")
+    if stated:
+        rows[1].set_ylabel("stated σ [°/s]")
+        rows[1].set_ylim(bottom=0)
+    rows[-1].set_xlabel("measured temperature [°C]")
+    style.legend_above(rows[0], 3)
+    figure.align_ylabels(rows)
+    about = "bias taken away at steady temperatures, long after power-on"
+    if without:
+        about += f"; no curve over temperature alone: {', '.join(without)}"
+    style.titled(figure, f"{len(compensators)} compensators", about)
+
+
+def _population(figure: Figure, one: Document) -> None:
+    """Mean and spread of the bias over devices, and of each channel."""
+    population = one["population"]
+    T = np.asarray(population["temperatures_degC"])
+    mean = np.asarray(population["mean"]).reshape(-1, len(T))
+    modes = np.asarray(population["modes"])
+    modes = modes.reshape(len(modes), *mean.shape)
+    spread = np.sqrt((modes**2).sum(axis=0))
+    # Each channel counts by its own spread.
+    strongest = np.argsort(-(modes**2 / (spread**2).mean(
+        axis=1, keepdims=True)).sum(axis=(1, 2)))[:4]
+    names = ["bias", *population["channels"]]
+    grid = figure.subplots(len(names), 2, sharex=True, squeeze=False)
+    figure.align_ylabels(grid)
+    for row, name, middle, sd, parts in zip(grid, names, mean, spread,
+                                            modes.swapaxes(0, 1)):
+        row[0].fill_between(T, middle - 2 * sd, middle + 2 * sd, lw=0,
+                            color=style.AFTER, alpha=0.15, label="±2σ")
+        row[0].fill_between(T, middle - sd, middle + sd, lw=0,
+                            color=style.AFTER, alpha=0.3, label="±1σ")
+        row[0].plot(T, middle, color=style.AFTER, label="mean of the devices")
+        for k, mode in enumerate(strongest):
+            row[1].plot(T, parts[mode], color=style.COLORS[k],
+                        ls=style.DASHES[k], label=("1st", "2nd", "3rd", "4th")[k])
+        row[1].axhline(0, color=style.GREY, lw=0.8)
+        unit = style.spoken(_channel_unit(name))
+        row[0].set_ylabel(f"{name.replace('_', ' ')} [{unit}]")
+    style.legend_above(grid[0, 0])
+    style.legend_above(grid[0, 1])
+    for axes in grid[-1]:
+        axes.set_xlabel("measured temperature [°C]")
+    style.titled(figure, f"{one.get('name', 'Population')}: population of "
+                 f"{population['devices']:,} devices",
+                 "left: mean and spread over devices; right: the strongest of "
+                 f"{len(modes)} ways in which a device differs, 1σ each")
+
+
+def _channel_unit(name: str) -> str:
+    return {"drive_frequency": "Hz", "drive_voltage": "V",
+            "temperature": "degC", "output": "V"}.get(name, "deg/s")

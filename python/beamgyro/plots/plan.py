@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+"""What soaks in a chamber buy: the result of `plan --json`."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping, Sequence
+
+from matplotlib import ticker
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from . import style
+
+HEIGHT = 4.8
+
+
+def _curve(axes: Axes, plans: Sequence[Mapping[str, Any]], color: str,
+           marker: str, label: str) -> None:
+    hours = [plan["hours"] for plan in plans]
+    expected = [plan["expected_rms_deg_per_s"] for plan in plans]
+    median = [one["median"] for one in expected]
+    axes.plot(hours, median, marker + "-", color=color,
+              label=f"{label}: median")
+    axes.plot(hours, [one["p95"] for one in expected], marker + ":", ms=4,
+              lw=1.2, color=color, label=f"{label}: 95 of 100 devices")
+    for x, y, plan in zip(hours, median, plans):
+        axes.annotate(str(len(plan["temperatures_degC"])), (x, y),
+                      xytext=(4, 4), textcoords="offset points", fontsize=9,
+                      color=style.WORDS)
+
+
+def draw(figure: Figure, plan: Mapping[str, Any]) -> None:
+    axes = figure.subplots()
+    table = plan["trade_off"]
+    _curve(axes, [row["even"] for row in table], style.ORANGE, "s",
+           "even spacing")
+    _curve(axes, [row["planned"] for row in table], style.BLUE, "o", "planned")
+    for number, one in enumerate(plan["candidates"]):
+        axes.plot(one["hours"], one["expected_rms_deg_per_s"]["median"], "D",
+                  color=style.GREEN, ls="",
+                  label=None if number else "candidates: median")
+    chosen = plan["schedule"]
+    axes.plot(chosen["hours"], plan["expected_rms_deg_per_s"]["median"], "o",
+              ms=14, mfc="none", mew=1.6, color=style.BLACK, ls="",
+              label="this schedule")
+    axes.set_yscale("log")
+    axes.yaxis.set_major_locator(ticker.LogLocator(subs=[1, 2, 5]))
+    axes.yaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+    axes.yaxis.set_minor_formatter(ticker.NullFormatter())
+    axes.set(xlabel="time in the chamber [h] (numbers: soaks)",
+             ylabel="rms left [°/s]")
+    axes.legend(loc="upper right")
+    low, high = plan["range_degC"]
+    soaks = ", ".join(f"{T:g}" for T in chosen["temperatures_degC"])
+    style.titled(figure, f"What soaks buy, {low:g} to {high:g} °C",
+                 f"this schedule: {soaks} °C in {chosen['hours']:.2f} h; "
+                 f"{' and '.join(plan['observed'])} observed")

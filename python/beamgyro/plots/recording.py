@@ -1,0 +1,359 @@
+# SPDX-License-Identifier: MIT
+"""A recording: rate, what compensation left of its error, temperatures and
+the channels of the drive loop over time."""
+
+from __future__ import annotations
+
+import csv
+import pathlib
+from typing import Any, Iterable, Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from . import style
+from .envelope import MEANS, bins_of, envelope, spans
+from .errors import PlotError
+from .units import converted, unit_of
+
+Values = npt.NDArray[np.float64]
+
+DRAWN = ("rate", "compensated_rate", "compensated_rate_sigma", "temperature",
+         "drive_frequency", "quadrature", "true_rate", "true_bias",
+         "true_beam_temperature", "true_board_temperature",
+         "true_ambient_temperature")
+STATES = [(1, "unpowered", "#c9c9c9", 0.6), (4, "loop not locked", "#e69f00",
+                                            0.3), (2, "saturated", "#cc79a7",
+                                                   0.35)]
+TIME_UNITS = [("h", 3600.0, 3 * 3600.0), ("min", 60.0, 300.0),
+              ("s", 1.0, 0.05), ("ms", 1e-3, 0.0)]
+
+
+class Run:
+    """The variables of a recording, in the units in which they are drawn."""
+
+    def __init__(self, data: Mapping[Any, Any], name: str = "") -> None:
+        attributes = getattr(data, "attrs", None) or data.get("attrs", {})
+        self.name = name
+        self.title = _text(attributes.get("title", ""))
+        self.compensator = _text(attributes.get("compensator", ""))
+        self.values = {key: _values(data[key], key, name)
+                       for key in ("time", *DRAWN) if key in data}
+        if "time" not in self.values or not self.signals():
+            raise PlotError(f"{name}: no time or no signal; expected a "
+                            "recording with time, rate and temperature")
+        self.time = self.values["time"]
+        if len(self.time) == 0:
+            raise PlotError(f"{name}: no samples; expected one or more")
+        self.status = np.asarray(data["status"]).astype(np.uint8) \
+            if "status" in data else np.zeros(len(self.time), np.uint8)
+        self.bins = bins_of(self.time)
+        self.means = bins_of(self.time, MEANS) if self.bins.merged \
+            else self.bins
+
+    def signals(self) -> list[str]:
+        return [key for key in DRAWN if key in self.values]
+
+    def __contains__(self, key: str) -> bool:
+        return key in self.values and bool(
+            np.isfinite(self.values[key]).any())
+
+    def error_of(self, key: str) -> Values:
+        """A rate less the true rate, or as it is where that is not known."""
+        truth = self.values.get("true_rate")
+        return self.values[key] if truth is None else self.values[key] - truth
+
+    @property
+    def turns(self) -> bool:
+        truth = self.values.get("true_rate")
+        return truth is not None and bool(np.any(truth != 0))
+
+
+def _text(value: object) -> str:
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def _values(variable: Any, key: str, name: str) -> Values:
+    attributes = getattr(variable, "attrs", {})
+    values = np.asarray(variable)
+    if values.dtype.kind == "m":  # as xarray decodes the time
+        return values / np.timedelta64(1, "ns") * 1e-9
+    if values.ndim != 1:
+        raise PlotError(f"{name}: {key} has {values.ndim} dimensions; "
+                        "expected one device, as isel(device=0) gives it")
+    unit = _text(attributes.get("units", unit_of(key)))
+    return converted(key, values.astype(float), unit,
+                     f"{name}: " if name else "")
+
+
+def read(path: pathlib.Path) -> Run:
+    return Run(_read_csv(path) if path.suffix == ".csv" else _read_h5(path),
+               path.name)
+
+
+def _read_h5(path: pathlib.Path) -> dict[str, Any]:
+    import h5py
+    with h5py.File(path) as file:
+        data: dict[str, Any] = {"attrs": dict(file.attrs)}
+        for key in ("time", *DRAWN):
+            if key in file:
+                unit = _text(file[key].attrs.get("units", unit_of(key)))
+                data[key] = converted(key, file[key][()].astype(float), unit,
+                                      f"{path}: ")
+        if "status" in file:
+            data["status"] = file["status"][()]
+        return data
+
+
+def _read_csv(path: pathlib.Path) -> dict[str, Any]:
+    with open(path, newline="", encoding="utf-8-sig") as file:
+        header = next(csv.reader(file))
+        names, units = zip(*(_column(head) for head in header))
+        wanted = [k for k, key in enumerate(names)
+                  if key in ("time", "status", *DRAWN)]
+        table = np.loadtxt(file, delimiter=",", usecols=wanted, ndmin=2)
+    data: dict[str, Any] = {}
+    for k, values in zip(wanted, table.T):
+        data[names[k]] = values if names[k] == "status" else converted(
+            names[k], values, units[k] or unit_of(names[k]), f"{path}: ")
+    return data
+
+
+def _column(head: str) -> tuple[str, str]:
+    name, _, unit = head.strip().partition("[")
+    return name.strip(), unit.rstrip("]").strip()
+
+
+# --- drawing ---
+
+def draw(figure: Figure, runs: Run | Sequence[Run]) -> None:
+    """One recording, or several over each other."""
+    if isinstance(runs, Run):
+        _draw_one(figure, runs)
+    else:
+        _draw_several(figure, runs)
+
+
+def height(runs: Run | Sequence[Run]) -> float:
+    panels = _panels_of(runs) if isinstance(runs, Run) \
+        else _compared(runs)
+    return 1.0 + sum(_SHARES[kind] for kind in panels) * 0.9
+
+
+_SHARES = {"rate": 2.2, "error": 2.0, "left": 2.0, "temperature": 1.6,
+           "drive_frequency": 1.2, "quadrature": 1.2}
+
+
+def _panels_of(run: Run) -> list[str]:
+    panels = ["rate"] if "rate" in run or "compensated_rate" in run else []
+    if run.turns and "rate" in run:
+        panels.append("error")
+    if "compensated_rate" in run:
+        panels.append("left")
+    panels += [key for key in ("temperature", "drive_frequency", "quadrature")
+               if key in run]
+    return panels
+
+
+def _draw_one(figure: Figure, run: Run) -> None:
+    panels = _panels_of(run)
+    rows = _rows(figure, panels)
+    unit, scale = _time_unit([run])
+    for kind, axes in zip(panels, rows):
+        _PANELS[kind](axes, run, scale)
+        _shade(axes, run, scale)
+    style.legend_above(rows[0], extra=_patches(run))
+    _time_axis(rows, [run], unit, scale)
+    words = [run.title] if run.title else []
+    if run.compensator:
+        words.append(f"compensated by {run.compensator}")
+    if run.bins.merged:
+        words.append(f"bands: lowest to highest of the {len(run.time):,} "
+                     f"samples, lines: means of {_duration(run.means.width)} "
+                     "or less")
+    style.titled(figure, run.name or "Recording", "; ".join(words))
+
+
+def _rows(figure: Figure, panels: Sequence[str]) -> list[Axes]:
+    grid = figure.subplots(len(panels), 1, sharex=True, squeeze=False,
+                           height_ratios=[_SHARES[kind] for kind in panels])
+    figure.align_ylabels(grid)
+    return list(grid[:, 0])
+
+
+def _band(axes: Axes, run: Run, values: Values, scale: float, color: str,
+          label: str, noisy: bool = False, **options: Any) -> None:
+    """The envelope of a series and its mean."""
+    found = envelope(run.bins, values)
+    if run.bins.merged:
+        axes.fill_between(found.time / scale, found.low, found.high,
+                          color=color, alpha=0.3, lw=0.5)
+    if noisy:
+        found = envelope(run.means, values)
+    axes.plot(found.time / scale, found.mean, color=color, label=label,
+              **{"lw": 1.3, **options})
+
+
+def _rate(axes: Axes, run: Run, scale: float) -> None:
+    if "rate" in run:
+        _band(axes, run, run.values["rate"], scale, style.BEFORE, "measured",
+              not run.turns)
+    if run.turns:
+        if "compensated_rate" in run:
+            _band(axes, run, run.values["compensated_rate"], scale,
+                  style.AFTER, "compensated")
+        _band(axes, run, run.values["true_rate"], scale, style.TRUTH, "true",
+              ls=(0, (4, 2)), lw=1.0)
+        axes.set_ylabel("rate [°/s]")
+    else:
+        _true_bias(axes, run, scale)
+        axes.set_ylabel("rate at rest [°/s]" if "true_rate" in run
+                        else "rate [°/s]")
+    style.legend_above(axes)
+
+
+def _true_bias(axes: Axes, run: Run, scale: float) -> None:
+    if "true_bias" in run:
+        _band(axes, run, run.values["true_bias"], scale, style.TRUTH,
+              "true bias: without noise", ls=(0, (4, 2)), lw=1.0)
+
+
+def _error(axes: Axes, run: Run, scale: float) -> None:
+    _band(axes, run, run.error_of("rate"), scale, style.BEFORE,
+          "measured less true rate", True)
+    _true_bias(axes, run, scale)
+    axes.set_ylabel("error [°/s]")
+    style.legend_above(axes)
+
+
+def _left(axes: Axes, run: Run, scale: float) -> None:
+    known = "true_rate" in run
+    error = run.error_of("compensated_rate")
+    _band(axes, run, error, scale, style.AFTER,
+          "compensated less true rate" if known else "compensated rate",
+          True)
+    if "compensated_rate_sigma" in run:
+        sigma = envelope(run.bins, run.values["compensated_rate_sigma"])
+        middle = np.zeros_like(sigma.mean) if known \
+            else envelope(run.bins, error).mean
+        for sign in (-1, 1):
+            axes.plot(sigma.time / scale, middle + sign * sigma.mean,
+                      color=style.BLACK, lw=1.1, ls=(0, (1, 1)),
+                      label="stated ±1σ of its bias" if sign > 0 else None)
+    if known:
+        axes.axhline(0, color=style.BLACK, lw=0.8)
+    axes.set_ylabel("error left [°/s]" if known else "compensated [°/s]")
+    style.legend_above(axes)
+
+
+def _temperature(axes: Axes, run: Run, scale: float) -> None:
+    _band(axes, run, run.values["temperature"], scale, style.GREEN, "sensor")
+    for node, color, dash in [("beam", style.PURPLE, (0, (5, 1.5))),
+                              ("board", style.YELLOW, (0, (5, 1.5, 1, 1.5))),
+                              ("ambient", style.BLACK, (0, (1, 1)))]:
+        if f"true_{node}_temperature" in run:
+            _band(axes, run, run.values[f"true_{node}_temperature"], scale,
+                  color, node, ls=dash, lw=1.2)
+    axes.set_ylabel("temp. [°C]")
+    style.legend_above(axes)
+
+
+def _drive_frequency(axes: Axes, run: Run, scale: float) -> None:
+    values = run.values["drive_frequency"]
+    middle = float(np.round(np.nanmedian(values)))
+    _band(axes, run, values - middle, scale, style.GREY,
+          f"drive frequency − {middle:.0f} Hz")
+    axes.set_ylabel("drive [Hz]")
+    style.legend_above(axes)
+
+
+def _quadrature(axes: Axes, run: Run, scale: float) -> None:
+    _band(axes, run, run.values["quadrature"], scale, style.GREY,
+          "quadrature")
+    axes.set_ylabel("quad. [°/s]")
+    style.legend_above(axes)
+
+
+_PANELS = {"rate": _rate, "error": _error, "left": _left,
+           "temperature": _temperature, "drive_frequency": _drive_frequency,
+           "quadrature": _quadrature}
+
+
+def _shade(axes: Axes, run: Run, scale: float) -> None:
+    for mask, name, color, alpha in STATES:
+        for begin, end in spans(run.bins, run.status & mask != 0):
+            axes.axvspan(begin / scale, end / scale, color=color, alpha=alpha,
+                         lw=0, zorder=0.5, gid=f"state {name}")
+
+
+def _patches(run: Run) -> list[Patch]:
+    return [Patch(color=color, alpha=alpha, label=name, lw=0)
+            for mask, name, color, alpha in STATES
+            if np.any(run.status & mask)]
+
+
+def _time_unit(runs: Iterable[Run]) -> tuple[str, float]:
+    longest = max(float(run.time[-1] - run.time[0]) for run in runs)
+    return next((unit, scale) for unit, scale, least in TIME_UNITS
+                if longest >= least)
+
+
+def _duration(seconds: float) -> str:
+    return next(f"{seconds / scale:.3g} {unit}" for unit, scale, _ in
+                TIME_UNITS if seconds >= scale or unit == "ms")
+
+
+def _time_axis(rows: Sequence[Axes], runs: Sequence[Run], unit: str,
+               scale: float) -> None:
+    rows[-1].set_xlabel(f"time [{unit}]")
+    begin = min(float(run.time[0]) for run in runs)
+    end = max(float(run.time[-1]) for run in runs)
+    if end > begin:
+        rows[-1].set_xlim(begin / scale, end / scale)
+
+
+# --- several ---
+
+def _compared(runs: Sequence[Run]) -> list[str]:
+    """The panels that all of them have."""
+    if all("compensated_rate" in run for run in runs):
+        panels = ["left"]
+    elif any(run.turns for run in runs):
+        panels = ["rate", "error"]
+    else:
+        panels = ["rate"]
+    if all("temperature" in run for run in runs):
+        panels.append("temperature")
+    return panels
+
+
+def _draw_several(figure: Figure, runs: Sequence[Run]) -> None:
+    panels = _compared(runs)
+    rows = _rows(figure, panels)
+    unit, scale = _time_unit(runs)
+    names = style.shortened([run.name for run in runs])
+    key = {"rate": "rate", "temperature": "temperature"}
+    for kind, axes in zip(panels, rows):
+        for k, (run, name) in enumerate(zip(runs, names)):
+            if kind in ("left", "error"):
+                values = run.error_of("compensated_rate" if kind == "left"
+                                      else "rate")
+            else:
+                values = run.values[key[kind]]
+            _band(axes, run, values, scale,
+                  style.COLORS[k % len(style.COLORS)], name,
+                  kind != "temperature" and not run.turns,
+                  ls=style.DASHES[k % len(style.DASHES)])
+        axes.set_ylabel({"rate": "rate [°/s]", "error": "error [°/s]",
+                         "left": "error left [°/s]",
+                         "temperature": "temp. [°C]"}[kind])
+    style.legend_above(rows[0], 3)
+    _time_axis(rows, runs, unit, scale)
+    about = ["error left: compensated less true rate"] \
+        if "left" in panels else []
+    if any(run.bins.merged for run in runs):
+        about.append("bands: lowest to highest sample; lines: means")
+    style.titled(figure, f"{len(runs)} recordings", "; ".join(about))

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: MIT
+"""The look of all pictures: colours, sizes, titles, and how they are saved."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import re
+import textwrap
+from typing import Any, Sequence
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+# Of Okabe and Ito: told apart by colour-blind eyes.
+BLUE, ORANGE, GREEN, PURPLE = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
+YELLOW, SKY, BLACK, GREY = "#e69f00", "#56b4e9", "#1b1f23", "#9a9a9a"
+WORDS = "#505050"
+COLORS = [BLUE, ORANGE, GREEN, PURPLE, YELLOW, SKY, "#000000"]
+DASHES: list[Any] = ["-", (0, (4, 2)), (0, (1, 1.5)), (0, (5, 1.5, 1, 1.5)),
+                     (0, (7, 2)), (0, (2, 1, 0.5, 1, 0.5, 1)),
+                     (0, (0.5, 2.5))]
+MARKERS = ["o", "^", "s", "D", "x", "*", "+"]
+
+# The recorded rate, the compensated rate, and what is true.
+BEFORE, AFTER, TRUTH = ORANGE, BLUE, BLACK
+RESULTS = {"pass": BLUE, "fail": ORANGE, "undecided": GREY, None: BLACK}
+
+WIDTH = 8.0  # [inch]
+LETTERS_PER_INCH = 14  # of the words below a title
+STYLE = {
+    "figure.figsize": (WIDTH, 4.5),  # 1600 x 900 pixels
+    "figure.dpi": 100,
+    "savefig.dpi": 200,
+    "figure.constrained_layout.use": True,
+    "figure.titlesize": 12,
+    "font.size": 10,
+    "axes.titlesize": 10,
+    "axes.titlelocation": "left",
+    "axes.labelsize": 10,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.formatter.useoffset": False,
+    "grid.color": "#e4e4e4",
+    "grid.linewidth": 0.8,
+    "axes.axisbelow": True,
+    "lines.linewidth": 1.5,
+    "legend.frameon": False,
+    "legend.fontsize": 9,
+    "svg.hashsalt": "beamgyro",  # else the ids in an SVG change with every run
+    "svg.fonttype": "none",  # text stays text
+    "font.family": ["DejaVu Sans"],
+}
+# Nothing that changes with the day or the machine.
+METADATA: dict[str, dict[str, Any]] = {
+    "png": {"Software": None}, "svg": {"Date": None, "Creator": None}}
+FORMATS = tuple(METADATA)
+
+
+def new_figure(height: float, width: float = WIDTH) -> Figure:
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def _name_curves(figure: Figure) -> None:
+    """Gives each curve of an SVG an id: its panel and its label."""
+    for panel, axes in enumerate(figure.axes, 1):
+        for line in axes.lines:
+            label = str(line.get_label())
+            if not label.startswith("_"):
+                line.set_gid(re.sub(r"\W+", "-", f"curve {panel} {label}"))
+
+
+def save(figure: Figure, path: str | os.PathLike[str],
+         kind: str | None = None, dpi: float | None = None) -> None:
+    """Writes a picture; without `kind` the name says whether PNG or SVG."""
+    kind = kind or pathlib.Path(path).suffix.removeprefix(".")
+    _name_curves(figure)
+    with matplotlib.rc_context(STYLE):
+        figure.savefig(path, format=kind, metadata=METADATA[kind],
+                       dpi=dpi or STYLE["savefig.dpi"])
+
+
+def spoken(text: str) -> str:
+    """Text with its units as they are printed."""
+    for written, printed in [("degC", "°C"), ("degree", "°"), ("deg", "°"),
+                             ("m/s2", "m/s²")]:
+        text = re.sub(rf"\b{written}\b", printed, text)
+    return re.sub(r"sqrt\((\w)\)", r"√\1", text)
+
+
+def quantity(words: str, unit: str) -> str:
+    """The label of an axis."""
+    return f"{words} [{spoken(unit)}]" if unit not in ("", "1") else words
+
+
+def titled(figure: Figure, title: str, about: str = "") -> None:
+    """A title at the left, and in smaller letters what it is about."""
+    width, height = figure.get_size_inches()
+    lines = textwrap.wrap(spoken(about), int(LETTERS_PER_INCH * width))
+    # The layout leaves room for as many empty lines.
+    figure.suptitle(title + "\n " * len(lines), x=0.01, ha="left",
+                    weight="bold")
+    if lines:
+        figure.text(0.01, 1 - 0.29 / height, "\n".join(lines), fontsize=9,
+                    color=WORDS, ha="left", va="top", linespacing=1.5)
+
+
+def legend_below(axes: Axes, columns: int = 4) -> None:
+    axes.legend(loc="upper left", bbox_to_anchor=(0, -0.16), ncols=columns)
+
+
+def legend_above(axes: Axes, columns: int = 6,
+                 extra: Sequence[Any] = ()) -> None:
+    """Above the panel, so that it hides no sample."""
+    axes.legend(handles=[*axes.get_legend_handles_labels()[0], *extra],
+                loc="lower left", bbox_to_anchor=(-0.01, 0.98), ncols=columns,
+                borderaxespad=0.2, columnspacing=1.2, handlelength=1.6)
+
+
+def shortened(names: Sequence[str], most: int = 28) -> list[str]:
+    """Names that fit a legend."""
+    return [name if len(name) <= most else name[:most - 1] + "…"
+            for name in names]

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: MIT
+"""The table of `characterise`: the steady state over temperature."""
+
+from __future__ import annotations
+
+import pathlib
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.figure import Figure
+
+from . import style
+from .errors import PlotError
+
+Values = npt.NDArray[np.float64]
+
+COLUMNS = ("temperature_degC", "bias_deg_per_s", "in_phase_deg_per_s",
+           "quadrature_deg_per_s", "drive_frequency_Hz", "split_Hz", "q_drive",
+           "q_sense", "drive_voltage_V", "scale_factor_rel")
+PANELS = [("bias", "°/s", ["bias_deg_per_s"]),
+          ("scale factor − 1", "%", ["scale_factor_rel"]),
+          ("in-phase error", "°/s", ["in_phase_deg_per_s"]),
+          ("quadrature", "°/s", ["quadrature_deg_per_s"]),
+          ("drive frequency", "Hz", ["drive_frequency_Hz"]),
+          ("sense − drive", "Hz", ["split_Hz"]),
+          ("Q", "", ["q_drive", "q_sense"]),
+          ("drive voltage", "V", ["drive_voltage_V"])]
+HEIGHT = 7.6
+
+
+def read(path: pathlib.Path) -> dict[str, Any]:
+    lines = path.read_text().splitlines()
+    names = lines[0].split(",")
+    for number, line in enumerate(lines[1:], 2):
+        if line.count(",") + 1 != len(names):
+            raise PlotError(f"{path}:{number}: {line.count(',') + 1} values; "
+                            f"expected {len(names)}, as the first line has")
+    try:
+        values = np.loadtxt(lines[1:], delimiter=",", ndmin=2)
+    except ValueError as error:
+        raise PlotError(f"{path}: {error}") from None
+    if values.size == 0:
+        raise PlotError(f"{path}: no rows; expected one or more temperatures")
+    return {"name": path.name, **dict(zip(names, values.T))}
+
+
+def _column(table: Mapping[str, Any], name: str) -> Values:
+    if name not in table:
+        raise PlotError(f"{table.get('name', 'table')}: no column {name}; "
+                        f"expected {', '.join(COLUMNS)}")
+    values = np.asarray(table[name], dtype=float)
+    return 100 * (values - 1) if name == "scale_factor_rel" else values
+
+
+def draw(figure: Figure, tables: Sequence[Mapping[str, Any]]) -> None:
+    grid = figure.subplots(4, 2, sharex=True)
+    figure.align_ylabels(grid)
+    names = style.shortened([str(table.get("name", "")) for table in tables])
+    for (words, unit, columns), axes in zip(PANELS, grid.flat):
+        for k, (table, name) in enumerate(zip(tables, names)):
+            T = _column(table, "temperature_degC")
+            for j, column in enumerate(columns):
+                label = column[2:] if len(columns) > 1 and not k else None
+                axes.plot(T, _column(table, column),
+                          marker="" if len(T) > 1 else "o",
+                          color=style.COLORS[k % len(style.COLORS)],
+                          ls=style.DASHES[j if len(tables) == 1 else
+                                          (k + 3 * j) % len(style.DASHES)],
+                          label=label if len(tables) == 1 else
+                          (name if j == 0 else None))
+        axes.set_ylabel(style.quantity(words, unit))
+        if words in ("bias", "quadrature", "in-phase error"):
+            axes.axhline(0, color=style.GREY, lw=0.8, zorder=1)
+    if len(tables) == 1:
+        grid[3, 0].legend(loc="best")
+    else:
+        style.legend_above(grid[0, 0], 3)
+    for axes in grid[-1]:
+        axes.set_xlabel("temperature of the beam [°C]")
+    style.titled(figure, names[0] if len(tables) == 1
+                 else f"{len(tables)} devices",
+                 "steady state over temperature, without noise; scale factor "
+                 "relative to 25 °C")

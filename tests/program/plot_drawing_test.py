@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: MIT
+"""The functions that draw, called from Python with plain data."""
+
+import json
+import sys
+import unittest
+
+import h5py
+import numpy as np
+import xarray
+
+from program import CUBIC, NETWORK, ROOT, SCENARIOS, ProgramTest, ramp
+
+sys.path.insert(0, str(ROOT / "python/beamgyro"))
+import plots  # noqa: E402  (where it is comes first)
+from plots.bias_curve import KINDS, bias, steady_inputs  # noqa: E402
+from plots.envelope import bins_of, envelope, spans  # noqa: E402
+
+MODELS = SCENARIOS / "models"
+
+
+class Envelopes(unittest.TestCase):
+    def test_no_extreme_is_lost_and_means_are_means(self):
+        random = np.random.default_rng(1)
+        values = random.normal(size=100_003)
+        values[[7, 50_001, 100_002]] = 90, -80, 70
+        bins = bins_of(np.arange(len(values)) / 10)
+        found = envelope(bins, values)
+        self.assertEqual(len(found.mean), 1000)
+        self.assertEqual(found.high.max(), 90)
+        self.assertEqual(found.low.min(), -80)
+        self.assertEqual(found.high[-1], 70)
+        sizes = np.diff([*bins.starts, len(values)])
+        self.assertAlmostEqual((found.mean * sizes).sum(), values.sum(), 8)
+
+    def test_a_short_series_stays_as_it_is(self):
+        values = np.array([1.0, np.nan, 3.0])
+        found = envelope(bins_of(np.array([0.0, 1.0, 2.0])), values)
+        np.testing.assert_array_equal(found.mean, values)
+        np.testing.assert_array_equal(found.time, [0, 1, 2])
+
+    def test_missing_values_and_missing_times_break_the_line(self):
+        count = 10_000
+        values = np.ones(count)
+        values[2000:4000] = np.nan
+        when = np.arange(count) / 2.0
+        when[6000:] += 3000.0
+        found = envelope(bins_of(when), values)
+        inside = (found.time > 1001) & (found.time < 1990)
+        self.assertGreater(inside.sum(), 100)
+        self.assertTrue(np.isnan(found.mean[inside]).all())
+        # One break where time itself has a gap.
+        self.assertEqual(np.isnan(found.time).sum(), 1)
+        at = np.flatnonzero(np.isnan(found.time))[0]
+        self.assertGreater(found.time[at + 1] - found.time[at - 1], 2900)
+
+    def test_short_states_are_wide_enough_to_be_seen(self):
+        flags = np.zeros(50_000, dtype=bool)
+        flags[20_000] = flags[30_000:30_100] = True
+        found = spans(bins_of(np.arange(50_000.0)), flags)
+        self.assertEqual(len(found), 2)
+        self.assertAlmostEqual(found[0][1] - found[0][0], 50, delta=1)
+        self.assertTrue(found[0][0] <= 20_000 <= found[0][1])
+        self.assertTrue(found[1][0] <= 30_000 and found[1][1] >= 30_099)
+
+
+class Recordings(ProgramTest):
+    def dataset(self):
+        path = self.run_scenario("rest")
+        return path, xarray.open_dataset(path, engine="h5netcdf")
+
+    def test_a_dataset_a_dict_and_the_file_give_the_same_picture(self):
+        path, dataset = self.dataset()
+        with h5py.File(path) as file:
+            plain = {name: file[name][()] for name in file
+                     if isinstance(file[name], h5py.Dataset)}
+        pictures = []
+        for figure in (plots.plot_recording(dataset, names=["rest.h5"]),
+                       plots.plot_recording(plain, names=["rest.h5"])):
+            axes = figure.axes
+            self.assertEqual(axes[0].get_ylabel(), "rate at rest [°/s]")
+            pictures.append([line.get_ydata() for one in axes
+                             for line in one.lines])
+        drawn = [line.get_ydata() for one in plots.plot(path).axes
+                 for line in one.lines]
+        self.assertEqual(len(drawn), len(pictures[0]))
+        for lines in zip(drawn, *pictures):
+            np.testing.assert_array_equal(lines[0], lines[1])
+            np.testing.assert_array_equal(lines[0], lines[2])
+
+    def test_without_truth_and_without_status(self):
+        figure = plots.plot_recording(
+            {"time": np.arange(10.0), "rate": np.ones(10)})
+        self.assertEqual([axes.get_ylabel() for axes in figure.axes],
+                         ["rate [°/s]"])
+
+    def test_stated_sigma_is_a_band_about_zero(self):
+        figure = plots.plot_recording({
+            "time": np.arange(50.0), "rate": np.full(50, 1.0),
+            "compensated_rate": np.full(50, 0.2), "true_rate": np.zeros(50),
+            "compensated_rate_sigma": np.full(50, 0.5)})
+        left = figure.axes[1]
+        self.assertEqual(left.get_ylabel(), "error left [°/s]")
+        levels = sorted({float(line.get_ydata()[0]) for line in left.lines})
+        self.assertEqual(levels, [-0.5, 0.0, 0.2, 0.5])
+
+    def test_a_set_of_devices_and_nothing_are_refused(self):
+        with self.assertRaisesRegex(plots.PlotError, "isel"):
+            plots.plot_recording({"time": np.arange(3.0),
+                                  "rate": np.ones((2, 3))})
+        with self.assertRaisesRegex(plots.PlotError, "no samples"):
+            plots.plot_recording({"time": np.empty(0), "rate": np.empty(0)})
+        with self.assertRaises(plots.PlotError):
+            plots.plot([])
+
+
+class Compensators(ProgramTest):
+    def test_the_curve_is_what_compensate_takes_away(self):
+        """Of each kind, at temperatures within and beyond the training."""
+        self.run_scenario("train", text=ramp(rate_Hz=2))
+        self.run_scenario("held", text=ramp(seed=8))
+        T = np.linspace(-45, 60, 211)
+        self.write("steps.csv", "time,status,rate,temperature\n" + "".join(
+            f"{k},0,0,{value!r}\n" for k, value in enumerate(map(float, T))))
+        seen = set()
+        for name in ("none", "constant", "cubic", "table", "spline",
+                     "thermistor", "fuzzy", "radial_basis", "bp"):
+            text = (MODELS / f"{name}.toml").read_text() \
+                if name not in ("cubic", "bp") else {"cubic": CUBIC,
+                                                     "bp": NETWORK}[name]
+            self.write("model.toml", text.replace(
+                '["temperature", "since_power_on(300)"]', '["temperature"]'))
+            self.ok("train", "train.h5", "--held-out", "held.h5", "--model",
+                    "model.toml", "-o", "c.json")
+            self.ok("compensate", "c.json", "steps.csv", "-o", "done.h5")
+            with h5py.File(self.dir / "done.h5") as file:
+                taken = -file["compensated_rate"][()]
+            compensator = json.loads((self.dir / "c.json").read_text())
+            self.assertTrue(all(one == "temperature" for one in
+                                compensator["inputs"]), name)
+            low, high = compensator["temperature_range_degC"]
+            found = bias(compensator, steady_inputs(
+                compensator, np.clip(T, low, high)))
+            # Sums in another order: a few roundings of terms near 100 deg/s.
+            np.testing.assert_allclose(found, taken, atol=1e-12, rtol=1e-12,
+                                       err_msg=name)
+            seen.add(compensator["kind"])
+        self.assertEqual(seen, set(KINDS))
+
+
+class Speed(unittest.TestCase):
+    def test_a_million_samples_become_a_small_picture(self):
+        count = 1_000_000
+        data = {"time": np.arange(count) / 100.0,
+                "rate": np.sin(np.arange(count)), "temperature":
+                np.linspace(-40, 50, count), "true_rate": np.zeros(count)}
+        figure = plots.plot_recording(data)
+        self.assertLessEqual(max(len(line.get_xdata()) for axes in figure.axes
+                                 for line in axes.lines), 2000)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,392 @@
+# SPDX-License-Identifier: MIT
+"""`plot`: a picture of every kind of file that the program writes."""
+
+import os
+import re
+import struct
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+import h5py
+import numpy as np
+
+from program import CUBIC, NETWORK, SCENARIO, SCENARIOS, ProgramTest, ramp
+
+CAMPAIGN = """\
+name = "few"
+device = "device.toml"
+devices = 6
+devices_per_file = 3
+seed = 4
+
+[tolerances]
+"mount.axis_angle_deg" = { normal = { mean = 0, sigma = 1 } }
+"readout.quadrature_trim_deg_per_s" = { normal = { mean = 0, sigma = 50 } }
+
+[[run]]
+name = "sweep"
+scenario = "sweep.toml"
+"""
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def texts(path):
+    """All texts of an SVG, joined."""
+    return "\n".join("".join(node.itertext()) for node in
+                     ElementTree.parse(path).iter(f"{SVG}text"))
+
+
+def curves(path):
+    """The names of the curves of an SVG: panel and label."""
+    return [node.get("id") for node in ElementTree.parse(path).iter(f"{SVG}g")
+            if str(node.get("id")).startswith("curve-")]
+
+
+class PlotTest(ProgramTest):
+    def picture(self, *files, name="picture.svg"):
+        self.ok("plot", *files, "-o", name)
+        return self.dir / name
+
+    def says(self, path, *words):
+        found = texts(path)
+        for word in words:
+            self.assertIn(word, found)
+
+
+class Recordings(PlotTest):
+    def test_a_run_at_rest(self):
+        self.run_scenario("rest")
+        svg = self.picture("rest.h5")
+        self.says(svg, "rest.h5", "rate at rest [°/s]", "temp. [°C]",
+                  "drive [Hz]", "quad. [°/s]", "time [min]", "sensor", "beam")
+        self.assertEqual(
+            curves(svg)[:2], ["curve-1-measured",
+                              "curve-1-true-bias-without-noise"])
+
+    def test_the_csv_of_a_run_has_the_same_curves(self):
+        self.run_scenario("rest")
+        self.ok("run", "rest.toml", "-o", "rest.csv")
+        self.assertEqual(curves(self.picture("rest.h5")),
+                         curves(self.picture("rest.csv", name="csv.svg")))
+
+    def test_units_of_a_csv_are_converted(self):
+        self.write("log.csv", "time [ms],status,rate [deg/h],temperature [K]\n"
+                   + "".join(f"{1000 * k},0,{7200 + k},{273.15 + 20 + k}\n"
+                             for k in range(60)))
+        svg = self.picture("log.csv")
+        self.says(svg, "rate [°/s]", "temp. [°C]", "time [s]")
+        ticks = re.findall(r"^[\d.]+$", texts(svg), re.MULTILINE)
+        self.assertIn("2.000", ticks)  # 7200 deg/h
+        self.assertIn("40", ticks)  # degC
+        self.assertNotIn("300", ticks)
+
+    def test_a_turning_run_after_compensation(self):
+        self.write("model.toml", CUBIC)
+        self.run_scenario("train", text=ramp())
+        self.ok("train", "train.h5", "--model", "model.toml", "-o", "c.json")
+        self.run_scenario("turn", text=SCENARIO + "\n[rate]\nsteps = "
+                          "[[0, 0.0], [200, 20.0], [400, -20.0]]\n")
+        self.ok("compensate", "c.json", "turn.h5", "-o", "done.h5")
+        svg = self.picture("done.h5")
+        self.says(svg, "rate [°/s]", "error [°/s]", "error left [°/s]",
+                  "compensated by c.json")
+        names = curves(svg)
+        for name in ("curve-1-measured", "curve-1-compensated",
+                     "curve-1-true", "curve-2-measured-less-true-rate",
+                     "curve-3-compensated-less-true-rate"):
+            self.assertIn(name, names)
+        with h5py.File(self.dir / "done.h5") as file:
+            stated = "compensated_rate_sigma" in file
+        self.assertEqual(any("stated" in name for name in names), stated)
+
+    def test_what_was_unpowered_is_shaded(self):
+        self.run_scenario("cycle", text=SCENARIO +
+                          "\n[power]\non_s = [0, 400]\noff_s = [200]\n")
+        svg = self.picture("cycle.h5")
+        self.says(svg, "unpowered")
+        # One stretch in each of the panels.
+        self.assertEqual(svg.read_text().count('id="state unpowered"'), 4)
+
+    def test_the_same_bytes_twice_and_no_date(self):
+        self.run_scenario("rest")
+        for name in ("a.svg", "a.png"):
+            first = self.picture("rest.h5", name=name).read_bytes()
+            again = self.picture("rest.h5", name=f"again_{name}").read_bytes()
+            self.assertEqual(first, again)
+            self.assertNotRegex(first, rb"<dc:date>|tIME|Matplotlib v")
+
+    def test_a_png_is_as_wide_as_a_slide(self):
+        self.run_scenario("rest")
+        head = self.picture("rest.h5", name="a.png").read_bytes()[:24]
+        self.assertEqual(head[:4], b"\x89PNG")
+        self.assertEqual(struct.unpack(">I", head[16:20]), (1600,))
+
+    def test_several_recordings_over_each_other(self):
+        self.run_scenario("one")
+        self.run_scenario("two", "--set", "ambient.constant_degC=10")
+        svg = self.picture("one.h5", "two.h5", "--compare")
+        self.assertEqual(curves(svg), ["curve-1-one-h5", "curve-1-two-h5",
+                                       "curve-2-one-h5", "curve-2-two-h5"])
+
+    def test_a_name_with_a_space_and_a_dash(self):
+        self.run_scenario("rest")
+        (self.dir / "rest.h5").rename(self.dir / "my -run.h5")
+        self.picture("./my -run.h5", name="a picture.svg")
+
+
+class Results(PlotTest):
+    def test_a_table_of_characterise(self):
+        self.ok("characterise", "device.toml", "-o", "table.csv")
+        self.ok("characterise", "device.toml", "-o", "short.csv", "--set",
+                "beam.length_m=0.038")
+        svg = self.picture("table.csv")
+        self.says(svg, "bias [°/s]", "scale factor − 1 [%]", "Q",
+                  "drive frequency [Hz]", "temperature of the beam [°C]")
+        self.assertEqual(curves(svg), ["curve-7-drive", "curve-7-sense"])
+        svg = self.picture("table.csv", "short.csv", "--compare")
+        self.assertEqual(len(curves(svg)), 16)  # two in each of eight panels
+
+    def test_one_row_of_a_table(self):
+        self.ok("characterise", "device.toml", "-o", "table.csv",
+                "--beam-temperature", "25")
+        self.picture("table.csv")
+
+    def test_allan_deviations(self):
+        self.run_scenario("rest")
+        self.ok("allan", "rest.h5", "--json", "a.json", "--kind",
+                "oadev,adev,hdev")
+        svg = self.picture("a.json")
+        self.says(svg, "deviation [°/s]", "averaging time τ [s]", "N = ")
+        self.assertEqual(curves(svg), [
+            "curve-1-overlapping-Allan-deviation", "curve-1-Allan-deviation",
+            "curve-1-Hadamard-deviation"])
+        self.ok("allan", "rest.h5", "--json", "b.json", "--to", "300")
+        self.assertEqual(
+            curves(self.picture("a.json", "b.json", "--compare")),
+            ["curve-1-a-json", "curve-1-b-json"])
+
+    def test_scores_of_recordings(self):
+        self.write("model.toml", CUBIC)
+        self.run_scenario("train", text=ramp())
+        self.run_scenario("check", text=ramp(seed=5))
+        self.run_scenario("other", text=ramp(seed=6, high=30))
+        self.ok("train", "train.h5", "--model", "model.toml", "-o", "c.json")
+        self.ok("validate", "c.json", "check.h5", "other.h5", "--json",
+                "scores.json")
+        svg = self.picture("scores.json")
+        self.says(svg, "PASS", "check.h5", "other.h5", "overall",
+                  "rms about zero [°/s]", "1σ about the mean [°/s]")
+        self.assertEqual(len(curves(svg)), 6)
+
+    def test_a_validation_and_its_parts(self):
+        self.ok_or_not("validate", SCENARIOS / "models/cubic.toml", "--device",
+                       "device.toml", "--spec",
+                       SCENARIOS.parent / "specs/uav.toml", "--json",
+                       "result.json")
+        svg = self.picture("result.json")
+        self.says(svg, "FAIL: cubic.toml", "residual_rms_deg_per_s", "Limits",
+                  "Bias over temperature", "Measured less true rate [°/s]",
+                  "Allan deviation")
+
+    def ok_or_not(self, *words):
+        self.assertIn(self.beamgyro(*words).returncode, (0, 3))
+
+    def test_a_study_of_sensitivity(self):
+        self.write("sweep.toml", SCENARIO)
+        self.write("few.toml", CAMPAIGN)
+        self.ok("sensitivity", "few.toml", "--samples", "64", "--figure",
+                "bias_pp_deg_per_s,cubic_rms_deg_per_s", "--json", "s.json")
+        self.says(self.picture("s.json"), "Sensitivity: few",
+                  "mount.axis_angle_deg", "share of the variance", "total",
+                  "first order", "peak to peak of the bias")
+
+
+class Compensators(PlotTest):
+    def setUp(self):
+        super().setUp()
+        self.run_scenario("train", text=ramp())
+        self.run_scenario("held", text=ramp(seed=8))
+
+    def train(self, name, model):
+        self.write(f"{name}.toml", model)
+        self.ok("train", "train.h5", "--held-out", "held.h5", "--model",
+                f"{name}.toml", "-o", f"{name}.json")
+        return f"{name}.json"
+
+    def test_one(self):
+        svg = self.picture(self.train("cubic", CUBIC))
+        self.says(svg, "cubic.json", "bias [°/s]",
+                  "measured temperature [°C]", "in-sample", "held out",
+                  "rms left [°/s]")
+        self.assertEqual(sorted(curves(svg)), [
+            "curve-1-bias-taken-away", "curve-1-cubic-of-the-same-training"])
+
+    def test_one_that_follows_other_inputs_has_no_curve(self):
+        name = self.train("net", NETWORK.replace(
+            '["temperature"]', '["temperature", "drive_frequency"]'))
+        svg = self.picture(name)
+        self.says(svg, "follows drive_frequency", "no curve")
+        self.assertNotIn("curve-1-bias-taken-away", curves(svg))
+
+    def test_two(self):
+        svg = self.picture(self.train("cubic", CUBIC),
+                           self.train("net", NETWORK), "--compare")
+        names = curves(svg)
+        self.assertEqual(names[:2], ["curve-1-cubic-json", "curve-1-net-json"])
+
+
+class Sets(PlotTest):
+    def test_a_set_and_one_of_its_files(self):
+        self.write("sweep.toml", ramp())
+        self.write("few.toml", CAMPAIGN)
+        self.ok("generate", "few.toml", "-o", "few")
+        svg = self.picture("few")
+        self.says(svg, "Set few", "6 devices", "run sweep", "drift [°/s]",
+                  "p-p of each device [°/s]")
+        self.says(self.picture("few/sweep_00000.h5"), "3 devices")
+
+    def test_a_population_and_its_plan(self):
+        campaign = (SCENARIOS / "campaigns/population.toml").read_text()
+        first, *_ = campaign.split("[[run]]")
+        self.write("population.toml", first.replace("../", f"{SCENARIOS}/") +
+                   f'[[run]]\nname = "sweep"\nscenario = "{SCENARIOS}/'
+                   'soak_sweep_sparse.toml"\n[output]\nvariables = ["rate", '
+                   '"temperature", "quadrature", "true_rate"]\n')
+        self.ok("generate", "population.toml", "-o", "set", "--devices", "30")
+        self.ok("train", "set", "--model",
+                SCENARIOS / "population/population.toml", "-o", "p.json")
+        self.says(self.picture("p.json"), "population of ", "bias [°/s]",
+                  "quadrature [°/s]", "mean of the devices")
+        self.ok("plan", "p.json", "--soaks", "3", "--json", "plan.json",
+                "--picture", "drawn by plan.svg")
+        svg = self.picture("plan.json")
+        self.says(svg, "What soaks buy", "rms left [°/s]", "this schedule")
+        self.assertEqual(curves(svg),
+                         curves(self.dir / "drawn by plan.svg"))
+        self.assertEqual(len(curves(svg)), 5)
+
+
+class Refusals(PlotTest):
+    def refused(self, *words, says, status=2):
+        self.rejected("plot", *words, says=says, status=status)
+
+    def test_files_without_a_picture(self):
+        self.write("notes.txt", "no data at all\n")
+        self.write("other.json", '{"a": 1}\n')
+        self.write("list.json", "[1, 2]\n")
+        self.write("cut.json", '{"adev": [')
+        self.write("empty.h5", "")
+        (self.dir / "folder").mkdir()
+        self.write("s.toml", SCENARIO)
+        for name, says in [
+                ("nothing.h5", "nothing.h5"),
+                ("notes.txt", "has no picture"),
+                ("other.json", "has no picture"),
+                ("list.json", "list.json"),
+                ("cut.json", "no JSON"),
+                ("empty.h5", "empty.h5"),
+                ("folder", "manifest.jsonl"),
+                ("device.toml", "is a device file"),
+                ("s.toml", "is a scenario")]:
+            with self.subTest(name):
+                self.refused(name, "-o", "p.png", says=[name, says])
+
+    def test_results_that_were_changed(self):
+        self.write("table.csv", "temperature_degC,bias_deg_per_s\n1,2\n3\n")
+        self.write("head.csv", "temperature_degC,bias_deg_per_s\n")
+        self.write("few.csv", "temperature_degC,bias_deg_per_s\n1,2\n3,4\n")
+        self.write("allan.json", '{"adev": [{"tau_s": 1}], "series": {}, '
+                   '"noise": null}')
+        self.write("unit.csv", "time,status,rate [furlong/s]\n0,0,1\n1,0,1\n")
+        for name, says in [("table.csv", "table.csv:3: 1 values"),
+                           ("head.csv", "no rows"),
+                           ("few.csv", "no column scale_factor_rel"),
+                           ("allan.json", "no key 'deviation'"),
+                           ("unit.csv", "furlong/s")]:
+            with self.subTest(name):
+                self.refused(name, "-o", "p.png", says=[name, says])
+
+    def test_a_damaged_recording(self):
+        path = self.run_scenario("rest")
+        data = bytearray(path.read_bytes())
+        data[len(data) // 2] ^= 1
+        path.write_bytes(data)
+        self.refused("rest.h5", "-o", "p.png", says=["rest.h5", "damaged"])
+
+    def test_what_cannot_be_compared(self):
+        self.run_scenario("rest")
+        self.ok("characterise", "device.toml", "-o", "table.csv")
+        self.ok("allan", "rest.h5", "--json", "allan.json")
+        self.refused("rest.h5", "table.csv", "--compare", "-o", "p.png",
+                     says=["table.csv", "rest.h5", "one kind"])
+        self.refused("rest.h5", "allan.json", "--compare", "-o", "p.png",
+                     says="one kind")
+        self.refused("rest.h5", "rest.h5", "-o", "p.png", says="--compare")
+        self.refused("rest.h5", "--compare", "-o", "p.png", says="--compare")
+
+    def test_names_of_the_picture(self):
+        self.run_scenario("rest")
+        for name, says in [("p.jpg", '".jpg"'), ("p", '""'),
+                           ("none/p.png", "none")]:
+            self.refused("rest.h5", "-o", name, says=says)
+        (self.dir / "rest.h5").rename(self.dir / "rest.png")
+        self.refused("rest.png", "-o", "rest.png", says="rest.png")
+        self.refused("-o", "p.png", says="FILE")
+
+    def test_a_picture_that_was_there_stays_when_drawing_fails(self):
+        self.write("p.png", "mine")
+        self.write("notes.txt", "no data at all\n")
+        self.refused("notes.txt", "-o", "p.png", says="has no picture")
+
+
+class Surroundings(PlotTest):
+    def without(self, module):
+        broken = self.dir / "modules"
+        broken.mkdir(exist_ok=True)
+        (broken / f"{module}.py").write_text(
+            f'raise ModuleNotFoundError("No module named {module!r}", '
+            f'name="{module}")')
+        return {**os.environ, "PYTHONPATH": str(broken)}
+
+    def test_without_matplotlib_or_h5py(self):
+        self.run_scenario("rest")
+        for module in ("matplotlib", "h5py"):
+            answer = self.beamgyro("plot", "rest.h5", "-o", "p.png",
+                                   env=self.without(module))
+            self.assertEqual(answer.returncode, 1, answer.stderr)
+            self.assertIn(f"No module named '{module}'", answer.stderr)
+            self.assertIn(f"python3-{module}", answer.stderr)
+            self.assertEqual(len(answer.stderr.splitlines()), 1)
+            self.assertFalse((self.dir / "p.png").exists())
+            (self.dir / f"modules/{module}.py").unlink()
+
+    def test_without_a_display_there_is_no_window(self):
+        self.run_scenario("rest")
+        env = {name: value for name, value in os.environ.items()
+               if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        answer = self.beamgyro("plot", "rest.h5", env=env)
+        self.assertEqual(answer.returncode, 2, answer.stderr)
+        self.assertIn("no display", answer.stderr)
+        self.assertIn("-o PICTURE.png", answer.stderr)
+
+    def test_the_rest_of_the_package_is_not_needed(self):
+        """The pictures are there where only they were installed."""
+        self.run_scenario("rest")
+        answer = self.beamgyro("plot", "rest.h5", "-o", "p.png",
+                               env=self.without("beamgyro"))
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+
+    def test_a_spike_of_one_sample_among_many_is_drawn(self):
+        count, spike = 100_000, 54_321
+        rate = np.zeros(count)
+        rate[spike] = 9.0
+        self.write("log.csv", "time,status,rate,temperature\n" + "".join(
+            f"{k},0,{rate[k]:g},25\n" for k in range(count)))
+        ticks = re.findall(r"^[\d.]+$", texts(self.picture("log.csv")),
+                           re.MULTILINE)
+        self.assertTrue({"8", "7.5"} & set(ticks), ticks)
+
+
+if __name__ == "__main__":
+    unittest.main()
