@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Runs the code of README.md and of every guide, in order, as it stands there.
+"""Runs the code of README.md, of every guide and tutorial, in order.
 
 A block `sh` or `python` is run in a directory that looks like that of the
 project. A block `text` after it is what it prints: a line `...` stands for any
@@ -17,7 +17,8 @@ import pytest
 from program import PROGRAM, ROOT
 
 GUIDES = sorted((ROOT / "docs/guide").glob("*.md"))
-PAGES = [ROOT / "README.md", *GUIDES]
+TUTORIALS = sorted((ROOT / "docs/tutorials").glob("*.md"))
+PAGES = [ROOT / "README.md", *GUIDES, *TUTORIALS]
 BLOCK = re.compile(r"^```(sh|python|text)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 MARK = "---8<---"
 
@@ -78,7 +79,8 @@ def test_a_guide_prints_what_it_says(guide, tmp_path):
 def test_every_guide_is_found():
     names = {guide.stem for guide in GUIDES}
     assert {"first_run", "chamber_log", "firmware"} <= names
-    for guide in GUIDES:
+    assert len(TUTORIALS) >= 4
+    for guide in GUIDES + TUTORIALS:
         assert any(text for _, _, text in steps(guide)), guide
 
 
