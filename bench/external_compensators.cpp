@@ -17,7 +17,7 @@
 namespace {
 
 using beamgyro::internal::Answer;
-using beamgyro::internal::Recording;
+using beamgyro::Recording;
 
 // The measured variables of a simulated run at 100 Hz.
 Recording run_of(std::size_t samples) {

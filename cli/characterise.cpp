@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iterator>
@@ -14,8 +13,7 @@
 #include "cli/progress.h"
 #include "cli/terminal.h"
 #include "dataset/files/atomic_file.h"
-#include "sim/dynamics/characteristic.h"
-#include "sim/scenario/simulation_input.h"
+#include "include/beamgyro/device.h"
 #include "sim/thermal/material_range.h"
 
 namespace beamgyro::internal {
@@ -68,28 +66,17 @@ std::vector<double> temperature_grid(const std::string& text) {
   return grid;
 }
 
-void warn_beyond_ceramic(const std::string& device,
-                         const std::vector<double>& grid) {
-  const auto is_linear = [](double celsius) {
-    return kLinearCeramic.contains(celsius);
-  };
-  if (std::all_of(grid.begin(), grid.end(), is_linear)) return;
-  keep_warning(fmt::format(
-      "{}: beyond {:g} to {:g} degC the ceramic's coefficients keep the values "
-      "of the nearest end",
-      device, kLinearCeramic.low, kLinearCeramic.high));
-}
-
 int characterise(const CharacteriseArguments& arguments) {
   const std::vector<double> grid = temperature_grid(arguments.temperatures);
-  const LoadedDevice input = load_device(arguments.device, arguments.overrides);
+  const auto device =
+      beamgyro::Device::read(arguments.device, arguments.overrides);
   require_output(arguments.output, {arguments.device});
   require_ending(arguments.output, {".csv"});
 
   const Progress progress("characterising " + arguments.device);
-  const Gyro gyro = make_gyro(input.device);
-  write_text_file(arguments.output, characteristic_csv(gyro, grid));
-  warn_beyond_ceramic(arguments.device, grid);
+  const Characteristic found = beamgyro::characterise(device, grid);
+  write_text_file(arguments.output, found.csv);
+  for (const std::string& warning : found.warnings) keep_warning(warning);
   return 0;
 }
 

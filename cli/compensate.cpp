@@ -5,27 +5,22 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "api/compensation.h"
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/process_limits.h"
 #include "cli/progress.h"
 #include "cli/stream.h"
 #include "cli/terminal.h"
-#include "cli/version.h"
-#include "compensation/compensator/compensator_file.h"
-#include "dataset/files/atomic_file.h"
-#include "dataset/files/sha256.h"
-#include "dataset/netcdf/recording_file.h"
-#include "dataset/recording/signals.h"
+#include "include/beamgyro/compensator.h"
 #include "validation/external/tested_compensator.h"
 
 namespace beamgyro::internal {
 namespace {
-
-constexpr const char* kColumn = "compensated_rate";
-constexpr const char* kSigmaColumn = "compensated_rate_sigma";
 
 constexpr int kCompensatorFailed = 3;
 
@@ -36,61 +31,36 @@ struct CompensateArguments {
   LimitArguments limits;
 };
 
-void warn_of_range(const CompensateArguments& arguments, std::size_t clamped,
-                   const Recording& recording) {
-  if (clamped == 0) return;
-  const TemperatureRange range =
-      read_compensator(arguments.compensator).temperature_range;
-  print_warning(fmt::format(
-      "{}: {} of {} samples lie outside {:g} to {:g} degC, the temperatures "
-      "seen in training; clamped",
-      arguments.run, clamped, recording.time.size(), range.lowest,
-      range.highest));
-}
-
 // Prints what is wrong with the answers. Returns whether anything is.
-bool report_faults(const std::string& compensator, const Answer& answer) {
-  for (const SeenFault& seen : answer.faults)
-    print_error(fmt::format("{}: {}", compensator, seen.words));
+bool report_faults(const std::string& compensator,
+                   const CompensatedRate& answer) {
+  for (const std::string& words : answer.faults)
+    print_error(fmt::format("{}: {}", compensator, words));
   return !answer.faults.empty();
 }
 
-Answer answer_of(const TestedCompensator& compensator,
-                 const Recording& recording, const std::string& file) try {
-  return compensator.answer(recording);
-} catch (const std::invalid_argument& error) {
-  throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
-}
-
 int compensate(const CompensateArguments& arguments) {
-  const std::unique_ptr<TestedCompensator> compensator =
-      open_tested_compensator(arguments.compensator,
-                              process_limits(arguments.limits));
-  const bool is_file = !is_command(arguments.compensator);
+  const ProcessLimits limits = process_limits(arguments.limits);
+  const auto compensator =
+      open_compensator(arguments.compensator, {.stall_s = limits.stall,
+                                               .memory = limits.memory,
+                                               .program = limits.program});
   std::optional<Progress> progress("compensating " + arguments.run);
   Recording recording = load_recording(arguments.run);
   std::vector<std::filesystem::path> inputs = {arguments.run};
-  if (is_file) inputs.emplace_back(arguments.compensator);
+  if (!is_command(arguments.compensator))
+    inputs.emplace_back(arguments.compensator);
   require_output(arguments.output, inputs);
   require_recording_name(arguments.output);
-  if (find_column(recording, kColumn)) {
-    throw std::invalid_argument(fmt::format(
-        "{}: holds a {} already; expected a recording that was not compensated",
-        arguments.run, kColumn));
-  }
-  Answer answer = answer_of(*compensator, recording, arguments.run);
+  require_uncompensated(recording, arguments.run);
+  CompensatedRate answer =
+      checked_answer(*compensator, recording, arguments.run);
   progress.reset();
   if (report_faults(arguments.compensator, answer)) return kCompensatorFailed;
-  warn_of_range(arguments, answer.clamped, recording);
-  recording.columns.push_back(column_of(kColumn, std::move(answer.rate)));
-  if (!answer.sigma.empty())
-    recording.columns.push_back(
-        column_of(kSigmaColumn, std::move(answer.sigma)));
-  recording.compensator = tested_name(arguments.compensator);
-  if (is_file)
-    recording.compensator_sha256 = sha256_of_file(arguments.compensator);
-  if (!recording.history.empty()) recording.history += '\n';
-  recording.history += history_line("compensate with " + recording.compensator);
+  for (const std::string& warning :
+       range_warnings(*compensator, answer, arguments.run))
+    print_warning(warning);
+  add_answer(*compensator, std::move(answer), recording);
   write_recording(recording, arguments.output);
   return 0;
 }

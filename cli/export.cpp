@@ -1,26 +1,22 @@
 // SPDX-License-Identifier: MIT
+#include "include/beamgyro/export.h"
+
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <utility>
+#include <string>
+#include <system_error>
 #include <vector>
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/terminal.h"
-#include "compensation/compensator/compensator_file.h"
-#include "compensation/export/export_c.h"
-#include "compensation/export/export_ekf.h"
-#include "compensation/export/export_parameters.h"
-#include "compensation/firmware/c_text.h"
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/made_directories.h"
-#include "dataset/files/sha256.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -38,163 +34,9 @@ struct ExportArguments {
   std::optional<double> temperature;  // [degC]
 };
 
-using NamedTexts = std::vector<std::pair<std::string, std::string>>;
-
-struct NamedCompensator {
-  fs::path file;
-  Compensator compensator;
-};
-
-// Runs `work` and puts the name of the compensator's file before an error.
-template <class Work>
-auto of_file(const fs::path& file, Work work) {
-  try {
-    return work();
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(
-        fmt::format("{}: {}", file.string(), error.what()));
-  }
-}
-
-// One axis for each compensator.
-std::vector<char> axes_of(const ExportArguments& arguments) {
-  const std::size_t count = arguments.compensators.size();
-  std::vector<char> axes;
-  for (const std::string& axis : arguments.axes) axes.push_back(axis[0]);
-  if (axes.empty() && count == 1) axes = {'z'};
-  if (axes.empty() && count == 3) axes = {'x', 'y', 'z'};
-  if (axes.size() != count)
-    throw std::invalid_argument(
-        fmt::format("--axis: {} axes for {} compensators; one each, such as "
-                    "--axis x,y",
-                    axes.size(), count));
-  for (std::size_t k = 1; k < count; ++k)
-    if (std::find(axes.begin(), axes.begin() + static_cast<std::ptrdiff_t>(k),
-                  axes[k]) != axes.begin() + static_cast<std::ptrdiff_t>(k))
-      throw std::invalid_argument(fmt::format(
-          "--axis: {} twice; each compensator has an axis of its own",
-          axes[k]));
-  return axes;
-}
-
-void warn_of_ranges(const std::vector<AutopilotAxis>& axes) {
-  const TemperatureRange common = common_range(axes);
-  if (std::ranges::all_of(axes, [&](const AutopilotAxis& axis) {
-        return axis.range == common;
-      }))
-    return;
-  print_warning(fmt::format(
-      "the axes were trained over different temperatures: the autopilot will "
-      "clamp all of them to {:.2f} to {:.2f} degC, which all have seen",
-      common.lowest, common.highest));
-}
-
-NamedTexts parameter_texts(const ExportArguments& arguments,
-                           const std::vector<NamedCompensator>& compensators,
-                           const std::string& name) {
-  const std::vector<char> places = axes_of(arguments);
-  std::vector<AutopilotAxis> axes;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const Compensator& compensator = compensators[k].compensator;
-    const auto cubic = [&] {
-      return autopilot_cubic(compensator, arguments.fit_cubic);
-    };
-    axes.push_back({places[k], of_file(compensators[k].file, cubic),
-                    compensator.temperature_range});
-  }
-  const bool px4 = arguments.format == "px4";
-  const AutopilotGyro gyro{
-      static_cast<int>(arguments.instance.value_or(px4 ? 0 : 1)),
-      arguments.device_id.value_or(0)};
-  NamedTexts texts = {
-      {name + (px4 ? ".params" : ".parm"), of_file(compensators[0].file, [&] {
-         return px4 ? px4_parameters(axes, gyro)
-                    : ardupilot_parameters(axes, gyro);
-       })}};
-  warn_of_ranges(axes);
-  return texts;
-}
-
-NamedTexts c_texts(const ExportArguments& arguments, const NamedCompensator& of,
-                   const std::string& name) {
-  const ExportedC c = of_file(
-      of.file, [&] { return export_c(of.compensator, name, arguments.force); });
-  for (const std::string& warning : c.warnings)
-    print_warning(fmt::format("{}: {}", of.file.string(), warning));
-  return {{name + ".h", c.header},
-          {name + ".c", c.source},
-          {name + "_selftest.c", c.self_test},
-          {name + "_plugin.c", c.plugin}};
-}
-
-// Before a long recording is read.
-void require_sigma(const NamedCompensator& of) {
-  if (!of.compensator.sigma)
-    throw std::invalid_argument(fmt::format(
-        "{}: states no sigma, from which the bias noise of a filter is "
-        "computed; expected a compensator with the member sigma",
-        of.file.string()));
-}
-
-EkfSource ekf_source(const fs::path& file) {
-  return {file.filename().string(), sha256_of_file(file)};
-}
-
-NamedTexts ekf_files(const ExportArguments& arguments,
-                     const NamedCompensator& of, const std::string& name) {
-  if (!arguments.rest)
-    throw std::invalid_argument(
-        "--rest is missing; expected a recording at rest, from which the noise "
-        "is taken");
-  EkfExport given{.name = name,
-                  .axis = axes_of(arguments)[0],
-                  .compensator = ekf_source(of.file),
-                  .rest = {},
-                  .settings = {},
-                  .noise = {},
-                  .figures = {}};
-  EkfSettings& settings = given.settings;
-  settings.temperature = arguments.temperature;
-  if (arguments.ramp) settings.temperature_rate = *arguments.ramp / 60.0;
-  settings.correlation = arguments.correlation.value_or(settings.correlation);
-  require_sigma(of);
-  const Recording rest = load_recording(*arguments.rest);
-  given.noise = of_file(*arguments.rest,
-                        [&] { return rest_noise(of.compensator, rest); });
-  given.rest = ekf_source(*arguments.rest);
-  given.figures = ekf_figures(of.compensator, given.noise, settings);
-  for (const std::string& warning : ekf_warnings(given)) print_warning(warning);
-  return ekf_texts(given);
-}
-
-void require_options(const ExportArguments& arguments) {
-  const auto refuse = [&](bool given, const char* option, const char* formats) {
-    if (given)
-      throw std::invalid_argument(
-          fmt::format("{}: is for the formats {}, not for {}", option, formats,
-                      arguments.format));
-  };
-  const std::string& format = arguments.format;
-  if (format != "px4")
-    refuse(arguments.device_id.has_value(), "--device-id", "px4");
-  if (format != "c") refuse(arguments.force, "--force", "c");
-  if (format != "ekf") {
-    refuse(arguments.rest.has_value(), "--rest", "ekf");
-    refuse(arguments.ramp.has_value(), "--ramp-K-per-min", "ekf");
-    refuse(arguments.correlation.has_value(), "--correlation-K", "ekf");
-    refuse(arguments.temperature.has_value(), "--temperature-degC", "ekf");
-  }
-  if (format == "px4" || format == "ardupilot") return;
-  if (format == "c")
-    refuse(!arguments.axes.empty(), "--axis", "px4, ardupilot and ekf");
-  refuse(arguments.instance.has_value(), "--instance", "px4 and ardupilot");
-  refuse(arguments.fit_cubic, "--fit-cubic", "px4 and ardupilot");
-  refuse(arguments.compensators.size() > 1, "several compensators",
-         "px4 and ardupilot");
-}
-
 // Checks all outputs before the first is written.
-void require_outputs(const fs::path& directory, const NamedTexts& texts,
+void require_outputs(const fs::path& directory,
+                     const std::vector<ExportedFile>& texts,
                      const std::vector<fs::path>& inputs) {
   const fs::file_status status = status_of(directory);
   if (!fs::exists(status)) return;
@@ -207,7 +49,8 @@ void require_outputs(const fs::path& directory, const NamedTexts& texts,
 }
 
 // Writes all files or none.
-void write_texts(const fs::path& directory, const NamedTexts& texts) {
+void write_texts(const fs::path& directory,
+                 const std::vector<ExportedFile>& texts) {
   const MadeDirectories made(directory);
   std::vector<fs::path> written;
   try {
@@ -222,29 +65,35 @@ void write_texts(const fs::path& directory, const NamedTexts& texts) {
   }
 }
 
+ExportOptions options_of_export(const ExportArguments& arguments) {
+  ExportOptions options{.name = arguments.name,
+                        .axes = arguments.axes,
+                        .force = arguments.force,
+                        .fit_cubic = arguments.fit_cubic};
+  if (arguments.instance)
+    options.instance = static_cast<int>(*arguments.instance);
+  if (arguments.device_id) options.device_id = *arguments.device_id;
+  if (arguments.rest) options.rest = *arguments.rest;
+  options.ramp_K_per_min = arguments.ramp;
+  options.correlation_K = arguments.correlation;
+  options.temperature_degC = arguments.temperature;
+  return options;
+}
+
 int run_export(const ExportArguments& arguments) {
-  require_options(arguments);
-  std::vector<NamedCompensator> compensators;
+  const ExportOptions options = options_of_export(arguments);
+  std::vector<beamgyro::Compensator> compensators;
   for (const std::string& file : arguments.compensators)
-    compensators.push_back({file, read_compensator(file)});
-  const std::string name =
-      c_identifier(arguments.name.empty() ? compensators[0].file.stem().string()
-                                          : arguments.name);
-  const NamedTexts texts = arguments.format == "c"
-                               ? c_texts(arguments, compensators[0], name)
-                           : arguments.format == "ekf"
-                               ? ekf_files(arguments, compensators[0], name)
-                               : parameter_texts(arguments, compensators, name);
+    compensators.push_back(beamgyro::Compensator::read(file));
+  const ExportResult result =
+      export_files(compensators, arguments.format, options);
   std::vector<fs::path> inputs = {arguments.compensators.begin(),
                                   arguments.compensators.end()};
   if (arguments.rest) inputs.emplace_back(*arguments.rest);
-  require_outputs(arguments.output, texts, inputs);
+  require_outputs(arguments.output, result.files, inputs);
   require_directory_name(arguments.output);
-  write_texts(arguments.output, texts);
-  if (arguments.format == "px4" && arguments.device_id.value_or(0) == 0)
-    print_warning(
-        "TC_Gn_ID is 0: PX4 applies the parameters to the sensor with this id "
-        "only; pass --device-id");
+  write_texts(arguments.output, result.files);
+  for (const std::string& warning : result.warnings) print_warning(warning);
   return 0;
 }
 

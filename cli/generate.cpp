@@ -10,13 +10,13 @@
 #include <string>
 #include <string_view>
 
+#include "api/generation.h"
 #include "cli/commands.h"
 #include "cli/generation_progress.h"
 #include "cli/inputs.h"
 #include "cli/terminal.h"
 #include "cli/version.h"
 #include "dataset/set/set_writer.h"
-#include "report/set_report.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -48,31 +48,6 @@ SetTask task_of(std::string_view shard) {
   }
   throw std::invalid_argument(
       fmt::format("--shard {}: expected I/N with I = 1..N", shard));
-}
-
-// Throws when files of the task that were made have vanished.
-void require_nothing_lost(const std::string& output, const SetTask& task,
-                          const ManifestHead& head, const SetState& state) {
-  for (std::uint32_t index = 0; index < state.planned; ++index) {
-    if (task.makes(index) && !state.entries.contains(index))
-      throw std::runtime_error(fmt::format(
-          "{}: {} has vanished or changed since it was made; --resume makes it "
-          "again",
-          output, expected_entry(head, index).file));
-  }
-}
-
-std::string outcome(const SetState& state, std::uint64_t made) {
-  std::string text =
-      fmt::format("{} of {} files, {} made now; {} device runs, {} failed\n",
-                  state.entries.size(), state.planned, made,
-                  state.device_runs(), state.failures());
-  if (!state.is_merged)
-    text += fmt::format("{} files are missing\n",
-                        state.planned - state.entries.size());
-  else if (!every_device_failed(state))
-    text += "the set is whole\n";
-  return text;
 }
 
 // Returns a word as a shell takes it.
@@ -133,11 +108,9 @@ int generate(const GenerateArguments& arguments) {
                            set.add(file, shard.bytes, shard.failures);
                          });
   const SetState state = set.finish();
-  print_result(outcome(state, files.size()));
+  print_result(outcome_text(state, files.size()));
   require_nothing_lost(arguments.output, task, plan.manifest_head(), state);
-  if (state.is_merged && every_device_failed(state))
-    throw std::runtime_error(fmt::format("{}: {}", arguments.output,
-                                         every_device_failed_text(state)));
+  require_values(arguments.output, state);
   return arguments.strict && state.failures() > 0 ? kSomeDevicesFailed : 0;
 }
 

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <stdexcept>
 
+#include "api/generation.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
 
@@ -33,24 +33,9 @@ void generate_with_progress(const std::string& activity, const ShardPlan& plan,
   generate_shards(plan, files, jobs, counts, publish);
 }
 
-void require_moderate_files(const std::string& campaign,
-                            const ShardPlan& plan) {
-  constexpr double kLargest = 1e9;  // [byte]
-  const double size = plan.largest_file();
-  if (size <= kLargest) return;
-  throw std::invalid_argument(fmt::format(
-      "{}: devices_per_file: {} devices make files of {:.1f} GB; expected at "
-      "most {:g} GB, so fewer devices a file, fewer variables or lower rates",
-      campaign, plan.campaign().devices_per_file(), size / 1e9,
-      kLargest / 1e9));
-}
-
 void warn_without_lock(const SetWriter& set, const std::string& directory) {
-  if (!set.is_locked())
-    print_warning(fmt::format(
-        "{}: the file system has no locks (flock); start nothing else there "
-        "that makes the same files, on another host least of all",
-        directory));
+  const std::string warning = lock_warning(set, directory);
+  if (!warning.empty()) print_warning(warning);
 }
 
 }  // namespace beamgyro::internal

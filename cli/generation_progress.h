@@ -16,10 +16,6 @@ void generate_with_progress(const std::string& activity, const ShardPlan& plan,
                             const std::vector<std::uint32_t>& files,
                             unsigned jobs, const ShardSink& publish);
 
-/// Throws std::invalid_argument when a file of the plan is too large to be made
-/// in memory. `campaign` is the name for the message.
-void require_moderate_files(const std::string& campaign, const ShardPlan& plan);
-
 /// Warns when the file system cannot keep other processes from working on the
 /// set.
 void warn_without_lock(const SetWriter& set, const std::string& directory);

@@ -15,16 +15,12 @@
 #include <utility>
 
 #include "cli/terminal.h"
-#include "cli/version.h"
 #include "config/document.h"
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/directory.h"
 #include "dataset/files/made_directories.h"
 #include "dataset/files/sha256.h"
-#include "dataset/files/text_file.h"
-#include "dataset/log/recording_csv.h"
-#include "dataset/netcdf/recording_reader.h"
 #include "sim/device/device_file.h"
 #include "sim/scenario/scenario_file.h"
 
@@ -72,20 +68,9 @@ bool is_below(const fs::path& directory, const FileIdentity& identity) {
 }  // namespace
 
 Recording load_recording(const std::filesystem::path& path) {
-  if (path.extension() == ".csv") {
-    Recording read = parse_recording_csv(read_text_file(path), path);
-    read.program_version = kProgramVersion;
-    read.git_revision = kGitRevision;
-    return read;
-  }
-  bool has_checksum = false;
-  Recording recording = read_recording(path, &has_checksum);
-  if (!has_checksum) {
-    keep_warning(fmt::format(
-        "{}: has no checksum, since another program made or changed it: damage "
-        "in it would not be noticed",
-        path.string()));
-  }
+  std::vector<std::string> warnings;
+  Recording recording = beamgyro::read_recording(path, &warnings);
+  for (const std::string& warning : warnings) keep_warning(warning);
   return recording;
 }
 

@@ -10,6 +10,7 @@
 #include "cli/signals.h"
 #include "cli/terminal.h"
 #include "cli/version.h"
+#include "dataset/netcdf/hdf5_exit.h"
 #include "validation/external/plugin_host.h"
 
 namespace beamgyro::internal {
@@ -52,6 +53,7 @@ int main(int argc, char** argv) {
   using namespace beamgyro::internal;
   handle_interrupts();
   try {
+    keep_hdf5_open_at_exit();
     return run_program({argv + std::min(argc, 1), argv + argc});
   } catch (const std::invalid_argument& error) {
     print_error(error.what());

@@ -4,19 +4,14 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
-#include "cli/version.h"
-#include "dataset/files/atomic_file.h"
-#include "dataset/netcdf/recording_file.h"
-#include "sim/scenario/carrier_run.h"
-#include "sim/scenario/drive_lock.h"
-#include "sim/scenario/run_warnings.h"
-#include "sim/scenario/simulation.h"
-#include "sim/scenario/simulation_input.h"
+#include "include/beamgyro/simulate.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -32,14 +27,13 @@ struct RunArguments {
 // A run that will take longer needs --yes [s].
 constexpr double kLongRun = 3600;
 
-void require_consent(const Scenario& scenario, bool yes) {
-  if (scenario.fidelity != Fidelity::kCarrier) return;
-  const double cost = carrier_cost(scenario);
+void require_consent(const beamgyro::Scenario& scenario, bool yes) {
+  const double cost = scenario.estimated_seconds();
   if (cost <= kLongRun || yes) return;
   throw std::invalid_argument(fmt::format(
       "a carrier run of {:g} s would take about {:.1f} h here; pass --yes to "
       "start it, or use the envelope fidelity",
-      scenario.duration, cost / 3600));
+      scenario.duration(), cost / 3600));
 }
 
 int run(const RunArguments& arguments) {
@@ -49,36 +43,19 @@ int run(const RunArguments& arguments) {
     overrides.push_back(fmt::format("seed={}", *arguments.seed));
   if (!arguments.fidelity.empty())
     overrides.push_back(fmt::format("fidelity=\"{}\"", arguments.fidelity));
-  const LoadedScenario input = load_scenario(arguments.scenario, overrides);
-  require_output(arguments.output, input.files);
-  require_consent(input.scenario, arguments.yes);
+  const auto scenario = beamgyro::Scenario::read(arguments.scenario, overrides);
+  require_output(arguments.output, scenario.files());
+  require_consent(scenario, arguments.yes);
 
-  const std::size_t samples = sample_count(input.scenario);
-  std::size_t done = 0;
   Progress progress("simulating " + arguments.scenario);
-  std::optional<RecordingFile> file;
-  RunWarnings warnings(input.scenario, input.device);
-  const Gyro gyro = make_gyro(input.device);
-  simulate(input.scenario, gyro, {}, [&](Recording&& block) {
-    if (arguments.stop_on_unlock) require_lock(input.scenario, block);
-    if (!file) {
-      block.program_version = kProgramVersion;
-      block.git_revision = kGitRevision;
-      block.title = title_of(input.scenario);
-      block.history = history_line("run");
-      block.scenario_text = input.scenario_text;
-      block.device_text = input.device_text;
-      block.overrides_text = input.overrides_text;
-      file.emplace(block, samples, arguments.output);
-    }
-    file->append(block);
-    warnings.add(block);
-    done += block.time.size();
-    progress.set_share(static_cast<double>(done) /
-                       static_cast<double>(samples));
-  });
-  file->finish();
-  for (const std::string& warning : warnings.texts())
+  const std::vector<std::string> warnings =
+      simulate_to_file(scenario, arguments.output,
+                       {.stop_on_unlock = arguments.stop_on_unlock,
+                        .progress = [&](double done) {
+                          progress.set_share(done);
+                          return true;
+                        }});
+  for (const std::string& warning : warnings)
     keep_warning(fmt::format("{}: {}", arguments.scenario, warning));
   return 0;
 }

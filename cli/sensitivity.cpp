@@ -1,33 +1,29 @@
 // SPDX-License-Identifier: MIT
+#include "include/beamgyro/sensitivity.h"
+
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "api/campaign_state.h"
+#include "api/sensitivity_study.h"
 #include "cli/commands.h"
 #include "cli/figure_pictures.h"
 #include "cli/inputs.h"
 #include "cli/option_values.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
-#include "compensation/compensator/compensator_file.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/made_directories.h"
-#include "report/sensitivity_report.h"
-#include "sensitivity/figures/figure_of_merit.h"
-#include "sensitivity/study/device_sample.h"
-#include "sensitivity/study/factor.h"
-#include "sensitivity/study/sensitivity_study.h"
-#include "sim/campaign/campaign.h"
+#include "sensitivity/figures/static_curve.h"
 #include "sim/thermal/material_range.h"
 
 namespace beamgyro::internal {
@@ -41,14 +37,7 @@ struct SensitivityArguments {
   bool linear = false;
 };
 
-std::vector<std::string> merit_names() {
-  std::vector<std::string> names;
-  for (const FigureOfMerit& figure : figures_of_merit())
-    names.emplace_back(figure.name);
-  return names;
-}
-
-CurveGrid grid_of(const std::string& text) {
+CurveGrid curve_grid(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos)
     throw std::invalid_argument(fmt::format(
@@ -65,30 +54,8 @@ CurveGrid grid_of(const std::string& text) {
   return grid;
 }
 
-// The figures asked for, each once; without any those that need no compensator.
-std::vector<Merit> merits_of(const SensitivityArguments& arguments) {
-  const bool has_compensator = !arguments.compensator.empty();
-  std::vector<Merit> merits;
-  for (const std::string& name : arguments.figures) {
-    const Merit merit = find_figure_of_merit(name)->merit;
-    if (std::ranges::count(merits, merit) == 0) merits.push_back(merit);
-  }
-  const bool asks = std::ranges::count(merits, Merit::kCompensatorRms) > 0;
-  if (asks && !has_compensator)
-    throw std::invalid_argument(fmt::format(
-        "--figure {}: no compensator to score; expected --compensator "
-        "FILE.json with it",
-        figure_of_merit(Merit::kCompensatorRms).name));
-  if (arguments.figures.empty())
-    merits = {Merit::kBiasPeakToPeak, Merit::kCubicRms,
-              Merit::kScaleFactorDrift, Merit::kWarmUpChange};
-  if (has_compensator && !asks) merits.push_back(Merit::kCompensatorRms);
-  return merits;
-}
-
-std::map<Merit, double> limits_of(const SensitivityArguments& arguments,
-                                  const std::vector<Merit>& merits) {
-  std::map<Merit, double> limits;
+std::map<std::string, double> limits_of(const SensitivityArguments& arguments) {
+  std::map<std::string, double> limits;
   for (const std::string& text : arguments.limits) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos)
@@ -98,15 +65,10 @@ std::map<Merit, double> limits_of(const SensitivityArguments& arguments,
                       text));
     const std::string name =
         one_of("--limit", text.substr(0, equals), merit_names());
-    const Merit merit = find_figure_of_merit(name)->merit;
-    if (std::ranges::count(merits, merit) == 0)
-      throw std::invalid_argument(fmt::format(
-          "--limit {}: {} is not studied; expected --figure {} with it", text,
-          name, name));
     const double limit =
         decimal_number("--limit", text.substr(equals + 1),
                        {0, std::numeric_limits<double>::max(), true, false});
-    if (!limits.try_emplace(merit, limit).second)
+    if (!limits.try_emplace(name, limit).second)
       throw std::invalid_argument(fmt::format(
           "--limit {}: {} has a limit already; expected one for each figure",
           text, name));
@@ -114,10 +76,11 @@ std::map<Merit, double> limits_of(const SensitivityArguments& arguments,
   return limits;
 }
 
-DeviceSample sample_with_progress(const Campaign& campaign,
-                                  const DeviceSampleOptions& options) {
+SensitivityResult study_with_progress(const beamgyro::Campaign& campaign,
+                                      const SensitivityOptions& options) {
   DeviceSampleCounts counts;
-  const auto total = static_cast<double>(devices_of_sample(campaign, options));
+  const auto total = static_cast<double>(devices_of_sample(
+      campaign.state().campaign, sample_options(campaign, options)));
   const auto done = [&] {
     const auto devices = static_cast<double>(counts.devices.load());
     return Progress::Status{devices / total,
@@ -125,14 +88,13 @@ DeviceSample sample_with_progress(const Campaign& campaign,
                                         total, counts.failures.load())};
   };
   const Progress progress("sampling " + campaign.name(), done);
-  return sample_devices(campaign, options, counts);
+  return sensitivity_study(campaign, options, counts);
 }
 
 void require_places(const SensitivityArguments& arguments,
-                    const Campaign& campaign) {
+                    const beamgyro::Campaign& campaign) {
   std::vector<std::filesystem::path> inputs;
-  for (const SourceText& source : campaign.sources())
-    inputs.push_back(source.path);
+  for (const CampaignFile& file : campaign.files()) inputs.push_back(file.path);
   if (!arguments.compensator.empty())
     inputs.emplace_back(arguments.compensator);
   if (!arguments.json.empty()) {
@@ -144,47 +106,34 @@ void require_places(const SensitivityArguments& arguments,
                              inputs);
 }
 
-DeviceSampleOptions options_of(const SensitivityArguments& arguments,
-                               const Campaign& campaign) {
-  DeviceSampleOptions options;
-  options.merits = merits_of(arguments);
-  options.merit.grid = grid_of(arguments.range);
+SensitivityOptions options_of(const SensitivityArguments& arguments) {
+  const CurveGrid grid = curve_grid(arguments.range);
+  SensitivityOptions options{.figures = arguments.figures};
   if (!arguments.compensator.empty())
-    options.merit.compensator = std::make_shared<const Compensator>(
-        read_compensator(arguments.compensator));
-  options.rows = static_cast<std::size_t>(arguments.samples.value_or(2048));
-  options.seed = arguments.seed ? static_cast<std::uint64_t>(*arguments.seed)
-                                : campaign.seed();
-  options.halves_tolerances = !arguments.limits.empty();
+    options.compensator = beamgyro::Compensator::read(arguments.compensator);
+  options.lowest_degC = grid.low;
+  options.highest_degC = grid.high;
+  options.linear = arguments.linear;
+  options.limits = limits_of(arguments);
+  if (arguments.samples)
+    options.samples = static_cast<std::size_t>(*arguments.samples);
+  if (arguments.seed)
+    options.seed = static_cast<std::uint64_t>(*arguments.seed);
   options.jobs = static_cast<unsigned>(arguments.jobs.value_or(0));
   return options;
 }
 
 int sensitivity(const SensitivityArguments& arguments) {
-  const Campaign campaign = Campaign::read(arguments.campaign);
-  const DeviceSampleOptions options = options_of(arguments, campaign);
-  const std::map<Merit, double> limits = limits_of(arguments, options.merits);
-  require_comparable(factors_of(campaign.device_plan()), arguments.campaign);
+  const auto campaign = beamgyro::Campaign::read(arguments.campaign);
+  const SensitivityOptions options = options_of(arguments);
+  sample_options(campaign, options);  // throws before anything is made
   require_places(arguments, campaign);
-  const DeviceSample sample = sample_with_progress(campaign, options);
-  const StudyHead head{campaign.name(), options.seed, options.merit.grid};
-  std::string text = sample_lines(sample, head);
-  std::vector<MeritResult> results;
-  for (std::size_t m = 0; m < options.merits.size(); ++m) {
-    const Merit merit = options.merits[m];
-    const auto limit = limits.find(merit);
-    MeritQuestion question{
-        merit, figure_of_merit(merit).is_positive && !arguments.linear};
-    if (limit != limits.end()) question.limit = limit->second;
-    results.push_back(analysed(sample, m, question, options.seed));
-    text += '\n' + sensitivity_table(results.back());
-  }
-  print_result(text);
-  const std::string json = to_json(sample, head, results).dump(2) + "\n";
-  if (!arguments.json.empty()) write_text_file(arguments.json, json);
+  const SensitivityResult result = study_with_progress(campaign, options);
+  print_result(result.text);
+  if (!arguments.json.empty()) write_text_file(arguments.json, result.json);
   if (!arguments.pictures.empty()) {
     const MadeDirectories made(arguments.pictures);
-    draw_figures(json, arguments.pictures);
+    draw_figures(result.json, arguments.pictures);
   }
   return 0;
 }

@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/training/train.h"
+#include "include/beamgyro/train.h"
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
-#include "compensation/compensator/compensator_file.h"
 #include "compensation/rows/recorded_runs.h"
-#include "compensation/rows/set_runs.h"
-#include "dataset/files/atomic_file.h"
-#include "report/training_report.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -34,7 +33,7 @@ struct TrainArguments {
 /// The last epoch that a network told of, from whatever thread.
 class LastEpoch {
  public:
-  void note(const EpochReport& report) {
+  void note(const TrainingProgress& report) {
     const std::lock_guard lock(mutex_);
     last_ = report;
   }
@@ -49,70 +48,62 @@ class LastEpoch {
 
  private:
   mutable std::mutex mutex_;
-  EpochReport last_;
+  TrainingProgress last_;
 };
 
-struct Sources {
-  RunSource training, held_out;
-};
+std::vector<std::filesystem::path> paths_of(
+    const std::vector<std::string>& words) {
+  return {words.begin(), words.end()};
+}
 
-// Of a set the training devices, its validation devices held out; or some
-// devices alone.
-Sources sources_of_set(const TrainArguments& arguments) {
+TrainedCompensator trained_on_set(const TrainArguments& arguments,
+                                  const Model& model,
+                                  const TrainingOptions& options) {
   if (!arguments.held_out.empty() || !arguments.cross_validation.empty())
     throw std::invalid_argument(
         "--held-out and --cv: of a set the validation devices are held out");
-  const auto of_part = [&](SetPartNumber part) {
-    return runs_of_set(arguments.runs[0], {part, arguments.set_runs});
-  };
-  if (arguments.set_devices.empty())
-    return {of_part(SetPartNumber::kTrain),
-            of_part(SetPartNumber::kValidation)};
-  return {runs_of_set(
-              arguments.runs[0],
-              {{}, arguments.set_runs, device_numbers(arguments.set_devices)}),
-          {}};
+  return train(model, Set::open(arguments.runs[0]),
+               {arguments.set_runs, device_numbers(arguments.set_devices)},
+               options);
 }
 
-Sources sources_of(const TrainArguments& arguments) {
-  if (is_set(arguments.runs)) return sources_of_set(arguments);
+TrainedCompensator trained_on_files(const TrainArguments& arguments,
+                                    const Model& model,
+                                    const TrainingOptions& options) {
   if (!arguments.set_runs.empty() || !arguments.set_devices.empty())
     throw std::invalid_argument(
         "--run and --device choose from a set, and there is none");
-  return {runs_of_files(arguments.runs, load_recording),
-          runs_of_files(arguments.held_out, load_recording)};
-}
-
-std::optional<Grouping> grouping(const std::string& name) {
-  if (name == "run") return Grouping::kRun;
-  if (name == "cycle") return Grouping::kCycle;
-  if (name == "leg") return Grouping::kLeg;
-  return std::nullopt;
+  return train(model, paths_of(arguments.runs), paths_of(arguments.held_out),
+               options);
 }
 
 int run_training(const TrainArguments& arguments) {
-  ModelSpec spec = read_model(arguments.model);
-  LastEpoch epoch;
-  observe(spec, [&](const EpochReport& report) { epoch.note(report); });
-  std::vector<std::filesystem::path> inputs = spec.files;
+  const Model model = Model::read(arguments.model);
+  std::vector<std::filesystem::path> inputs = model.files();
   inputs.insert(inputs.end(), arguments.runs.begin(), arguments.runs.end());
   inputs.insert(inputs.end(), arguments.held_out.begin(),
                 arguments.held_out.end());
   require_output(arguments.output, inputs);
   require_ending(arguments.output, {".json"});
-  const Sources sources = sources_of(arguments);
+  LastEpoch epoch;
+  const TrainingOptions options{
+      .seed = static_cast<std::uint64_t>(arguments.seed.value_or(0)),
+      .cross_validation = arguments.cross_validation,
+      .progress = [&](const TrainingProgress& report) {
+        epoch.note(report);
+        return true;
+      }};
+  const bool is_of_set = is_set(arguments.runs);
   std::optional<Progress> progress(
       std::in_place, "training " + arguments.output,
       [&] { return Progress::Status{.share = 0, .detail = epoch.text()}; });
-  const TrainResult result =
-      train(spec, sources.training, sources.held_out,
-            static_cast<std::uint64_t>(arguments.seed.value_or(0)),
-            grouping(arguments.cross_validation));
-  write_compensator(result.compensator, arguments.output);
+  const TrainedCompensator result =
+      is_of_set ? trained_on_set(arguments, model, options)
+                : trained_on_files(arguments, model, options);
+  result.compensator.write(arguments.output);
   progress.reset();
-  for (const std::string& warning : result.compensator.provenance.warnings)
-    print_warning(warning);
-  print_result(training_report(result, !arguments.cross_validation.empty()));
+  for (const std::string& warning : result.warnings) print_warning(warning);
+  print_result(result.text);
   return 0;
 }
 

@@ -3,12 +3,12 @@
 
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
+#include "api/validation_texts.h"
 #include "cli/figure_pictures.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
@@ -19,11 +19,7 @@
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/made_directories.h"
 #include "parallel/work_queue.h"
-#include "report/verdict_report.h"
 #include "validation/bundle/bundle.h"
-#include "validation/page/figures.h"
-#include "validation/page/page.h"
-#include "validation/result/result_json.h"
 #include "validation/result/validator.h"
 
 namespace beamgyro::internal {
@@ -73,37 +69,11 @@ ValidationRequest request_of(const ValidateArguments& arguments) {
   return request;
 }
 
-// Returns the largest value that a specification allows a metric, if it does.
-std::optional<double> largest_allowed(const ValidationResult& result,
-                                      std::string_view metric) {
-  for (const auto& [limit, decision] : result.limits)
-    if (limit.metric == metric && limit.relative_to.empty() && limit.most)
-      return limit.most;
-  return std::nullopt;
-}
-
-// Returns what --json writes and the page shows.
-nlohmann::ordered_json json_of(const CompletedValidation& validation) {
-  nlohmann::ordered_json json = to_json(validation.result);
-  json["figures"] =
-      figures_of(validation.evidence.before, validation.evidence.after);
-  if (validation.result.sigma)
-    for (auto& figure : sigma_figures(*validation.result.sigma))
-      json["figures"].push_back(std::move(figure));
-  if (!validation.result.population) return json;
-  for (const PopulationMetric& metric : validation.result.population->metrics)
-    json["figures"].push_back(population_figure(
-        {std::string(metric.metric->name), std::string(metric.metric->unit),
-         metric.before, metric.after,
-         largest_allowed(validation.result, metric.metric->name)}));
-  return json;
-}
-
 std::vector<BundleOutput> outputs_of(const CompletedValidation& validation) {
-  const nlohmann::ordered_json json = json_of(validation);
-  return {{kResultFile, json.dump(2) + "\n"},
-          {kReportFile, verdict_report(validation.result)},
-          {kPageFile, page_of(json)}};
+  ValidationTexts texts = texts_of(validation);
+  return {{kResultFile, std::move(texts.json)},
+          {kReportFile, std::move(texts.text)},
+          {kPageFile, std::move(texts.page)}};
 }
 
 std::vector<BundleOutput> validated(const Validator& validator,

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <iterator>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 
+#include "api/generation.h"
+#include "api/set_defects.h"
 #include "cli/commands.h"
 #include "cli/generation_progress.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
 #include "cli/version.h"
-#include "dataset/set/set_check.h"
-#include "dataset/set/view_check.h"
-#include "report/set_report.h"
 #include "sim/campaign/set_repair.h"
 
 namespace beamgyro::internal {
@@ -34,17 +32,11 @@ struct VerifyArguments {
 std::vector<SetDefect> checked(const fs::path& directory,
                                const Manifest& manifest) {
   Progress progress("verifying " + directory.string());
-  std::vector<SetDefect> defects = check_set(
-      directory, manifest, [&](std::uint64_t done, std::uint64_t total) {
-        progress.set_share(static_cast<double>(done) /
-                           static_cast<double>(total));
-      });
-  // Another program may make views of other bytes.
-  if (manifest.head && manifest.head->program_version == kProgramVersion &&
-      manifest.head->git_revision == kGitRevision)
-    std::ranges::copy(check_views(directory, manifest, defects),
-                      std::back_inserter(defects));
-  return defects;
+  return set_defects(directory, manifest,
+                     [&](std::uint64_t done, std::uint64_t total) {
+                       progress.set_share(static_cast<double>(done) /
+                                          static_cast<double>(total));
+                     });
 }
 
 std::string listed(const std::vector<SetDefect>& defects) {

@@ -7,8 +7,6 @@
 
 namespace beamgyro::internal {
 
-const char* const kProgramVersion = BEAMGYRO_VERSION;
-
 std::string version_text() {
   return fmt::format(
       "beamgyro {} ({})\n"
@@ -22,11 +20,6 @@ std::string version_text() {
       "gcc " __VERSION__
 #endif
   );
-}
-
-std::string history_line(const std::string& command) {
-  return fmt::format("beamgyro {} ({}): {}", kProgramVersion, kGitRevision,
-                     command);
 }
 
 }  // namespace beamgyro::internal

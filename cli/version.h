@@ -3,15 +3,11 @@
 
 #include <string>
 
-namespace beamgyro::internal {
+#include "api/program_version.h"  // IWYU pragma: export
 
-extern const char* const kGitRevision;  // "unknown" outside a git checkout
-extern const char* const kProgramVersion;
+namespace beamgyro::internal {
 
 /// Returns program, revision and libraries for --version.
 std::string version_text();
-
-/// Returns the line of a file's history that says what this program did.
-std::string history_line(const std::string& command);
 
 }  // namespace beamgyro::internal

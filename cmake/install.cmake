@@ -14,20 +14,20 @@ install(DIRECTORY ${BEAMGYRO_HELP_PAGES}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR
 install(DIRECTORY ${BEAMGYRO_HELP_PAGES}/completions DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion
   COMPONENT runtime)
 
-# Everything at once. The name of the program is taken within this build.
-add_library(beamgyro_everything INTERFACE)
-set_target_properties(beamgyro_everything PROPERTIES EXPORT_NAME beamgyro)
-target_link_libraries(beamgyro_everything INTERFACE
-  beamgyro_report beamgyro_sensitivity beamgyro_validation beamgyro_compensation beamgyro_campaign beamgyro_set)
-install(TARGETS beamgyro_everything EXPORT beamgyroTargets)
-
-foreach(room parallel random config dataset sim compensation planning validation sensitivity report)
-  install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/beamgyro FILES_MATCHING PATTERN *.h)
-endforeach()
-install(DIRECTORY include/beamgyro DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})  # C headers, under their own names
+install(DIRECTORY include/beamgyro DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})  # no header of the rooms
 install(EXPORT beamgyroTargets NAMESPACE beamgyro:: DESTINATION ${PACKAGE_DIR})
 configure_package_config_file(cmake/beamgyroConfig.cmake.in ${PROJECT_BINARY_DIR}/beamgyroConfig.cmake
   INSTALL_DESTINATION ${PACKAGE_DIR})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/beamgyroConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/beamgyroConfig.cmake ${PROJECT_BINARY_DIR}/beamgyroConfigVersion.cmake
   DESTINATION ${PACKAGE_DIR})
+
+# beamgyro.pc, for pkg-config: all static libraries, in a group, since it knows no order.
+get_property(LIBRARY_FLAGS GLOBAL PROPERTY BEAMGYRO_LIBRARIES)
+list(TRANSFORM LIBRARY_FLAGS PREPEND -l)
+list(JOIN LIBRARY_FLAGS " " LIBRARY_FLAGS)
+set(PKGCONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+file(RELATIVE_PATH PREFIX_FROM_PKGCONFIG /p/${PKGCONFIG_DIR} /p)
+string(REGEX REPLACE "/$" "" PREFIX_FROM_PKGCONFIG ${PREFIX_FROM_PKGCONFIG})
+configure_file(cmake/beamgyro.pc.in ${PROJECT_BINARY_DIR}/beamgyro.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/beamgyro.pc DESTINATION ${PKGCONFIG_DIR})

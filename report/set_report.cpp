@@ -88,17 +88,6 @@ std::string failures_of(const SetState& state) {
 
 }  // namespace
 
-bool every_device_failed(const SetState& state) {
-  return state.device_runs() > 0 && state.failures() == state.device_runs();
-}
-
-std::string every_device_failed_text(const SetState& state) {
-  const ManifestEntry& first = state.entries.begin()->second;
-  return fmt::format("every one of its {} device runs failed; device {}: {}",
-                     state.device_runs(), first.failures.front().device,
-                     first.failures.front().reason);
-}
-
 bool is_listed_in_set(const fs::path& path) {
   return entry_of(path).has_value();
 }

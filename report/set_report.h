@@ -20,11 +20,6 @@ std::string info_on_shard(const std::filesystem::path& path,
                           std::vector<std::string>& warnings);
 std::string info_on_set(const std::filesystem::path& path);
 
-/// Returns whether no device of a set has values in any run, and one line that
-/// says so with the first reason.
-bool every_device_failed(const SetState& state);
-std::string every_device_failed_text(const SetState& state);
-
 /// Returns the KEY=VALUE lines that turn the base device into device number
 /// `device`, and the scenarios into its runs. They are computed from the copy
 /// of the campaign in the set.

@@ -31,20 +31,6 @@ bool holds(const std::vector<T>& all, const T& one) {
   return std::find(all.begin(), all.end(), one) != all.end();
 }
 
-Manifest finished_manifest(const std::filesystem::path& directory) {
-  Manifest manifest = read_manifest(directory, kManifestName);
-  if (!manifest.head || !manifest.is_finished)
-    throw std::invalid_argument(fmt::format(
-        "{}: the set is not finished; generate --resume finishes it",
-        directory.string()));
-  if (!manifest.damaged_lines.empty() ||
-      manifest.entries.size() != file_count(*manifest.head))
-    throw std::invalid_argument(
-        fmt::format("{}: the manifest is damaged; run beamgyro verify",
-                    directory.string()));
-  return manifest;
-}
-
 void check_selection(const ManifestHead& head, const SetSelection& selection,
                      const std::string& place) {
   for (const std::string& run : selection.runs)

@@ -5,17 +5,6 @@
 
 #include <system_error>
 
-// What HDF5 keeps to the end of the process, see QuietHdf5, is no leak.
-extern "C" const char* __lsan_default_suppressions();   // NOLINT
-extern "C" const char* __lsan_default_suppressions() {  // NOLINT
-  return "leak:libhdf5\n";
-}
-
-extern "C" const char* __lsan_default_options();   // NOLINT
-extern "C" const char* __lsan_default_options() {  // NOLINT
-  return "print_suppressions=0";
-}
-
 namespace beamgyro::internal {
 
 void check_hdf5(herr_t status, const std::string& action) {

@@ -34,21 +34,22 @@ int take_failed_system_call();
 /// Gives this thread sole use of HDF5 until the end of the scope, because the
 /// high-level part of the library has no lock of its own. HDF5 then does not
 /// - print its error stack;
-/// - run the code of plug-ins that a file names;
-/// - tidy up at the end of the process, where 1.10 crashes after a full disk.
-/// Not re-entrant: a second object in the same thread deadlocks.
+/// - run the code of plug-ins that a file names.
+/// At the end of the scope it is for other users of HDF5 in this process as it
+/// was before. Not re-entrant: a second object in the same thread deadlocks.
 class QuietHdf5 {
  public:
   QuietHdf5() {
-    static const herr_t no_exit_handler = H5dont_atexit();
-    check_hdf5(no_exit_handler, "start HDF5");
-    static const herr_t no_plugins = H5PLset_loading_state(0);
-    check_hdf5(no_plugins, "start HDF5");
+    check_hdf5(H5PLget_loading_state(&plugins_), "start HDF5");
+    check_hdf5(H5PLset_loading_state(0), "start HDF5");
     take_failed_system_call();
     H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }
-  ~QuietHdf5() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
+  ~QuietHdf5() {
+    H5Eset_auto2(H5E_DEFAULT, print_, data_);
+    H5PLset_loading_state(plugins_);
+  }
   QuietHdf5(const QuietHdf5&) = delete;
   QuietHdf5& operator=(const QuietHdf5&) = delete;
 
@@ -58,6 +59,7 @@ class QuietHdf5 {
   std::lock_guard<std::mutex> alone_{mutex()};
   H5E_auto2_t print_ = nullptr;
   void* data_ = nullptr;
+  unsigned plugins_ = 0;
 };
 
 /// Owner of an HDF5 id. `release` is H5Fclose, H5Dclose, ...

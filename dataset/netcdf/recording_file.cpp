@@ -18,7 +18,8 @@
 #include "dataset/netcdf/recording_layout.h"
 #include "dataset/recording/recording_defect.h"
 
-namespace beamgyro::internal {
+namespace beamgyro {
+namespace internal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -218,10 +219,13 @@ void RecordingFile::finish() {
   body_->publish();
 }
 
-void write_recording(const Recording& recording, const fs::path& path) {
-  RecordingFile file(recording, recording.time.size(), path);
+}  // namespace internal
+
+void write_recording(const Recording& recording,
+                     const std::filesystem::path& path) {
+  internal::RecordingFile file(recording, recording.time.size(), path);
   file.append(recording);
   file.finish();
 }
 
-}  // namespace beamgyro::internal
+}  // namespace beamgyro

@@ -60,8 +60,4 @@ class RecordingFile {
   std::unique_ptr<Body> body_;
 };
 
-/// Writes a whole recording at once.
-void write_recording(const Recording& recording,
-                     const std::filesystem::path& path);
-
 }  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace beamgyro::internal {
+namespace beamgyro {
 
 std::string_view role_name(Role role) {
   switch (role) {
@@ -38,6 +38,8 @@ const std::vector<double>& column_values(const Recording& recording,
       names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
 }
 
+namespace internal {
+
 std::size_t status_position(const Recording& recording) {
   const auto first = std::find_if(
       recording.columns.begin(), recording.columns.end(),
@@ -45,4 +47,5 @@ std::size_t status_position(const Recording& recording) {
   return static_cast<std::size_t>(first - recording.columns.begin());
 }
 
-}  // namespace beamgyro::internal
+}  // namespace internal
+}  // namespace beamgyro

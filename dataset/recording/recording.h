@@ -2,64 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
+
+#include "include/beamgyro/recording.h"
 
 namespace beamgyro::internal {
-
-/// Role of a variable: `kMeasured` is measured by the gyro and may be an input
-/// of a compensator, `kTruth` is known to a simulator only, `kCompensated` is
-/// the answer of a compensator.
-enum class Role { kMeasured, kTruth, kCompensated };
-
-/// Returns the name of a role in files: "measured", "truth", "compensated".
-std::string_view role_name(Role role);
-
-/// Bits of `Recording::status`.
-enum StatusBit : std::uint8_t {
-  kUnpowered = 1,
-  kOutputSaturated = 2,
-  kLoopNotLocked = 4,
-};
-
-struct Column {
-  std::string name;   // as in files: output, rate, temperature, true_rate, ...
-  std::string units;  // as in files: V, degree/s, degC, Hz
-  std::string long_name;
-  Role role = Role::kMeasured;
-  std::vector<double> values;  // one per time; NaN = measured while unpowered
-  std::string comment = {};    // attribute of the variable; mostly empty
-};
-
-/// One run of one gyro in memory, in the units of the file
-/// (docs/reference/recording.md): columns over a common time axis. Simulator
-/// and compensators exchange data in this form only.
-struct Recording {
-  std::vector<double> time;          // [s], strictly increasing
-  std::vector<std::uint8_t> status;  // StatusBit mask, one per time
-  std::vector<Column> columns;
-
-  std::string fidelity;  // "quasistatic", ...
-  std::uint64_t seed = 0;
-  std::string title;    // of the scenario; empty in old files
-  std::string history;  // a line for each command that made it
-  std::string compensator, compensator_sha256;  // of compensated_rate
-  std::string program_version;  // of the program that made the recording
-  std::string git_revision;
-  std::string scenario_text;  // both files byte for byte as read
-  std::string device_text;
-  std::string overrides_text;  // one KEY=VALUE per line
-};
-
-/// Returns the column called `name`, or nullptr.
-const Column* find_column(const Recording& recording, std::string_view name);
-
-/// Returns the values of the column called `name`. Throws std::invalid_argument
-/// that names the column and lists the columns of the recording.
-const std::vector<double>& column_values(const Recording& recording,
-                                         std::string_view name);
 
 /// Returns the position of `status` among the columns of a file: before the
 /// column of this index, the first one that is not measured.

@@ -293,6 +293,20 @@ Manifest read_manifest(const std::filesystem::path& directory,
   return std::move(manifest);
 }
 
+Manifest finished_manifest(const std::filesystem::path& directory) {
+  Manifest manifest = read_manifest(directory, kManifestName);
+  if (!manifest.head || !manifest.is_finished)
+    throw std::invalid_argument(fmt::format(
+        "{}: the set is not finished; generate --resume finishes it",
+        directory.string()));
+  if (!manifest.damaged_lines.empty() ||
+      manifest.entries.size() != file_count(*manifest.head))
+    throw std::invalid_argument(
+        fmt::format("{}: the manifest is damaged; run beamgyro verify",
+                    directory.string()));
+  return manifest;
+}
+
 void start_manifest(const std::filesystem::path& directory,
                     const std::filesystem::path& name, const ManifestHead& head,
                     const std::vector<ManifestEntry>& entries) {

@@ -101,6 +101,10 @@ bool is_run_name(std::string_view text);
 Manifest read_manifest(const std::filesystem::path& directory,
                        const std::filesystem::path& name);
 
+/// Returns the manifest of a finished set. Throws as read_manifest(), and
+/// std::invalid_argument for one that is not finished or damaged.
+Manifest finished_manifest(const std::filesystem::path& directory);
+
 /// Writes an unfinished manifest, in place of any other.
 void start_manifest(const std::filesystem::path& directory,
                     const std::filesystem::path& name, const ManifestHead& head,

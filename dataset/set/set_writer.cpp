@@ -173,6 +173,17 @@ std::uint64_t SetState::failures() const {
 }
 
 // Reads the parts first: they are newer, and may be merged while this reads.
+bool every_device_failed(const SetState& state) {
+  return state.device_runs() > 0 && state.failures() == state.device_runs();
+}
+
+std::string every_device_failed_text(const SetState& state) {
+  const ManifestEntry& first = state.entries.begin()->second;
+  return fmt::format("every one of its {} device runs failed; device {}: {}",
+                     state.device_runs(), first.failures.front().device,
+                     first.failures.front().reason);
+}
+
 std::optional<SetContents> find_set(const fs::path& directory) {
   if (!fs::is_directory(status_of(directory))) return {};
   std::optional<ManifestHead> head;

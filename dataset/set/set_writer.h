@@ -39,6 +39,11 @@ struct SetState {
   std::uint64_t failures() const;
 };
 
+/// Returns whether no device of a set has values in any run, and one line that
+/// says so with the first reason.
+bool every_device_failed(const SetState& state);
+std::string every_device_failed_text(const SetState& state);
+
 /// Contents of the manifest of a set and of the parts of its tasks together,
 /// with their common head. Throws std::invalid_argument when the directory is
 /// no set, and when the heads of its parts differ.

@@ -27,10 +27,10 @@ struct AllanOptions {
 
 /// A deviation at one averaging time.
 struct DeviationPoint {
-  double tau;           ///< [s]
-  double deviation;     ///< in the unit of the rate
-  double lower, upper;  ///< interval of 95 %
-  std::size_t samples;  ///< of the rate in a cluster
+  double tau;            ///< [s]
+  double deviation;      ///< in the unit of the rate
+  double lower, upper;   ///< interval of 95 %
+  std::size_t clusters;  ///< averages over tau that share no sample
 };
 
 struct DeviationCurve {

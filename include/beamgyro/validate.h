@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "beamgyro/compensator.h"
+#include "beamgyro/device.h"
 #include "beamgyro/progress.h"
+#include "beamgyro/set.h"
 #include "beamgyro/train.h"
 
 namespace beamgyro {
@@ -19,11 +21,11 @@ namespace beamgyro {
 /// What a compensator is judged on and by. Give `device` and `qualification`,
 /// or else `recordings`, or else `set`.
 struct ValidationOptions {
-  std::optional<std::filesystem::path> device = {};         ///< device file
+  std::optional<Device> device = {};
   std::optional<std::filesystem::path> qualification = {};  ///< its runs
   std::vector<std::filesystem::path> recordings = {};
-  std::optional<std::filesystem::path> set = {};  ///< its directory
-  std::vector<std::string> runs = {};             ///< of the set; none: all
+  std::optional<Set> set = {};
+  std::vector<std::string> runs = {};  ///< of the set; none: all
   /// Numbers of the set; none: the test devices.
   std::vector<std::uint32_t> devices = {};
   /// Limits (docs/validation.md); without them some drift must be removed.
@@ -51,6 +53,9 @@ struct IntervalEstimate {
 /// A limit that a specification sets, and what was decided.
 struct LimitResult {
   std::string words;  ///< "at most 0.1", "0.98 to 1.02"
+  /// Empty, or "before", "constant", "cubic", "spline": of the metric divided
+  /// by that of the recorded rate or of a baseline.
+  std::string relative_to;
   Verdict result = Verdict::kUndecided;
   std::optional<double> margin;  ///< to the nearer limit, positive within
   std::string reason;            ///< one sentence
@@ -68,7 +73,7 @@ struct MetricRow {
 /// A check against compensators that only look good.
 struct CheckRow {
   std::string name;
-  std::string outcome;  ///< "passed", "failed", "not_tested", ...
+  std::string outcome;  ///< "passed", "failed" or "not tested"
   std::optional<double> value, limit;
   std::string words;  ///< one sentence
 };

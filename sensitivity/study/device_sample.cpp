@@ -118,6 +118,7 @@ class RowSampler {
       }
     }
     ++counts_.devices;
+    if (counts_.on_device) counts_.on_device();
     if (failure.empty()) return;
     ++counts_.failures;
     if (failures_[row].empty()) failures_[row] = std::move(failure);

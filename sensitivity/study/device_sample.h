@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ struct DeviceSampleOptions {
 /// Counts of the work that is done so far. Other threads may read them.
 struct DeviceSampleCounts {
   std::atomic<std::uint64_t> devices{0}, failures{0};
+  // Called after each, by many threads; what it throws ends the work.
+  std::function<void()> on_device = {};
 };
 
 /// Values of one figure of merit; NaN is a device that does not work.

@@ -130,6 +130,7 @@ MadeShard ShardMaker::make(std::uint32_t file, GenerationCounts& counts) {
       ++counts.failures;
     }
     ++counts.device_runs;
+    if (counts.on_device_run) counts.on_device_run();
   }
   made.bytes = made.file->finish();
   return made;

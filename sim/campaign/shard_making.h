@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -22,6 +23,8 @@ namespace beamgyro::internal {
 /// Counts of the work that is done so far. Other threads may read them.
 struct GenerationCounts {
   std::atomic<std::uint64_t> device_runs{0}, failures{0};
+  // Called after each, by many threads; what it throws ends the work.
+  std::function<void()> on_device_run = {};
 };
 
 struct MadeShard {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <numbers>
 
@@ -12,7 +13,18 @@
 namespace beamgyro::internal {
 namespace {
 
-void append_row(std::string& csv, const Gyro& gyro, double celsius) {
+constexpr std::array<CharacteristicQuantity, kCharacteristicQuantities>
+    kQuantities = {{{"bias", "degree/s", "bias_deg_per_s"},
+                    {"in_phase", "degree/s", "in_phase_deg_per_s"},
+                    {"quadrature", "degree/s", "quadrature_deg_per_s"},
+                    {"drive_frequency", "Hz", "drive_frequency_Hz"},
+                    {"split", "Hz", "split_Hz"},
+                    {"q_drive", "1", "q_drive"},
+                    {"q_sense", "1", "q_sense"},
+                    {"drive_voltage", "V", "drive_voltage_V"},
+                    {"scale_factor", "1", "scale_factor_rel"}}};
+
+CharacteristicRow row_at(const Gyro& gyro, double celsius) {
   const double T = celsius + kZeroCelsius;
   const ModalParameters modal =
       modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim);
@@ -21,27 +33,50 @@ void append_row(std::string& csv, const Gyro& gyro, double celsius) {
   const std::complex<double> terms = zero_rate_terms(gyro, modal);
   const double w = signal.drive_frequency;
   const double w_y = std::sqrt(modal.stiffness(1, 1) / modal.mass);
-  fmt::format_to(std::back_inserter(csv),
-                 "{},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},"
-                 "{:.12g},{:.12g}\n",
-                 celsius, electronics.output(signal.demodulated).rate / kDegree,
-                 terms.real() / kDegree, -terms.imag() / kDegree,
-                 w / (2 * std::numbers::pi), (w_y - w) / (2 * std::numbers::pi),
-                 w * modal.mass / modal.damping(0, 0),
-                 w * modal.mass / modal.damping(1, 1), signal.drive_voltage,
-                 rate_slope(gyro, modal, T));
+  return {electronics.output(signal.demodulated).rate / kDegree,
+          terms.real() / kDegree,
+          -terms.imag() / kDegree,
+          w / (2 * std::numbers::pi),
+          (w_y - w) / (2 * std::numbers::pi),
+          w * modal.mass / modal.damping(0, 0),
+          w * modal.mass / modal.damping(1, 1),
+          signal.drive_voltage,
+          rate_slope(gyro, modal, T)};
 }
 
 }  // namespace
 
+std::span<const CharacteristicQuantity, kCharacteristicQuantities>
+characteristic_quantities() {
+  return kQuantities;
+}
+
+std::vector<CharacteristicRow> characteristic(
+    const Gyro& gyro, std::span<const double> temperatures) {
+  std::vector<CharacteristicRow> rows;
+  for (const double celsius : temperatures)
+    rows.push_back(row_at(gyro, celsius));
+  return rows;
+}
+
+std::string characteristic_csv(std::span<const double> temperatures,
+                               std::span<const CharacteristicRow> rows) {
+  std::string csv = "temperature_degC";
+  for (const CharacteristicQuantity& about : kQuantities)
+    fmt::format_to(std::back_inserter(csv), ",{}", about.heading);
+  csv += '\n';
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    fmt::format_to(std::back_inserter(csv), "{}", temperatures[k]);
+    for (const double value : rows[k])
+      fmt::format_to(std::back_inserter(csv), ",{:.12g}", value);
+    csv += '\n';
+  }
+  return csv;
+}
+
 std::string characteristic_csv(const Gyro& gyro,
                                std::span<const double> temperatures) {
-  std::string csv =
-      "temperature_degC,bias_deg_per_s,in_phase_deg_per_s,"
-      "quadrature_deg_per_s,drive_frequency_Hz,split_Hz,q_drive,q_sense,"
-      "drive_voltage_V,scale_factor_rel\n";
-  for (const double celsius : temperatures) append_row(csv, gyro, celsius);
-  return csv;
+  return characteristic_csv(temperatures, characteristic(gyro, temperatures));
 }
 
 }  // namespace beamgyro::internal

@@ -1,17 +1,41 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "sim/dynamics/gyro.h"
 
 namespace beamgyro::internal {
 
-/// Returns the static characteristic of a gyro at rest as CSV text: a line of
-/// names with units, then a line for each beam temperature [degC]. Free of
-/// noise: bias and its two parts, drive frequency, split of the modes, quality
+inline constexpr std::size_t kCharacteristicQuantities = 9;
+
+/// A quantity of the static characteristic.
+struct CharacteristicQuantity {
+  std::string_view name, units;
+  std::string_view heading;  // of its column in CSV
+};
+
+/// Bias and its two parts, drive frequency, split of the modes, quality
 /// factors, drive voltage and scale factor.
+std::span<const CharacteristicQuantity, kCharacteristicQuantities>
+characteristic_quantities();
+
+/// The quantities at one temperature.
+using CharacteristicRow = std::array<double, kCharacteristicQuantities>;
+
+/// Returns the static characteristic of a gyro at rest, free of noise, for each
+/// beam temperature [degC].
+std::vector<CharacteristicRow> characteristic(
+    const Gyro& gyro, std::span<const double> temperatures);
+
+/// Returns it as CSV text: a line of names with units, then a line for each
+/// temperature.
+std::string characteristic_csv(std::span<const double> temperatures,
+                               std::span<const CharacteristicRow> rows);
 std::string characteristic_csv(const Gyro& gyro,
                                std::span<const double> temperatures);
 

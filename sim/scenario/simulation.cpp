@@ -31,6 +31,12 @@ void append(Recording& recording, const Recording& block) {
 
 }  // namespace
 
+void append_block(Recording& whole, Recording&& block, std::size_t samples) {
+  if (!whole.columns.empty()) return append(whole, block);
+  whole = std::move(block);
+  reserve(whole, samples);
+}
+
 void simulate(const Scenario& scenario, const Gyro& gyro, const RunKey& key,
               const BlockSink& on_block) {
   switch (scenario.fidelity) {
@@ -54,12 +60,7 @@ Recording simulated(const Scenario& scenario, const Gyro& gyro,
     return whole;
   }
   simulate(scenario, gyro, key, [&](Recording&& block) {
-    if (whole.columns.empty()) {
-      whole = std::move(block);
-      reserve(whole, sample_count(scenario));
-    } else {
-      append(whole, block);
-    }
+    append_block(whole, std::move(block), sample_count(scenario));
   });
   return whole;
 }

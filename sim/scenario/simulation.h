@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
+
 #include "sim/dynamics/gyro.h"
 #include "sim/scenario/run_recorder.h"
 #include "sim/scenario/scenario.h"
@@ -11,6 +13,10 @@ namespace beamgyro::internal {
 /// simulate_quasistatic(), simulate_envelope() and simulate_carrier().
 void simulate(const Scenario& scenario, const Gyro& gyro, const RunKey& key,
               const BlockSink& on_block);
+
+/// Adds the next block to a recording that will have `samples`; the first one
+/// becomes the recording.
+void append_block(Recording& whole, Recording&& block, std::size_t samples);
 
 /// Returns the whole recording in memory.
 Recording simulated(const Scenario& scenario, const Gyro& gyro,

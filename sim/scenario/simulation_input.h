@@ -10,12 +10,21 @@
 
 namespace beamgyro::internal {
 
+/// A file that is in memory.
+struct InputText {
+  std::string text;
+  std::string name;  // in messages; files that it names are relative to it
+};
+
 /// A device, with the overrides of the command applied.
 struct LoadedDevice {
   Device device;
   std::string text;  // byte for byte as read
 };
 LoadedDevice load_device(const std::filesystem::path& path,
+                         const std::vector<std::string>& overrides);
+/// The same for a text in memory.
+LoadedDevice load_device(const InputText& input,
                          const std::vector<std::string>& overrides);
 
 /// A scenario, its device, and the texts that a recording stores.
@@ -28,6 +37,10 @@ struct LoadedScenario {
 /// Reads a scenario and its device. Throws std::invalid_argument for an error
 /// in either file and for an override whose key neither of them has.
 LoadedScenario load_scenario(const std::filesystem::path& path,
+                             const std::vector<std::string>& overrides);
+/// The same for texts in memory. The file that the scenario names as its device
+/// is not read; `files` are the profiles.
+LoadedScenario load_scenario(const InputText& scenario, const InputText& device,
                              const std::vector<std::string>& overrides);
 
 }  // namespace beamgyro::internal

@@ -13,9 +13,9 @@ int main(int argc, char** argv) {
     if (argc != 3) return 2;
     const std::string file = argv[2];
     const auto samples = std::strtoul(argv[1], nullptr, 10);
-    const beamgyro::internal::Recording recording =
+    const beamgyro::Recording recording =
         beamgyro::internal::sample_recording(samples);
-    beamgyro::internal::write_recording(recording, file);
+    beamgyro::write_recording(recording, file);
     return 0;
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';

@@ -10,26 +10,6 @@ from program import PROGRAM, ROOT
 
 BUILD = PROGRAM.parent
 
-USER = """\
-#include <cstdio>
-
-#include "sim/scenario/simulation.h"
-#include "sim/scenario/simulation_input.h"
-
-int main(int, char** argv) {
-  const auto input = beamgyro::internal::load_scenario(argv[1], {});
-  const auto run = beamgyro::internal::simulated(input.scenario, input.device);
-  std::printf("%zu samples\\n", run.time.size());
-}
-"""
-USER_CMAKE = """\
-cmake_minimum_required(VERSION 3.25)
-project(user LANGUAGES C CXX)
-find_package(beamgyro 0.1 REQUIRED)
-add_executable(user user.cpp)
-target_link_libraries(user PRIVATE beamgyro::beamgyro)
-"""
-
 
 @unittest.skipUnless((BUILD / "cmake_install.cmake").exists(),
                      "the program does not stand in its build")
@@ -73,15 +53,6 @@ class Install(unittest.TestCase):
         self.call(program, "compensate", "./cubic.so", "run.h5", "-o",
                   "out.h5")
         self.assertIn("recording", self.call(program, "info", "out.h5"))
-
-    def test_another_project_finds_and_links_the_libraries(self):
-        (self.dir / "user.cpp").write_text(USER)
-        (self.dir / "CMakeLists.txt").write_text(USER_CMAKE)
-        self.call("cmake", "-G", "Ninja", "-B", "build",
-                  f"-DCMAKE_PREFIX_PATH={self.prefix}")
-        self.call("cmake", "--build", "build")
-        said = self.call("build/user", self.scenario("ten_minutes.toml"))
-        self.assertRegex(said, r"^\d+ samples$")
 
 
 if __name__ == "__main__":

@@ -54,12 +54,14 @@ void say(std::string_view text) noexcept {
 
 // A pointer from a failed malloc() that is used crashes with errno as malloc()
 // left it.
-extern "C" void report_crash(int signal) {
+extern "C" {
+static void report_crash(int signal) {
   const bool no_memory = errno == ENOMEM;
   write_pending();
   if (no_memory) say(kOutOfMemory);
   std::signal(signal, SIG_DFL);
   raise(signal);
+}
 }
 
 void handle_crashes() {

@@ -74,7 +74,7 @@ struct Validator::State {
   QualifiedDevice device;
   std::optional<Campaign> campaign;
   // The compensator, its training where it is known, or a model.
-  std::unique_ptr<TestedCompensator> compensator;
+  std::shared_ptr<const TestedCompensator> compensator;
   std::optional<Compensator> file;
   std::optional<ModelSpec> model;
   std::optional<Compensator> workbench;
@@ -82,15 +82,21 @@ struct Validator::State {
 
   std::vector<InputFile> inputs;
 
-  void add_file(const std::string& group, const std::filesystem::path& path) {
-    inputs.push_back({group, path});
+  void add_file(const std::string& group, const std::filesystem::path& path,
+                std::optional<std::string> text = {}) {
+    inputs.push_back({group, path, std::move(text)});
   }
 
   void read_device() {
-    LoadedDevice loaded = load_device(*request.device, {});
+    const std::optional<GivenDevice>& given = request.given_device;
+    LoadedDevice loaded =
+        given ? load_device(InputText{given->text, request.device->string()},
+                            given->overrides)
+              : load_device(*request.device, {});
     device = {loaded.device, std::move(loaded.text)};
     qualification = read_qualification(request.qualification);
-    add_file("device", *request.device);
+    add_file("device", *request.device,
+             given ? std::optional(given->text) : std::nullopt);
     for (const auto& path : qualification.files)
       add_file("qualification", path);
   }
@@ -127,20 +133,41 @@ struct Validator::State {
     return all;
   }
 
+  void require_device_of_model() const {
+    if (request.device) return;
+    throw std::invalid_argument(fmt::format(
+        "{}: a model is trained on simulated runs; expected --device "
+        "DEVICE.toml, or a compensator that was trained",
+        request.compensator));
+  }
+
+  void require_training_runs() const {
+    if (!qualification.training.empty()) return;
+    throw std::invalid_argument(
+        fmt::format("{}: has no [[training]], on which {} would be trained",
+                    request.qualification.string(), request.compensator));
+  }
+
+  void take_compensator(const GivenCompensator& given) {
+    compensator = given.tested;
+    file = given.trained;
+    model = given.model;
+    if (file) compensator = tested(*file);
+    if (model) {
+      require_device_of_model();
+      require_training_runs();
+    }
+    if (given.text) add_file("compensator", request.compensator, given.text);
+  }
+
   void open_compensator() {
     const std::string& argument = request.compensator;
+    if (request.given) return take_compensator(*request.given);
     if (is_model(argument)) {
-      if (!request.device)
-        throw std::invalid_argument(fmt::format(
-            "{}: a model is trained on simulated runs; expected --device "
-            "DEVICE.toml, or a compensator that was trained",
-            argument));
+      require_device_of_model();
       model = read_model(argument);
       for (const auto& path : model->files) add_file("compensator", path);
-      if (qualification.training.empty())
-        throw std::invalid_argument(
-            fmt::format("{}: has no [[training]], on which {} would be trained",
-                        request.qualification.string(), argument));
+      require_training_runs();
       return;
     }
     if (is_file(argument)) {
@@ -183,9 +210,9 @@ struct Validator::State {
         .false_accept_risk = specification.false_accept_risk,
         .files = {},
         .seeds = {}};
-    for (const auto& [group, path] : inputs)
-      p.files.push_back(
-          {group, path.filename().string(), sha256_of_file(path)});
+    for (const auto& [group, path, text] : inputs)
+      p.files.push_back({group, path.filename().string(),
+                         text ? sha256(*text) : sha256_of_file(path)});
     for (const auto* runs : {&qualification.runs, &qualification.training,
                              &qualification.held_out, &qualification.turning})
       for (const QualificationRun& run : *runs)
@@ -263,7 +290,8 @@ CompletedValidation Validator::validate(std::size_t threads,
   }
   result.provenance = s.provenance();
   result.compensator = {
-      tested_name(s.request.compensator), kind_of(s.request.compensator),
+      tested_name(s.request.compensator),
+      s.request.given ? s.request.given->kind : kind_of(s.request.compensator),
       known != nullptr ? known->provenance.method : "", compensator.inputs(),
       s.difference_from_workbench(done.evidence)};
   if (!s.set)

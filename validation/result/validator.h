@@ -8,20 +8,41 @@
 #include <string>
 #include <vector>
 
+#include "compensation/compensator/compensator.h"
 #include "compensation/rows/set_runs.h"
+#include "compensation/training/model_file.h"
 #include "validation/external/tested_compensator.h"
 #include "validation/result/device_evidence.h"
 #include "validation/result/validation_result.h"
 
 namespace beamgyro::internal {
 
+/// A compensator in memory: one of the first three.
+struct GivenCompensator {
+  std::shared_ptr<const TestedCompensator> tested = {};
+  std::optional<Compensator> trained = {};
+  std::optional<ModelSpec> model = {};   // to be trained as one of a file
+  std::string kind;                      // as JudgedCompensator
+  std::optional<std::string> text = {};  // of its file
+};
+
+/// A device in memory.
+struct GivenDevice {
+  std::string text;  // of its file
+  std::vector<std::string> overrides;
+};
+
 /// What `validate` is asked for. Files are named as the user does.
 struct ValidationRequest {
   // FILE.json, FILE.so, "cmd:PROGRAM ARGS", or a model file (MODEL.toml) that
   // is trained on the training runs of the qualification.
   std::string compensator;
+  // In place of that file; `compensator` is its name.
+  std::optional<GivenCompensator> given = {};
   // A device and what it goes through, or else recordings.
   std::optional<std::filesystem::path> device = {};
+  // In place of that file; `device` is its name.
+  std::optional<GivenDevice> given_device = {};
   std::filesystem::path qualification = {};
   std::vector<std::filesystem::path> runs = {};
   // Or the directory of a set, and what is chosen from it.
@@ -41,6 +62,7 @@ struct ValidationRequest {
 struct InputFile {
   std::string group;  // "device", ...; names in a file are of its group
   std::filesystem::path path;
+  std::optional<std::string> text = {};  // in place of one on the disk
 };
 
 /// A result and the evidence that it is drawn from.

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "dataset/files/text_file.h"
+#include "dataset/netcdf/hdf5_exit.h"
 #include "dataset/netcdf/recording_file.h"
 #include "tests/dataset/rejection.h"
 #include "tests/dataset/sample_recording.h"
@@ -20,6 +21,9 @@ namespace beamgyro::internal::full_disk_test {
 namespace {
 
 namespace fs = std::filesystem;
+
+// As the program does, before any other test uses HDF5.
+[[maybe_unused]] const bool kKeptOpen = (keep_hdf5_open_at_exit(), true);
 
 constexpr std::size_t kPage = 4096;  // [bytes]
 

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "include/beamgyro/campaign.h"
+
+#include <fmt/format.h>
+
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "api/campaign_state.h"
+
+namespace beamgyro {
+namespace {
+
+std::optional<long> as_long(std::optional<std::uint32_t> number) {
+  return number ? std::optional<long>(*number) : std::nullopt;
+}
+
+Campaign campaign_of(internal::Campaign campaign) {
+  return Campaign(std::make_shared<const Campaign::State>(std::move(campaign)));
+}
+
+}  // namespace
+
+Campaign::Campaign(std::shared_ptr<const State> state)
+    : state_(std::move(state)) {}
+
+Campaign Campaign::read(const std::filesystem::path& file,
+                        std::optional<std::uint32_t> devices) {
+  return campaign_of(internal::Campaign::read(file, as_long(devices)));
+}
+
+Campaign Campaign::parse(const std::vector<CampaignFile>& files,
+                         std::optional<std::uint32_t> devices) {
+  if (files.empty())
+    throw std::invalid_argument("no files; expected those of a campaign");
+  std::vector<internal::SourceText> copies;
+  for (const CampaignFile& file : files)
+    copies.push_back({file.path, file.text});
+  return campaign_of(internal::Campaign::of_copies(copies, as_long(devices)));
+}
+
+const std::string& Campaign::name() const { return state_->campaign.name(); }
+const std::string& Campaign::text() const { return state_->campaign.text(); }
+
+std::vector<CampaignFile> Campaign::files() const {
+  std::vector<CampaignFile> files;
+  for (const internal::SourceText& source : state_->campaign.sources())
+    files.push_back({source.path, source.text});
+  return files;
+}
+
+std::uint32_t Campaign::devices() const { return state_->campaign.devices(); }
+std::uint64_t Campaign::seed() const { return state_->campaign.seed(); }
+
+std::vector<std::string> Campaign::runs() const {
+  std::vector<std::string> names;
+  for (const internal::CampaignRun& run : state_->campaign.runs())
+    names.push_back(run.name);
+  return names;
+}
+
+std::vector<std::string> Campaign::device_overrides(
+    std::uint32_t number) const {
+  const internal::VirtualDevice drawn = state_->campaign.device(number);
+  if (!drawn.device)
+    throw std::runtime_error(
+        fmt::format("{}: device {}: {}", name(), number, drawn.failure));
+  std::vector<std::string> lines;
+  std::istringstream text(drawn.overrides);
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+Device Campaign::device(std::uint32_t number) const {
+  return Device::parse(state_->campaign.device_text(),
+                       fmt::format("{}, device {}", name(), number),
+                       device_overrides(number));
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <utility>
+
+#include "include/beamgyro/campaign.h"
+#include "sim/campaign/campaign.h"
+
+namespace beamgyro {
+
+struct Campaign::State {
+  explicit State(internal::Campaign read) : campaign(std::move(read)) {}
+
+  internal::Campaign campaign;
+};
+
+}  // namespace beamgyro

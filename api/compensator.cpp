@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "include/beamgyro/compensator.h"
+
+#include <utility>
+
+#include "api/compensator_state.h"
+#include "api/user_compensator.h"
+#include "compensation/compensator/compensator_file.h"
+#include "dataset/files/atomic_file.h"
+#include "dataset/files/text_file.h"
+#include "validation/external/file_compensator.h"
+
+namespace beamgyro {
+namespace {
+
+class FunctionCompensator final : public RateCompensator {
+ public:
+  using Function = std::function<std::vector<double>(const Recording&)>;
+
+  FunctionCompensator(std::string name, std::vector<std::string> inputs,
+                      Function rate_of)
+      : name_(std::move(name)),
+        inputs_(std::move(inputs)),
+        rate_of_(std::move(rate_of)) {}
+
+  std::string name() const override { return name_; }
+  std::vector<std::string> inputs() const override { return inputs_; }
+  CompensatedRate answer(const Recording& recording) const override {
+    return {.rate = rate_of_(recording)};
+  }
+
+ private:
+  std::string name_;
+  std::vector<std::string> inputs_;
+  Function rate_of_;
+};
+
+Compensator compensator_of_text(std::string text, const std::string& name,
+                                std::string file) {
+  auto state = std::make_shared<Compensator::State>();
+  state->compensator = internal::parse_compensator(text, name);
+  state->text = std::move(text);
+  state->name = internal::tested_name(name);
+  state->file = std::move(file);
+  return Compensator(std::move(state));
+}
+
+}  // namespace
+
+RateCompensator::~RateCompensator() = default;
+
+std::shared_ptr<const RateCompensator> compensator_of(
+    std::string name, std::vector<std::string> inputs,
+    std::function<std::vector<double>(const Recording&)> rate_of) {
+  return std::make_shared<FunctionCompensator>(
+      std::move(name), std::move(inputs), std::move(rate_of));
+}
+
+Compensator::Compensator(std::shared_ptr<const State> state)
+    : state_(std::move(state)) {}
+
+Compensator Compensator::read(const std::filesystem::path& file) {
+  return compensator_of_text(internal::read_text_file(file), file.string(),
+                             file.string());
+}
+
+Compensator Compensator::parse(const std::string& text,
+                               const std::string& name) {
+  return compensator_of_text(text, name, "");
+}
+
+const std::string& Compensator::text() const { return state_->text; }
+
+void Compensator::write(const std::filesystem::path& file) const {
+  internal::write_text_file(file, state_->text);
+}
+
+std::string Compensator::name() const { return state_->name; }
+
+std::vector<std::string> Compensator::inputs() const {
+  return internal::tested(state_->compensator)->inputs();
+}
+
+CompensatedRate Compensator::answer(const Recording& recording) const {
+  const internal::Compensator& own = state_->compensator;
+  return {.rate = internal::compensated_rate(own, recording),
+          .sigma = internal::compensated_rate_sigma(own, recording),
+          .clamped = internal::clamped_samples(own, recording)};
+}
+
+std::string Compensator::method() const {
+  return state_->compensator.provenance.method;
+}
+double Compensator::lowest_temperature() const {
+  return state_->compensator.temperature_range.lowest;
+}
+double Compensator::highest_temperature() const {
+  return state_->compensator.temperature_range.highest;
+}
+bool Compensator::states_sigma() const {
+  return state_->compensator.sigma.has_value();
+}
+const std::vector<std::string>& Compensator::warnings() const {
+  return state_->compensator.provenance.warnings;
+}
+
+std::shared_ptr<const RateCompensator> open_compensator(
+    const std::string& argument, const ProcessOptions& options) {
+  if (!internal::is_command(argument) && !internal::is_library(argument))
+    return std::make_shared<Compensator>(Compensator::read(argument));
+  return std::make_shared<internal::OpenedCompensator>(
+      argument, internal::ProcessLimits{.stall = options.stall_s,
+                                        .memory = options.memory,
+                                        .program = options.program});
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "compensation/compensator/compensator.h"
+#include "include/beamgyro/compensator.h"
+
+namespace beamgyro {
+
+struct Compensator::State {
+  std::string text, name;
+  std::string file;  // its path; empty when it is in memory only
+  internal::Compensator compensator;
+};
+
+}  // namespace beamgyro

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "include/beamgyro/export.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "api/compensator_state.h"
+#include "compensation/export/export_c.h"
+#include "compensation/export/export_ekf.h"
+#include "compensation/export/export_parameters.h"
+#include "compensation/firmware/c_text.h"
+#include "dataset/files/sha256.h"
+
+namespace beamgyro {
+namespace internal {
+namespace {
+
+struct ExportRequest {
+  const std::vector<beamgyro::Compensator>& compensators;
+  const std::string& format;
+  const ExportOptions& options;
+};
+
+const Compensator& compensator_of(const ExportRequest& asked, std::size_t k) {
+  return asked.compensators[k].state().compensator;
+}
+
+// In messages.
+std::string file_of(const ExportRequest& asked, std::size_t k) {
+  const beamgyro::Compensator::State& state = asked.compensators[k].state();
+  return state.file.empty() ? state.name : state.file;
+}
+
+// Runs `work` and puts the name of the compensator's file before an error.
+template <class Work>
+auto of_file(const std::string& file, Work work) {
+  try {
+    return work();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
+  }
+}
+
+// One axis for each compensator.
+std::vector<char> axes_of(const ExportRequest& asked) {
+  const std::size_t count = asked.compensators.size();
+  std::vector<char> axes;
+  for (const std::string& axis : asked.options.axes) axes.push_back(axis[0]);
+  if (axes.empty() && count == 1) axes = {'z'};
+  if (axes.empty() && count == 3) axes = {'x', 'y', 'z'};
+  if (axes.size() != count)
+    throw std::invalid_argument(
+        fmt::format("--axis: {} axes for {} compensators; one each, such as "
+                    "--axis x,y",
+                    axes.size(), count));
+  for (std::size_t k = 1; k < count; ++k)
+    if (std::find(axes.begin(), axes.begin() + static_cast<std::ptrdiff_t>(k),
+                  axes[k]) != axes.begin() + static_cast<std::ptrdiff_t>(k))
+      throw std::invalid_argument(fmt::format(
+          "--axis: {} twice; each compensator has an axis of its own",
+          axes[k]));
+  return axes;
+}
+
+void warn_of_ranges(const std::vector<AutopilotAxis>& axes,
+                    std::vector<std::string>& warnings) {
+  const TemperatureRange common = common_range(axes);
+  if (std::ranges::all_of(axes, [&](const AutopilotAxis& axis) {
+        return axis.range == common;
+      }))
+    return;
+  warnings.push_back(fmt::format(
+      "the axes were trained over different temperatures: the autopilot will "
+      "clamp all of them to {:.2f} to {:.2f} degC, which all have seen",
+      common.lowest, common.highest));
+}
+
+void parameter_texts(const ExportRequest& asked, const std::string& name,
+                     ExportResult& result) {
+  const std::vector<char> places = axes_of(asked);
+  std::vector<AutopilotAxis> axes;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Compensator& compensator = compensator_of(asked, k);
+    const auto cubic = [&] {
+      return autopilot_cubic(compensator, asked.options.fit_cubic);
+    };
+    axes.push_back({places[k], of_file(file_of(asked, k), cubic),
+                    compensator.temperature_range});
+  }
+  const bool px4 = asked.format == "px4";
+  const auto gyro_id = asked.options.device_id.value_or(0);
+  const AutopilotGyro gyro{asked.options.instance.value_or(px4 ? 0 : 1),
+                           static_cast<long>(gyro_id)};
+  result.files.push_back(
+      {name + (px4 ? ".params" : ".parm"), of_file(file_of(asked, 0), [&] {
+         return px4 ? px4_parameters(axes, gyro)
+                    : ardupilot_parameters(axes, gyro);
+       })});
+  warn_of_ranges(axes, result.warnings);
+  if (px4 && gyro_id == 0)
+    result.warnings.emplace_back(
+        "TC_Gn_ID is 0: PX4 applies the parameters to the sensor with this id "
+        "only; pass --device-id");
+}
+
+void c_texts(const ExportRequest& asked, const std::string& name,
+             ExportResult& result) {
+  const ExportedC c = of_file(file_of(asked, 0), [&] {
+    return export_c(compensator_of(asked, 0), name, asked.options.force);
+  });
+  for (const std::string& warning : c.warnings)
+    result.warnings.push_back(
+        fmt::format("{}: {}", file_of(asked, 0), warning));
+  result.files = {{name + ".h", c.header},
+                  {name + ".c", c.source},
+                  {name + "_selftest.c", c.self_test},
+                  {name + "_plugin.c", c.plugin}};
+}
+
+// Before a long recording is read.
+void require_sigma(const ExportRequest& asked) {
+  if (!compensator_of(asked, 0).sigma)
+    throw std::invalid_argument(fmt::format(
+        "{}: states no sigma, from which the bias noise of a filter is "
+        "computed; expected a compensator with the member sigma",
+        file_of(asked, 0)));
+}
+
+void ekf_files(const ExportRequest& asked, const std::string& name,
+               ExportResult& result) {
+  const ExportOptions& options = asked.options;
+  if (!options.rest)
+    throw std::invalid_argument(
+        "--rest is missing; expected a recording at rest, from which the noise "
+        "is taken");
+  const beamgyro::Compensator& own = asked.compensators[0];
+  const Compensator& compensator = own.state().compensator;
+  EkfExport given{.name = name,
+                  .axis = axes_of(asked)[0],
+                  .compensator = {own.name(), sha256(own.text())},
+                  .rest = {},
+                  .settings = {},
+                  .noise = {},
+                  .figures = {}};
+  EkfSettings& settings = given.settings;
+  settings.temperature = options.temperature_degC;
+  if (options.ramp_K_per_min)
+    settings.temperature_rate = *options.ramp_K_per_min / 60.0;
+  settings.correlation = options.correlation_K.value_or(settings.correlation);
+  require_sigma(asked);
+  std::vector<std::string> of_file_read;
+  const Recording rest = beamgyro::read_recording(*options.rest, &of_file_read);
+  given.noise = of_file(options.rest->string(),
+                        [&] { return rest_noise(compensator, rest); });
+  given.rest = {options.rest->filename().string(),
+                sha256_of_file(*options.rest)};
+  given.figures = ekf_figures(compensator, given.noise, settings);
+  result.warnings = ekf_warnings(given);
+  result.warnings.insert(result.warnings.end(), of_file_read.begin(),
+                         of_file_read.end());
+  for (auto& [called, text] : ekf_texts(given))
+    result.files.push_back({called, std::move(text)});
+}
+
+void require_options(const ExportRequest& asked) {
+  const auto refuse = [&](bool given, const char* option, const char* formats) {
+    if (given)
+      throw std::invalid_argument(
+          fmt::format("{}: is for the formats {}, not for {}", option, formats,
+                      asked.format));
+  };
+  const std::string& format = asked.format;
+  if (format != "px4")
+    refuse(asked.options.device_id.has_value(), "--device-id", "px4");
+  if (format != "c") refuse(asked.options.force, "--force", "c");
+  if (format != "ekf") {
+    refuse(asked.options.rest.has_value(), "--rest", "ekf");
+    refuse(asked.options.ramp_K_per_min.has_value(), "--ramp-K-per-min", "ekf");
+    refuse(asked.options.correlation_K.has_value(), "--correlation-K", "ekf");
+    refuse(asked.options.temperature_degC.has_value(), "--temperature-degC",
+           "ekf");
+  }
+  if (format == "px4" || format == "ardupilot") return;
+  if (format == "c")
+    refuse(!asked.options.axes.empty(), "--axis", "px4, ardupilot and ekf");
+  refuse(asked.options.instance.has_value(), "--instance", "px4 and ardupilot");
+  refuse(asked.options.fit_cubic, "--fit-cubic", "px4 and ardupilot");
+  refuse(asked.compensators.size() > 1, "several compensators",
+         "px4 and ardupilot");
+}
+
+void require_words(const ExportRequest& asked) {
+  constexpr std::array<std::string_view, 4> kFormats = {"c", "px4", "ardupilot",
+                                                        "ekf"};
+  if (std::ranges::count(kFormats, asked.format) == 0)
+    throw std::invalid_argument(fmt::format(
+        "format \"{}\"; expected {}", asked.format, fmt::join(kFormats, ", ")));
+  for (const std::string& axis : asked.options.axes)
+    if (axis != "x" && axis != "y" && axis != "z")
+      throw std::invalid_argument(
+          fmt::format("axis \"{}\"; expected x, y or z", axis));
+  if (asked.compensators.empty() || asked.compensators.size() > 3)
+    throw std::invalid_argument(
+        fmt::format("{} compensators; expected one, or up to three",
+                    asked.compensators.size()));
+}
+
+}  // namespace
+}  // namespace internal
+
+ExportResult export_files(const std::vector<Compensator>& compensators,
+                          const std::string& format,
+                          const ExportOptions& options) {
+  const internal::ExportRequest asked{compensators, format, options};
+  internal::require_words(asked);
+  internal::require_options(asked);
+  const std::string name = internal::c_identifier(
+      options.name.empty()
+          ? std::filesystem::path(compensators[0].name()).stem().string()
+          : options.name);
+  ExportResult result;
+  if (format == "c")
+    internal::c_texts(asked, name, result);
+  else if (format == "ekf")
+    internal::ekf_files(asked, name, result);
+  else
+    internal::parameter_texts(asked, name, result);
+  return result;
+}
+
+}  // namespace beamgyro

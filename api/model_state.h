@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "compensation/training/model_file.h"
+#include "include/beamgyro/train.h"
+
+namespace beamgyro {
+
+struct Model::State {
+  std::string name;
+  internal::ModelSpec spec;
+};
+
+}  // namespace beamgyro

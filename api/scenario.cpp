@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "include/beamgyro/scenario.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "api/device_state.h"
+#include "api/key_overrides.h"
+#include "api/scenario_state.h"
+#include "sim/scenario/carrier_run.h"
+
+namespace beamgyro {
+namespace {
+
+// The device is a text in memory, and no key could name another one.
+void require_no_device_key(const std::vector<std::string>& overrides) {
+  for (const std::string& text : overrides)
+    if (internal::key_of_override(text) == "device")
+      throw std::invalid_argument(fmt::format(
+          "--set {}: the device is in memory; expected it as a Device", text));
+}
+
+Scenario scenario_of(internal::InputText scenario, internal::InputText device,
+                     std::vector<std::string> device_overrides,
+                     std::vector<std::string> overrides) {
+  require_no_device_key(overrides);
+  auto state = std::make_shared<Scenario::State>();
+  state->loaded = internal::load_scenario(
+      scenario, device,
+      internal::merged_overrides(device_overrides, overrides));
+  state->scenario = std::move(scenario);
+  state->device = std::move(device);
+  state->device_overrides = std::move(device_overrides);
+  state->overrides = std::move(overrides);
+  return Scenario(std::move(state));
+}
+
+}  // namespace
+
+Scenario::Scenario(std::shared_ptr<const State> state)
+    : state_(std::move(state)) {}
+
+Scenario Scenario::read(const std::filesystem::path& file,
+                        const std::vector<std::string>& overrides) {
+  auto state = std::make_shared<State>();
+  state->loaded = internal::load_scenario(file, overrides);
+  state->scenario = {state->loaded.scenario_text, file.string()};
+  state->device = {state->loaded.device_text,
+                   state->loaded.scenario.device_file.string()};
+  state->overrides = overrides;
+  return Scenario(std::move(state));
+}
+
+Scenario Scenario::parse(const std::string& text, const Device& device,
+                         const std::vector<std::string>& overrides,
+                         const std::string& name) {
+  return scenario_of({text, name}, {device.text(), device.name()},
+                     device.overrides(), overrides);
+}
+
+Scenario Scenario::with(const std::vector<std::string>& overrides) const {
+  require_no_device_key(overrides);
+  std::vector<std::string> all = state_->overrides;
+  std::erase_if(all, [](const std::string& text) {  // it has been read
+    return internal::key_of_override(text) == "device";
+  });
+  return scenario_of(state_->scenario, state_->device, state_->device_overrides,
+                     internal::merged_overrides(all, overrides));
+}
+
+Scenario Scenario::with_device(const Device& device) const {
+  return parse(text(), device, state_->overrides, name());
+}
+
+const std::string& Scenario::text() const { return state_->scenario.text; }
+const std::string& Scenario::name() const { return state_->scenario.name; }
+Device Scenario::device() const {
+  return Device::parse(state_->device.text, state_->device.name,
+                       state_->device_overrides);
+}
+const std::vector<std::string>& Scenario::overrides() const {
+  return state_->overrides;
+}
+const std::vector<std::filesystem::path>& Scenario::files() const {
+  return state_->loaded.files;
+}
+
+std::string Scenario::title() const {
+  return internal::title_of(state_->loaded.scenario);
+}
+double Scenario::duration() const { return state_->loaded.scenario.duration; }
+double Scenario::output_rate() const {
+  return state_->loaded.scenario.output_rate;
+}
+std::size_t Scenario::samples() const {
+  return internal::sample_count(state_->loaded.scenario);
+}
+std::string Scenario::fidelity() const {
+  return std::string(internal::fidelity_name(state_->loaded.scenario.fidelity));
+}
+std::uint64_t Scenario::seed() const { return state_->loaded.scenario.seed; }
+
+double Scenario::estimated_seconds() const {
+  const internal::Scenario& scenario = state_->loaded.scenario;
+  return scenario.fidelity == internal::Fidelity::kCarrier
+             ? internal::carrier_cost(scenario)
+             : 0.0;
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "include/beamgyro/sensitivity.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "api/campaign_state.h"
+#include "api/compensator_state.h"
+#include "api/reported_progress.h"
+#include "api/sensitivity_study.h"
+#include "report/sensitivity_report.h"
+#include "sensitivity/figures/figure_of_merit.h"
+#include "sensitivity/study/factor.h"
+#include "sensitivity/study/sensitivity_study.h"
+#include "sim/thermal/material_range.h"
+
+namespace beamgyro {
+namespace internal {
+namespace {
+
+CurveGrid grid_of(const SensitivityOptions& options) {
+  const double low = options.lowest_degC, high = options.highest_degC;
+  if (!kMaterialTemperatures.contains(low) ||
+      !kMaterialTemperatures.contains(high))
+    throw std::invalid_argument(fmt::format(
+        "{:g} to {:g} degC; expected temperatures from {:g} to {:g}", low, high,
+        kMaterialTemperatures.low, kMaterialTemperatures.high));
+  if (!(high - low >= 1))
+    throw std::invalid_argument(fmt::format(
+        "--range {:g}:{:g}: spans {:g} K; expected LOW at least 1 K below HIGH",
+        low, high, high - low));
+  CurveGrid grid;
+  grid.low = low;
+  grid.high = high;
+  return grid;
+}
+
+Merit merit_of(const std::string& name) {
+  if (const FigureOfMerit* found = find_figure_of_merit(name))
+    return found->merit;
+  throw std::invalid_argument(fmt::format("figure \"{}\"; expected {}", name,
+                                          fmt::join(merit_names(), ", ")));
+}
+
+// The figures asked for, each once; without any those that need no compensator.
+std::vector<Merit> merits_of(const SensitivityOptions& options) {
+  const bool has_compensator = options.compensator.has_value();
+  std::vector<Merit> merits;
+  for (const std::string& name : options.figures) {
+    const Merit merit = merit_of(name);
+    if (std::ranges::count(merits, merit) == 0) merits.push_back(merit);
+  }
+  const bool asks = std::ranges::count(merits, Merit::kCompensatorRms) > 0;
+  if (asks && !has_compensator)
+    throw std::invalid_argument(fmt::format(
+        "--figure {}: no compensator to score; expected --compensator "
+        "FILE.json with it",
+        figure_of_merit(Merit::kCompensatorRms).name));
+  if (options.figures.empty())
+    merits = {Merit::kBiasPeakToPeak, Merit::kCubicRms,
+              Merit::kScaleFactorDrift, Merit::kWarmUpChange};
+  if (has_compensator && !asks) merits.push_back(Merit::kCompensatorRms);
+  return merits;
+}
+
+std::map<Merit, double> limits_of(const SensitivityOptions& options,
+                                  const std::vector<Merit>& merits) {
+  std::map<Merit, double> limits;
+  for (const auto& [name, limit] : options.limits) {
+    const Merit merit = merit_of(name);
+    if (std::ranges::count(merits, merit) == 0)
+      throw std::invalid_argument(fmt::format(
+          "--limit {}: {} is not studied; expected --figure {} with it",
+          fmt::format("{}={:g}", name, limit), name, name));
+    if (!(limit > 0))
+      throw std::invalid_argument(
+          fmt::format("limit {} of {}; expected one above 0", limit, name));
+    limits.emplace(merit, limit);
+  }
+  return limits;
+}
+
+SensitivityFigure figure_of(const MeritResult& result) {
+  SensitivityFigure figure{figure_of_merit(result.merit).name, {}};
+  for (const FactorResult& factor : result.factors)
+    figure.indices.push_back({factor.key, factor.first.value, factor.first.low,
+                              factor.first.high, factor.total.value,
+                              factor.total.low, factor.total.high});
+  return figure;
+}
+
+}  // namespace
+
+std::vector<std::string> merit_names() {
+  std::vector<std::string> names;
+  for (const FigureOfMerit& figure : figures_of_merit())
+    names.emplace_back(figure.name);
+  return names;
+}
+
+DeviceSampleOptions sample_options(const beamgyro::Campaign& campaign,
+                                   const SensitivityOptions& options) {
+  DeviceSampleOptions asked;
+  asked.merits = merits_of(options);
+  asked.merit.grid = grid_of(options);
+  if (options.compensator)
+    asked.merit.compensator = std::make_shared<const Compensator>(
+        options.compensator->state().compensator);
+  if (options.samples < 32)
+    throw std::invalid_argument(
+        fmt::format("{} samples; expected 32 or more", options.samples));
+  asked.rows = options.samples;
+  asked.seed = options.seed.value_or(campaign.seed());
+  asked.halves_tolerances = !options.limits.empty();
+  asked.jobs = options.jobs;
+  limits_of(options, asked.merits);
+  const internal::Campaign& own = campaign.state().campaign;
+  require_comparable(factors_of(own.device_plan()),
+                     own.sources().front().path.string());
+  return asked;
+}
+
+SensitivityResult sensitivity_study(const beamgyro::Campaign& campaign,
+                                    const SensitivityOptions& options,
+                                    DeviceSampleCounts& counts) {
+  const DeviceSampleOptions asked = sample_options(campaign, options);
+  const std::map<Merit, double> limits = limits_of(options, asked.merits);
+  const DeviceSample sample =
+      sample_devices(campaign.state().campaign, asked, counts);
+  const StudyHead head{campaign.name(), asked.seed, asked.merit.grid};
+  SensitivityResult result;
+  result.text = sample_lines(sample, head);
+  std::vector<MeritResult> found;
+  for (std::size_t m = 0; m < asked.merits.size(); ++m) {
+    const Merit merit = asked.merits[m];
+    const auto limit = limits.find(merit);
+    MeritQuestion question{
+        merit, figure_of_merit(merit).is_positive && !options.linear};
+    if (limit != limits.end()) question.limit = limit->second;
+    found.push_back(analysed(sample, m, question, asked.seed));
+    result.text += '\n' + sensitivity_table(found.back());
+    result.figures.push_back(figure_of(found.back()));
+  }
+  result.json = to_json(sample, head, found).dump(2) + "\n";
+  return result;
+}
+
+}  // namespace internal
+
+SensitivityResult sensitivity(const Campaign& campaign,
+                              const SensitivityOptions& options) {
+  internal::DeviceSampleCounts counts;
+  if (!options.progress)
+    return internal::sensitivity_study(campaign, options, counts);
+  const auto total = static_cast<double>(internal::devices_of_sample(
+      campaign.state().campaign, internal::sample_options(campaign, options)));
+  std::mutex one_at_a_time;
+  counts.on_device = [&] {
+    const std::lock_guard lock(one_at_a_time);
+    internal::report(options.progress,
+                     static_cast<double>(counts.devices.load()) / total);
+  };
+  return internal::sensitivity_study(campaign, options, counts);
+}
+
+}  // namespace beamgyro

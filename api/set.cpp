@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "include/beamgyro/set.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+
+#include "api/program_version.h"
+#include "api/reported_progress.h"
+#include "api/set_defects.h"
+#include "api/set_state.h"
+#include "dataset/set/view_check.h"
+
+namespace beamgyro {
+namespace internal {
+
+std::vector<SetDefect> set_defects(const std::filesystem::path& directory,
+                                   const Manifest& manifest,
+                                   const CheckProgress& progress) {
+  std::vector<SetDefect> defects = check_set(directory, manifest, progress);
+  // Another program may make views of other bytes.
+  if (manifest.head && manifest.head->program_version == kProgramVersion &&
+      manifest.head->git_revision == kGitRevision)
+    std::ranges::copy(check_views(directory, manifest, defects),
+                      std::back_inserter(defects));
+  return defects;
+}
+
+}  // namespace internal
+
+namespace {
+
+constexpr std::size_t kMostOpen = 8;  // files of a set
+
+std::vector<SetFailure> failures_of(const internal::Manifest& manifest) {
+  std::vector<SetFailure> failures;
+  const std::vector<std::string>& runs = manifest.head->runs;
+  for (const internal::ManifestEntry& entry : manifest.entries)
+    for (const internal::DeviceFailure& failure : entry.failures)
+      failures.push_back(
+          {runs[entry.index % runs.size()], failure.device, failure.reason});
+  return failures;
+}
+
+}  // namespace
+
+std::shared_ptr<const internal::ShardFile> Set::State::file_of(
+    std::uint32_t index) const {
+  const std::lock_guard lock(mutex_);
+  if (const auto found = open_.find(index); found != open_.end())
+    return found->second;
+  const auto entry = std::ranges::find(manifest.entries, index,
+                                       &internal::ManifestEntry::index);
+  auto file = std::make_shared<const internal::ShardFile>(
+      directory / entry->file, internal::open_listed(directory, *entry));
+  if (open_.size() >= kMostOpen) open_.erase(open_.begin());
+  open_.emplace(index, file);
+  return file;
+}
+
+Set::State::Place Set::State::place_of(std::string_view run,
+                                       std::uint32_t device) const {
+  const std::vector<std::string>& runs = head().runs;
+  const auto named = std::ranges::find(runs, run);
+  if (named == runs.end())
+    throw std::invalid_argument(
+        fmt::format("{}: the set has no run \"{}\"; its runs are {}",
+                    directory.string(), run, fmt::join(runs, ", ")));
+  if (device >= head().devices)
+    throw std::invalid_argument(
+        fmt::format("{}: device {}; the set has devices 0 to {}",
+                    directory.string(), device, head().devices - 1));
+  const std::uint32_t range = device / head().devices_per_file;
+  const auto index = static_cast<std::uint32_t>(range * runs.size()) +
+                     static_cast<std::uint32_t>(named - runs.begin());
+  return {file_of(index), device % head().devices_per_file};
+}
+
+std::string_view part_name(SetPart part) {
+  switch (part) {
+    case SetPart::kTrain:
+      return "train";
+    case SetPart::kValidation:
+      return "validation";
+    case SetPart::kTest:
+      return "test";
+  }
+  return {};
+}
+
+Set::Set(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+
+Set Set::open(const std::filesystem::path& directory) {
+  auto state = std::make_shared<State>();
+  state->directory = directory;
+  state->manifest = internal::finished_manifest(directory);
+  state->failures = failures_of(state->manifest);
+  return Set(std::move(state));
+}
+
+const std::filesystem::path& Set::directory() const {
+  return state_->directory;
+}
+std::string Set::campaign() const { return state_->head().campaign; }
+std::uint32_t Set::devices() const { return state_->head().devices; }
+std::vector<std::string> Set::runs() const { return state_->head().runs; }
+std::uint64_t Set::seed() const { return state_->head().seed; }
+std::string Set::program_version() const {
+  return state_->head().program_version;
+}
+std::string Set::git_revision() const { return state_->head().git_revision; }
+const std::vector<SetFailure>& Set::failures() const {
+  return state_->failures;
+}
+
+SetPart Set::part(std::uint32_t device) const {
+  const State::Place place =
+      state_->place_of(state_->head().runs.front(), device);
+  return static_cast<SetPart>(place.file->row(place.position).part);
+}
+
+std::vector<std::uint32_t> Set::devices_of(SetPart wanted) const {
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t device = 0; device < devices(); ++device)
+    if (part(device) == wanted) found.push_back(device);
+  return found;
+}
+
+Recording Set::recording(std::string_view run, std::uint32_t device) const {
+  const State::Place place = state_->place_of(run, device);
+  return place.file->recording(place.position);
+}
+
+Recording Set::slow_recording(std::string_view run,
+                              std::uint32_t device) const {
+  const State::Place place = state_->place_of(run, device);
+  return place.file->slow_recording(place.position);
+}
+
+std::vector<DrawnParameter> Set::drawn_parameters(std::string_view run,
+                                                  std::uint32_t device) const {
+  const State::Place place = state_->place_of(run, device);
+  const std::vector<internal::DeviceVariable>& about =
+      place.file->head().parameters;
+  const std::vector<double>& values =
+      place.file->row(place.position).parameters;
+  std::vector<DrawnParameter> drawn;
+  for (std::size_t i = 0; i < about.size(); ++i)
+    drawn.push_back(
+        {about[i].name, about[i].units, about[i].long_name, values[i]});
+  return drawn;
+}
+
+std::vector<SetDefect> Set::verify(const Progress& progress) const {
+  std::vector<SetDefect> defects;
+  for (const internal::SetDefect& defect : internal::set_defects(
+           state_->directory, state_->manifest,
+           [&](std::uint64_t done, std::uint64_t total) {
+             internal::report(progress, static_cast<double>(done) /
+                                            static_cast<double>(total));
+           }))
+    defects.push_back({defect.file, defect.what});
+  return defects;
+}
+
+}  // namespace beamgyro

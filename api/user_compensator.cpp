@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include "api/user_compensator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "api/compensator_state.h"
+#include "compensation/inputs/sample_ranges.h"
+#include "validation/external/answering.h"
+#include "validation/external/file_compensator.h"
+#include "validation/external/measured_signals.h"
+
+namespace beamgyro::internal {
+namespace {
+
+constexpr double kNoAnswer = std::numeric_limits<double>::quiet_NaN();
+
+template <class T>
+std::vector<T> part_of(const std::vector<T>& all, const SampleRange& range) {
+  return {all.begin() + static_cast<std::ptrdiff_t>(range.begin),
+          all.begin() + static_cast<std::ptrdiff_t>(range.end)};
+}
+
+/// What a compensator of the user is given: no truth and no text.
+Recording seen_part(const Recording& run,
+                    const std::vector<std::string>& inputs,
+                    const SampleRange& range) {
+  Recording seen;
+  seen.time = part_of(run.time, range);
+  seen.status = part_of(run.status, range);
+  for (const Column& column : run.columns) {
+    const bool is_input =
+        inputs.empty() || std::ranges::count(inputs, column.name) > 0;
+    if (column.role == Role::kMeasured && is_input)
+      seen.columns.push_back({column.name, column.units, column.long_name,
+                              column.role, part_of(column.values, range),
+                              column.comment});
+  }
+  return seen;
+}
+
+/// A class of the user's own.
+class UserCompensator final : public TestedCompensator {
+ public:
+  explicit UserCompensator(const RateCompensator& user) : user_(user) {}
+
+  std::vector<std::string> inputs() const override { return user_.inputs(); }
+
+  std::vector<Answer> answers(
+      const std::vector<const Recording*>& runs) const override {
+    std::vector<Answer> all;
+    for (const Recording* run : runs) all.push_back(answer_to(*run));
+    return all;
+  }
+
+ private:
+  Answer answer_to(const Recording& run) const {
+    const std::vector<std::string> names = user_.inputs();
+    const MeasuredSignals all_there(run, names);  // or throws
+    const Stopwatch watch;
+    Answer answer;
+    answer.rate.assign(run.time.size(), kNoAnswer);
+    for (const SampleRange& stretch : powered_stretches(run))
+      take(run, stretch, user_.answer(seen_part(run, names, stretch)), answer);
+    answer.seconds = watch.seconds();
+    add_fault_of_values(run, answer);
+    return answer;
+  }
+
+  static void take(const Recording& run, const SampleRange& stretch,
+                   const CompensatedRate& part, Answer& answer) {
+    const auto place = static_cast<std::ptrdiff_t>(stretch.begin);
+    std::ranges::copy_n(
+        part.rate.begin(),
+        static_cast<std::ptrdiff_t>(std::min(part.rate.size(), stretch.size())),
+        answer.rate.begin() + place);
+    if (part.sigma.size() == stretch.size()) {
+      answer.sigma.resize(run.time.size(), kNoAnswer);
+      std::ranges::copy(part.sigma, answer.sigma.begin() + place);
+    }
+    answer.clamped += part.clamped;
+    if (part.rate.size() == stretch.size() || !answer.faults.empty()) return;
+    const bool too_few = part.rate.size() < stretch.size();
+    answer.faults.push_back(
+        {too_few ? AnswerFault::kTooFew : AnswerFault::kTooMany, stretch.begin,
+         fmt::format("gave {} answers to the {} samples from {}",
+                     part.rate.size(), stretch.size(),
+                     sample_words(run, stretch.begin))});
+  }
+
+  const RateCompensator& user_;
+};
+
+/// One that is open already.
+class BorrowedCompensator final : public TestedCompensator {
+ public:
+  explicit BorrowedCompensator(const TestedCompensator& opened)
+      : opened_(opened) {}
+  std::vector<std::string> inputs() const override { return opened_.inputs(); }
+  std::vector<Answer> answers(
+      const std::vector<const Recording*>& runs) const override {
+    return opened_.answers(runs);
+  }
+
+ private:
+  const TestedCompensator& opened_;
+};
+
+}  // namespace
+
+OpenedCompensator::OpenedCompensator(std::string argument,
+                                     const ProcessLimits& limits)
+    : argument_(std::move(argument)),
+      limits_(limits),
+      opened_(open_tested_compensator(argument_, limits)) {}
+
+std::vector<std::string> OpenedCompensator::inputs() const {
+  return opened_->inputs();
+}
+
+CompensatedRate OpenedCompensator::answer(const Recording& recording) const {
+  return public_answer(opened_->answer(recording));
+}
+
+std::unique_ptr<TestedCompensator> tested(const RateCompensator& compensator) {
+  if (const auto* file =
+          dynamic_cast<const beamgyro::Compensator*>(&compensator))
+    return tested(file->state().compensator);
+  if (const auto* opened = dynamic_cast<const OpenedCompensator*>(&compensator))
+    return std::make_unique<BorrowedCompensator>(opened->opened());
+  return std::make_unique<UserCompensator>(compensator);
+}
+
+CompensatedRate public_answer(Answer answer) {
+  CompensatedRate all{
+      std::move(answer.rate), std::move(answer.sigma), answer.clamped, {}};
+  for (SeenFault& seen : answer.faults)
+    all.faults.push_back(std::move(seen.words));
+  return all;
+}
+
+}  // namespace beamgyro::internal

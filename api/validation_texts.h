@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "validation/result/validator.h"
+
+namespace beamgyro::internal {
+
+/// A validation as files show it.
+struct ValidationTexts {
+  std::string json;  // what --json writes and the page shows
+  std::string text;  // the table
+  std::string page;  // HTML
+};
+ValidationTexts texts_of(const CompletedValidation& validation);
+
+}  // namespace beamgyro::internal

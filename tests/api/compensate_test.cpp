@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "include/beamgyro/compensator.h"
+#include "include/beamgyro/simulate.h"
+#include "include/beamgyro/train.h"
+#include "include/beamgyro/validate.h"
+
+namespace beamgyro::internal::compensate_api_test {
+namespace {
+
+const std::filesystem::path kScenarios = BEAMGYRO_SCENARIOS;
+
+Recording run_of(const std::vector<std::string>& overrides = {}) {
+  return simulate(beamgyro::Scenario::read(kScenarios / "ten_minutes.toml",
+                                           overrides))
+      .recording;
+}
+
+TEST(UserCompensator, SeesTheMeasuredSignalsOfEachPoweredStretchOnly) {
+  const Recording run =
+      run_of({"power.on_s=[0,300]", "power.off_s=[200]"});  // two power cycles
+  std::vector<std::size_t> sizes;
+  const auto user = compensator_of("mine", {"rate", "temperature"},
+                                   [&](const Recording& seen) {
+                                     sizes.push_back(seen.time.size());
+                                     EXPECT_EQ(seen.columns.size(), 2U);
+                                     for (const Column& column : seen.columns) {
+                                       EXPECT_EQ(column.role, Role::kMeasured);
+                                       for (const double value : column.values)
+                                         EXPECT_TRUE(std::isfinite(value));
+                                     }
+                                     return column_values(seen, "rate");
+                                   });
+  const Recording answered = compensate(*user, run).recording;
+  const auto powered =
+      std::ranges::count_if(run.status, [](auto s) { return (s & 1) == 0; });
+  ASSERT_EQ(sizes.size(), 2U);
+  EXPECT_EQ(sizes[0] + sizes[1], static_cast<std::size_t>(powered));
+  const std::vector<double>& rate = column_values(answered, "compensated_rate");
+  const std::vector<double>& recorded = column_values(run, "rate");
+  for (std::size_t k = 0; k < rate.size(); ++k)
+    if ((run.status[k] & kUnpowered) != 0)
+      EXPECT_TRUE(std::isnan(rate[k])) << k;
+    else
+      EXPECT_EQ(rate[k], recorded[k]) << k;
+  EXPECT_EQ(answered.compensator, "mine");
+}
+
+TEST(UserCompensator, FaultsAndExceptionsReachTheCaller) {
+  const Recording run = run_of();
+  const auto few = compensator_of(
+      "few", {"rate"}, [](const Recording&) { return std::vector<double>{1}; });
+  EXPECT_THROW(compensate(*few, run), std::runtime_error);
+  const auto broken =
+      compensator_of("broken", {"rate"},
+                     [](const Recording&) -> std::vector<double> { throw 42; });
+  EXPECT_THROW(compensate(*broken, run), int);
+  const auto truth = compensator_of(
+      "cheat", {"true_rate"},
+      [](const Recording& seen) { return column_values(seen, "true_rate"); });
+  EXPECT_THROW(compensate(*truth, run), std::invalid_argument);
+}
+
+TEST(PublicCompensator, TextTrainsReadsAndAnswersAlike) {
+  const auto scenario = beamgyro::Scenario::read(
+      kScenarios / "ramp.toml", {"duration_s=20000", "output_rate_Hz=1"});
+  const Recording run = simulate(scenario).recording;
+  const auto model = beamgyro::Model::read(kScenarios / "models/cubic.toml");
+  const TrainedCompensator trained =
+      beamgyro::train(model, std::vector<NamedRecording>{{"ramp", run}});
+  const auto again =
+      beamgyro::Compensator::parse(trained.compensator.text(), "again.json");
+  EXPECT_EQ(again.text(), trained.compensator.text());
+  const CompensatedRate first = trained.compensator.answer(run);
+  EXPECT_EQ(first.rate, again.answer(run).rate);
+  // Most of the drift of a ramp is a cubic of the temperature.
+  const auto rms = [](const std::vector<double>& values) {
+    double sum = 0;
+    for (const double value : values) sum += value * value;
+    return std::sqrt(sum / static_cast<double>(values.size()));
+  };
+  EXPECT_LT(rms(first.rate), 0.5 * rms(column_values(run, "rate")));
+  EXPECT_NE(trained.text.find("rms in-sample"), std::string::npos) << trained.text;
+  EXPECT_THROW(compensate(again, compensate(again, run).recording),
+               std::invalid_argument);
+}
+
+TEST(PublicValidation, JudgesAUserCompensatorOnRecordings) {
+  const auto file =
+      std::filesystem::temp_directory_path() / "beamgyro_api_test_run.h5";
+  write_recording(run_of(), file);
+  std::atomic<int> calls = 0;
+  const auto nothing =
+      compensator_of("nothing", {"rate"}, [&](const Recording& seen) {
+        ++calls;
+        return column_values(seen, "rate");
+      });
+  const ValidationOutcome outcome = validate(*nothing, {.recordings = {file}});
+  std::filesystem::remove(file);
+  EXPECT_GT(calls, 0);
+  EXPECT_NE(outcome.verdict, Verdict::kPass);  // it removes nothing
+  EXPECT_FALSE(outcome.metrics.empty());
+  EXPECT_FALSE(outcome.checks.empty());
+  EXPECT_NE(outcome.json.find("\"nothing\""), std::string::npos);
+  EXPECT_THROW(validate(*nothing, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace beamgyro::internal::compensate_api_test

@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: MIT
+"""The installed C++ library, as its users build and call it."""
+
+import filecmp
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+from program import PROGRAM, ROOT
+
+BUILD = PROGRAM.parent
+SCENARIOS = ROOT / "scenarios"
+SPEC = ROOT / "specs/uav.toml"
+HEADERS = sorted((ROOT / "include/beamgyro").glob("*.h"))
+
+TEN_LINES = """\
+#include <beamgyro/simulate.h>
+
+#include <cstdio>
+
+int main(int, char** argv) {
+  const auto scenario = beamgyro::Scenario::read(argv[1]);
+  const auto run = beamgyro::simulate(scenario);
+  std::printf("%zu samples\\n", run.recording.time.size());
+}
+"""
+GUIDE = (ROOT / "docs/guide/library.md").read_text()
+
+
+def block_of_guide(kind):
+    return re.search(rf"^```{kind}\n(.*?)^```$", GUIDE,
+                     re.MULTILINE | re.DOTALL)[1]
+
+
+USER_CMAKE = """\
+cmake_minimum_required(VERSION 3.25)
+project(user LANGUAGES CXX)
+find_package(beamgyro 0.1 REQUIRED)
+add_executable(few user.cpp)
+target_link_libraries(few PRIVATE beamgyro::sim)
+add_executable(user {every_call})
+target_link_libraries(user PRIVATE beamgyro::beamgyro)
+foreach(part dataset compensation validation)
+  add_executable(${{part}} version.cpp)
+  target_link_libraries(${{part}} PRIVATE beamgyro::${{part}})
+endforeach()
+"""
+VERSION = """\
+#include <beamgyro/version.h>
+
+int main() { return beamgyro::version()[0] == '0' ? 0 : 1; }
+"""
+# What files_of_commands.cpp makes, by the program.
+COMMANDS = """\
+run {s}/ten_minutes.toml --seed 5 -o run.h5
+run {s}/ten_minutes.toml --seed 5 -o run.csv
+characterise {s}/devices/nominal.toml --beam-temperature -20:20:10 -o device.csv
+train ramp.h5 --model {s}/models/cubic.toml -o cubic.json
+compensate cubic.json run.h5 -o compensated.h5
+validate cubic.json ramp.h5 --spec {spec} --json result.json
+allan run.h5 --json allan.json
+export cubic.json --format c -o firmware
+generate {s}/campaigns/small.toml --devices 6 -o set
+sensitivity {s}/campaigns/small.toml --samples 32 --json sensitivity.json
+train set --model {s}/models/cubic.toml -o of_set.json
+"""
+PRINTED = {"train": "train.txt", "validate": "result.txt",
+           "allan": "allan.txt", "generate": "generate.txt",
+           "sensitivity": "sensitivity.txt"}
+
+
+def files_below(folder):
+    return sorted(path.relative_to(folder).as_posix()
+                  for path in folder.rglob("*") if path.is_file())
+
+
+class Call(unittest.TestCase):
+    """A test that calls tools in a folder of its own."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix=cls.PREFIX)
+        cls.addClassCleanup(folder.cleanup)
+        cls.dir = pathlib.Path(folder.name)
+
+    @classmethod
+    def call(cls, *command, cwd=None, allowed=(0,)):
+        answer = subprocess.run([str(part) for part in command],
+                                cwd=cwd or cls.dir, capture_output=True,
+                                text=True, check=False)
+        if answer.returncode not in allowed:
+            raise AssertionError(answer.stdout + answer.stderr)
+        return answer
+
+
+class PublicHeaders(Call):
+    PREFIX = "headers_"
+
+    def test_each_compiles_alone_and_names_the_standard_library_only(self):
+        system = re.compile(r"^/usr/(include|lib)/")
+        for header in HEADERS:
+            if header.name == "plugin.h":
+                continue
+            for compiler in ["g++", "clang++"]:
+                self.call(compiler, "-std=c++20", "-Wall", "-Wextra",
+                          "-Wpedantic", "-Werror", "-fsyntax-only",
+                          f"-I{ROOT}/include", "-include", header,
+                          "-x", "c++", "/dev/null")
+            seen = self.call("g++", "-std=c++20", "-M", f"-I{ROOT}/include",
+                             "-x", "c++", header).stdout
+            for path in seen.replace("\\\n", " ").split()[1:]:
+                if system.match(path):
+                    self.assertRegex(
+                        path, r"/(c\+\+|gcc|bits|asm|asm-generic|linux|gnu|sys"
+                        r"|pthread|sched|time|wchar|features)|^/usr/include/"
+                        r"\w+[.-]?\w*\.h$")
+                    self.assertNotRegex(
+                        path, "(?i)eigen|hdf5|fmt|json|sundials|boost|toml")
+                else:
+                    self.assertEqual(pathlib.Path(path).resolve().parent,
+                                     ROOT / "include/beamgyro")
+
+
+@unittest.skipUnless((BUILD / "cmake_install.cmake").exists(),
+                     "the program does not stand in its build")
+class Library(Call):
+    PREFIX = "library_"
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.prefix = cls.dir / "usr"
+        cls.call("cmake", "--install", BUILD, "--prefix", cls.prefix)
+        (cls.dir / "user.cpp").write_text(TEN_LINES)
+        (cls.dir / "version.cpp").write_text(VERSION)
+        (cls.dir / "CMakeLists.txt").write_text(USER_CMAKE.format(
+            every_call=ROOT / "examples/library/files_of_commands.cpp"))
+        cls.call("cmake", "-G", "Ninja", "-B", "build",
+                 f"-DCMAKE_PREFIX_PATH={cls.prefix}")
+        cls.call("cmake", "--build", "build")
+
+    def libraries(self):
+        found = sorted(self.prefix.rglob("*.a"))
+        self.assertGreater(len(found), 10)
+        return found
+
+    def test_the_ten_lines_run_as_find_package_builds_them(self):
+        said = self.call("build/few", SCENARIOS / "ten_minutes.toml")
+        self.assertEqual(said.stdout, "3000 samples\n")
+
+    def test_each_part_links_alone(self):
+        for part in ["dataset", "compensation", "validation"]:
+            self.call(f"build/{part}")
+
+    def test_the_ten_lines_run_as_pkg_config_builds_them(self):
+        pkgconfig = next(self.prefix.rglob("beamgyro.pc")).parent
+        self.call("sh", "-c", f"PKG_CONFIG_PATH={pkgconfig} && "
+                  "export PKG_CONFIG_PATH && c++ user.cpp -o by_pkg_config "
+                  "$(pkg-config --cflags --libs beamgyro)")
+        said = self.call("./by_pkg_config", SCENARIOS / "ten_minutes.toml")
+        self.assertEqual(said.stdout, "3000 samples\n")
+        version = subprocess.run(
+            ["pkg-config", "--modversion", "beamgyro"], check=True, text=True,
+            capture_output=True, env={"PKG_CONFIG_PATH": str(pkgconfig)})
+        stated = self.call(self.prefix / "bin/beamgyro", "--version").stdout
+        self.assertIn(f"beamgyro {version.stdout.strip()} (", stated)
+
+    def test_the_guide_builds_and_runs(self):
+        folder = self.dir / "guide"
+        folder.mkdir()
+        (folder / "example.cpp").write_text(block_of_guide("cpp"))
+        (folder / "CMakeLists.txt").write_text(block_of_guide("cmake"))
+        self.call("cmake", "-G", "Ninja", "-B", "build",
+                  f"-DCMAKE_PREFIX_PATH={self.prefix}", cwd=folder)
+        self.call("cmake", "--build", "build", cwd=folder)
+        said = self.call("build/example", SCENARIOS, cwd=folder).stdout
+        self.assertRegex(said, r"^\d+ samples, the last one at \S+ deg/s, "
+                         r"compensated -?0\.\d+$")
+        self.call(PROGRAM, "info", "warm_up.h5", cwd=folder)
+        self.call(PROGRAM, "compensate", "cubic.json", "warm_up.h5", "-o",
+                  "out.h5", cwd=folder)
+        stated = re.findall(r"`(\w+\.h)`", GUIDE)
+        self.assertEqual(sorted(stated), [path.name for path in HEADERS])
+
+    def test_no_header_but_the_public_ones_is_installed(self):
+        installed = files_below(self.prefix / "include")
+        self.assertEqual(installed,
+                         [f"beamgyro/{header.name}" for header in HEADERS])
+
+    def test_strong_symbols_are_in_our_namespace(self):
+        named = re.compile(
+            r"^(?:vtable|typeinfo|typeinfo name|guard variable|construction "
+            r"vtable|VTT|TLS (?:init|wrapper) function)? ?(?:for )?"
+            r"(?:\S.* )?beamgyro::")
+        foreign = set()
+        for library in self.libraries():
+            listed = self.call("nm", "-C", "--defined-only", library).stdout
+            for line in listed.splitlines():
+                kind = re.match(r"^[0-9a-f]+ ([TDBRS]) (.*)$", line)
+                if kind and not named.match(kind[2]):
+                    foreign.add(f"{library.name}: {kind[2]}")
+        self.assertEqual(foreign, set())
+
+    def test_the_library_makes_the_bytes_of_the_program_and_prints_nothing(
+            self):
+        by_library, by_program = self.dir / "lib", self.dir / "program"
+        for folder in [by_library, by_program]:
+            folder.mkdir()
+            self.call(PROGRAM, "run", SCENARIOS / "ramp.toml", "-o", "ramp.h5",
+                      "--set", "output_rate_Hz=1", cwd=folder)
+        said = self.call(self.dir / "build/user", SCENARIOS, SPEC,
+                         cwd=by_library)
+        self.assertEqual(said.stdout + said.stderr, "")
+        for line in COMMANDS.format(s=SCENARIOS, spec=SPEC).splitlines():
+            words = line.split()
+            said = self.call(PROGRAM, *words, cwd=by_program, allowed=(0, 3))
+            if words[0] in PRINTED and words[1] != "set":
+                (by_program / PRINTED[words[0]]).write_text(said.stdout)
+        (by_library / "version").unlink()
+        names = files_below(by_program)
+        self.assertEqual(files_below(by_library), names)
+        for name in names:
+            self.assertTrue(filecmp.cmp(by_program / name, by_library / name,
+                                        shallow=False), name)
+
+
+if __name__ == "__main__":
+    unittest.main()
