@@ -1,35 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "api/soak_plan.h"
 #include "cli/commands.h"
 #include "cli/figure_pictures.h"
 #include "cli/inputs.h"
 #include "cli/schedule_options.h"
 #include "cli/terminal.h"
-#include "compensation/compensator/compensator_file.h"
-#include "config/units.h"
 #include "dataset/files/atomic_file.h"
-#include "planning/chamber_view.h"
 #include "planning/planner.h"
-#include "planning/schedule_file.h"
 #include "planning/soak_length.h"
-#include "planning/soak_model.h"
-#include "planning/soak_noise.h"
-#include "report/plan_report.h"
-#include "sim/device/device.h"
-#include "sim/scenario/simulation_input.h"
-#include "sim/signal/noise.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -37,7 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kShippedDevice = "scenarios/devices/nominal.toml";
-constexpr std::size_t kLeastTable = 7;  // soaks in the table of trade-offs
 
 struct PlanArguments {
   std::string population, output, json, picture, device, range, chamber;
@@ -47,39 +34,19 @@ struct PlanArguments {
   bool bias_only = false;
 };
 
-void check_goal(const PlanArguments& arguments) {
-  const int goals = (arguments.soaks ? 1 : 0) + (arguments.hours ? 1 : 0) +
-                    (arguments.residual ? 1 : 0);
-  if (goals != 1)
-    throw std::invalid_argument(fmt::format(
-        "{} goals given; expected one of --soaks N, --hours H and --residual "
-        "R",
-        goals));
-}
-
-Population read_population_of(const PlanArguments& arguments) {
-  Compensator compensator = read_compensator(arguments.population);
-  if (!compensator.population)
-    throw std::invalid_argument(fmt::format(
-        "{}: kind: \"{}\"; expected a population, which `beamgyro train` "
-        "writes with scenarios/population/population.toml",
-        arguments.population, kind_name(compensator.bias)));
-  return std::move(*compensator.population);
-}
-
 fs::path device_of(const PlanArguments& arguments) {
   return arguments.device.empty() ? shipped_file(kShippedDevice)
                                   : fs::path(arguments.device);
 }
 
-Device read_device_of(const PlanArguments& arguments) {
+beamgyro::Device read_device_of(const PlanArguments& arguments) {
   const fs::path device = device_of(arguments);
   if (device.empty())
     throw std::invalid_argument(
         fmt::format("{} is not beside this program; expected --device "
                     "DEVICE.toml",
                     kShippedDevice));
-  return load_device(device, {}).device;
+  return beamgyro::Device::read(device);
 }
 
 // The device as a scenario at `output` names it: by a path from there, unless
@@ -92,100 +59,28 @@ std::string device_name(const PlanArguments& arguments) {
       .generic_string();
 }
 
-// What the population knows, in whole kelvins of the chamber.
-TemperatureRange known_range(const Population& population,
-                             const ChamberView& view) {
-  const auto [lowest, highest] = population.range();
-  return {std::ceil(view.chamber_temperature(lowest - kReach)),
-          std::floor(view.chamber_temperature(highest + kReach))};
+ChamberRange chamber_range(const char* option, const std::string& text) {
+  const TemperatureRange range = temperature_range(option, text);
+  return {range.lowest, range.highest};
 }
 
-TemperatureRange chamber_of(const PlanArguments& arguments,
-                            const TemperatureRange& range) {
-  if (arguments.chamber.empty()) return range;
-  const TemperatureRange chamber =
-      temperature_range("--chamber", arguments.chamber);
-  if (chamber.lowest > range.lowest || chamber.highest < range.highest)
-    throw std::invalid_argument(fmt::format(
-        "--chamber {}: narrower than the range {:g}:{:g}; expected a chamber "
-        "that reaches both ends, or a narrower --range",
-        arguments.chamber, range.lowest, range.highest));
-  return chamber;
-}
-
-// Flicker is seen by a soak as the floor of its Allan deviation, white noise by
-// the fewest rows that a soak has.
-SlowNoise slow_noise(const NoiseParameters& noise) {
-  const double flicker = std::sqrt(2.0 * std::numbers::ln2 / std::numbers::pi) *
-                         noise.bias_instability;
-  const double white =
-      noise.angle_random_walk / std::sqrt(60.0 * kLeastSteadyRows);
-  return {noise.turn_on / kDegree, noise.rate_random_walk / kDegree,
-          std::hypot(flicker, white) / kDegree};
-}
-
-// What the device's thermal model says at the ends of the range and right after
-// power-on, and its noise.
-SoakBehaviour behaviour_of(const PlanArguments& arguments, const Device& device,
-                           const TemperatureRange& range,
-                           const ChamberTime& time) {
-  SoakBehaviour found;
-  found.rows = slowest_rows(
-      device.thermal,
-      {range.lowest, std::clamp(time.start, range.lowest, range.highest),
-       range.highest},
-      time, kSteady);
-  found.noise = slow_noise(device.noise);
-  if (arguments.hold) found.minutes = static_cast<std::size_t>(*arguments.hold);
-  return found;
-}
-
-// A goal counts as met within the digits that are printed.
-SoakPlan chosen_plan(const PlanArguments& arguments, const Planner& planner) {
-  constexpr double kHourDigits = 0.005, kResidualDigits = 0.0005;
-  if (arguments.hours)
-    return planner.within_hours(*arguments.hours + kHourDigits);
-  if (arguments.residual)
-    return planner.within_residual(*arguments.residual + kResidualDigits);
-  const auto count = static_cast<std::size_t>(*arguments.soaks);
-  if (count > planner.most_soaks())
-    throw std::invalid_argument(fmt::format(
-        "--soaks {}: soaks are {:g} K apart or more; expected 1 to {}", count,
-        kLeastDistance, planner.most_soaks()));
-  return planner.with_soaks(count);
-}
-
-std::vector<std::string> observed_of(const SoakModel& model, bool bias_only) {
-  std::vector<std::string> names = {"bias"};
-  if (!bias_only)
-    for (const Input& channel : model.population().channels)
-      names.push_back(input_name(channel));
-  return names;
-}
-
-PlanResult result_of(const PlanArguments& arguments, const SoakModel& model,
-                     const Planner& planner, const TemperatureRange& chamber) {
-  PlanResult result;
-  result.chosen = chosen_plan(arguments, planner);
-  const std::size_t count = result.chosen.temperatures.size();
-  result.even = planner.even(count);
-  for (const std::vector<double>& soaks :
-       candidate_schedules(arguments.candidates, chamber))
-    result.candidates.push_back(planner.judged(soaks));
-  result.trade_offs = planner.trade_offs(
-      std::min(std::max(count, kLeastTable), planner.most_soaks()));
-  result.time = planner.time_of(result.chosen);
-  result.range = model.range();
-  result.observed = observed_of(model, arguments.bias_only);
-  result.devices = model.population().devices;
-  result.basis = forecast_basis(model.population());
-  if (result.basis == ForecastBasis::kGaussian)
-    result.warnings.push_back(fmt::format(
-        "{}: has no coefficients of devices, as an older program wrote it; the "
-        "residuals are forecast for normally distributed devices, which real "
-        "ones are not; train it again",
-        arguments.population));
-  return result;
+PlanOptions plan_options(const PlanArguments& arguments) {
+  PlanOptions options;
+  if (arguments.soaks)
+    options.soaks = static_cast<std::size_t>(*arguments.soaks);
+  options.hours = arguments.hours;
+  options.residual_deg_per_s = arguments.residual;
+  if (!arguments.range.empty())
+    options.range_degC = chamber_range("--range", arguments.range);
+  if (!arguments.chamber.empty())
+    options.chamber_degC = chamber_range("--chamber", arguments.chamber);
+  options.ramp_K_per_min = arguments.ramp;
+  options.start_degC = arguments.start;
+  if (arguments.hold)
+    options.hold_min = static_cast<std::size_t>(*arguments.hold);
+  options.bias_only = arguments.bias_only;
+  if (!arguments.output.empty()) options.device_name = device_name(arguments);
+  return options;
 }
 
 void check_outputs(const PlanArguments& arguments) {
@@ -203,39 +98,19 @@ void check_outputs(const PlanArguments& arguments) {
 }
 
 int run_plan(const PlanArguments& arguments) {
-  check_goal(arguments);
+  const PlanOptions options = plan_options(arguments);
+  check_goal(options);
   check_outputs(arguments);
-  Population population = read_population_of(arguments);
-  const Device device = read_device_of(arguments);
-  if (device.thermal.oven)
-    throw std::invalid_argument(fmt::format(
-        "{}: has an oven, which holds the beam at one temperature whatever the "
-        "chamber does; expected a device without",
-        arguments.device));
-  const ChamberView view(device.thermal, device.temperature_sensor.offset);
-  const TemperatureRange range =
-      arguments.range.empty() ? known_range(population, view)
-                              : temperature_range("--range", arguments.range);
-  const TemperatureRange chamber = chamber_of(arguments, range);
-  const SoakModel model(
-      std::move(population),
-      [&](const Eigen::ArrayXd& T) { return view.sensor_temperatures(T); },
-      {.range = range, .bias_only = arguments.bias_only});
-  ChamberTime time;
-  time.start = arguments.start.value_or(time.start);
-  time.ramp = arguments.ramp.value_or(time.ramp);
-  const Planner planner(model, chamber, time,
-                        behaviour_of(arguments, device, range, time));
-  const PlanResult result = result_of(arguments, model, planner, chamber);
-  const std::string json = plan_json(result).dump(2) + "\n";
-  if (!arguments.picture.empty()) draw_plan(json, arguments.picture);
+  const auto population = beamgyro::Compensator::read(arguments.population);
+  const PlanStudy study(population, read_device_of(arguments), options);
+  const SoakPlanResult result =
+      study.result(candidate_schedules(arguments.candidates, study.chamber()));
+  if (!arguments.picture.empty()) draw_plan(result.json, arguments.picture);
   if (!arguments.output.empty())
-    write_text_file(arguments.output,
-                    schedule_text(result.chosen.temperatures, result.time,
-                                  device_name(arguments)));
-  if (!arguments.json.empty()) write_text_file(arguments.json, json);
+    write_text_file(arguments.output, result.schedule);
+  if (!arguments.json.empty()) write_text_file(arguments.json, result.json);
   for (const std::string& warning : result.warnings) print_warning(warning);
-  print_result(plan_text(result));
+  print_result(result.text);
   return 0;
 }
 

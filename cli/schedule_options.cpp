@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "compensation/methods/population.h"
+#include "api/soak_plan.h"
 #include "dataset/files/text_file.h"
 
 namespace beamgyro::internal {
@@ -41,25 +41,14 @@ std::vector<double> numbers_between(const std::string& text, char separator) {
 std::vector<double> schedule_of(const std::string& text,
                                 const std::string& where,
                                 const TemperatureRange& chamber) {
-  const auto fail = [&](const std::string& reason) {
+  const std::vector<double> soaks = numbers_between(text, ',');
+  if (soaks.empty())
     throw std::invalid_argument(fmt::format(
-        "{}: {}; expected temperatures in degC between commas, as in "
-        "-40,5,50, or a file with such a list on each line",
-        where, reason));
-  };
-  std::vector<double> soaks = numbers_between(text, ',');
-  if (soaks.empty()) fail(fmt::format("\"{}\" is no list of numbers", text));
-  std::ranges::sort(soaks);
-  if (!(soaks.front() >= chamber.lowest && soaks.back() <= chamber.highest))
-    fail(fmt::format("a soak lies outside the chamber's {:g} to {:g} degC",
-                     chamber.lowest, chamber.highest));
-  for (std::size_t k = 1; k < soaks.size(); ++k)
-    if (soaks[k] - soaks[k - 1] < kPointWidth)
-      fail(
-          fmt::format("{:g} and {:g} degC are closer together than {:g} K, "
-                      "and count as one soak",
-                      soaks[k - 1], soaks[k], kPointWidth));
-  return soaks;
+        "{}: \"{}\" is no list of numbers; expected temperatures in degC "
+        "between commas, as in -40,5,50, or a file with such a list on each "
+        "line",
+        where, text));
+  return checked_soaks(soaks, where, chamber);
 }
 
 }  // namespace

@@ -5,12 +5,8 @@
 #include <vector>
 
 #include "compensation/inputs/features.h"
-#include "config/range.h"
 
 namespace beamgyro::internal {
-
-/// Temperatures that a chamber may be asked for [degC].
-inline constexpr Range kChamberTemperatures{-100.0, 200.0};
 
 /// Reads LOW:HIGH in degC. Throws std::invalid_argument "--option TEXT: what is
 /// wrong; what would be right".

@@ -39,18 +39,20 @@ struct PlanOptions {
 
 /// A schedule and what it leaves.
 struct PlannedSchedule {
-  std::vector<double> temperatures;  ///< [degC], in their order
-  double hours = 0;                  ///< in the chamber
-  double residual = 0;               ///< [deg/s], median rms of devices
+  std::vector<double> temperatures = {};  ///< [degC], increasing
+  double hours = 0;                       ///< in the chamber
+  double residual = 0;                    ///< [deg/s], median rms of devices
 };
 
 struct SoakPlanResult {
-  PlannedSchedule chosen, even;  ///< even: as many, evenly spaced
-  std::vector<PlannedSchedule> candidates, trade_offs;
-  std::vector<std::string> warnings;
-  std::string schedule;  ///< scenario file, what -o writes
-  std::string text;      ///< what `beamgyro plan` prints
-  std::string json;      ///< what --json writes
+  PlannedSchedule chosen = {}, even = {};  ///< even: as many, evenly spaced
+  /// Of 1, 2, ... soaks.
+  std::vector<PlannedSchedule> trade_offs = {};
+  std::vector<PlannedSchedule> candidates = {};
+  std::vector<std::string> warnings = {};
+  std::string schedule = {};  ///< scenario file, what -o writes
+  std::string text = {};      ///< what `beamgyro plan` prints
+  std::string json = {};      ///< what --json writes
 };
 
 /// Plans the soaks of a new device. `population` is a compensator that was

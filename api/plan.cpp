@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "api/compensator_state.h"
+#include "api/device_state.h"
+#include "api/soak_plan.h"
+#include "config/units.h"
+#include "planning/chamber_view.h"
+#include "planning/planner.h"
+#include "planning/schedule_file.h"
+#include "planning/soak_length.h"
+#include "planning/soak_model.h"
+#include "planning/soak_noise.h"
+#include "report/plan_report.h"
+#include "sim/signal/noise.h"
+
+namespace beamgyro {
+namespace internal {
+namespace {
+
+constexpr std::size_t kLeastTable = 7;  // soaks in the table of trade-offs
+
+void check_number(const char* what, std::optional<double> value,
+                  const Range& range) {
+  if (value && !range.contains(*value))
+    throw std::invalid_argument(
+        fmt::format("{} {:g}; expected {}", what, *value, text_of(range)));
+}
+
+TemperatureRange checked_range(const char* what, const ChamberRange& range) {
+  if (range.first < range.second &&
+      kChamberTemperatures.contains(range.first) &&
+      kChamberTemperatures.contains(range.second))
+    return {range.first, range.second};
+  throw std::invalid_argument(fmt::format(
+      "{} {:g} to {:g} degC; expected the lower one first, within {:g} to {:g}",
+      what, range.first, range.second, kChamberTemperatures.low,
+      kChamberTemperatures.high));
+}
+
+// Of its file, in messages.
+std::string name_of_file(const beamgyro::Compensator& compensator) {
+  const beamgyro::Compensator::State& state = compensator.state();
+  return state.file.empty() ? state.name : state.file;
+}
+
+const Population& population_of(const beamgyro::Compensator& compensator) {
+  const Compensator& own = compensator.state().compensator;
+  if (!own.population)
+    throw std::invalid_argument(fmt::format(
+        "{}: kind: \"{}\"; expected a population, which `beamgyro train` "
+        "writes with scenarios/population/population.toml",
+        name_of_file(compensator), kind_name(own.bias)));
+  return *own.population;
+}
+
+ChamberView view_of(const beamgyro::Device& device) {
+  const Device& own = device.state().device;
+  if (own.thermal.oven)
+    throw std::invalid_argument(fmt::format(
+        "{}: has an oven, which holds the beam at one temperature whatever the "
+        "chamber does; expected a device without",
+        device.name()));
+  return ChamberView(own.thermal, own.temperature_sensor.offset);
+}
+
+// What the population knows, in whole kelvins of the chamber.
+TemperatureRange known_range(const Population& population,
+                             const ChamberView& view) {
+  const auto [lowest, highest] = population.range();
+  return {std::ceil(view.chamber_temperature(lowest - kReach)),
+          std::floor(view.chamber_temperature(highest + kReach))};
+}
+
+TemperatureRange chamber_of(const PlanOptions& options,
+                            const TemperatureRange& range) {
+  if (!options.chamber_degC) return range;
+  const TemperatureRange chamber =
+      checked_range("chamber", *options.chamber_degC);
+  if (chamber.lowest > range.lowest || chamber.highest < range.highest)
+    throw std::invalid_argument(fmt::format(
+        "--chamber {:g}:{:g}: narrower than the range {:g}:{:g}; expected a "
+        "chamber that reaches both ends, or a narrower --range",
+        chamber.lowest, chamber.highest, range.lowest, range.highest));
+  return chamber;
+}
+
+ChamberTime time_of(const PlanOptions& options) {
+  check_number("ramp", options.ramp_K_per_min, {0, 100, true, false});
+  check_number("start", options.start_degC, kChamberTemperatures);
+  ChamberTime time;
+  time.start = options.start_degC.value_or(time.start);
+  time.ramp = options.ramp_K_per_min.value_or(time.ramp);
+  return time;
+}
+
+// Flicker is seen by a soak as the floor of its Allan deviation, white noise by
+// the fewest rows that a soak has.
+SlowNoise slow_noise(const NoiseParameters& noise) {
+  const double flicker = std::sqrt(2.0 * std::numbers::ln2 / std::numbers::pi) *
+                         noise.bias_instability;
+  const double white =
+      noise.angle_random_walk / std::sqrt(60.0 * kLeastSteadyRows);
+  return {noise.turn_on / kDegree, noise.rate_random_walk / kDegree,
+          std::hypot(flicker, white) / kDegree};
+}
+
+// What the device's thermal model says at the ends of the range and right after
+// power-on, and its noise.
+SoakBehaviour behaviour_of(const PlanOptions& options, const Device& device,
+                           const TemperatureRange& range,
+                           const ChamberTime& time) {
+  SoakBehaviour found;
+  found.rows = slowest_rows(
+      device.thermal,
+      {range.lowest, std::clamp(time.start, range.lowest, range.highest),
+       range.highest},
+      time, kSteady);
+  found.noise = slow_noise(device.noise);
+  found.minutes = options.hold_min;
+  return found;
+}
+
+std::vector<std::string> observed_of(const SoakModel& model, bool bias_only) {
+  std::vector<std::string> names = {"bias"};
+  if (!bias_only)
+    for (const Input& channel : model.population().channels)
+      names.push_back(input_name(channel));
+  return names;
+}
+
+PlannedSchedule schedule_of(const SoakPlan& plan) {
+  return {plan.temperatures, plan.hours, plan.expected.median};
+}
+
+}  // namespace
+
+void check_goal(const PlanOptions& options) {
+  const int goals = (options.soaks ? 1 : 0) + (options.hours ? 1 : 0) +
+                    (options.residual_deg_per_s ? 1 : 0);
+  if (goals != 1)
+    throw std::invalid_argument(fmt::format(
+        "{} goals given; expected one of --soaks N, --hours H and --residual "
+        "R",
+        goals));
+}
+
+struct PlanStudy::State {
+  State(const beamgyro::Compensator& population, const beamgyro::Device& unit,
+        const PlanOptions& asked)
+      : options(asked),
+        file(name_of_file(population)),
+        device(unit),
+        view(view_of(unit)),
+        range(asked.range_degC ? checked_range("range", *asked.range_degC)
+                               : known_range(population_of(population), view)),
+        chamber(chamber_of(asked, range)),
+        time(time_of(asked)),
+        model(population_of(population),
+              [this](const Eigen::ArrayXd& T) {
+                return view.sensor_temperatures(T);
+              },
+              {.range = range, .bias_only = asked.bias_only}),
+        planner(model, chamber, time,
+                behaviour_of(asked, unit.state().device, range, time)) {}
+
+  // A goal counts as met within the digits that are printed.
+  SoakPlan chosen() const {
+    constexpr double kHourDigits = 0.005, kResidualDigits = 0.0005;
+    if (options.hours)
+      return planner.within_hours(*options.hours + kHourDigits);
+    if (options.residual_deg_per_s)
+      return planner.within_residual(*options.residual_deg_per_s +
+                                     kResidualDigits);
+    const std::size_t count = *options.soaks;
+    if (count < 1 || count > planner.most_soaks())
+      throw std::invalid_argument(fmt::format(
+          "--soaks {}: soaks are {:g} K apart or more; expected 1 to {}", count,
+          kLeastDistance, planner.most_soaks()));
+    return planner.with_soaks(count);
+  }
+
+  PlanOptions options;
+  std::string file;  // of the population
+  beamgyro::Device device;
+  ChamberView view;
+  TemperatureRange range, chamber;  // [degC]
+  ChamberTime time;
+  SoakModel model;
+  Planner planner;
+};
+
+PlanStudy::PlanStudy(const beamgyro::Compensator& population,
+                     const beamgyro::Device& device,
+                     const PlanOptions& options) {
+  check_goal(options);
+  population_of(population);
+  check_number("hours", options.hours, positive());
+  check_number("residual", options.residual_deg_per_s, positive());
+  state_ = std::make_unique<State>(population, device, options);
+}
+
+PlanStudy::~PlanStudy() = default;
+
+const TemperatureRange& PlanStudy::chamber() const { return state_->chamber; }
+
+SoakPlanResult PlanStudy::result(
+    const std::vector<std::vector<double>>& candidates) const {
+  const State& s = *state_;
+  PlanResult found;
+  found.chosen = s.chosen();
+  const std::size_t count = found.chosen.temperatures.size();
+  found.even = s.planner.even(count);
+  for (const std::vector<double>& soaks : candidates)
+    found.candidates.push_back(s.planner.judged(soaks));
+  found.trade_offs = s.planner.trade_offs(
+      std::min(std::max(count, kLeastTable), s.planner.most_soaks()));
+  found.time = s.planner.time_of(found.chosen);
+  found.range = s.model.range();
+  found.observed = observed_of(s.model, s.options.bias_only);
+  found.devices = s.model.population().devices;
+  found.basis = forecast_basis(s.model.population());
+  if (found.basis == ForecastBasis::kGaussian)
+    found.warnings.push_back(fmt::format(
+        "{}: has no coefficients of devices, as an older program wrote it; the "
+        "residuals are forecast for normally distributed devices, which real "
+        "ones are not; train it again",
+        s.file));
+  SoakPlanResult result{.chosen = schedule_of(found.chosen),
+                        .even = schedule_of(found.even),
+                        .warnings = found.warnings};
+  for (const SoakPlan& plan : found.candidates)
+    result.candidates.push_back(schedule_of(plan));
+  for (const TradeOff& trade : found.trade_offs)
+    result.trade_offs.push_back(schedule_of(trade.planned));
+  result.schedule = schedule_text(
+      found.chosen.temperatures, found.time,
+      s.options.device_name.empty() ? s.device.name() : s.options.device_name);
+  result.text = plan_text(found);
+  result.json = plan_json(found).dump(2) + "\n";
+  return result;
+}
+
+std::vector<double> checked_soaks(std::vector<double> soaks,
+                                  const std::string& where,
+                                  const TemperatureRange& chamber) {
+  const auto fail = [&](const std::string& reason) {
+    throw std::invalid_argument(fmt::format(
+        "{}: {}; expected temperatures in degC between commas, as in "
+        "-40,5,50, or a file with such a list on each line",
+        where, reason));
+  };
+  std::ranges::sort(soaks);
+  if (soaks.empty() ||
+      !(soaks.front() >= chamber.lowest && soaks.back() <= chamber.highest))
+    fail(fmt::format("a soak lies outside the chamber's {:g} to {:g} degC",
+                     chamber.lowest, chamber.highest));
+  for (std::size_t k = 1; k < soaks.size(); ++k)
+    if (soaks[k] - soaks[k - 1] < kPointWidth)
+      fail(
+          fmt::format("{:g} and {:g} degC are closer together than {:g} K, "
+                      "and count as one soak",
+                      soaks[k - 1], soaks[k], kPointWidth));
+  return soaks;
+}
+
+}  // namespace internal
+
+SoakPlanResult plan(const Compensator& population, const Device& device,
+                    const PlanOptions& options) {
+  const internal::PlanStudy study(population, device, options);
+  std::vector<std::vector<double>> candidates;
+  for (std::size_t k = 0; k < options.candidates.size(); ++k)
+    candidates.push_back(internal::checked_soaks(
+        options.candidates[k], fmt::format("candidate {}", k + 1),
+        study.chamber()));
+  return study.result(candidates);
+}
+
+}  // namespace beamgyro
