@@ -6,7 +6,7 @@ set(CPACK_PACKAGE_CONTACT "beamgyro authors <beamgyro@users.noreply.github.com>"
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL runtime dev)
-if(TARGET _core)
+if(TARGET beamgyro_python)
   list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE
@@ -38,15 +38,15 @@ specifications to run and to copy from, and its documentation.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libbeamgyro-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-  "libeigen3-dev (>= 3.4), libsundials-dev (>= 6.4), libhdf5-dev (>= 1.10), libfmt-dev, nlohmann-json3-dev, libboost-dev (>= 1.74), libssl-dev (>= 3.0), libdeflate-dev")
+  "libsundials-dev (>= 6.4), libhdf5-dev (>= 1.10), libfmt-dev, libssl-dev (>= 3.0), libdeflate-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "beamgyro, cmake, pkg-config")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "simulator of vibrating-beam piezo gyros - C++ library
 Simulates a vibrating-beam piezoelectric gyro, from its beam, patches, glue and
 mount up to the volts at its pin, and trains and scores compensators of its
 thermal drift.
 
-This package has the headers and the static libraries, a package for CMake's
-find_package, and the C header of plug-in compensators.")
+This package has the headers and the static libraries, what find_package of
+CMake and pkg-config read, and the C header of plug-in compensators.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-beamgyro)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

@@ -12,7 +12,8 @@ build=(g++ cmake ninja-build libeigen3-dev libsundials-dev libhdf5-dev
 tests=(libgtest-dev libbenchmark-dev clang-format clang-tidy netcdf-bin
        python3-pytest python3-pytest-xdist
        python3-xarray python3-h5netcdf python3-netcdf4 python3-scipy
-       dpkg-dev lintian man-db)
+       dpkg-dev lintian man-db doxygen python3-breathe python3-sphinx
+       python3-sphinx-rtd-theme python3-myst-parser)
 
 case "${1:-}" in
   demo) wanted=("${build[@]}") ;;

@@ -1,0 +1,101 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""The site of the documentation, of the build that the program comes from."""
+
+import html
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+from program import PROGRAM, ROOT
+
+BUILD = PROGRAM.parent
+
+
+@unittest.skipUnless((BUILD / "python/beamgyro/__init__.py").exists(),
+                     "the program does not stand in its build")
+class Site(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="site ")
+        cls.addClassCleanup(folder.cleanup)
+        cls.dir = pathlib.Path(folder.name)
+        answer = subprocess.run([ROOT / "scripts/docs.sh", BUILD, cls.dir],
+                                capture_output=True, text=True, check=False)
+        if answer.returncode != 0:
+            raise AssertionError(answer.stdout + answer.stderr)
+        cls.site = cls.dir / "html"
+
+    def words(self, page):
+        """The text of a page, without tags."""
+        text = (self.site / page).read_text()
+        body = text[text.index('role="main"'):]
+        return " ".join(html.unescape(
+            re.sub("<[^>]+>", " ", body)).replace("\uf0c1", "").split())
+
+    def test_every_page_of_the_documentation_is_there(self):
+        pages = [page for page in (ROOT / "docs").rglob("*.md")
+                 if "site" not in page.parts]
+        self.assertGreater(len(pages), 40)
+        for page in pages:
+            name = page.relative_to(ROOT).with_suffix(".html")
+            with self.subTest(str(name)):
+                self.assertTrue((self.site / name).exists())
+
+    def test_links_within_the_site_lead_to_files(self):
+        for page in self.site.rglob("*.html"):
+            text = page.read_text()
+            for link in re.findall(r'(?:href|src)="([^"#]+)', text):
+                if re.match(r"\w+:", link):
+                    continue
+                with self.subTest(f"{page.name}: {link}"):
+                    self.assertTrue((page.parent / link).exists())
+
+    def test_nothing_is_loaded_from_elsewhere(self):
+        for page in self.site.rglob("*.html"):
+            text = page.read_text()
+            with self.subTest(page.name):
+                self.assertEqual(
+                    re.findall(r'(?:src="|<link[^>]*href=")(?:https?:)?//'
+                               r'[^"]*', text), [])
+
+    def test_the_reference_of_python_has_every_public_name(self):
+        init = (BUILD / "python/beamgyro/__init__.py").read_text()
+        public = re.findall(r'"(\w+)"',
+                            init.split("__all__ = [")[1].split("]")[0])
+        self.assertGreater(len(public), 10)
+        page = (self.site / "python.html").read_text()
+        for name in public:
+            if name != "__version__":
+                with self.subTest(name):
+                    self.assertIn(f'id="beamgyro.{name}"', page)
+
+    def test_the_reference_of_cpp_has_every_public_header(self):
+        headers = sorted((ROOT / "include/beamgyro").glob("*.h"))
+        self.assertGreater(len(headers), 10)
+        for header in headers:
+            with self.subTest(header.name):
+                text = self.words(f"cpp/{header.stem}.html")
+                declared = re.findall(r"^(class|struct) (\w+) (?:final )?\{",
+                                      header.read_text(), re.MULTILINE)
+                for kind, name in declared:
+                    self.assertIn(f"{kind} {name} ", text)
+        self.assertIn("Computes the steady state at beam temperatures",
+                      self.words("cpp/device.html"))
+        self.assertNotIn("Private", self.words("cpp/device.html"))
+
+    def test_the_gallery_has_every_picture_of_plot(self):
+        gallery = (self.site / "gallery.html").read_text()
+        pictures = sorted((ROOT / "docs/pictures").glob("plot_*.png"))
+        self.assertGreater(len(pictures), 3)
+        for picture in pictures:
+            with self.subTest(picture.name):
+                self.assertIn(f"_images/{picture.name}", gallery)
+                self.assertTrue((self.site / "_images"
+                                 / picture.name).exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
