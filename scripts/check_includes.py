@@ -49,6 +49,9 @@ MAY_INCLUDE = {
     "report": {*ALL, *VALIDATION, *SENSITIVITY, "planning"},
     "api": {*ALL, *VALIDATION, *SENSITIVITY, "planning", "report"},
     "cli": {*ALL, *VALIDATION, *SENSITIVITY, "planning", "report", "api"},
+    # The package of Python, over the public headers.
+    "python": {"include", "dataset/recording", "dataset/netcdf",
+               "compensation/inputs"},
     "bench": {*ALL, *VALIDATION, *SENSITIVITY, "planning", "report"},
     "fuzz": set(ALL),  # of tests/ only
     # of tests/ only

@@ -67,7 +67,7 @@ races() {
 }
 
 sources() {
-  find config parallel random dataset sim compensation validation report cli include examples bench tests -name "$1" | sort
+  find config parallel random dataset sim compensation planning validation sensitivity report api cli python include examples bench tests -name "$1" | sort
 }
 
 formatting() {

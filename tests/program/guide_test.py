@@ -47,6 +47,7 @@ def project(folder):
     program = folder / "build/release/beamgyro"
     program.parent.mkdir(parents=True)
     program.symlink_to(PROGRAM)
+    (program.parent / "python").symlink_to(PROGRAM.parent / "python")
 
 
 def run_guide(guide, folder):

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: MIT
+"""beamgyro: a vibrating-beam gyro, its drift, and compensators of it.
+
+>>> import beamgyro as bg
+>>> recording = bg.run("scenarios/warm_up.toml", set={"duration_s": 60})
+>>> compensator = bg.train("scenarios/models/cubic.toml", ["train.h5"])
+>>> print(bg.validate(compensator, ["test.h5"]))
+
+Values and files are those of the program `beamgyro`, to the last bit. What
+is wrong in an input raises ValueError with file and key; work that failed
+raises RuntimeError. Long calls leave the other threads of Python running and
+end within a fraction of a second after Ctrl-C.
+
+xarray, pandas and matplotlib are imported when they are first needed.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from beamgyro._analysis import allan, plan, sensitivity, validate
+from beamgyro._compensation import (Compensator, compensate, export, features,
+                                    train, training_rows)
+from beamgyro._core import version as __version__
+from beamgyro._dataset import open_recording, save_recording
+from beamgyro._device import Device, characterise
+from beamgyro._results import (AllanResult, PlanResult, SensitivityResult,
+                               ValidationResult)
+from beamgyro._scenario import Scenario, run, run_to_file
+from beamgyro._set import Campaign, Set, generate, open_set
+from beamgyro._warnings import BeamgyroWarning
+
+__all__ = [
+    "AllanResult", "BeamgyroWarning", "Campaign", "Compensator", "Device",
+    "PlanResult", "Scenario", "SensitivityResult", "Set", "ValidationResult",
+    "__version__", "allan", "characterise", "compensate", "export",
+    "features", "generate", "open_recording", "open_set", "plan", "run",
+    "run_to_file", "save_recording", "sensitivity", "train", "training_rows",
+    "validate",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "plots":
+        from importlib import import_module
+        return import_module("beamgyro.plots")
+    raise AttributeError(f"module 'beamgyro' has no attribute {name!r}")

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: MIT
+"""The accessor `.beamgyro` of xarray datasets."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import xarray
+
+from beamgyro import _lazy
+from beamgyro._analysis import allan
+from beamgyro._compensation import compensate
+from beamgyro._dataset import Path, save_recording
+
+if TYPE_CHECKING:
+    from beamgyro._results import AllanResult
+
+
+class RecordingAccessor:
+    """What beamgyro does with a recording: ``dataset.beamgyro``."""
+
+    def __init__(self, dataset: xarray.Dataset) -> None:
+        self._dataset = dataset
+
+    def measured(self) -> xarray.Dataset:
+        """Return the measured variables: what a compensator may see."""
+        names = [name for name, variable in self._dataset.data_vars.items()
+                 if variable.attrs.get("role") == "measured"]
+        return self._dataset[names]
+
+    def compensate(self, compensator: Any) -> xarray.Dataset:
+        """Add what a compensator answers; see `beamgyro.compensate`."""
+        return compensate(compensator, self._dataset)
+
+    def allan(self, **options: Any) -> AllanResult:
+        """Compute Allan deviations; see `beamgyro.allan`."""
+        return allan(self._dataset, **options)
+
+    def save(self, path: Path) -> None:
+        """Write the recording; see `beamgyro.save_recording`."""
+        save_recording(self._dataset, path)
+
+    def plot(self, **options: Any) -> Any:
+        """Draw the recording, and return the figure of matplotlib."""
+        _lazy.module("matplotlib")
+        return _lazy.module("beamgyro.plots").plot(self._dataset, **options)
+
+
+def _register() -> None:
+    register: Any = xarray.register_dataset_accessor
+    if not hasattr(xarray.Dataset, "beamgyro"):
+        register("beamgyro")(RecordingAccessor)
+
+
+_register()

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: MIT
+"""Gyros, as device files describe them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Optional, Union
+
+import numpy as np
+
+from beamgyro import _core, _lazy, _toml
+from beamgyro._warnings import warn
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Path = Union[str, "os.PathLike[str]"]
+Keys = Mapping[str, Any]
+DeviceLike = Union["Device", Path, Keys]
+
+
+class Device:
+    """A gyro: what a device file says, read and checked.
+
+    It does not change. Two devices are equal when their texts and their
+    replaced keys are; a device pickles as these.
+
+    Args:
+        source: a device file, or its contents as a nested mapping.
+        set: keys to replace, dotted or nested:
+            ``{"beam.length_m": 0.041}``.
+
+    Raises:
+        ValueError: with file, line and key, what is wrong.
+    """
+
+    __slots__ = ("_native",)
+
+    _native: _core.Device
+
+    def __init__(self, source: DeviceLike,
+                 set: Optional[Keys] = None) -> None:
+        overrides = _toml.overrides(set)
+        if isinstance(source, Device):
+            self._native = (source._native.with_(overrides) if overrides
+                          else source._native)
+        elif isinstance(source, Mapping):
+            self._native = _core.Device.parse(_toml.text(source), "device",
+                                            overrides)
+        else:
+            self._native = _core.Device.read(os.fspath(source), overrides)
+
+    @classmethod
+    def parse(cls, text: str, name: str = "device",
+              set: Optional[Keys] = None) -> Device:
+        """Read the text of a device file, called `name` in messages."""
+        return cls._of(_core.Device.parse(text, name, _toml.overrides(set)))
+
+    @classmethod
+    def _of(cls, core: _core.Device) -> Device:
+        device = cls.__new__(cls)
+        device._native = core
+        return device
+
+    def with_(self, keys: Optional[Keys] = None, /, **more: Any) -> Device:
+        """Return the device with further keys replaced.
+
+        >>> device.with_({"beam.length_m": 0.041})
+        >>> device.with_(beam={"length_m": 0.041})
+        """
+        return Device._of(
+            self._native.with_(_toml.overrides({**(keys or {}), **more})))
+
+    @property
+    def text(self) -> str:
+        """The text of the device file."""
+        return self._native.text
+
+    @property
+    def name(self) -> str:
+        """The name of the file, as messages give it."""
+        return self._native.name
+
+    @property
+    def overrides(self) -> list[str]:
+        """The keys that were replaced, as KEY=VALUE."""
+        return self._native.overrides
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Device):
+            return NotImplemented
+        return (self.text, self.overrides) == (other.text, other.overrides)
+
+    def __hash__(self) -> int:
+        return hash((self.text, tuple(self.overrides)))
+
+    def __repr__(self) -> str:
+        changes = "".join(f", {text}" for text in self.overrides)
+        return f"<beamgyro.Device {self.name}{changes}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _device_of, (self.text, self.name, self.overrides)
+
+
+def _device_of(text: str, name: str, overrides: list[str]) -> Device:
+    return Device._of(_core.Device.parse(text, name, overrides))
+
+
+def device_of(source: DeviceLike) -> Device:
+    """Return a device of anything that tells one."""
+    return source if isinstance(source, Device) else Device(source)
+
+
+_GRID = "START, STOP and STEP, or temperatures"
+
+
+def _temperatures(given: Union[slice, float, Iterable[float]]) -> list[float]:
+    if not isinstance(given, slice):
+        return [float(one) for one in np.atleast_1d(np.asarray(given))]
+    start, stop, step = given.start, given.stop, given.step
+    if start is None or stop is None or not step or (stop - start) / step < 0:
+        raise ValueError(f"beam_temperature {given}: expected {_GRID}")
+    count = int(np.floor((stop - start) / step + 1e-9)) + 1
+    return [start + k * step for k in range(count)]
+
+
+def characterise(
+        device: DeviceLike,
+        beam_temperature: Union[slice, float, Iterable[float]] = slice(
+            -40.0, 60.0, 0.25),
+        *, set: Optional[Keys] = None) -> xr.Dataset:
+    """Tabulate the steady state of a device over its beam's temperature.
+
+    Args:
+        device: a device, its file, or a mapping.
+        beam_temperature: temperatures in degC: one, several, or
+            ``slice(start, stop, step)`` with both ends included.
+        set: keys of the device to replace.
+
+    Returns:
+        A dataset over ``temperature``: ``bias``, its parts ``in_phase`` and
+        ``quadrature`` (degree/s), ``drive_frequency`` and ``split`` (Hz),
+        ``q_drive``, ``q_sense``, ``drive_voltage`` (V), ``scale_factor``.
+        The table of ``beamgyro characterise`` is ``encoding["csv"]``.
+
+    Raises:
+        ValueError: something is wrong in the device, or a temperature is
+            beyond -100 to 150 degC.
+    """
+    found = _core.characterise(Device(device, set)._native,
+                               _temperatures(beam_temperature))
+    warn(found["warnings"])
+    xarray = _lazy.xarray()
+    columns = {name: xarray.Variable("temperature", values, {"units": units})
+               for name, (values, units) in found["columns"].items()}
+    temperature = xarray.Variable("temperature", found["temperature"],
+                              {"units": "degC",
+                               "long_name": "temperature of the beam"})
+    table: xr.Dataset = xarray.Dataset(
+        columns, {"temperature": temperature},
+        {"filetype": "beamgyro-characteristic",
+         "beamgyro_version": _core.version})
+    table.encoding["csv"] = found["csv"]
+    return table

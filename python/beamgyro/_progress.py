@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: MIT
+"""The progress of long calls, on standard error."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Optional, Union
+
+ProgressFunction = Callable[[float], object]
+ProgressArgument = Union[bool, ProgressFunction]
+
+_DELAY_S = 2.0
+_WIDTH = 30
+
+
+class Bar:
+    """A bar on standard error for work of more than two seconds.
+
+    It is drawn on terminals and in notebooks only.
+    """
+
+    def __init__(self, title: str) -> None:
+        self._title = title
+        self._start = time.monotonic()
+        self._shown = ""
+        self._is_watched = sys.stderr.isatty() or "ipykernel" in sys.modules
+
+    def __call__(self, share: float) -> None:
+        """Show the share of the work that is done, 0 to 1."""
+        late = time.monotonic() - self._start >= _DELAY_S
+        if not (self._is_watched and late):
+            return
+        done = round(share * _WIDTH)
+        bar = "#" * done + "." * (_WIDTH - done)
+        text = f"\r{self._title} [{bar}] {100 * share:3.0f} %"
+        if text != self._shown:
+            print(text, end="", file=sys.stderr, flush=True)
+            self._shown = text
+
+    def close(self) -> None:
+        """Remove the bar."""
+        if self._shown:
+            print("\r" + " " * len(self._shown) + "\r", end="",
+                  file=sys.stderr, flush=True)
+            self._shown = ""
+
+
+class Watched:
+    """The function that a long call tells its progress, or None."""
+
+    def __init__(self, progress: ProgressArgument, title: str) -> None:
+        self._bar = Bar(title) if progress is True else None
+        self._function: Optional[ProgressFunction] = (
+            self._bar if self._bar is not None
+            else progress if callable(progress) else None)
+
+    def __enter__(self) -> Optional[ProgressFunction]:
+        return self._function
+
+    def __exit__(self, kind: Optional[type[BaseException]],
+                 error: Optional[BaseException],
+                 traceback: Optional[TracebackType]) -> None:
+        if self._bar is not None:
+            self._bar.close()

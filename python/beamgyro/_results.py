@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: MIT
+"""Results that print as a table, and show as one in notebooks."""
+
+from __future__ import annotations
+
+import html
+import json
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Optional
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from beamgyro._scenario import Scenario
+
+
+class Report:
+    """A result: a table for people, and JSON for programs."""
+
+    def __init__(self, text: str, json_text: str,
+                 warnings: Sequence[str] = ()) -> None:
+        self._text = text
+        self._json = json_text
+        self.warnings = list(warnings)
+        self._data: Optional[dict[str, Any]] = None
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """The contents of the JSON file."""
+        if self._data is None:
+            self._data = json.loads(self._json)
+        return self._data
+
+    def to_json(self) -> str:
+        """Return the JSON text, byte for byte what ``--json`` writes."""
+        return self._json
+
+    def __str__(self) -> str:
+        return self._text
+
+    def __repr__(self) -> str:
+        return self._text.rstrip("\n")
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Report):
+            return NotImplemented
+        return type(self) is type(other) and self._json == other._json
+
+    def __hash__(self) -> int:
+        return hash(self._json)
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(self._text)}</pre>"
+
+
+def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return an HTML table."""
+    def line(cells: Sequence[str], tag: str) -> str:
+        return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>"
+                                for cell in cells) + "</tr>"
+    body = "".join(line(row, "td") for row in rows)
+    return (f"<table><thead>{line(header, 'th')}</thead>"
+            f"<tbody>{body}</tbody></table>")
+
+
+def figure(estimate: Any) -> str:
+    """Return a figure with its interval, as text."""
+    if not isinstance(estimate, dict) or estimate.get("value") is None:
+        return ""
+    interval = estimate.get("interval")
+    value = f"{estimate['value']:.4g}"
+    if not interval or interval[0] is None or interval[1] is None:
+        return value
+    return f"{value} ({interval[0]:.4g} to {interval[1]:.4g})"
+
+
+class ValidationResult(Report):
+    """Whether a compensator removes the drift and keeps the rate."""
+
+    def __init__(self, text: str, json_text: str, warnings: Sequence[str],
+                 page: str) -> None:
+        super().__init__(text, json_text, warnings)
+        self._page = page
+
+    @property
+    def verdict(self) -> str:
+        """ "pass", "fail" or "undecided"."""
+        return str(self.data["verdict"])
+
+    @property
+    def passed(self) -> bool:
+        """Whether the verdict is "pass"."""
+        return self.verdict == "pass"
+
+    @property
+    def metrics(self) -> dict[str, dict[str, Any]]:
+        """The metrics by name: unit, before, after, limit, result."""
+        return {one["name"]: one for one in self.data["metrics"]}
+
+    @property
+    def checks(self) -> dict[str, dict[str, Any]]:
+        """The checks by name: passed, value, limit, words."""
+        return {one["name"]: one for one in self.data["checks"]}
+
+    def to_html(self) -> str:
+        """Return the page that ``--report`` writes."""
+        return self._page
+
+    def _repr_html_(self) -> str:
+        metrics = [(one["name"], one["unit"], figure(one.get("before")),
+                    figure(one.get("after")), str(one.get("result") or ""))
+                   for one in self.data["metrics"]]
+        checks = [(one["name"], str(one.get("words") or ""))
+                  for one in self.data["checks"]]
+        return (f"<p><b>{html.escape(self.verdict)}</b></p>"
+                + table(("metric", "unit", "before", "after", "result"),
+                        metrics)
+                + table(("check", "outcome"), checks))
+
+
+class AllanResult(Report):
+    """Allan deviations and noise coefficients."""
+
+    @property
+    def coefficients(self) -> dict[str, Any]:
+        """The noise coefficients that the curve shows."""
+        found = self.data.get("coefficients", {})
+        if isinstance(found, list):
+            return {str(one.get("symbol") or one.get("name")): one
+                    for one in found}
+        return dict(found)
+
+    def to_dataset(self, kind: str = "oadev") -> xr.Dataset:
+        """Return a deviation over the averaging time ``tau`` [s]."""
+        from beamgyro import _lazy
+        points = self.data.get(kind)
+        if not isinstance(points, list):
+            raise ValueError(f"kind {kind!r}: was not computed")
+        xarray = _lazy.xarray()
+        names = [name for name in points[0] if name != "tau_s"
+                 and not isinstance(points[0][name], (list, dict))]
+        made: xr.Dataset = xarray.Dataset(
+            {name: ("tau", [one[name] for one in points]) for name in names},
+            {"tau": ("tau", [one["tau_s"] for one in points],
+                     {"units": "s"})}, {"kind": kind})
+        return made
+
+
+class PlanResult(Report):
+    """The soaks that a new device needs."""
+
+    def __init__(self, text: str, json_text: str, warnings: Sequence[str],
+                 schedule: str, device: Any) -> None:
+        super().__init__(text, json_text, warnings)
+        self.schedule_text = schedule
+        self._device = device
+
+    @property
+    def temperatures_degC(self) -> list[float]:
+        """The temperatures of the chamber, in their order."""
+        return list(self.data["schedule"]["temperatures_degC"])
+
+    @property
+    def schedule(self) -> Scenario:
+        """The schedule as a scenario of the device."""
+        from beamgyro._scenario import Scenario
+        return Scenario.parse(self.schedule_text, self._device,
+                              "schedule.toml")
+
+
+class SensitivityResult(Report):
+    """Which tolerance causes the spread of which figure."""
+
+    @property
+    def figures(self) -> dict[str, list[dict[str, Any]]]:
+        """The indices of each figure of merit, largest first."""
+        return {name: list(one["indices"])
+                for name, one in self.data["figures"].items()}
+
+    def _repr_html_(self) -> str:
+        parts = []
+        for name, indices in self.figures.items():
+            rows = [(one["key"], f"{one['first']:.3f}",
+                     f"{one['total']:.3f}") for one in indices]
+            parts.append(f"<p><b>{html.escape(name)}</b></p>"
+                         + table(("key", "first", "total"), rows))
+        return "".join(parts)

@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: MIT
+"""Scenarios and their simulation."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal, Optional, Union, overload
+
+import numpy as np
+
+from beamgyro import _core, _toml
+from beamgyro._dataset import dataset_of
+from beamgyro._device import Device, DeviceLike, Keys, Path, device_of
+from beamgyro._progress import ProgressArgument, Watched
+from beamgyro._warnings import warn
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Fidelity = Literal["quasistatic", "envelope", "carrier"]
+ScenarioLike = Union["Scenario", Path, Keys]
+Arrays = dict[str, "np.ndarray[Any, Any]"]
+
+
+class Scenario:
+    """What happens to a gyro over time, and the gyro that it happens to.
+
+    It does not change. Two scenarios are equal when their texts, devices and
+    replaced keys are; a scenario pickles as these.
+
+    Args:
+        source: a scenario file, or its contents as a nested mapping. In a
+            mapping, files are named relative to the working directory.
+        device: the device, in place of the one that the scenario names.
+        set: keys of the scenario or of its device to replace, dotted or
+            nested: ``{"duration_s": 60, "beam.length_m": 0.041}``.
+
+    Raises:
+        ValueError: with file, line and key, what is wrong.
+    """
+
+    __slots__ = ("_native",)
+
+    _native: _core.Scenario
+
+    def __init__(self, source: ScenarioLike, *,
+                 device: Optional[DeviceLike] = None,
+                 set: Optional[Keys] = None) -> None:
+        overrides = _toml.overrides(set)
+        if isinstance(source, Mapping):
+            self._native = _scenario_of_keys(source, device, overrides)
+            return
+        if isinstance(source, Scenario):
+            core = source._native
+            if device is not None:
+                core = core.with_device(device_of(device)._native)
+            self._native = core.with_(overrides) if overrides else core
+        elif device is None:
+            self._native = _core.Scenario.read(os.fspath(source), overrides)
+        else:
+            with open(source, encoding="utf-8", newline="") as file:
+                text = file.read()
+            self._native = _core.Scenario.parse(
+                text, device_of(device)._native, overrides, os.fspath(source))
+
+    @classmethod
+    def parse(cls, text: str, device: DeviceLike, name: str = "scenario",
+              set: Optional[Keys] = None) -> Scenario:
+        """Read the text of a scenario file, called `name` in messages.
+
+        Profiles that it names are relative to the folder of `name`.
+        """
+        return cls._of(_core.Scenario.parse(
+            text, device_of(device)._native, _toml.overrides(set), name))
+
+    @classmethod
+    def _of(cls, core: _core.Scenario) -> Scenario:
+        scenario = cls.__new__(cls)
+        scenario._native = core
+        return scenario
+
+    def with_(self, keys: Optional[Keys] = None, /, *,
+              device: Optional[DeviceLike] = None, **more: Any) -> Scenario:
+        """Return the scenario with keys of it or its device replaced.
+
+        >>> scenario.with_(seed=2, fidelity="envelope")
+        >>> scenario.with_({"ambient.constant_degC": 40.0})
+        >>> scenario.with_(device="other.toml")
+        """
+        return Scenario(self, device=device, set={**(keys or {}), **more})
+
+    @property
+    def text(self) -> str:
+        """The text of the scenario file."""
+        return self._native.text
+
+    @property
+    def name(self) -> str:
+        """The name of the file, as messages give it."""
+        return self._native.name
+
+    @property
+    def device(self) -> Device:
+        """The device, without the keys that the scenario replaces."""
+        return Device._of(self._native.device)
+
+    @property
+    def overrides(self) -> list[str]:
+        """The keys that were replaced, as KEY=VALUE."""
+        return self._native.overrides
+
+    @property
+    def title(self) -> str:
+        """The name and the description in the file."""
+        return self._native.title
+
+    @property
+    def duration_s(self) -> float:
+        """How long it lasts [s]."""
+        return self._native.duration
+
+    @property
+    def output_rate_Hz(self) -> float:
+        """Samples in a second [Hz]."""
+        return self._native.output_rate
+
+    @property
+    def samples(self) -> int:
+        """The number of samples of its recording."""
+        return self._native.samples
+
+    @property
+    def fidelity(self) -> str:
+        """How much of the physics is simulated."""
+        return self._native.fidelity
+
+    @property
+    def seed(self) -> int:
+        """The seed of everything random."""
+        return self._native.seed
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scenario):
+            return NotImplemented
+        return (self.text, self.overrides, self.device) == (
+            other.text, other.overrides, other.device)
+
+    def __hash__(self) -> int:
+        return hash((self.text, tuple(self.overrides)))
+
+    def __repr__(self) -> str:
+        changes = "".join(f", {text}" for text in self.overrides)
+        return (f"<beamgyro.Scenario {self.name}: {self.title} "
+                f"({self.duration_s:g} s at {self.output_rate_Hz:g} Hz, "
+                f"{self.fidelity}, seed {self.seed}; device "
+                f"{self.device.name}{changes})>")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _scenario_of, (self.text, self.device, self.overrides,
+                              self.name)
+
+
+def _scenario_of(text: str, device: Device, overrides: list[str],
+                 name: str) -> Scenario:
+    return Scenario._of(
+        _core.Scenario.parse(text, device._native, overrides, name))
+
+
+def _scenario_of_keys(keys: Keys, device: Optional[DeviceLike],
+                      overrides: list[str]) -> _core.Scenario:
+    named = keys.get("device")
+    if device is None and named is None:
+        raise ValueError(
+            "scenario: device: is missing; expected the key \"device\" or the "
+            "argument device=")
+    told: Any = named if device is None else device
+    unit = device_of(told)
+    written = {**keys, "device": (named if isinstance(named, (str, os.PathLike))
+                                  else unit.name)}
+    return _core.Scenario.parse(_toml.text(written), unit._native, overrides,
+                                "scenario")
+
+
+def _simulated(source: ScenarioLike, device: Optional[DeviceLike],
+               set: Optional[Keys], seed: Optional[int],
+               fidelity: Optional[Fidelity]) -> _core.Scenario:
+    keys = dict(set or {})
+    for name, value in (("seed", seed), ("fidelity", fidelity)):
+        if value is not None:
+            keys.pop(name, None)
+            keys[name] = value
+    if isinstance(source, Scenario) and device is None and not keys:
+        return source._native
+    return Scenario(source, device=device, set=keys)._native
+
+
+def _recorded(scenario: _core.Scenario, stop_on_unlock: bool,
+              progress: ProgressArgument) -> _core.Recording:
+    with Watched(progress, "simulating") as function:
+        recording, warnings = _core.simulate(scenario, stop_on_unlock,
+                                             function)
+    if warnings:
+        warn(f"{scenario.name}: {text}" for text in warnings)
+    return recording
+
+
+@overload
+def run(scenario: ScenarioLike, *, device: Optional[DeviceLike] = ...,
+        set: Optional[Keys] = ..., seed: Optional[int] = ...,
+        fidelity: Optional[Fidelity] = ...,
+        output: Literal["dataset"] = ..., stop_on_unlock: bool = ...,
+        progress: ProgressArgument = ...) -> xr.Dataset: ...
+
+
+@overload
+def run(scenario: ScenarioLike, *, device: Optional[DeviceLike] = ...,
+        set: Optional[Keys] = ..., seed: Optional[int] = ...,
+        fidelity: Optional[Fidelity] = ...,
+        output: Literal["arrays"], stop_on_unlock: bool = ...,
+        progress: ProgressArgument = ...) -> Arrays: ...
+
+
+def run(scenario: ScenarioLike, *, device: Optional[DeviceLike] = None,
+        set: Optional[Keys] = None, seed: Optional[int] = None,
+        fidelity: Optional[Fidelity] = None,
+        output: Literal["dataset", "arrays"] = "dataset",
+        stop_on_unlock: bool = False,
+        progress: ProgressArgument = False) -> Union[xr.Dataset, Arrays]:
+    """Simulate one gyro in one scenario.
+
+    The values, and with `save_recording` the bytes of the file, are those of
+    ``beamgyro run`` with the same arguments.
+
+    Args:
+        scenario: a scenario, its file, or a mapping.
+        device: the device, in place of the one that the scenario names.
+        set: keys of the scenario or of its device to replace:
+            ``{"duration_s": 60, "beam.length_m": 0.041}``.
+        seed: the seed of everything random.
+        fidelity: "quasistatic", "envelope" or "carrier".
+        output: "dataset", or "arrays" for a dictionary of NumPy arrays,
+            which takes less time.
+        stop_on_unlock: fail where the drive loop is not locked one second
+            after a power-on or later.
+        progress: True for a bar on standard error, or a function that is
+            told the share of the work that is done.
+
+    Returns:
+        The recording, with the variables and attributes of its file. No
+        array is copied.
+
+    Raises:
+        ValueError: with file, line and key, what is wrong in the input.
+        RuntimeError: the run cannot go on.
+    """
+    if output not in ("dataset", "arrays"):
+        raise ValueError(
+            f"output {output!r}: expected \"dataset\" or \"arrays\"")
+    recording = _recorded(
+        _simulated(scenario, device, set, seed, fidelity), stop_on_unlock,
+        progress)
+    return (recording.arrays() if output == "arrays"
+            else dataset_of(recording))
+
+
+def run_to_file(scenario: ScenarioLike, path: Path, *,
+                device: Optional[DeviceLike] = None,
+                set: Optional[Keys] = None, seed: Optional[int] = None,
+                fidelity: Optional[Fidelity] = None,
+                stop_on_unlock: bool = False,
+                progress: ProgressArgument = False) -> None:
+    """Simulate into a file, .h5 or .csv, as ``beamgyro run`` does.
+
+    Memory does not grow with the run. Arguments and errors as of `run`.
+    """
+    core = _simulated(scenario, device, set, seed, fidelity)
+    with Watched(progress, "simulating") as function:
+        warnings = _core.simulate_to_file(core, os.fspath(path),
+                                          stop_on_unlock, function)
+    warn(f"{core.name}: {text}" for text in warnings)

@@ -1,0 +1,299 @@
+# SPDX-License-Identifier: MIT
+"""Populations of gyros, and the sets that are generated from them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any, Optional, Union
+
+import numpy as np
+
+from beamgyro import _core, _lazy
+from beamgyro._dataset import Path, dataset_of
+from beamgyro._device import Device
+from beamgyro._progress import ProgressArgument, Watched
+from beamgyro._warnings import warn
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+CampaignLike = Union["Campaign", Path]
+
+
+class Campaign:
+    """A population of devices and the runs of each of them.
+
+    It does not change. Campaigns are equal when their files are; a campaign
+    pickles as the texts of these.
+
+    Args:
+        source: a campaign file.
+        devices: replaces the number of devices in the file.
+
+    Raises:
+        ValueError: with file, line and key, what is wrong.
+    """
+
+    __slots__ = ("_native",)
+
+    _native: _core.Campaign
+
+    def __init__(self, source: CampaignLike,
+                 devices: Optional[int] = None) -> None:
+        if isinstance(source, Campaign):
+            self._native = (source._native if devices is None else
+                          _core.Campaign.parse(source._native.files, devices))
+        else:
+            self._native = _core.Campaign.read(os.fspath(source), devices)
+
+    @property
+    def name(self) -> str:
+        """The name in the file."""
+        return self._native.name
+
+    @property
+    def text(self) -> str:
+        """The text of the campaign file."""
+        return self._native.text
+
+    @property
+    def devices(self) -> int:
+        """The number of devices."""
+        return self._native.devices
+
+    @property
+    def seed(self) -> int:
+        """The seed of everything random."""
+        return self._native.seed
+
+    @property
+    def runs(self) -> list[str]:
+        """The names of the runs of each device."""
+        return self._native.runs
+
+    def device(self, number: int) -> Device:
+        """Return a device of the population; numbers start at 0."""
+        return Device._of(self._native.device(number))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Campaign):
+            return NotImplemented
+        return (self._native.files, self.devices) == (
+            other._native.files, other.devices)
+
+    def __hash__(self) -> int:
+        return hash((self.text, self.devices))
+
+    def __repr__(self) -> str:
+        return (f"<beamgyro.Campaign {self.name}: {self.devices} devices, "
+                f"runs {', '.join(self.runs)}>")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _campaign_of, (self._native.files, self.devices)
+
+
+def _campaign_of(files: list[tuple[FilePath, str]],
+                 devices: int) -> Campaign:
+    campaign = Campaign.__new__(Campaign)
+    campaign._native = _core.Campaign.parse(files, devices)
+    return campaign
+
+
+class Set(Mapping[tuple[str, int], "xr.Dataset"]):
+    """The recordings of many devices in one directory.
+
+    A mapping of (run, device) to recordings, which are read when they are
+    asked for. Devices that failed are left out.
+
+    Args:
+        directory: what `generate` or ``beamgyro generate`` wrote.
+
+    Raises:
+        ValueError: there is no finished set.
+    """
+
+    __slots__ = ("_native",)
+
+    _native: _core.Set
+
+    def __init__(self, directory: Path) -> None:
+        self._native = _core.Set.open(os.fspath(directory))
+
+    @property
+    def directory(self) -> FilePath:
+        """Where the set is."""
+        return self._native.directory
+
+    @property
+    def devices(self) -> int:
+        """The number of devices, which are counted from 0."""
+        return self._native.devices
+
+    @property
+    def runs(self) -> list[str]:
+        """The names of the runs of each device."""
+        return self._native.runs
+
+    @property
+    def seed(self) -> int:
+        """The seed of everything random."""
+        return self._native.seed
+
+    @property
+    def failures(self) -> list[tuple[str, int, str]]:
+        """Run, device and reason of each run that has no values."""
+        return self._native.failures
+
+    def part(self, device: int) -> str:
+        """Return what a device is for: "train", "validation" or "test"."""
+        return self._native.part(device)
+
+    def devices_of(self, part: str) -> list[int]:
+        """Return the devices of a part, in their order."""
+        if part not in ("train", "validation", "test"):
+            raise ValueError(f"part {part!r}: expected \"train\", "
+                             "\"validation\" or \"test\"")
+        return [device for device in range(self.devices)
+                if self.part(device) == part]
+
+    def recording(self, run: str, device: int) -> xr.Dataset:
+        """Return a run of a device, in the units of recordings.
+
+        Raises:
+            ValueError: there is no such run or device, the device failed, or
+                its file has other bytes than the manifest says.
+        """
+        return dataset_of(self._native.recording(run, device))
+
+    def slow_recording(self, run: str, device: int) -> xr.Dataset:
+        """Return the truths that are stored at a lower rate."""
+        return dataset_of(self._native.slow_recording(run, device))
+
+    def parameters(self, run: Optional[str] = None) -> xr.Dataset:
+        """Return the numbers that were drawn, over ``device``.
+
+        `run` is by default the first one; numbers of the devices are the
+        same in all runs. Those of a device that failed are NaN.
+        """
+        name = self.runs[0] if run is None else run
+        drawn: dict[str, tuple[Any, dict[str, str]]] = {}
+        failed = {device for one, device, _ in self.failures if one == name}
+        for device in range(self.devices):
+            if device in failed:
+                continue
+            for key, value, units, words in self._native.parameters(name,
+                                                                  device):
+                values, _ = drawn.setdefault(
+                    key, (np.full(self.devices, np.nan),
+                          {"units": units, "long_name": words}))
+                values[device] = value
+        xarray = _lazy.xarray()
+        table: xr.Dataset = xarray.Dataset(
+            {key: ("device", values, about)
+             for key, (values, about) in drawn.items()},
+            {"device": np.arange(self.devices)})
+        return table
+
+    def view(self, run: str) -> xr.Dataset:
+        """Open all devices of a run as one dataset, without reading it.
+
+        The data are those of the file RUN.nc; close the dataset after use.
+        """
+        if run not in self.runs:
+            raise ValueError(f"{self.directory}: has no run {run}; expected "
+                             f"one of {', '.join(self.runs)}")
+        dataset: xr.Dataset = _lazy.xarray().open_dataset(
+            self.directory / f"{run}.nc", engine="h5netcdf")
+        return dataset
+
+    def verify(self, progress: ProgressArgument = False
+               ) -> list[tuple[str, str]]:
+        """Compare every byte with the manifest.
+
+        Returns:
+            The damaged files with what is wrong; none for a whole set.
+        """
+        with Watched(progress, "verifying") as function:
+            return self._native.verify(function)
+
+    def _failed(self) -> set[tuple[str, int]]:
+        return {(run, device) for run, device, _ in self.failures}
+
+    def _recordings_of(self, part: str) -> Iterator[_core.Recording]:
+        failed = self._failed()
+        for device in self.devices_of(part):
+            for run in self.runs:
+                if (run, device) not in failed:
+                    yield self._native.recording(run, device)
+
+    def __getitem__(self, key: tuple[str, int]) -> xr.Dataset:
+        run, device = key
+        there = run in self.runs and 0 <= device < self.devices
+        if not there or key in self._failed():
+            raise KeyError(key)
+        return self.recording(run, device)
+
+    def __iter__(self) -> Iterator[tuple[str, int]]:
+        failed = self._failed()
+        for run in self.runs:
+            for device in range(self.devices):
+                if (run, device) not in failed:
+                    yield run, device
+
+    def __len__(self) -> int:
+        return len(self.runs) * self.devices - len(self._failed())
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Set):
+            return NotImplemented
+        return self.directory == other.directory
+
+    def __hash__(self) -> int:
+        return hash(self.directory)
+
+    def __repr__(self) -> str:
+        return (f"<beamgyro.Set {self.directory}: {self.devices} devices, "
+                f"runs {', '.join(self.runs)}>")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Set, (str(self.directory),)
+
+
+def open_set(directory: Path) -> Set:
+    """Open a set; recordings are read when they are asked for."""
+    return Set(directory)
+
+
+def generate(campaign: CampaignLike, directory: Path, *,
+             devices: Optional[int] = None, jobs: int = 0,
+             resume: bool = False, progress: ProgressArgument = True) -> Set:
+    """Simulate every device of a campaign into a directory.
+
+    The bytes are those of ``beamgyro generate``. They do not depend on
+    `jobs`, nor on interruptions.
+
+    Args:
+        campaign: a campaign, or its file.
+        directory: where the set is written.
+        devices: replaces the number of devices in the file.
+        jobs: threads; 0: one for each core.
+        resume: continues the set that is in the directory.
+        progress: True for a bar on standard error, or a function that is
+            told the share of the work that is done.
+
+    Raises:
+        ValueError: something is wrong in the campaign, or the directory
+            holds another set.
+        RuntimeError: writing failed, or no device works.
+    """
+    core = Campaign(campaign, devices)._native
+    with Watched(progress, "generating") as function:
+        failures, warnings, _ = _core.generate(core, os.fspath(directory),
+                                               jobs, resume, function)
+    warn(warnings)
+    if failures:
+        warn([f"{os.fspath(directory)}: {failures} runs have no values, since "
+              "their devices do not work; see Set.failures"])
+    return Set(directory)

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "include/beamgyro/allan.h"
+#include "include/beamgyro/campaign.h"
+#include "include/beamgyro/export.h"
+#include "include/beamgyro/sensitivity.h"
+#include "include/beamgyro/validate.h"
+#include "python/core/bindings.h"
+#include "python/core/given_options.h"
+#include "python/core/long_call.h"
+#include "python/core/recording.h"
+
+namespace beamgyro::python {
+namespace {
+
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Path = std::filesystem::path;
+
+/// Returns (text, JSON, warnings), what every analysis gives.
+template <class Result>
+py::tuple report_of(Result&& found) {
+  return py::make_tuple(found.text, found.json, found.warnings);
+}
+
+AllanOptions allan_options(const std::vector<std::string>& kinds,
+                           const std::string& taus, double from_s, double to_s,
+                           const Progress& progress) {
+  return {.kinds = kinds,
+          .taus = taus,
+          .from_s = from_s,
+          .to_s = to_s,
+          .progress = progress};
+}
+
+py::tuple allan_recording(const SharedRecording& recording,
+                          const std::string& column,
+                          const std::vector<std::string>& kinds,
+                          const std::string& taus, double from_s, double to_s) {
+  return report_of(long_call(py::none(), [=](const Progress& progress) {
+    return allan(*recording, column,
+                 allan_options(kinds, taus, from_s, to_s, progress));
+  }));
+}
+
+py::tuple allan_samples(const Doubles& samples, double rate_Hz,
+                        const std::string& unit,
+                        const std::vector<std::string>& kinds,
+                        const std::string& taus, double from_s, double to_s) {
+  const std::vector<double> values(samples.data(),
+                                   samples.data() + samples.size());
+  return report_of(long_call(py::none(), [=](const Progress& progress) {
+    return allan(values, rate_Hz, unit,
+                 allan_options(kinds, taus, from_s, to_s, progress));
+  }));
+}
+
+py::tuple allan_file(const Path& file, const std::optional<std::string>& column,
+                     const std::optional<double>& rate_Hz,
+                     const std::optional<std::string>& unit,
+                     const std::vector<std::string>& kinds,
+                     const std::string& taus, double from_s, double to_s) {
+  return report_of(long_call(py::none(), [=](const Progress& progress) {
+    return allan_of_file(file,
+                         {.column = column, .rate_Hz = rate_Hz, .unit = unit},
+                         allan_options(kinds, taus, from_s, to_s, progress));
+  }));
+}
+
+ValidationOptions validation_options(const py::dict& given) {
+  ValidationOptions options;
+  take(given, "device", options.device);
+  take(given, "qualification", options.qualification);
+  take(given, "recordings", options.recordings);
+  take(given, "set", options.set);
+  take(given, "runs", options.runs);
+  take(given, "devices", options.devices);
+  take(given, "specification", options.specification);
+  take(given, "workbench", options.workbench);
+  take(given, "campaign", options.campaign);
+  take(given, "campaign_devices", options.campaign_devices);
+  take(given, "full_scale", options.full_scale);
+  take(given, "jobs", options.jobs);
+  return options;
+}
+
+py::tuple outcome_of(const ValidationOutcome& outcome) {
+  return py::make_tuple(outcome.text, outcome.json, outcome.warnings,
+                        outcome.page);
+}
+
+py::tuple validate_compensator(
+    const std::shared_ptr<RateCompensator>& compensator, const py::dict& given,
+    const py::object& on_progress) {
+  return outcome_of(
+      long_call(on_progress, [compensator, options = validation_options(given)](
+                                 const Progress& progress) mutable {
+        options.progress = progress;
+        return validate(*compensator, options);
+      }));
+}
+
+py::tuple validate_model(const Model& model, const py::dict& given,
+                         const py::object& on_progress) {
+  return outcome_of(
+      long_call(on_progress, [model, options = validation_options(given)](
+                                 const Progress& progress) mutable {
+        options.progress = progress;
+        return validate(model, options);
+      }));
+}
+
+py::tuple study_sensitivity(const Campaign& campaign, const py::dict& given,
+                            const py::object& on_progress) {
+  SensitivityOptions options;
+  take(given, "figures", options.figures);
+  take(given, "lowest_degC", options.lowest_degC);
+  take(given, "highest_degC", options.highest_degC);
+  take(given, "linear", options.linear);
+  take(given, "limits", options.limits);
+  take(given, "samples", options.samples);
+  take(given, "seed", options.seed);
+  take(given, "jobs", options.jobs);
+  if (given.contains("compensator"))
+    options.compensator = given["compensator"].cast<Compensator>();
+  const SensitivityResult found = long_call(
+      on_progress, [campaign, options](const Progress& progress) mutable {
+        options.progress = progress;
+        return sensitivity(campaign, options);
+      });
+  return py::make_tuple(found.text, found.json, std::vector<std::string>{});
+}
+
+py::tuple export_compensators(const std::vector<Compensator>& compensators,
+                              const std::string& format,
+                              const py::dict& given) {
+  ExportOptions options;
+  take(given, "name", options.name);
+  take(given, "axes", options.axes);
+  take(given, "force", options.force);
+  take(given, "fit_cubic", options.fit_cubic);
+  take(given, "instance", options.instance);
+  take(given, "device_id", options.device_id);
+  take(given, "rest", options.rest);
+  take(given, "ramp_K_per_min", options.ramp_K_per_min);
+  take(given, "correlation_K", options.correlation_K);
+  take(given, "temperature_degC", options.temperature_degC);
+  const ExportResult found =
+      long_call(py::none(), [compensators, format, options](const Progress&) {
+        return export_files(compensators, format, options);
+      });
+  py::list files;
+  for (const ExportedFile& file : found.files)
+    files.append(py::make_tuple(file.name, file.text));
+  return py::make_tuple(files, found.warnings);
+}
+
+}  // namespace
+
+void bind_analysis(py::module_& core) {
+  core.def("allan_recording", &allan_recording, py::arg("recording"),
+           py::arg("column"), py::arg("kinds"), py::arg("taus"),
+           py::arg("from_s"), py::arg("to_s"));
+  core.def("allan_samples", &allan_samples, py::arg("samples"),
+           py::arg("rate_Hz"), py::arg("unit"), py::arg("kinds"),
+           py::arg("taus"), py::arg("from_s"), py::arg("to_s"));
+  core.def("allan_file", &allan_file, py::arg("file"), py::arg("column"),
+           py::arg("rate_Hz"), py::arg("unit"), py::arg("kinds"),
+           py::arg("taus"), py::arg("from_s"), py::arg("to_s"));
+  core.def("validate", &validate_compensator, py::arg("compensator"),
+           py::arg("options"), py::arg("progress"));
+  core.def("validate_model", &validate_model, py::arg("model"),
+           py::arg("options"), py::arg("progress"));
+  core.def("sensitivity", &study_sensitivity, py::arg("campaign"),
+           py::arg("options"), py::arg("progress"));
+  core.def("export_files", &export_compensators, py::arg("compensators"),
+           py::arg("format"), py::arg("options"));
+}
+
+}  // namespace beamgyro::python

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compensation/inputs/features.h"
+#include "compensation/inputs/input.h"
+#include "include/beamgyro/compensator.h"
+#include "include/beamgyro/set.h"
+#include "include/beamgyro/train.h"
+#include "python/core/bindings.h"
+#include "python/core/long_call.h"
+#include "python/core/recording.h"
+
+namespace beamgyro::python {
+namespace {
+
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using SharedCompensator = std::shared_ptr<RateCompensator>;
+
+std::vector<double> values_of(const py::object& given) {
+  const auto values = given.cast<Doubles>();
+  return {values.data(), values.data() + values.size()};
+}
+
+/// A Python function that takes a Recording with the measured signals of a
+/// powered stretch, and returns (rates, sigmas or None).
+class FunctionCompensator final : public RateCompensator {
+ public:
+  FunctionCompensator(std::string name, std::vector<std::string> inputs,
+                      py::object function)
+      : name_(std::move(name)),
+        inputs_(std::move(inputs)),
+        function_(gil_owned(std::move(function))) {}
+
+  std::string name() const override { return name_; }
+  std::vector<std::string> inputs() const override { return inputs_; }
+
+  CompensatedRate answer(const Recording& recording) const override {
+    const py::gil_scoped_acquire acquired;
+    const auto answers =
+        (*function_)(std::make_shared<Recording>(recording)).cast<py::tuple>();
+    CompensatedRate compensated;
+    compensated.rate = values_of(answers[0]);
+    if (!answers[1].is_none()) compensated.sigma = values_of(answers[1]);
+    return compensated;
+  }
+
+ private:
+  std::string name_;
+  std::vector<std::string> inputs_;
+  std::shared_ptr<py::object> function_;
+};
+
+SharedCompensator function_compensator(const std::string& name,
+                                       const std::vector<std::string>& inputs,
+                                       const py::object& function) {
+  return std::make_shared<FunctionCompensator>(name, inputs, function);
+}
+
+SharedCompensator open(const std::string& argument,
+                       const std::filesystem::path& program, double stall_s) {
+  ProcessOptions options;
+  options.program = program;
+  options.stall_s = stall_s;
+  return std::const_pointer_cast<RateCompensator>(
+      open_compensator(argument, options));
+}
+
+py::tuple compensate_recording(const SharedCompensator& compensator,
+                               const SharedRecording& recording) {
+  CompensatedRun run =
+      long_call(py::none(), [compensator, recording](const Progress&) {
+        return compensate(*compensator, *recording);
+      });
+  return with_warnings(std::move(run.recording), run.warnings);
+}
+
+/// Rows are samples, columns are inputs; NaN where unpowered.
+py::array_t<double> features(const std::vector<std::string>& inputs,
+                             const SharedRecording& recording) {
+  std::vector<internal::Input> parsed;
+  for (const std::string& input : inputs)
+    parsed.push_back(internal::parse_input(input));
+  const Eigen::ArrayXXd found = internal::features_of(parsed, *recording);
+  py::array_t<double> rows({found.rows(), found.cols()});
+  auto row = rows.mutable_unchecked<2>();
+  for (Eigen::Index i = 0; i < found.rows(); ++i)
+    for (Eigen::Index k = 0; k < found.cols(); ++k) row(i, k) = found(i, k);
+  return rows;
+}
+
+using NamedRecordings = std::vector<std::pair<std::string, SharedRecording>>;
+
+std::vector<NamedRecording> named(const NamedRecordings& recordings) {
+  std::vector<NamedRecording> all;
+  for (const auto& [name, recording] : recordings)
+    all.push_back({name, *recording});
+  return all;
+}
+
+/// Training tells its epochs, of all restarts together.
+TrainingOptions options_of(std::uint64_t seed,
+                           const std::string& cross_validation,
+                           const Progress& progress) {
+  const auto tell = [progress](const TrainingProgress& now) {
+    const double epochs = static_cast<double>(now.max_epochs);
+    const double done = static_cast<double>(now.restart) +
+                        static_cast<double>(now.epoch) / epochs;
+    return progress(done / static_cast<double>(now.restarts));
+  };
+  return {.seed = seed, .cross_validation = cross_validation, .progress = tell};
+}
+
+py::tuple trained(TrainedCompensator found) {
+  return py::make_tuple(
+      std::make_shared<Compensator>(std::move(found.compensator)),
+      std::move(found.warnings), std::move(found.text));
+}
+
+py::tuple train_files(const Model& model,
+                      const std::vector<std::filesystem::path>& files,
+                      const std::vector<std::filesystem::path>& held_out,
+                      std::uint64_t seed, const std::string& cross_validation,
+                      const py::object& on_progress) {
+  return trained(long_call(on_progress, [=](const Progress& progress) {
+    return train(model, files, held_out,
+                 options_of(seed, cross_validation, progress));
+  }));
+}
+
+py::tuple train_recordings(const Model& model, const NamedRecordings& runs,
+                           const NamedRecordings& held_out, std::uint64_t seed,
+                           const std::string& cross_validation,
+                           const py::object& on_progress) {
+  return trained(long_call(on_progress, [=](const Progress& progress) {
+    return train(model, named(runs), named(held_out),
+                 options_of(seed, cross_validation, progress));
+  }));
+}
+
+py::tuple train_set(const Model& model, const Set& set,
+                    const std::vector<std::string>& runs,
+                    const std::vector<std::uint32_t>& devices,
+                    std::uint64_t seed, const py::object& on_progress) {
+  return trained(long_call(on_progress, [=](const Progress& progress) {
+    return train(model, set, {.runs = runs, .devices = devices},
+                 options_of(seed, "", progress));
+  }));
+}
+
+void bind_compensators(py::module_& core) {
+  py::class_<RateCompensator, SharedCompensator>(core, "RateCompensator")
+      .def_property_readonly("name", &RateCompensator::name)
+      .def_property_readonly("inputs", &RateCompensator::inputs);
+  py::class_<Compensator, RateCompensator, std::shared_ptr<Compensator>>(
+      core, "Compensator")
+      .def_static("read", &Compensator::read, py::arg("file"))
+      .def_static("parse", &Compensator::parse, py::arg("text"),
+                  py::arg("name"))
+      .def("write", &Compensator::write, py::arg("file"))
+      .def_property_readonly("text", &Compensator::text)
+      .def_property_readonly("method", &Compensator::method)
+      .def_property_readonly("lowest_temperature",
+                             &Compensator::lowest_temperature)
+      .def_property_readonly("highest_temperature",
+                             &Compensator::highest_temperature)
+      .def_property_readonly("states_sigma", &Compensator::states_sigma)
+      .def_property_readonly("warnings", &Compensator::warnings);
+}
+
+}  // namespace
+
+void bind_compensation(py::module_& core) {
+  bind_compensators(core);
+  core.def("function_compensator", &function_compensator, py::arg("name"),
+           py::arg("inputs"), py::arg("function"));
+  core.def("open_compensator", &open, py::arg("argument"), py::arg("program"),
+           py::arg("stall_s"));
+  core.def("compensate", &compensate_recording, py::arg("compensator"),
+           py::arg("recording"));
+  core.def("features", &features, py::arg("inputs"), py::arg("recording"));
+  py::class_<Model>(core, "Model")
+      .def_static("read", &Model::read, py::arg("file"))
+      .def_static("parse", &Model::parse, py::arg("text"), py::arg("name"))
+      .def_property_readonly("text", &Model::text)
+      .def_property_readonly("name", &Model::name);
+  core.def("train_files", &train_files, py::arg("model"), py::arg("files"),
+           py::arg("held_out"), py::arg("seed"), py::arg("cross_validation"),
+           py::arg("progress"));
+  core.def("train_recordings", &train_recordings, py::arg("model"),
+           py::arg("recordings"), py::arg("held_out"), py::arg("seed"),
+           py::arg("cross_validation"), py::arg("progress"));
+  core.def("train_set", &train_set, py::arg("model"), py::arg("set"),
+           py::arg("runs"), py::arg("devices"), py::arg("seed"),
+           py::arg("progress"));
+}
+
+}  // namespace beamgyro::python

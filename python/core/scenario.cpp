@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "include/beamgyro/scenario.h"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "include/beamgyro/progress.h"
+#include "include/beamgyro/simulate.h"
+#include "python/core/bindings.h"
+#include "python/core/long_call.h"
+#include "python/core/recording.h"
+
+namespace beamgyro::python {
+namespace {
+
+SimulationOptions options_of(bool stop_on_unlock, const Progress& progress) {
+  return {.stop_on_unlock = stop_on_unlock, .progress = progress};
+}
+
+py::tuple simulate_scenario(const Scenario& scenario, bool stop_on_unlock,
+                            const py::object& on_progress) {
+  SimulatedRun run = long_call(on_progress, [=](const Progress& progress) {
+    return simulate(scenario, options_of(stop_on_unlock, progress));
+  });
+  return with_warnings(std::move(run.recording), run.warnings);
+}
+
+std::vector<std::string> simulate_into(const Scenario& scenario,
+                                       const std::filesystem::path& path,
+                                       bool stop_on_unlock,
+                                       const py::object& on_progress) {
+  return long_call(on_progress, [=](const Progress& progress) {
+    return simulate_to_file(scenario, path,
+                            options_of(stop_on_unlock, progress));
+  });
+}
+
+}  // namespace
+
+void bind_scenario(py::module_& core) {
+  py::class_<Scenario>(core, "Scenario")
+      .def_static("read", &Scenario::read, py::arg("file"),
+                  py::arg("overrides"))
+      .def_static("parse", &Scenario::parse, py::arg("text"), py::arg("device"),
+                  py::arg("overrides"), py::arg("name"))
+      .def("with_", &Scenario::with, py::arg("overrides"))
+      .def("with_device", &Scenario::with_device, py::arg("device"))
+      .def_property_readonly("text", &Scenario::text)
+      .def_property_readonly("name", &Scenario::name)
+      .def_property_readonly("device", &Scenario::device)
+      .def_property_readonly("overrides", &Scenario::overrides)
+      .def_property_readonly("files", &Scenario::files)
+      .def_property_readonly("title", &Scenario::title)
+      .def_property_readonly("duration", &Scenario::duration)
+      .def_property_readonly("output_rate", &Scenario::output_rate)
+      .def_property_readonly("samples", &Scenario::samples)
+      .def_property_readonly("fidelity", &Scenario::fidelity)
+      .def_property_readonly("seed", &Scenario::seed)
+      .def_property_readonly("estimated_seconds", &Scenario::estimated_seconds);
+  core.def("simulate", &simulate_scenario, py::arg("scenario"),
+           py::arg("stop_on_unlock"), py::arg("progress"));
+  core.def("simulate_to_file", &simulate_into, py::arg("scenario"),
+           py::arg("path"), py::arg("stop_on_unlock"), py::arg("progress"));
+}
+
+}  // namespace beamgyro::python

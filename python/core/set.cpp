@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "include/beamgyro/set.h"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "include/beamgyro/campaign.h"
+#include "python/core/bindings.h"
+#include "python/core/long_call.h"
+#include "python/core/recording.h"
+
+namespace beamgyro::python {
+namespace {
+
+SharedRecording recording_of(const Set& set, const std::string& run,
+                             std::uint32_t device) {
+  const py::gil_scoped_release released;
+  return std::make_shared<Recording>(set.recording(run, device));
+}
+
+SharedRecording slow_recording_of(const Set& set, const std::string& run,
+                                  std::uint32_t device) {
+  const py::gil_scoped_release released;
+  return std::make_shared<Recording>(set.slow_recording(run, device));
+}
+
+py::list parameters_of(const Set& set, const std::string& run,
+                       std::uint32_t device) {
+  py::list all;
+  for (const DrawnParameter& drawn : set.drawn_parameters(run, device))
+    all.append(
+        py::make_tuple(drawn.name, drawn.value, drawn.units, drawn.long_name));
+  return all;
+}
+
+py::list failures_of(const Set& set) {
+  py::list all;
+  for (const SetFailure& failure : set.failures())
+    all.append(py::make_tuple(failure.run, failure.device, failure.reason));
+  return all;
+}
+
+py::list verify(const Set& set, const py::object& on_progress) {
+  const std::vector<SetDefect> found = long_call(
+      on_progress,
+      [set](const Progress& progress) { return set.verify(progress); });
+  py::list all;
+  for (const SetDefect& defect : found)
+    all.append(py::make_tuple(defect.file, defect.what));
+  return all;
+}
+
+py::tuple generate_set(const Campaign& campaign,
+                       const std::filesystem::path& directory, unsigned jobs,
+                       bool resume, const py::object& on_progress) {
+  GenerationOutcome outcome =
+      long_call(on_progress, [=](const Progress& progress) {
+        return generate(campaign, directory,
+                        {.jobs = jobs, .resume = resume, .progress = progress});
+      });
+  return py::make_tuple(outcome.failures, std::move(outcome.warnings),
+                        std::move(outcome.text));
+}
+
+Campaign parse_campaign(
+    const std::vector<std::pair<std::filesystem::path, std::string>>& files,
+    std::optional<std::uint32_t> devices) {
+  std::vector<CampaignFile> all;
+  for (const auto& [path, text] : files) all.push_back({path, text});
+  return Campaign::parse(all, devices);
+}
+
+py::list files_of(const Campaign& campaign) {
+  py::list all;
+  for (const CampaignFile& file : campaign.files())
+    all.append(py::make_tuple(file.path, file.text));
+  return all;
+}
+
+}  // namespace
+
+void bind_set(py::module_& core) {
+  py::class_<Campaign>(core, "Campaign")
+      .def_static("read", &Campaign::read, py::arg("file"), py::arg("devices"))
+      .def_static("parse", &parse_campaign, py::arg("files"),
+                  py::arg("devices"))
+      .def_property_readonly("name", &Campaign::name)
+      .def_property_readonly("text", &Campaign::text)
+      .def_property_readonly("files", &files_of)
+      .def_property_readonly("devices", &Campaign::devices)
+      .def_property_readonly("seed", &Campaign::seed)
+      .def_property_readonly("runs", &Campaign::runs)
+      .def("device", &Campaign::device, py::arg("number"));
+  core.def("generate", &generate_set, py::arg("campaign"), py::arg("directory"),
+           py::arg("jobs"), py::arg("resume"), py::arg("progress"));
+  py::class_<Set>(core, "Set")
+      .def_static("open", &Set::open, py::arg("directory"))
+      .def_property_readonly("directory", &Set::directory)
+      .def_property_readonly("campaign", &Set::campaign)
+      .def_property_readonly("devices", &Set::devices)
+      .def_property_readonly("runs", &Set::runs)
+      .def_property_readonly("seed", &Set::seed)
+      .def_property_readonly("program_version", &Set::program_version)
+      .def_property_readonly("git_revision", &Set::git_revision)
+      .def_property_readonly("failures", &failures_of)
+      .def(
+          "part",
+          [](const Set& set, std::uint32_t device) {
+            return part_name(set.part(device));
+          },
+          py::arg("device"))
+      .def("recording", &recording_of, py::arg("run"), py::arg("device"))
+      .def("slow_recording", &slow_recording_of, py::arg("run"),
+           py::arg("device"))
+      .def("parameters", &parameters_of, py::arg("run"), py::arg("device"))
+      .def("verify", &verify, py::arg("progress"));
+}
+
+}  // namespace beamgyro::python

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: MIT
+"""The package that was built beside the program that is tested."""
+
+import os
+import pathlib
+import sys
+
+import pytest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "program"))
+
+from program import PROGRAM, SCENARIOS  # noqa: E402
+
+PACKAGE = PROGRAM.parent / "python"
+sys.path.insert(0, str(PACKAGE))
+os.environ["PYTHONPATH"] = os.pathsep.join(
+    filter(None, [str(PACKAGE), os.environ.get("PYTHONPATH")]))
+
+# Soaks of twenty minutes from -30 to 40 degC, a sample a second.
+SWEEP = {
+    "name": "sweep", "description": "short soaks", "fidelity": "quasistatic",
+    "device": str(SCENARIOS / "devices/nominal.toml"), "duration_s": 12000,
+    "output_rate_Hz": 1, "seed": 3,
+    "ambient": {"points": [[0, -30], [12000, 40]]},
+}
+
+
+@pytest.fixture(scope="session")
+def sweep_keys():
+    """A ramp of the temperature as a mapping."""
+    return SWEEP
+
+
+@pytest.fixture(scope="session")
+def sweeps():
+    """Three recordings over the temperatures, with other noise each."""
+    import beamgyro as bg
+    return [bg.run(SWEEP, seed=seed) for seed in (3, 4, 5)]

@@ -1,0 +1,103 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""The examples run, and their types and those of the package hold."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+
+import pytest
+
+from program import ROOT, SCENARIOS
+
+EXAMPLES = ROOT / "examples/python"
+PACKAGE = ROOT / "python"
+
+
+def run(folder, *arguments, **variables):
+    answer = subprocess.run(
+        [sys.executable, *map(str, arguments)], cwd=folder, text=True,
+        capture_output=True, check=False, timeout=500,
+        env={**os.environ, **variables})
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+    return answer.stdout
+
+
+def test_drift_curve(tmp_path):
+    script = EXAMPLES / "drift_curve.py"
+    lines = run(tmp_path, script, SCENARIOS / "devices/nominal.toml"
+                ).splitlines()
+    assert len(lines) == 12
+    assert lines[1].split()[0] == "-40"
+    code = [line for line in script.read_text().splitlines()
+            if line and not line.startswith(("#", '"""'))]
+    assert len(code) <= 10
+
+
+def test_sklearn_compensator(tmp_path):
+    pytest.importorskip("sklearn")
+    printed = run(tmp_path, EXAMPLES / "sklearn_compensator.py",
+                  SCENARIOS / "soak_sweep_train.toml",
+                  SCENARIOS / "soak_sweep_test.toml")
+    words = printed.splitlines()[0].split()
+    before, after = float(words[1]), float(words[4])
+    assert after < before / 2  # the tenfold is usual
+
+
+def test_torch_network(tmp_path):
+    pytest.importorskip("torch")
+    printed = run(tmp_path, EXAMPLES / "torch_network.py",
+                  SCENARIOS / "campaigns/small.toml", tmp_path / "set")
+    words = printed.splitlines()[0].split()
+    before, after = float(words[3]), float(words[6])
+    assert after < before
+    assert "test devices:" in printed
+
+
+def test_notebook(tmp_path):
+    """Its cells run in order; pytest needs no kernel for that."""
+    notebook = json.loads(
+        (EXAMPLES / "first_drift_curve.ipynb").read_text())
+    cells = ["".join(cell["source"]) for cell in notebook["cells"]
+             if cell["cell_type"] == "code"]
+    assert len(cells) == 7
+    (tmp_path / "scenarios").symlink_to(SCENARIOS)
+    script = tmp_path / "notebook.py"
+    script.write_text("\n\n".join(cells))
+    run(tmp_path, script)
+
+
+def test_types_of_the_examples(tmp_path):
+    """mypy --strict, and what the stub says of the compiled part."""
+    pytest.importorskip("mypy")
+    cache = tmp_path / "mypy"
+    scripts = sorted(EXAMPLES.glob("*.py"))
+    run(tmp_path, "-m", "mypy", "--strict", "--cache-dir", cache, *scripts,
+        MYPYPATH=str(PACKAGE))
+
+
+def test_stubs_are_those_of_the_package(tmp_path):
+    pytest.importorskip("mypy")
+    (tmp_path / "allowed").write_text("beamgyro\\.plots.*\n")
+    run(tmp_path, "-m", "mypy.stubtest", "beamgyro", "--allowlist",
+        tmp_path / "allowed", "--ignore-unused-allowlist",
+        "--ignore-missing-stub", MYPYPATH=str(PACKAGE))
+
+
+def test_every_public_object_has_a_docstring():
+    import beamgyro as bg
+    assert bg.__doc__
+    for name in bg.__all__:
+        thing = getattr(bg, name)
+        if name == "__version__":
+            continue
+        assert thing.__doc__, name
+        if isinstance(thing, type):
+            for member, value in vars(thing).items():
+                if not member.startswith("_") and (
+                        callable(value) or isinstance(
+                            value, (property, classmethod))):
+                    assert value.__doc__, f"{name}.{member}"
+    assert (pathlib.Path(bg.__file__).parent / "py.typed").exists()
