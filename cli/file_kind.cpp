@@ -99,7 +99,8 @@ std::vector<FileKind> kinds_of_json(std::string_view head) {
   // Of validate, its scores, allan, plan and sensitivity.
   if (std::ranges::any_of(
           std::array{"\"beamgyro-validation\"", "\"corrects_scale_factor\"",
-                     "\"clusters\"", "\"trade_off\"", "\"indices\""},
+                     "\"manifest_sha256\"", "\"clusters\"", "\"trade_off\"",
+                     "\"indices\""},
           holds))
     return {FileKind::kResult};
   return {};

@@ -129,10 +129,11 @@ class Recordings(PlotTest):
         self.assertEqual(curves(svg), ["curve-1-one-h5", "curve-1-two-h5",
                                        "curve-2-one-h5", "curve-2-two-h5"])
 
-    def test_a_name_with_a_space_and_a_dash(self):
+    def test_a_name_with_spaces_and_dollars(self):
         self.run_scenario("rest")
-        (self.dir / "rest.h5").rename(self.dir / "my -run.h5")
-        self.picture("./my -run.h5", name="a picture.svg")
+        (self.dir / "rest.h5").rename(self.dir / "my -run $x^$ 2.h5")
+        self.says(self.picture("my -run $x^$ 2.h5", name="a picture.svg"),
+                  "my -run $x^$ 2.h5")
 
 
 class Results(PlotTest):

@@ -11,12 +11,13 @@ import importlib.util
 import os
 import pathlib
 import sys
+from typing import Any, NoReturn
 
 HERE = pathlib.Path(__file__).resolve().parent
 WRONG_INPUT, NOT_POSSIBLE = 2, 3
 
 
-def load_package():
+def load_package() -> Any:
     """The package that this script belongs to, without the one around it,
     which needs its compiled part."""
     sys.path[:] = [folder for folder in sys.path
@@ -24,18 +25,19 @@ def load_package():
     spec = importlib.util.spec_from_file_location(
         "beamgyro_plots", HERE / "__init__.py",
         submodule_search_locations=[str(HERE)])
+    assert spec and spec.loader
     package = importlib.util.module_from_spec(spec)
     sys.modules["beamgyro_plots"] = package
     spec.loader.exec_module(package)
     return package
 
 
-def fail(status, message):
+def fail(status: int, message: object) -> NoReturn:
     print(message, file=sys.stderr)
     sys.exit(status)
 
 
-def require_window():
+def require_window() -> None:
     """Ends unless a window can be opened."""
     if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         fail(WRONG_INPUT, "no display for a window; expected "
@@ -53,7 +55,7 @@ def require_window():
              "in Debian); or use -o PICTURE.png")
 
 
-def show(figures):
+def show(figures: list[Any]) -> None:
     """Opens a window for each figure and waits until all are closed."""
     from matplotlib import pyplot
     for figure in figures:
@@ -63,7 +65,7 @@ def show(figures):
     pyplot.show()
 
 
-def main():
+def main() -> None:
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("files", nargs="+")
     parser.add_argument("-o", "--output")
@@ -85,7 +87,7 @@ def main():
         fail(NOT_POSSIBLE, f"{error}; pictures need python3-{error.name}")
 
 
-def draw(plots, arguments):
+def draw(plots: Any, arguments: argparse.Namespace) -> None:
     if arguments.each:
         plots.save_each(arguments.files[0], arguments.each)
     elif arguments.output:

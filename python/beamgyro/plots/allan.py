@@ -4,10 +4,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Mapping, Sequence
+from typing import Any, Callable, Mapping, Sequence
 
 import numpy as np
-from matplotlib import ticker
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -18,11 +17,12 @@ KINDS = {"oadev": "overlapping Allan", "adev": "Allan",
          "mdev": "modified Allan", "totdev": "total",
          "ohdev": "overlapping Hadamard", "hdev": "Hadamard"}
 # Each term as docs/reference/allan_deviation.md has it.
-TERMS = {"Q": lambda t, q: math.sqrt(3) * q / t,
-         "N": lambda t, n: n / np.sqrt(t),
-         "B": lambda t, b: math.sqrt(2 * math.log(2) / math.pi) * b + 0 * t,
-         "K": lambda t, k: k * np.sqrt(t / 3),
-         "R": lambda t, r: r * t / math.sqrt(2)}
+TERMS: dict[str, Callable[[Any, float], Any]] = {
+    "Q": lambda t, q: math.sqrt(3) * q / t,
+    "N": lambda t, n: n / np.sqrt(t),
+    "B": lambda t, b: math.sqrt(2 * math.log(2) / math.pi) * b + 0 * t,
+    "K": lambda t, k: k * np.sqrt(t / 3),
+    "R": lambda t, r: r * t / math.sqrt(2)}
 HEIGHT = 5.2
 
 
@@ -91,19 +91,17 @@ def draw(figure: Figure, results: Sequence[Mapping[str, Any]]) -> None:
     else:
         for k, (one, name) in enumerate(zip(results, names)):
             _curve(axes, one[kinds[0]], k, name)
-    axes.set(xscale="log", yscale="log", xlabel="averaging time τ [s]",
+    axes.set(xlabel="averaging time τ [s]",
              ylabel=style.quantity("deviation" if len(kinds) > 1 else
                                    KINDS[kinds[0]] + " deviation", units[0]))
     shown = [point["deviation"] for one in results for kind in kinds
              for point in one[kind]]
+    style.log_scale(axes.xaxis)
+    style.log_scale(axes.yaxis,
+                    (1, 2, 5) if max(shown) < 100 * min(shown) else ())
     axes.set_ylim(min(shown) / 3, max(shown) * 3)
     if len(results) == 1:
         _terms(axes, results[0], kinds[0])
-    if math.log10(axes.get_ylim()[1] / axes.get_ylim()[0]) < 3:
-        axes.yaxis.set_major_locator(ticker.LogLocator(subs=[1, 2, 5]))
-        axes.yaxis.set_minor_formatter(ticker.NullFormatter())
-    axes.yaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
-    axes.xaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
     if len(results) == 1:
         axes.legend(loc="upper right")
     else:

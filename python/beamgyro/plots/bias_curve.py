@@ -39,12 +39,13 @@ def bias(model: Mapping[str, Any], inputs: Values) -> Values:
         np.array([scale["half_width"] for scale in scales]) \
         if scales else inputs
     scale = model["bias_scale"]
-    return scale["centre"] + scale["half_width"] * _FUNCTIONS[model["kind"]](
+    shape = _FUNCTIONS[model["kind"]](
         {name: np.asarray(values) for name, values in
          model["parameters"].items()}, x)
+    return float(scale["half_width"]) * shape + float(scale["centre"])
 
 
-Parameters = Mapping[str, Any]
+Parameters = Mapping[str, Values]
 
 
 def _none(_: Parameters, x: Values) -> Values:
@@ -56,8 +57,9 @@ def _constant(p: Parameters, x: Values) -> Values:
 
 
 def _polynomial(p: Parameters, x: Values) -> Values:
-    return np.polynomial.polynomial.polyval(x[:, 0], p["coefficients"]) \
+    values: Values = np.polyval(p["coefficients"][::-1], x[:, 0]) \
         + x[:, 1:] @ p["slopes"]
+    return values
 
 
 def _table(p: Parameters, x: Values) -> Values:
@@ -69,8 +71,9 @@ def spline(knots: Values, values: Values, curvature: Values, x: Values
     k = np.clip(np.searchsorted(knots, x, "right") - 1, 0, len(knots) - 2)
     h = knots[k + 1] - knots[k]
     a, b = (knots[k + 1] - x) / h, (x - knots[k]) / h
-    return a * values[k] + b * values[k + 1] + h * h / 6 * (
+    curve: Values = a * values[k] + b * values[k + 1] + h * h / 6 * (
         (a**3 - a) * curvature[k] + (b**3 - b) * curvature[k + 1])
+    return curve
 
 
 def _spline(p: Parameters, x: Values) -> Values:
@@ -90,14 +93,16 @@ def _fuzzy(p: Parameters, x: Values) -> Values:
     weight = np.exp(exponent - exponent.max(axis=1, keepdims=True))
     weight /= weight.sum(axis=1, keepdims=True)
     lines = p["consequents"][:, 0] + x @ p["consequents"][:, 1:].T
-    return (weight * lines).sum(axis=1)
+    values: Values = (weight * lines).sum(axis=1)
+    return values
 
 
 def _radial_basis(p: Parameters, x: Values) -> Values:
     centres = p["centres"].reshape(len(p["weights"]), x.shape[1])
     square = ((x[:, None, :] - centres) ** 2).sum(axis=2)
-    return p["plane"][0] + x @ p["plane"][1:] \
+    values: Values = p["plane"][0] + x @ p["plane"][1:] \
         + np.exp(-square / (2 * p["width"]**2)) @ p["weights"]
+    return values
 
 
 def _bp(p: Parameters, x: Values) -> Values:

@@ -17,7 +17,8 @@ from .errors import PlotError
 BEYOND = 0.08  # of the range, drawn at both ends
 POINTS = 300
 SCORES = [("constant", "constant", style.GREY),
-          ("cubic", "baseline", style.YELLOW), ("compensator", "", style.AFTER)]
+          ("cubic", "baseline", style.YELLOW),
+          ("compensator", "", style.AFTER)]
 Document = Mapping[str, Any]
 
 
@@ -93,7 +94,8 @@ def _one(figure: Figure, one: Document) -> None:
     if stated:
         s = sigma(one["sigma"], T)
         rows[1].plot(T, s, color=style.AFTER)
-        rows[1].set(ylabel="stated σ [°/s]", ylim=(0, 1.15 * s.max()),
+        inside = s[(T >= low) & (T <= high)]
+        rows[1].set(ylabel="stated σ [°/s]", ylim=(0, 2 * inside.max()),
                     xlim=(T[0], T[-1]))
         _range(rows[1], low, high)
     rows[int(stated)].set_xlabel("measured temperature [°C]")
@@ -190,7 +192,8 @@ def _population(figure: Figure, one: Document) -> None:
         row[0].plot(T, middle, color=style.AFTER, label="mean of the devices")
         for k, mode in enumerate(strongest):
             row[1].plot(T, parts[mode], color=style.COLORS[k],
-                        ls=style.DASHES[k], label=("1st", "2nd", "3rd", "4th")[k])
+                        ls=style.DASHES[k],
+                        label=("1st", "2nd", "3rd", "4th")[k])
         row[1].axhline(0, color=style.GREY, lw=0.8)
         unit = style.spoken(_channel_unit(name))
         row[0].set_ylabel(f"{name.replace('_', ' ')} [{unit}]")

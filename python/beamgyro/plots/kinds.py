@@ -130,8 +130,8 @@ def _kind_of_json(data: dict[str, Any]) -> str | None:
             return kind
     if any(data.get(name) for name in allan.KINDS):
         return "allan"
-    if "verdict" in data and ({"runs", "overall"} <= data.keys() or
-                              {"devices", "set"} <= data.keys()):
+    if {"runs", "overall", "method"} <= data.keys() or \
+            {"devices", "set", "manifest_sha256"} <= data.keys():
         return "scores"
     return None
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from typing import Any, Mapping, Sequence
 
-from matplotlib import ticker
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -43,10 +42,7 @@ def draw(figure: Figure, plan: Mapping[str, Any]) -> None:
     axes.plot(chosen["hours"], plan["expected_rms_deg_per_s"]["median"], "o",
               ms=14, mfc="none", mew=1.6, color=style.BLACK, ls="",
               label="this schedule")
-    axes.set_yscale("log")
-    axes.yaxis.set_major_locator(ticker.LogLocator(subs=[1, 2, 5]))
-    axes.yaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
-    axes.yaxis.set_minor_formatter(ticker.NullFormatter())
+    style.log_scale(axes.yaxis, (1, 2, 5))
     axes.set(xlabel="time in the chamber [h] (numbers: soaks)",
              ylabel="rms left [°/s]")
     axes.legend(loc="upper right")

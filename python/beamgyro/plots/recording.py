@@ -36,26 +36,28 @@ class Run:
     """The variables of a recording, in the units in which they are drawn."""
 
     def __init__(self, data: Mapping[Any, Any], name: str = "") -> None:
-        attributes = getattr(data, "attrs", None) or data.get("attrs", {})
+        # Of a dataset or a mapping.
+        attributes: Any = getattr(data, "attrs", None) or data.get("attrs", {})
         self.name = name
         self.title = _text(attributes.get("title", ""))
         self.compensator = _text(attributes.get("compensator", ""))
         self.values = {key: _values(data[key], key, name)
                        for key in ("time", *DRAWN) if key in data}
-        if "time" not in self.values or not self.signals():
-            raise PlotError(f"{name}: no time or no signal; expected a "
-                            "recording with time, rate and temperature")
+        if "time" not in self.values:
+            raise PlotError(f"{name}: no variable time; expected a recording "
+                            "with time, rate and temperature")
         self.time = self.values["time"]
         if len(self.time) == 0:
             raise PlotError(f"{name}: no samples; expected one or more")
+        if not _panels_of(self):
+            raise PlotError(f"{name}: no value of {', '.join(DRAWN[:2])}, "
+                            "temperature, drive_frequency or quadrature; "
+                            "expected one or more")
         self.status = np.asarray(data["status"]).astype(np.uint8) \
             if "status" in data else np.zeros(len(self.time), np.uint8)
         self.bins = bins_of(self.time)
         self.means = bins_of(self.time, MEANS) if self.bins.merged \
             else self.bins
-
-    def signals(self) -> list[str]:
-        return [key for key in DRAWN if key in self.values]
 
     def __contains__(self, key: str) -> bool:
         return key in self.values and bool(
@@ -185,12 +187,13 @@ def _rows(figure: Figure, panels: Sequence[str]) -> list[Axes]:
 
 
 def _band(axes: Axes, run: Run, values: Values, scale: float, color: str,
-          label: str, noisy: bool = False, **options: Any) -> None:
+          label: str, noisy: bool = False, alpha: float = 0.3,
+          **options: Any) -> None:
     """The envelope of a series and its mean."""
     found = envelope(run.bins, values)
     if run.bins.merged:
         axes.fill_between(found.time / scale, found.low, found.high,
-                          color=color, alpha=0.3, lw=0.5)
+                          color=color, alpha=alpha, lw=0.5)
     if noisy:
         found = envelope(run.means, values)
     axes.plot(found.time / scale, found.mean, color=color, label=label,
@@ -345,7 +348,7 @@ def _draw_several(figure: Figure, runs: Sequence[Run]) -> None:
                 values = run.values[key[kind]]
             _band(axes, run, values, scale,
                   style.COLORS[k % len(style.COLORS)], name,
-                  kind != "temperature" and not run.turns,
+                  kind != "temperature" and not run.turns, 0.15,
                   ls=style.DASHES[k % len(style.DASHES)])
         axes.set_ylabel({"rate": "rate [°/s]", "error": "error [°/s]",
                          "left": "error left [°/s]",

@@ -6,7 +6,6 @@ from __future__ import annotations
 from typing import Any, Mapping, Sequence
 
 import numpy as np
-from matplotlib import ticker
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -27,23 +26,18 @@ def _runs(result: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 
 def height(result: Mapping[str, Any]) -> float:
-    if "devices" in result:
-        return 4.8
-    return 2.1 + 0.34 * len(_runs(result))
+    return 4.8 if "devices" in result else 2.1 + 0.34 * len(_runs(result))
 
 
 def draw(figure: Figure, result: Mapping[str, Any]) -> None:
-    panels = figure.subplots(1, 2, sharey=True)
     if "devices" in result:
-        _devices(panels, result)
-    else:
-        _each_run(panels, result)
+        _devices(figure, result)
+        return
+    panels = figure.subplots(1, 2, sharey=True)
+    _each_run(panels, result)
     for axes, (_, words) in zip(panels, PANELS):
         axes.set_xlabel(style.quantity(words, "deg/s"))
-        axes.set_xscale("log")
-        axes.xaxis.set_major_locator(ticker.LogLocator(subs=[1, 3]))
-        axes.xaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
-        axes.xaxis.set_minor_formatter(ticker.NullFormatter())
+        style.log_scale(axes.xaxis, (1, 3))
         axes.margins(x=0.1)
     # Wider than its panel: the layout sees an empty title in its place.
     panels[0].set_title(" ", pad=10)
@@ -74,23 +68,27 @@ def _each_run(panels: Sequence[Axes], result: Mapping[str, Any]) -> None:
                  (f"; {rest} more runs in the file" if rest > 0 else ""))
 
 
-def _devices(panels: Sequence[Axes], result: Mapping[str, Any]) -> None:
-    """The share of the devices that keep to each value."""
-    scored = [one.get("overall", one) for one in result["devices"]]
-    for axes, (figure_of_merit, _) in zip(panels, PANELS):
-        for kind, (words, color, _) in SCORED.items():
-            values = np.sort([
-                one[kind][figure_of_merit] for one in scored if one.get(kind)
-                and one[kind].get(figure_of_merit) is not None])
-            if len(values):
-                share = 100 * np.arange(1, len(values) + 1) / len(values)
-                axes.step(values, share, where="post", color=color,
-                          label=words)
-    panels[0].set_ylabel("devices at or below [%]")
-    panels[0].set_ylim(0, 102)
-    style.titled(figure_of(panels),
-                 f"{result['verdict'].upper()}: {len(scored)} devices of "
-                 f"{result['set']}", "residual in blocks of 60 s")
+def _devices(figure: Figure, result: Mapping[str, Any]) -> None:
+    """The share of the scored runs of all devices that keep to each value."""
+    axes = figure.subplots()
+    rows = result["devices"]
+    for kind, (words, color, _) in SCORED.items():
+        values = np.sort([row[f"{kind}_rms_deg_per_s"] for row in rows
+                          if row.get(f"{kind}_rms_deg_per_s") is not None])
+        share = 100 * np.arange(1, len(values) + 1) / max(1, len(values))
+        axes.plot(values, share, color=color, label=words,
+                  drawstyle="steps-post",
+                  marker="o" if len(values) < 10 else "")
+    axes.set(xlabel=style.quantity(PANELS[0][1], "deg/s"), ylim=(0, 103),
+             ylabel="runs at or below [%]")
+    style.log_scale(axes.xaxis, (1, 3))
+    style.legend_above(axes, 3)
+    devices = len({row["device"] for row in rows})
+    kept = sum(bool(row["passed"]) for row in rows)
+    style.titled(figure, f"{result.get('verdict', 'scores').upper()}: set "
+                 f"{result['set']}",
+                 f"{devices} devices, {len(rows)} runs, of which {kept} pass; "
+                 "residual in blocks of 60 s")
 
 
 def figure_of(panels: Sequence[Axes]) -> Figure:

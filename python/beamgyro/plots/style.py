@@ -10,7 +10,9 @@ import textwrap
 from typing import Any, Sequence
 
 import matplotlib
+from matplotlib import ticker
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 
 # Of Okabe and Ito: told apart by colour-blind eyes.
@@ -29,6 +31,7 @@ RESULTS = {"pass": BLUE, "fail": ORANGE, "undecided": GREY, None: BLACK}
 
 WIDTH = 8.0  # [inch]
 LETTERS_PER_INCH = 14  # of the words below a title
+LONGEST_TITLE = 75
 STYLE = {
     "figure.figsize": (WIDTH, 4.5),  # 1600 x 900 pixels
     "figure.dpi": 100,
@@ -51,6 +54,7 @@ STYLE = {
     "legend.fontsize": 9,
     "svg.hashsalt": "beamgyro",  # else the ids in an SVG change with every run
     "svg.fonttype": "none",  # text stays text
+    "text.parse_math": False,  # a name may have a dollar
     "font.family": ["DejaVu Sans"],
 }
 # Nothing that changes with the day or the machine.
@@ -95,11 +99,22 @@ def quantity(words: str, unit: str) -> str:
     return f"{words} [{spoken(unit)}]" if unit not in ("", "1") else words
 
 
+def log_scale(axis: Axis, marks: Sequence[int] = ()) -> None:
+    """A logarithmic axis with plain numbers: at powers of ten, or at these
+    `marks` in every decade."""
+    axis.axes.set(**{f"{axis.axis_name}scale": "log"})
+    if marks:
+        axis.set_major_locator(ticker.LogLocator(subs=marks))
+    axis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+    axis.set_minor_formatter(ticker.NullFormatter())
+
+
 def titled(figure: Figure, title: str, about: str = "") -> None:
     """A title at the left, and in smaller letters what it is about."""
     width, height = figure.get_size_inches()
     lines = textwrap.wrap(spoken(about), int(LETTERS_PER_INCH * width))
     # The layout leaves room for as many empty lines.
+    title, = shortened([title], LONGEST_TITLE)
     figure.suptitle(title + "\n " * len(lines), x=0.01, ha="left",
                     weight="bold")
     if lines:

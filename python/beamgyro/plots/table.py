@@ -66,9 +66,12 @@ def draw(figure: Figure, tables: Sequence[Mapping[str, Any]]) -> None:
                           marker="" if len(T) > 1 else "o",
                           color=style.COLORS[k % len(style.COLORS)],
                           ls=style.DASHES[j if len(tables) == 1 else
-                                          (k + 3 * j) % len(style.DASHES)],
+                                          k % len(style.DASHES)],
                           label=label if len(tables) == 1 else
-                          (name if j == 0 else None))
+                          (name if j == 0 else None),
+                          lw=1.5 if len(tables) == 1 or not j else 0.8)
+        if len(columns) > 1 and len(tables) > 1:
+            words += " (thin: sense)"
         axes.set_ylabel(style.quantity(words, unit))
         if words in ("bias", "quadrature", "in-phase error"):
             axes.axhline(0, color=style.GREY, lw=0.8, zorder=1)

@@ -18,7 +18,7 @@ from . import style
 ROLES = {"before": style.BEFORE, "after": style.AFTER, "fit": style.BLACK,
          "limit": style.BLACK}
 MOST_MARKERS = 14  # on one curve
-SHOWN = ("bias_over_temperature", "warm_up", "hysteresis",
+SHOWN = ("population_yield", "bias_over_temperature", "warm_up", "hysteresis",
          "residual_histogram", "scale_factor_over_temperature", "allan")
 MOST_SHOWN = 6
 
@@ -75,8 +75,9 @@ def draw_figure(axes: Axes, figure: Mapping[str, Any]) -> None:
     for name in "xy":
         axis = figure[name]
         axes.set(**{f"{name}label": style.quantity(axis["label"],
-                                                   axis["unit"] or ""),
-                    f"{name}scale": axis["scale"]})
+                                                   axis["unit"] or "")})
+        if axis["scale"] == "log":
+            style.log_scale(getattr(axes, f"{name}axis"))
 
 
 def each(result: Mapping[str, Any]) -> Iterator[tuple[str, Figure]]:
@@ -96,7 +97,8 @@ def each(result: Mapping[str, Any]) -> Iterator[tuple[str, Figure]]:
 
 def _shown(result: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """The figures that matter most, then others in their order."""
-    by_id = {figure["id"]: figure for figure in result.get("figures", [])}
+    by_id = {figure["id"]: figure for figure in result.get("figures", [])
+             if any(series["x"] for series in figure["series"])}
     first = [by_id[name] for name in SHOWN if name in by_id]
     others = [one for one in by_id.values() if one not in first]
     return (first + others)[:MOST_SHOWN]
@@ -120,12 +122,14 @@ def _judged(result: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 def _share(limit: Mapping[str, Any], value: float) -> float:
     """A value as the share of what its limit allows: 1 is the limit."""
-    low, high = limit["min"], limit["max"]
+    low: float | None = limit["min"]
+    high: float | None = limit["max"]
     value = abs(value) if limit["absolute"] else value
     if low is not None and high is not None:
         return abs(value - (low + high) / 2) / ((high - low) / 2)
     if high is not None:
         return value / high if high > 0 else 1 + (value - high)
+    assert low is not None
     return low / value if low > 0 and value > 0 else 1 + (low - value)
 
 
@@ -139,12 +143,11 @@ def _limits(axes: Axes, limits: Sequence[Mapping[str, Any]]) -> None:
                        compared["value"] / (compared["value"] +
                                             limit["margin"])
                        if compared["value"] + limit["margin"] > 0 else 1.0)
-            ends = (used, used)
+            ends = [used, used]
         else:
             used = max(least, _share(limit, compared["value"]))
-            ends = tuple(sorted(max(least, _share(limit, end)) for end in
-                                compared.get("interval") or
-                                [compared["value"]] * 2))
+            ends = sorted(max(least, _share(limit, end)) for end in
+                          compared.get("interval") or [compared["value"]] * 2)
         color = style.RESULTS.get(limit["result"], style.BLACK)
         axes.barh(k, used - least, left=least, height=0.6, color=color)
         axes.plot(ends, [k, k], color=style.BLACK, lw=1.2)
@@ -155,7 +158,8 @@ def _limits(axes: Axes, limits: Sequence[Mapping[str, Any]]) -> None:
     axes.set_yticks(range(len(limits)), [one["metric"] for one in limits])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
-    axes.set(xscale="log", xlim=(least, max(10, 3 * axes.get_xlim()[1])),
+    style.log_scale(axes.xaxis)
+    axes.set(xlim=(least, max(10, 3 * axes.get_xlim()[1])),
              xlabel="share of the limit (line: the limit; bars end at the "
                     "value, with its 95 % interval)")
     axes.set_title("Limits")
