@@ -39,6 +39,15 @@ class Install(unittest.TestCase):
                   "run.h5")
         self.assertIn("recording", self.call(program, "info", "run.h5"))
 
+    def test_pictures_need_nothing_of_the_source_tree(self):
+        program = self.prefix / "bin/beamgyro"
+        self.call(program, "run", self.scenario("ten_minutes.toml"), "-o",
+                  "run.h5")
+        self.call(program, "plot", "run.h5", "-o", "run.svg")
+        self.assertIn("rate at rest", (self.dir / "run.svg").read_text())
+        shipped = self.prefix / "share/beamgyro/python"
+        self.assertEqual(list(shipped.rglob("__pycache__")), [])
+
     def test_the_specifications_are_installed(self):
         specs = self.prefix / "share/beamgyro/specs"
         self.assertEqual(sorted(path.name for path in specs.iterdir()),
