@@ -191,6 +191,15 @@ class ThirdParty(unittest.TestCase):
                 with self.subTest(f"{package}: {licence}"):
                     self.assertIn(licence.lower(), file.read_text().lower())
 
+    def test_the_citation_names_this_version_and_licence(self):
+        citation = (ROOT / "CITATION.cff").read_text()
+        version = ".".join(re.findall(
+            r"#define BEAMGYRO_VERSION_[A-Z]+ (\d+)",
+            (ROOT / "include/beamgyro/version.h").read_text()))
+        self.assertRegex(version, r"^\d+\.\d+\.\d+$")
+        self.assertIn(f"\nversion: {version}\n", citation)
+        self.assertIn("\nlicense: MIT\n", citation)
+
     def test_every_library_that_is_linked_is_listed(self):
         listed = (ROOT / "THIRD_PARTY.md").read_text()
         packages = (ROOT / "scripts/setup.sh").read_text()
