@@ -23,7 +23,7 @@ std::shared_ptr<const Device::State> state_of(
   state->text = std::move(loaded.text);
   state->name = std::move(name);
   state->overrides = std::move(overrides);
-  state->device = std::move(loaded.device);
+  state->device = loaded.device;
   return state;
 }
 
