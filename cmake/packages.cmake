@@ -6,7 +6,7 @@ set(CPACK_PACKAGE_CONTACT "beamgyro authors <beamgyro@users.noreply.github.com>"
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL runtime dev)
-if(TARGET beamgyro_python)
+if(TARGET _core)
   list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE

@@ -57,11 +57,27 @@ class Packages(unittest.TestCase):
     def field(self, package, name):
         return said("dpkg-deb", "-f", self.debs[package], name)
 
+    def test_there_are_three(self):
+        self.assertEqual(list(self.debs), ["beamgyro", "libbeamgyro-dev",
+                                           "python3-beamgyro"])
+
+    def test_the_unpacked_module_runs_an_unpacked_scenario(self):
+        usr = self.dir / "python3-beamgyro/usr"
+        scenario = (self.dir / "beamgyro/usr/share/beamgyro/scenarios"
+                    / "ten_minutes.toml")
+        said_by = said(
+            "/usr/bin/python3", "-c", "import sys, beamgyro; "
+            "print(beamgyro.__file__, beamgyro.run(sys.argv[1]).rate.shape)",
+            scenario, cwd=self.dir, env={
+                **os.environ, "PYTHONDONTWRITEBYTECODE": "1",
+                "PYTHONPATH": str(usr / "lib/python3/dist-packages")})
+        self.assertEqual(said_by, f"{usr}/lib/python3/dist-packages/beamgyro/"
+                         "__init__.py (3000,)\n")
+
     def test_another_time_and_place_give_the_same_bytes(self):
         elsewhere = self.dir / "another place"
         said(ROOT / "scripts/package.sh", BUILD, elsewhere, umask=0o077,
              env={**os.environ, "TZ": "Asia/Tokyo", "LC_ALL": "C.UTF-8"})
-        self.assertGreater(len(self.debs), 1)
         for path in self.debs.values():
             with self.subTest(path.name):
                 self.assertEqual(path.read_bytes(),
