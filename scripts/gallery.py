@@ -70,7 +70,8 @@ def main():
             picture.thumbnail((WIDTH, 4 * WIDTH), Image.LANCZOS)
             target = PICTURES / path.name
             for colors in COLORS:
-                picture.quantize(colors, Image.MAXCOVERAGE).save(target, optimize=True)
+                picture.quantize(colors, Image.MAXCOVERAGE).save(
+                    target, optimize=True)
                 if target.stat().st_size <= LARGEST:
                     break
             print(f"{target.name}: {target.stat().st_size} bytes")
