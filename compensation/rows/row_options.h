@@ -11,6 +11,9 @@ struct RowOptions {
   double seconds = 60.0;
   // [K/min]; rows whose temperature changes faster are left out
   std::optional<double> steady_K_per_min;
+  // [min]; a row has the temperature at which the sensor would settle with the
+  // beam as it is, T - lag dT/dt
+  double lag_min = 0.0;
 };
 
 }  // namespace beamgyro::internal

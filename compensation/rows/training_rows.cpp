@@ -67,6 +67,43 @@ double slope(const ArrayXd& t, const ArrayXd& y) {
   return spread > 0.0 ? (dt * y).sum() / spread : 0.0;
 }
 
+// How the temperature of a block changes.
+struct Change {
+  double time, temperature;  // [s], [degC], means
+  double slope;              // [K/min]
+  int cycle;
+  bool steady;
+};
+
+// Changes of blocks that are this far away tell the rate at a block, because
+// the slope over a single one has the noise of the sensor.
+constexpr std::size_t kBlockReach = 2;
+
+// Rate [K/min] at a block, between steady ones that follow each other.
+double rate_about(const std::vector<Change>& changes, std::size_t at) {
+  const auto follow = [&](std::size_t k) {  // k and k + 1
+    return changes[k].steady && changes[k + 1].steady &&
+           changes[k].cycle == changes[k + 1].cycle;
+  };
+  std::size_t first = at, last = at;
+  while (first > 0 && at - first < kBlockReach && follow(first - 1)) --first;
+  while (last + 1 < changes.size() && last - at < kBlockReach && follow(last))
+    ++last;
+  if (first == last) return changes[at].slope;
+  return (changes[last].temperature - changes[first].temperature) /
+         (changes[last].time - changes[first].time) * kMinute;
+}
+
+// A mean temperature less the lag, within the limits of its samples.
+double without_lag(double mean, double lag, const TemperatureRange& limits) {
+  return lag == 0.0 ? mean
+                    : std::clamp(mean - lag, limits.lowest, limits.highest);
+}
+
+bool is_temperature(const Input& input) {
+  return input.kind == InputKind::kColumn && input.column == "temperature";
+}
+
 // Numbers the legs of temperatures in turn: a leg ends at the extreme from
 // which the temperature then turns by kLegReversal.
 class LegCounter {
@@ -146,25 +183,31 @@ class RowCollector {
     const ArrayXd bias = column("rate") - truth;
     const ArrayXd time = array_view(recording.time);
     note_output(recording);
+    const std::vector<Change> changes = changes_of(blocks, time, temperature);
     int cycle = -1;
     ++run_count_;
     const int device = device_number(run);
-    for (const Block& block : blocks) {
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      const Block& block = blocks[k];
       const ArrayXd measured = temperature(block.samples);
       check_finite(measured, "temperature", block, time);
       const ArrayXd T = measured.max(clamp_.lowest).min(clamp_.highest);
       const ArrayXd b = bias(block.samples);
       check_finite(b, "rate - true_rate", block, time);
-      if (options_.steady_K_per_min &&
-          !(std::abs(slope(time(block.samples), T)) * kMinute <=
-            *options_.steady_K_per_min))
-        continue;
+      if (options_.steady_K_per_min && !changes[k].steady) continue;
+      const double lag = options_.lag_min > 0.0
+                             ? options_.lag_min * rate_about(changes, k)
+                             : 0.0;  // [K]
       range_.lowest = std::min(range_.lowest, T.minCoeff());
       range_.highest = std::max(range_.highest, T.maxCoeff());
       slowest_ = std::min(slowest_, truth(block.samples).minCoeff());
       fastest_ = std::max(fastest_, truth(block.samples).maxCoeff());
-      for (Index i = 0; i < inputs_; ++i)
-        values_.push_back(features.col(i)(block.samples).mean());
+      for (Index i = 0; i < inputs_; ++i) {
+        const double mean = features.col(i)(block.samples).mean();
+        const auto& input = inputs[static_cast<std::size_t>(i)];
+        values_.push_back(is_temperature(input) ? without_lag(mean, lag, clamp_)
+                                                : mean);
+      }
       if (block.cycle != cycle) {
         cycle = block.cycle;
         ++cycle_count_;
@@ -173,11 +216,11 @@ class RowCollector {
       runs_.push_back(run_count_);
       devices_.push_back(device);
       cycles_.push_back(cycle_count_);
-      legs_.add(T.mean());
+      legs_.add(without_lag(T.mean(), lag, clamp_));
       const double mean = measured.mean();
       outside_.push_back(mean < clamp_.lowest || mean > clamp_.highest);
       values_.push_back(time(block.samples).mean());
-      values_.push_back(T.mean());
+      values_.push_back(without_lag(T.mean(), lag, clamp_));
       values_.push_back(b.mean());
     }
   }
@@ -201,6 +244,24 @@ class RowCollector {
   }
 
  private:
+  // Nothing when no option needs them.
+  std::vector<Change> changes_of(const std::vector<Block>& blocks,
+                                 const ArrayXd& time,
+                                 const ArrayXd& temperature) const {
+    const double steady = options_.steady_K_per_min.value_or(HUGE_VAL);
+    std::vector<Change> changes;
+    if (!options_.steady_K_per_min && options_.lag_min == 0.0) return changes;
+    for (const Block& block : blocks) {
+      const ArrayXd T =
+          temperature(block.samples).max(clamp_.lowest).min(clamp_.highest);
+      const ArrayXd t = time(block.samples);
+      const double rate = slope(t, T) * kMinute;
+      changes.push_back(
+          {t.mean(), T.mean(), rate, block.cycle, std::abs(rate) <= steady});
+    }
+    return changes;
+  }
+
   int device_number(const TrainingRun& run) {
     const auto next = static_cast<int>(device_numbers_.size());
     return device_numbers_

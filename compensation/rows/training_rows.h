@@ -46,6 +46,9 @@ constexpr double kLegReversal = 2.0;  // [K]
 /// - Blocks with less than half the samples of the fullest block of their run
 ///   are left out, and with steady_K_per_min also blocks over which the
 ///   measured temperature changes faster (slope of a straight line).
+/// - With lag_min, the temperature of a block and the input "temperature" are
+///   less by lag_min times its rate, within `range`. The rate is that between
+///   blocks up to two before and after it that are steady all the way.
 /// - Temperatures are clamped to `range` as at run time.
 /// - With `scale_factor`, s of the measured temperature, the label is rate - s
 ///   true_rate.

@@ -53,6 +53,13 @@ RowOptions read_rows(const ConfigTable& table, const std::string& kind) {
   if (rows.steady_K_per_min && rows.seconds == 0.0)
     table.fail("steady_K_per_min",
                "is the slope over the seconds of a row, and seconds is 0");
+  rows.lag_min = table.number_or("lag_min", 0.0, non_negative());
+  if (rows.lag_min > 0.0 && rows.seconds == 0.0)
+    table.fail("lag_min",
+               "needs the slope over the seconds of a row, and "
+               "seconds is 0");
+  if (table.has("lag_min") && kind != AdaptedSpec::kName)
+    table.fail("lag_min", "is for the kind \"adapted\" alone");
   return rows;
 }
 

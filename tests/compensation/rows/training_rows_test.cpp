@@ -79,6 +79,22 @@ TEST(TrainingRows, SteadyRowsOnlyWhenAsked) {
   EXPECT_EQ(rows.range.highest, 20.0);
 }
 
+TEST(TrainingRows, HaveTheTemperatureThatTheSensorWouldSettleTo) {
+  // The sensor settles with 8 min at 20 degC, and the beam lags by as much.
+  RecordedRun run{.duration = 1800.0, .step = 10.0};
+  run.temperature = [](double t) { return 20.0 + 4.0 * std::exp(-t / 480.0); };
+  RowOptions options;
+  options.lag_min = 8.0;
+  const TrainingRows rows =
+      training_rows(one(run.recording()), kTemperature, options);
+  ASSERT_EQ(rows.size(), 30);
+  for (Eigen::Index k = 2; k < rows.size() - 2; ++k)
+    // The chord of the exponential over four minutes is 1 % steeper.
+    EXPECT_NEAR(rows.temperature(k), 20.0 + 8.0 * std::exp(-rows.time(k) / 480),
+                0.05);
+  EXPECT_LT((rows.inputs.col(0) - rows.temperature).abs().maxCoeff(), 1e-12);
+}
+
 TEST(TrainingRows, BadRunsAreNamedWithWhatIsWrong) {
   const Recording good = drifting_run().recording();
   const auto message = [](const Recording& recording) {

@@ -295,6 +295,8 @@ TEST(ModelFile, WhatAKindCannotTakeIsRefused) {
            Wrong{"kind = \"bp\"\n[bp]\nhidden = [6]\n", "inputs"},
            Wrong{"kind = \"px4\"\nrows = { steady_K_per_min = 1 }\n",
                  "seconds is 0"},
+           Wrong{"kind = \"spline\"\nrows = { lag_min = 7 }\n",
+                 "\"adapted\" alone"},
            Wrong{"kind = \"bp\"\ninputs = [\"temperature\"]\n"
                  "[bp]\nhidden = [6]\nrate_penalty = 1\n",
                  "do not feel the rate"},
