@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "compensation/models/array_view.h"
@@ -40,8 +41,30 @@ AdaptationSigma read_adaptation(const JsonNode& node) {
           static_cast<int>(node.at("devices").integer(1, 2147483647))};
 }
 
+// The squares of c add up to the number of devices less one for each mode. Of
+// some of the devices that is so within a few per cent.
+void check_coefficients(const JsonNode& node, const Eigen::MatrixXd& c,
+                        int devices) {
+  if (c.rows() == 0) return;
+  const Index expected = std::min<Index>(devices, kMostCoefficients);
+  if (c.rows() != expected)
+    node.fail(
+        fmt::format("of {} devices, must be of {}: the population was "
+                    "learned from {}",
+                    c.rows(), expected, devices));
+  if (c.cols() == 0) return;
+  const double square =
+      c.squaredNorm() / static_cast<double>(c.size()) * devices / (devices - 1);
+  constexpr double kLargest = 2.0;  // and its inverse the smallest
+  if (!(square < kLargest && square > 1.0 / kLargest))
+    node.fail(fmt::format(
+        "mean square {:.3g}, must be 1: each is over the deviation of its mode",
+        square));
+}
+
 // c of the devices; files of older programs have none.
-Eigen::MatrixXd read_coefficients(const JsonNode& node, Index modes) {
+Eigen::MatrixXd read_coefficients(const JsonNode& node, Index modes,
+                                  int count) {
   if (!node.has("coefficients")) return {};
   const std::vector<JsonNode> devices = node.at("coefficients").elements();
   Eigen::MatrixXd coefficients(static_cast<Index>(devices.size()), modes);
@@ -53,6 +76,7 @@ Eigen::MatrixXd read_coefficients(const JsonNode& node, Index modes) {
                               c.size(), modes));
     coefficients.row(k) = array_view(c).transpose();
   }
+  check_coefficients(node.at("coefficients"), coefficients, count);
   return coefficients;
 }
 
@@ -100,7 +124,8 @@ Population read_population(const JsonNode& node) {
   population.modes.resize(size, static_cast<Index>(modes.size()));
   for (std::size_t m = 0; m < modes.size(); ++m)
     population.modes.col(static_cast<Index>(m)) = read_vector(modes[m], size);
-  population.coefficients = read_coefficients(node, population.modes.cols());
+  population.coefficients =
+      read_coefficients(node, population.modes.cols(), population.devices);
   if (node.has("sigma")) population.sigma = read_adaptation(node.at("sigma"));
   return population;
 }

@@ -207,6 +207,21 @@ class Plan(ProgramTest):
         plan = json.loads((self.dir / "old.plan.json").read_text())
         self.assertEqual(plan["forecast"], "gaussian")
 
+    def test_a_population_whose_coefficients_do_not_fit_is_refused(self):
+        whole = json.loads((self.dir / "population.json").read_text())
+        learned = whole["population"]
+        for key, value, says in [
+                ("devices", 50, "of 49 devices, must be of 50"),
+                ("devices", 20, "of 49 devices, must be of 20"),
+                ("coefficients", [[3 * c for c in device] for device
+                                  in learned["coefficients"]],
+                 "mean square 9, must be 1"),
+        ]:
+            self.write("edited.json", json.dumps(
+                {**whole, "population": {**learned, key: value}}))
+            with self.subTest(key):
+                self.rejected("plan", "edited.json", "--soaks", "2", says=says)
+
     def test_bad_input_is_refused(self):
         self.write("words.txt", "-40, 5, warm\n")
         self.write("cubic.toml",
