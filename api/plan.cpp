@@ -62,14 +62,12 @@ const Population& population_of(const beamgyro::Compensator& compensator) {
   return *own.population;
 }
 
-ChamberView view_of(const beamgyro::Device& device) {
+ChamberView view_of(const beamgyro::Device& device) try {
   const Device& own = device.state().device;
-  if (own.thermal.oven)
-    throw std::invalid_argument(fmt::format(
-        "{}: has an oven, which holds the beam at one temperature whatever the "
-        "chamber does; expected a device without",
-        device.name()));
   return ChamberView(own.thermal, own.temperature_sensor.offset);
+} catch (const std::invalid_argument& error) {
+  throw std::invalid_argument(
+      fmt::format("{}: {}", device.name(), error.what()));
 }
 
 // What the population knows, in whole kelvins of the chamber.
@@ -113,17 +111,20 @@ SlowNoise slow_noise(const NoiseParameters& noise) {
           std::hypot(flicker, white) / kDegree};
 }
 
-// What the device's thermal model says at the ends of the range and right after
+// What the device's thermal model says of soaks and of the minutes after
 // power-on, and its noise.
 SoakBehaviour behaviour_of(const PlanOptions& options, const Device& device,
                            const TemperatureRange& range,
                            const ChamberTime& time) {
+  const double farthest =
+      std::abs(range.lowest - time.start) > std::abs(range.highest - time.start)
+          ? range.lowest
+          : range.highest;
   SoakBehaviour found;
-  found.rows = slowest_rows(
-      device.thermal,
-      {range.lowest, std::clamp(time.start, range.lowest, range.highest),
-       range.highest},
-      time, kSteady);
+  found.rule.lag =
+      lag_minutes(device.thermal, time.start, time.ramp, found.rule.steady);
+  found.rows = slowest_rows(device.thermal, farthest, time, found.rule);
+  found.start_row = start_row(device.thermal, range.lowest, time, found.rule);
   found.noise = slow_noise(device.noise);
   found.minutes = options.hold_min;
   return found;
@@ -224,6 +225,7 @@ SoakPlanResult PlanStudy::result(
   found.trade_offs = s.planner.trade_offs(
       std::min(std::max(count, kLeastTable), s.planner.most_soaks()));
   found.time = s.planner.time_of(found.chosen);
+  found.rule = s.planner.rule();
   found.range = s.model.range();
   found.observed = observed_of(s.model, s.options.bias_only);
   found.devices = s.model.population().devices;
@@ -242,7 +244,7 @@ SoakPlanResult PlanStudy::result(
   for (const TradeOff& trade : found.trade_offs)
     result.trade_offs.push_back(schedule_of(trade.planned));
   result.schedule = schedule_text(
-      found.chosen.temperatures, found.time,
+      found.chosen.temperatures, found.time, found.rule,
       s.options.device_name.empty() ? s.device.name() : s.options.device_name);
   result.text = plan_text(found);
   result.json = plan_json(found).dump(2) + "\n";

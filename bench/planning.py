@@ -20,6 +20,7 @@ import argparse
 import json
 import pathlib
 import subprocess
+import tomllib
 
 import h5py
 import numpy as np
@@ -30,7 +31,8 @@ SCENARIOS = ROOT / "scenarios"
 ADAPTED = SCENARIOS / "population/adapted.toml"
 HOLD, RAMP, LAST = 2700, 0.2, 600  # of the check [s, K/min], and rows used [s]
 NOISE, SHARE = 0.03, 0.01  # PointNoise of population.h
-WIDTH, STEADY = 2.0, 0.05  # of a point [K], and of a row [K/min]
+WIDTH, REACH = 2.0, 2  # of a point [K], and of a rate [rows]
+ROWS = tomllib.loads(ADAPTED.read_text())["rows"]
 SAMPLES, PERIOD = 6, 10.0  # of a row, and seconds between them
 CHAMBER = np.arange(-40.0, 51.0)
 SOAKS = range(2, 8)
@@ -64,26 +66,45 @@ def truth(folder):
     return sensor.mean(0), bias
 
 
-def rows_of(columns):
-    """Means of the steady minutes of each device."""
+def rates(minute, T, slope, steady):
+    """Of the minutes of a device, between steady ones up to REACH away."""
+    found = slope.copy()
+    for k in range(len(T)):
+        first = last = k
+        while first > max(k - REACH, 0) and steady[first - 1]:
+            first -= 1
+        while last < min(k + REACH, len(T) - 1) and steady[last + 1]:
+            last += 1
+        if steady[k] and last > first:
+            found[k] = (T[last] - T[first]) / (minute[last] - minute[first])
+    return found
+
+
+def rows_of(columns, limits):
+    """Means of the minutes of each device, the first of them the temperature
+    without the lag, and which are steady."""
+    columns = [np.clip(columns[0], *limits), *columns[1:]]
     size = columns[0].shape[1]
-    means = [[] for _ in columns]
-    steady = []
+    means, slopes, minute = [], [], []
     for first in range(0, size - SAMPLES // 2 + 1, SAMPLES):
         block = [of[:, first:first + SAMPLES] for of in columns]
         weight = np.arange(block[0].shape[1]) * PERIOD
+        minute.append((first * PERIOD + weight.mean()) / 60)
         weight -= weight.mean()
-        slope = block[0] @ weight / (weight ** 2).sum() * 60
-        steady.append(abs(slope) <= STEADY)
-        for found, of in zip(means, block):
-            found.append(of.mean(1))
-    return np.transpose(means, (2, 1, 0)), np.transpose(steady)
+        slopes.append(block[0] @ weight / (weight ** 2).sum() * 60)
+        means.append([of.mean(1) for of in block])
+    means, slopes = np.transpose(means, (2, 0, 1)), np.transpose(slopes)
+    steady = abs(slopes) <= ROWS["steady_K_per_min"]
+    for own, slope, stays in zip(means, slopes, steady):
+        own[:, 0] = np.clip(own[:, 0] - ROWS["lag_min"] *
+                            rates(minute, own[:, 0], slope, stays), *limits)
+    return means, steady
 
 
-def points(folder, run):
+def points(folder, run, limits):
     """The points of each device that `adapted` makes of the steady rows."""
     for path in sorted(folder.glob(f"{run}_0*.h5")):
-        for rows, steady in zip(*rows_of(signals(path)[1])):
+        for rows, steady in zip(*rows_of(signals(path)[1], limits)):
             own = rows[steady]
             groups = []
             for row in own[np.argsort(own[:, 0], kind="stable")]:
@@ -137,6 +158,7 @@ def plans(program, population, out, hold):
                         *flags, *words], check=True,
                        stdout=subprocess.DEVNULL)
         plan = json.loads(file.read_text())
+        assert plan["schedule"]["rows"].items() <= ROWS.items()
         for row in plan["trade_off"]:
             for kind in ["planned"] if hold else ["planned", "even"]:
                 if row["soaks"] in SOAKS:
@@ -206,7 +228,8 @@ def simulate(program, population_file, folder, table, out):
         both = row["observed"] == "both"
         settled = np.interp(row["temperatures_degC"], CHAMBER, sensor)
         left, of_soaks = [], []
-        for device, rows in enumerate(points(out / "soaks", f"soaks_{k}")):
+        for device, rows in enumerate(points(out / "soaks", f"soaks_{k}",
+                                             population.grid[[0, -1]])):
             inside = abs(rows[:, :1] - settled).min(1) < WIDTH
             left.append(population.left(rows, bias[device], both))
             of_soaks.append(population.left(rows[inside], bias[device], both))

@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "planning/chamber_view.h"
 
+#include <stdexcept>
+
 #include "config/units.h"
-#include "sim/thermal/thermal_oven.h"
 
 namespace beamgyro::internal {
 
 ChamberView::ChamberView(const ThermalParameters& parameters, double offset)
-    : network_(parameters), offset_(offset) {}
+    : network_(parameters), offset_(offset) {
+  if (parameters.oven)
+    throw std::invalid_argument(
+        "the device has an oven, which holds the beam at one temperature "
+        "whatever the chamber does; expected a device without");
+}
 
 NodeVector ChamberView::settled(double chamber) const {
   const ThermalSurroundings air{chamber + kZeroCelsius, true};
-  const NodeVector power = network_.powered_heating(0.0, 0.0);
-  const auto& oven = network_.parameters().oven;
-  return oven ? oven_steady_state(network_, *oven, power, air).temperature
-              : network_.steady_state(power, air);
+  return network_.steady_state(network_.powered_heating(0.0, 0.0), air);
 }
 
 double ChamberView::sensor_temperature(double chamber) const {

@@ -12,7 +12,8 @@ namespace beamgyro::internal {
 /// heat it.
 class ChamberView {
  public:
-  /// `offset` [K] is what the sensor adds to its temperature. Throws as
+  /// `offset` [K] is what the sensor adds to its temperature. Throws
+  /// std::invalid_argument for a device with an oven, otherwise as
   /// ThermalNetwork.
   explicit ChamberView(const ThermalParameters& parameters,
                        double offset = 0.0);

@@ -84,12 +84,15 @@ std::vector<double> Planner::lags(const std::vector<double>& soaks,
 
 ResidualForecast Planner::forecast(const std::vector<double>& soaks,
                                    std::size_t minutes) const {
+  const std::optional<StartRow> row = start_row_of(soaks);
   SoakErrors errors = {lags(soaks, minutes), {}};
+  if (row) errors.lag.push_back(row->lag);
   if (behaviour_.noise)
     errors.noise = slow_noise_root(
         *behaviour_.noise, soaks,
-        {time_.start, time_.ramp, static_cast<double>(minutes) * 60.0});
-  return forecast_residual(model_, soaks, errors);
+        {time_.start, time_.ramp, static_cast<double>(minutes) * 60.0},
+        row.has_value());
+  return forecast_residual(model_, with_start_row(soaks, row), errors);
 }
 
 std::size_t Planner::hold_minutes(const std::vector<double>& soaks) const {
@@ -132,7 +135,11 @@ SoakPlan Planner::judged(std::vector<double> soaks) const {
 }
 
 SoakPlan Planner::even(std::size_t count) const {
-  return judged(even_spacing(model_.range(), count));
+  auto known = even_.find(count);
+  if (known == even_.end())
+    known =
+        even_.emplace(count, judged(even_spacing(model_.range(), count))).first;
+  return known->second;
 }
 
 // The way [K] that the holds leave time for.
@@ -141,15 +148,17 @@ double Planner::longest_way(std::size_t count, double hours,
   return (hours * 60.0 - static_cast<double>(count) * hold / 60.0) * time_.ramp;
 }
 
-// The soaks of least mean variance over a way, or none that is so short.
-std::optional<std::vector<double>> Planner::best(std::size_t count,
-                                                 double longest) const {
-  if (longest < 0.0) return {};
-  DesignLimits limits = limits_;
-  limits.longest_way = longest;
-  const SoakDesign design(model_, std::move(limits));
-  std::optional<std::vector<double>> found;
-  double least = HUGE_VAL;
+std::optional<StartRow> Planner::start_row_of(
+    const std::vector<double>& soaks) const {
+  const auto& row = behaviour_.start_row;
+  return row && has_start_row(soaks, time_.start, *row) ? row : std::nullopt;
+}
+
+// The best end of exchanges from several starts.
+Planner::Ending Planner::best_of(const DesignLimits& limits,
+                                 std::size_t count) const {
+  const SoakDesign design(model_, limits);
+  Ending best;
   std::vector<std::vector<double>> starts = {
       design.extended({}, count), even_spacing(model_.range(), count)};
   const std::size_t last = limits_.candidates.size() - 1;
@@ -160,18 +169,36 @@ std::optional<std::vector<double>> Planner::best(std::size_t count,
     if (start.size() < count || !design.is_allowed(start)) continue;
     start = design.exchanged(std::move(start));
     const double left = design.mean_variance(start);
-    if (left < least) {
-      least = left;
-      found = std::move(start);
-    }
+    if (left < best.mean_variance) best = {std::move(start), left};
   }
-  return found;
+  return best;
+}
+
+// The soaks of least mean variance over a way, or none that is so short.
+std::optional<std::vector<double>> Planner::best(std::size_t count,
+                                                 double longest) const {
+  if (longest < 0.0) return {};
+  DesignLimits limits = limits_;
+  limits.longest_way = longest;
+  Ending found = best_of(limits, count);
+  if (behaviour_.start_row) {
+    limits.start_row = behaviour_.start_row;
+    Ending downwards = best_of(limits, count);
+    if (downwards.mean_variance < found.mean_variance)
+      found = std::move(downwards);
+  }
+  if (found.soaks.empty()) return {};
+  return found.soaks;
 }
 
 SoakPlan Planner::with_soaks(std::size_t count) const {
-  const std::optional<std::vector<double>> soaks = best(count, kUnlimited);
-  // Greedy soaks may leave gaps that hold no further one apart.
-  return soaks ? judged(*soaks) : even(count);
+  auto known = planned_.find(count);
+  if (known == planned_.end()) {
+    const std::optional<std::vector<double>> soaks = best(count, kUnlimited);
+    // Greedy soaks may leave gaps that hold no further one apart.
+    known = planned_.emplace(count, soaks ? judged(*soaks) : even(count)).first;
+  }
+  return known->second;
 }
 
 SoakPlan Planner::within_hours(double hours) const {

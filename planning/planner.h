@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -25,8 +27,10 @@ struct SoakPlan {
 /// What soaks of a device show beside its curves, and how long they may last.
 struct SoakBehaviour {
   std::vector<SoakRows> rows;               // slowest_rows()
+  RowRule rule = {};                        // of these
   std::optional<SlowNoise> noise = {};      // none: that of SoakModel::noise()
   std::optional<std::size_t> minutes = {};  // of a hold, chosen by the user
+  std::optional<StartRow> start_row = {};   // of ways down from the start
 };
 
 /// A number of soaks, planned and evenly spaced.
@@ -50,6 +54,8 @@ class Planner {
   /// few rows, and when every hold has.
   Planner(const SoakModel& model, TemperatureRange chamber,
           const ChamberTime& time, SoakBehaviour behaviour);
+
+  const RowRule& rule() const { return behaviour_.rule; }
 
   /// The largest number of soaks that the limits hold apart, up to kMostSoaks.
   std::size_t most_soaks() const;
@@ -82,6 +88,10 @@ class Planner {
   ChamberTime time_of(const SoakPlan& plan) const;
 
  private:
+  struct Ending {  // of exchanges
+    std::vector<double> soaks;
+    double mean_variance = std::numeric_limits<double>::infinity();
+  };
   double longest_way(std::size_t count, double hours, double hold) const;
   std::vector<double> lags(const std::vector<double>& soaks,
                            std::size_t minutes) const;
@@ -91,6 +101,8 @@ class Planner {
   SoakPlan judged_with(std::vector<double> soaks, double hold) const;
   std::optional<std::vector<double>> best(std::size_t count,
                                           double longest) const;
+  Ending best_of(const DesignLimits& limits, std::size_t count) const;
+  std::optional<StartRow> start_row_of(const std::vector<double>& soaks) const;
   SoakPlan shortened(const SoakPlan& plan, double residual) const;
 
   const SoakModel& model_;
@@ -98,6 +110,8 @@ class Planner {
   SoakBehaviour behaviour_;
   std::size_t shortest_ = 0;  // [min], hold with enough rows
   DesignLimits limits_;
+  // Of each number of soaks, once it was asked for.
+  mutable std::map<std::size_t, SoakPlan> planned_, even_;
 };
 
 constexpr double kHoldLoss = 0.05;  // [-], of the median

@@ -6,37 +6,44 @@
 #include <cmath>
 #include <iterator>
 
+#include "config/config_node.h"
+
 namespace beamgyro::internal {
 namespace {
 
-// A basic string of TOML.
 std::string toml_string(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char letter : text) {
-    if (letter == '"' || letter == '\\') quoted += '\\';
-    if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f)
-      quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(letter));
-    else
-      quoted += letter;
-  }
-  return quoted + "\"";
+  ConfigNode node;
+  node.kind = ConfigNode::Kind::kText;
+  node.text = text;
+  return toml_text(node);
 }
+
+}  // namespace
 
 std::string clock_time(double seconds) {
   const auto minutes = std::lround(seconds / 60.0);
   return fmt::format("{}:{:02}", minutes / 60, minutes % 60);
 }
 
-}  // namespace
+std::string soak_count(std::size_t count) {
+  return fmt::format("{} soak{}", count, count == 1 ? "" : "s");
+}
+
+std::string rule_text(const RowRule& rule) {
+  return fmt::format("rows = {{ steady_K_per_min = {:g}, lag_min = {:g} }}",
+                     rule.steady, rule.lag);
+}
 
 std::string schedule_text(const std::vector<double>& soaks,
-                          const ChamberTime& time, const std::string& device) {
+                          const ChamberTime& time, const RowRule& rule,
+                          const std::string& device) {
   const std::vector<Visit> stops = visits(soaks, time);
   std::string text = fmt::format(
-      "# A calibration planned from a population: {} soak{}, {:.2f} h.\n"
-      "# Chamber at {:g} degC, power on at 0:00, ramps of {:g} K/min.\n",
-      stops.size(), stops.size() == 1 ? "" : "s", chamber_hours(soaks, time),
-      time.start, time.ramp);
+      "# A calibration planned from a population: {}, {:.2f} h.\n"
+      "# Chamber at {:g} degC, power on at 0:00, ramps of {:g} K/min.\n"
+      "# To be trained on with {}.\n",
+      soak_count(stops.size()), chamber_hours(soaks, time), time.start,
+      time.ramp, rule_text(rule));
   auto out = std::back_inserter(text);
   std::string points = fmt::format("  [0, {}],\n", time.start);
   for (const Visit& stop : stops) {

@@ -27,7 +27,7 @@ SoakDesign::SoakDesign(const SoakModel& model, DesignLimits limits)
       equations_(model.equations(limits_.candidates)) {}
 
 MatrixXd SoakDesign::covariance(const std::vector<double>& soaks) const {
-  const MatrixXd H = model_.equations(soaks);
+  const MatrixXd H = model_.equations(with_start_row(soaks, limits_.start_row));
   MatrixXd A = H.transpose() * H;
   A.diagonal().array() += 1.0;
   return A.llt().solve(MatrixXd::Identity(A.rows(), A.cols()));
@@ -38,9 +38,12 @@ double SoakDesign::mean_variance(const std::vector<double>& soaks) const {
 }
 
 bool SoakDesign::is_allowed(const std::vector<double>& soaks) const {
-  for (std::size_t i = 0; i < soaks.size(); ++i)
-    for (std::size_t j = i + 1; j < soaks.size(); ++j)
-      if (std::abs(soaks[i] - soaks[j]) < kLeastDistance) return false;
+  const auto& row = limits_.start_row;
+  if (row && !has_start_row(soaks, limits_.start, *row)) return false;
+  const std::vector<double> shown = with_start_row(soaks, row);
+  for (std::size_t i = 0; i < shown.size(); ++i)
+    for (std::size_t j = i + 1; j < shown.size(); ++j)
+      if (std::abs(shown[i] - shown[j]) < kLeastDistance) return false;
   return shortest_way(soaks, limits_.start) <= limits_.longest_way + kWaySlack;
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
+#include "planning/soak_length.h"
 #include "planning/soak_model.h"
 
 namespace beamgyro::internal {
@@ -14,6 +16,8 @@ struct DesignLimits {
   double start = 25.0;  // [degC]
   // [K], of shortest_way() from the start
   double longest_way = std::numeric_limits<double>::infinity();
+  // Soaks are visited from the start downwards, and show its row.
+  std::optional<StartRow> start_row = {};
 };
 
 /// Smallest distance [K] of two soaks: points that are closer together than

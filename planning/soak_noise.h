@@ -16,9 +16,11 @@ struct SlowNoise {
 };
 
 /// Returns L, so that L z with normal numbers z are the errors [deg/s] of these
-/// soaks, a row for each in the order given.
+/// soaks, a row for each in the order given, and with `start_row` of a row
+/// right after power-on behind them.
 Eigen::MatrixXd slow_noise_root(const SlowNoise& noise,
                                 const std::vector<double>& soaks,
-                                const ChamberTime& time);
+                                const ChamberTime& time,
+                                bool start_row = false);
 
 }  // namespace beamgyro::internal

@@ -4,18 +4,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <iterator>
+
+#include "planning/schedule_file.h"
 
 namespace beamgyro::internal {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string hours_and_minutes(double seconds) {
-  const auto minutes = std::lround(seconds / 60.0);
-  return fmt::format("{}:{:02}", minutes / 60, minutes % 60);
-}
 
 std::string temperatures_text(const SoakPlan& plan) {
   return fmt::format("{:g}", fmt::join(plan.temperatures, ", "));
@@ -30,19 +26,21 @@ std::string forecast_columns(const SoakPlan& plan) {
 std::string schedule_lines(const PlanResult& result) {
   const SoakPlan& plan = result.chosen;
   std::string text = fmt::format(
-      "{} soak{} in {:.2f} h for {:g} to {:g} degC, of {}; population of {} "
+      "{} in {:.2f} h for {:g} to {:g} degC, of {}; population of {} "
       "devices\n",
-      plan.temperatures.size(), plan.temperatures.size() == 1 ? "" : "s",
-      plan.hours, result.range.lowest, result.range.highest,
-      fmt::join(result.observed, " and "), result.devices);
+      soak_count(plan.temperatures.size()), plan.hours, result.range.lowest,
+      result.range.highest, fmt::join(result.observed, " and "),
+      result.devices);
   for (const Visit& visit : visits(plan.temperatures, result.time))
     fmt::format_to(std::back_inserter(text), "  {:>5} to {:>5}  {:g} degC\n",
-                   hours_and_minutes(visit.begin), hours_and_minutes(visit.end),
+                   clock_time(visit.begin), clock_time(visit.end),
                    visit.temperature);
   fmt::format_to(std::back_inserter(text),
                  "from {:g} degC at 0:00, ramps of {:g} K/min, soaks of {:g} "
-                 "min\n\n",
-                 result.time.start, result.time.ramp, result.time.hold / 60.0);
+                 "min\n"
+                 "to be trained on with {}\n\n",
+                 result.time.start, result.time.ramp, result.time.hold / 60.0,
+                 rule_text(result.rule));
   return text;
 }
 
@@ -95,6 +93,9 @@ Json schedule_json(const PlanResult& result) {
           {"ramp_K_per_min", result.time.ramp},
           {"hours", result.chosen.hours},
           {"start_degC", result.time.start},
+          {"rows",
+           {{"steady_K_per_min", result.rule.steady},
+            {"lag_min", result.rule.lag}}},
           {"visits", std::move(stops)}};
 }
 

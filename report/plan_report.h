@@ -9,6 +9,7 @@
 #include "planning/chamber_time.h"
 #include "planning/planner.h"
 #include "planning/residual_forecast.h"
+#include "planning/soak_length.h"
 
 namespace beamgyro::internal {
 
@@ -18,6 +19,7 @@ struct PlanResult {
   std::vector<TradeOff> trade_offs;
   std::vector<SoakPlan> candidates;   // of the user
   ChamberTime time;                   // of the chosen plan
+  RowRule rule;                       // of rows that are trained on
   TemperatureRange range;             // [degC], of the chamber
   std::vector<std::string> observed;  // "bias" and channels
   int devices = 0;                    // of the population

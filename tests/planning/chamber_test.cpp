@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -46,20 +47,26 @@ TEST(ChamberView, InverseReturnsTheChamber) {
   EXPECT_NEAR(view.chamber_temperature(sensor), -40, 1e-6);
 }
 
+TEST(ChamberView, RefusesAnOven) {
+  ThermalParameters heated;
+  heated.oven.emplace();
+  EXPECT_THROW(ChamberView{heated}, std::invalid_argument);
+}
+
 TEST(SoakLength, LagFollowsTheSlowestMassAndSoak) {
   const ThermalParameters nominal;
   ThermalParameters slow;
   slow.beam_heat_capacity *= 2;
   const ChamberTime time{25, 2, 0};
-  const auto usual = slowest_rows(nominal, {-40}, time, kSteady);
-  const auto late = slowest_rows(slow, {-40}, time, kSteady);
+  const auto usual = slowest_rows(nominal, -40, time, {});
+  const auto late = slowest_rows(slow, -40, time, {});
   EXPECT_GT(late[59].mean_lag, 1.5 * usual[59].mean_lag);
   EXPECT_LT(usual[119].mean_lag, usual[59].mean_lag);
   // Slower than the parameters say, and than a soak that is nearer.
   EXPECT_GT(usual[59].mean_lag,
-            rows_over_time(nominal, 25, -40, 2, kSteady)[59].mean_lag);
-  EXPECT_EQ(slowest_rows(nominal, {20, -40}, time, kSteady)[59].mean_lag,
-            usual[59].mean_lag);
+            rows_over_time(nominal, 25, -40, 2, {})[59].mean_lag);
+  EXPECT_GT(usual[59].mean_lag,
+            slowest_rows(nominal, 20, time, {})[59].mean_lag);
 }
 
 TEST(SoakLength, LagOfAShortRampIsThatOfALongOneLessAnEarlierOne) {
@@ -79,8 +86,41 @@ TEST(SoakLength, LagOfAShortRampIsThatOfALongOneLessAnEarlierOne) {
   EXPECT_EQ(mean_lag(rows, 30, 0), 0.0);
 }
 
+TEST(SoakLength, RowsReadWithTheLagOfTheDeviceNeedNotBeSettled) {
+  const double lag = lag_minutes({}, 25, 2, kSteady);
+  ThermalParameters slow;
+  slow.beam_heat_capacity *= 2;
+  EXPECT_GT(lag_minutes(slow, 25, 2, kSteady), lag + 2);
+  for (const double soak : {-40.0, 10.0, 50.0}) {
+    const auto as_read = rows_over_time({}, 25, soak, 2, {kSteady, 0.0});
+    const auto rows = rows_over_time({}, 25, soak, 2, {kSteady, lag});
+    ASSERT_GE(rows[19].rows, kLeastSteadyRows);
+    EXPECT_LT(std::abs(rows[19].mean_lag),
+              0.35 * std::abs(as_read[19].mean_lag))
+        << soak;
+  }
+}
+
+TEST(StartRow, IsWhereHeatOfTheElectronicsAndRampAreInBalance) {
+  const RowRule rule = {kSteady, lag_minutes({}, 25, 2, kSteady)};
+  const auto row = start_row({}, -40, {25, 2, 0}, rule);
+  ASSERT_TRUE(row);
+  // The beam is at 25 degC then, 2 to 3 K above the chamber once it is settled.
+  const ChamberView view({});
+  const double settled = view.sensor_temperature(row->temperature) +
+                         view.beam_excess(row->temperature) + row->lag;
+  EXPECT_NEAR(settled, 25, 0.3);
+  EXPECT_LT(std::abs(row->lag), 1.0);
+  EXPECT_TRUE(has_start_row({-20, 0}, 25, *row));
+  EXPECT_FALSE(has_start_row({-20, 50}, 25, *row));  // first up
+  EXPECT_FALSE(has_start_row({24}, 25, *row));       // there before
+  // No ramp down, and one that is all steady.
+  EXPECT_FALSE(start_row({}, 30, {25, 2, 0}, rule));
+  EXPECT_FALSE(start_row({}, -40, {25, 0.1, 0}, rule));
+}
+
 TEST(SoakLength, LagDecaysToTheSettledBeam) {
-  const auto rows = rows_over_time({}, 25, -40, 2, 0.05);
+  const auto rows = rows_over_time({}, 25, -40, 2, {});
   ASSERT_EQ(rows.size(), static_cast<std::size_t>(kLongestSoak));
   EXPECT_EQ(rows.front().rows, 0);        // the sensor still follows the ramp
   EXPECT_GT(rows.back().rows, 300);       // steady for most of six hours
@@ -89,7 +129,7 @@ TEST(SoakLength, LagDecaysToTheSettledBeam) {
 
 TEST(ScheduleText, NamesTheDeviceInTomlAndEndsWithTheLastSoak) {
   const std::string text =
-      schedule_text({-9, -23}, {25, 2, 1800}, "a \"b\"\\c.toml");
+      schedule_text({-9, -23}, {25, 2, 1800}, {0.2, 7.5}, "a \"b\"\\c.toml");
   EXPECT_NE(text.find("device = \"a \\\"b\\\"\\\\c.toml\"\n"), text.npos);
   EXPECT_NE(text.find("duration_s = 5040\n"), text.npos);  // 48 K and an hour
   EXPECT_NE(text.find("#    0:17 to  0:47  hold -9 degC\n"), text.npos);

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "compensation/inputs/input.h"
@@ -143,6 +145,30 @@ TEST(Planner, HoldsAreAsShortAsTheLagAllows) {
   EXPECT_THROW(
       Planner(model, population().range(), {}, {.rows = rows, .minutes = 6}),
       std::invalid_argument);
+}
+
+TEST(Planner, CountsTheRowAfterPowerOnOfWaysThatGoDown) {
+  const SoakModel model = model_of(population());
+  const StartRow row = {37.0, 0.5, 4.0};
+  const auto planner = [&](std::optional<StartRow> of) {
+    return Planner(model, population().range(), {38.0, 2.0, 0.0},
+                   {.rows = {{5, 0.0}}, .start_row = of});
+  };
+  const SoakPlan with = planner(row).with_soaks(2);
+  ASSERT_TRUE(has_start_row(with.temperatures, 38.0, row));
+  const auto [low, high] =
+      std::pair{with.temperatures[0], with.temperatures[1]};
+  EXPECT_EQ(with.expected.median,
+            forecast_residual(model, {low, high, 37.0}, {{0.0, 0.0, 0.5}, {}})
+                .median);
+  // The row tells what a soak near it would.
+  EXPECT_LE(high, 37.0 - kLeastDistance);
+  const SoakDesign shown(
+      model, {.candidates = every_kelvin(), .start = 38.0, .start_row = row});
+  const auto without = planner({}).with_soaks(2).temperatures;
+  EXPECT_LT(shown.mean_variance({low, high}),
+            SoakDesign(model, {every_kelvin()}).mean_variance(without));
+  EXPECT_FALSE(shown.is_allowed({38.0, 10.0}));
 }
 
 TEST(SoakModel, RefusesARangeThatThePopulationDoesNotKnow) {

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import tempfile
 import time
+import tomllib
 import unittest
 
 import h5py
@@ -75,21 +76,21 @@ class Plan(ProgramTest):
             chamber = file["true_ambient_temperature"][()]
             now, sensor = file["time"][()], file["temperature"][()]
             self.assertEqual(chamber[0], 25)
-        # Each soak is there when it is said to be, and the device has settled.
+        # Each soak is there when it is said to be, and its rows are steady.
         for visit in plan["schedule"]["visits"]:
             held = (now >= visit["begin_s"]) & (now <= visit["end_s"])
             np.testing.assert_allclose(chamber[held],
                                        visit["temperature_degC"], atol=1e-6)
             last = (now > visit["end_s"] - 120) & held
             drift = np.ptp([sensor[last][:6].mean(), sensor[last][-6:].mean()])
-            self.assertLess(drift, 0.1)  # [K], two steps of the sensor
+            self.assertLess(drift, 0.2)  # [K], in a minute; steady rows
         self.assertAlmostEqual(plan["schedule"]["hours"] * 3600,
                                now[-1] + 10, delta=10)
 
     def test_json_has_the_keys_that_scripts_hold_on_to(self):
         plan = self.plan("--soaks", "3", "--range", "-40:50")
         self.assertEqual(sorted(plan["schedule"]), [
-            "hold_s", "hours", "ramp_K_per_min", "start_degC",
+            "hold_s", "hours", "ramp_K_per_min", "rows", "start_degC",
             "temperatures_degC", "visits"])
         self.assertEqual(plan["even"]["temperatures_degC"], [-40, 5, 50])
         for one in [plan, plan["even"]]:
@@ -143,10 +144,8 @@ class Plan(ProgramTest):
                              plan["trade_off"][6]["planned"]["hold_s"])
             return [row["planned"]["hold_s"] / 60 for row in plan["trade_off"]]
         usual = holds()
-        # What many soaks tell is spoilt by less of a lag.
-        self.assertLess(usual[1], usual[6])
         for hold in usual:
-            self.assertTrue(15 <= hold <= 60 and hold == int(hold), hold)
+            self.assertTrue(12 <= hold <= 60 and hold == int(hold), hold)
         device = (self.dir / "device.toml").read_text()
         slow, changed = re.subn(
             r"(?m)^beam_heat_capacity_J_per_K = ([\d.]+)",
@@ -159,6 +158,31 @@ class Plan(ProgramTest):
         self.assertEqual(holds("--hold", "50"), [50] * 7)
         self.rejected("plan", "population.json", "--soaks", "3", "--hold", "5",
                       says="--hold 5: soaks of ")
+
+    def test_adapted_toml_reads_rows_as_the_shipped_device_needs_it(self):
+        rows = tomllib.loads(
+            (SCENARIOS / "population/adapted.toml").read_text())["rows"]
+        plan = self.plan("--soaks", "2", "-o", "soaks.toml")
+        self.assertEqual({"seconds": 60, **plan["schedule"]["rows"]}, rows)
+        self.assertIn(f"lag_min = {rows['lag_min']} }}",
+                      (self.dir / "soaks.toml").read_text())
+
+    def test_ways_that_go_down_have_one_steady_row_after_power_on(self):
+        plan = self.plan("--soaks", "2", "-o", "soaks.toml", "--device",
+                         "device.toml")
+        self.assertLess(max(plan["schedule"]["temperatures_degC"]), 15)
+        first = plan["schedule"]["visits"][0]["begin_s"]
+        minutes = int(first // 60)
+        time = 10 * np.arange(6) - 25
+        for seed in range(5):
+            self.ok("run", "soaks.toml", "--seed", str(seed), "-o", "soaks.h5")
+            with h5py.File(self.dir / "soaks.h5") as file:
+                rows = file["temperature"][:6 * minutes].reshape(-1, 6)
+            slopes = rows @ time / (time @ time) * 60
+            steady = np.flatnonzero(
+                abs(slopes) <= plan["schedule"]["rows"]["steady_K_per_min"])
+            self.assertEqual(list(steady), [2])
+            self.assertAlmostEqual(rows[2].mean(), 27.2, delta=0.3)
 
     def test_the_noise_of_the_device_is_forecast(self):
         usual = self.plan("--soaks", "7")["expected_rms_deg_per_s"]
@@ -239,7 +263,7 @@ class Plan(ProgramTest):
                 (["--soaks", "2.5"], "--soaks 2.5"),
                 (["--soaks", "21"], "--soaks 21"),
                 (["--hours", "-1"], "--hours -1"),
-                (["--hours", "0.5"], "too few for two soaks"),
+                (["--hours", "0.4"], "too few for two soaks"),
                 (["--residual", "0"], "--residual 0"),
                 (["--residual", "1e-6"], "out of reach"),
                 ([*two, "--range", "-60:50"], "the population knows"),
