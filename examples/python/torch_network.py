@@ -66,9 +66,9 @@ def main(campaign: str, directory: str, devices: int = 20) -> None:
     device = made.devices_of("test")[0]
     recording = made.recording(made.runs[0], device)
     answer = bg.compensate(network, recording)
-    before = (recording.rate - recording.true_rate).std()
-    after = (answer.compensated_rate - answer.true_rate).std()
-    print(f"device {device}: 1-sigma {float(before):.3f} deg/s before, "
+    before = ((recording.rate - recording.true_rate) ** 2).mean() ** 0.5
+    after = ((answer.compensated_rate - answer.true_rate) ** 2).mean() ** 0.5
+    print(f"device {device}: rms {float(before):.3f} deg/s before, "
           f"{float(after):.3f} deg/s after")
     result = bg.validate(network, set=made)
     print(f"test devices: {result.verdict}")

@@ -59,17 +59,6 @@ class _Files:
         recording_of(run).write(path)
         return path
 
-    def of_device(self, device: DeviceLike) -> str:
-        """Return the file of a device."""
-        if isinstance(device, (str, os.PathLike)):
-            return os.fspath(device)
-        unit = device_of(device)
-        if unit.overrides:
-            raise ValueError(
-                f"{unit!r}: has replaced keys, which no device file has; "
-                "expected a device file, or a device that is one")
-        return self.of_text(FilePath(unit.name).name, unit.text)
-
     def of_text(self, name: str, text: str) -> str:
         """Return a TOML file with a text."""
         path = self._path(name if name.endswith(".toml") else f"{name}.toml")
@@ -139,13 +128,13 @@ def validate(compensator: Any, runs: Optional[Runs] = None, *,
             options["recordings"] = [files.of_run(name, run)
                                      for name, run in named_runs(runs)]
         elif set is not None:
-            options["set"] = (set.directory if isinstance(set, Set)
-                              else os.fspath(set))
+            options["set"] = (set if isinstance(set, Set)
+                              else Set(set))._native
             options["runs"] = list(set_runs)
             options["devices"] = list(set_devices)
         else:
             assert device is not None
-            options["device"] = files.of_device(device)
+            options["device"] = device_of(device)._native
             options["qualification"] = (
                 _shipped.file("scenarios/qualification.toml")
                 if qualification is None else qualification)

@@ -3,6 +3,7 @@
 
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -52,6 +53,18 @@ class Install(unittest.TestCase):
         specs = self.prefix / "share/beamgyro/specs"
         self.assertEqual(sorted(path.name for path in specs.iterdir()),
                          ["paper.toml", "tactical.toml", "uav.toml"])
+
+    def test_the_python_package_runs_from_the_prefix(self):
+        package = self.prefix / "lib/python3/dist-packages"
+        code = ("import sys; sys.path.insert(0, sys.argv[1]); "
+                "import beamgyro as bg; from beamgyro import _shipped; "
+                "print(bg.__file__, _shipped.program(), sep='\\n'); "
+                "scenario = _shipped.file('scenarios/ten_minutes.toml'); "
+                "print(scenario, bg.run(scenario).sizes['time'], sep='\\n')")
+        printed = self.call(sys.executable, "-c", code, package).splitlines()
+        self.assertEqual(printed[0], str(package / "beamgyro/__init__.py"))
+        self.assertEqual(printed[1], str(self.prefix / "bin/beamgyro"))
+        self.assertGreater(int(printed[-1]), 100)
 
     def test_a_plugin_is_compiled_with_the_installed_header(self):
         self.call("cc", "-shared", "-fPIC", f"-I{self.prefix}/include",

@@ -3,12 +3,14 @@
 """Compensators of Python: functions, estimators, networks."""
 
 import pickle
+import shutil
 
 import numpy as np
 import pytest
 
 import beamgyro as bg
-from program import SCENARIOS
+import qualified
+from program import SCENARIO, SCENARIOS, ramp
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::beamgyro.BeamgyroWarning")  # none has held-out data
@@ -165,3 +167,21 @@ def test_other_units_are_refused(sweeps):
     other.rate.attrs["units"] = "rad/s"
     with pytest.raises(ValueError, match="rate: units"):
         bg.compensate(bg.train(CUBIC, sweeps[0]), other)
+
+
+def test_a_model_is_trained_and_judged_on_a_simulated_device(tmp_path):
+    for name, text in {"short.toml": qualified.SHORT, "ramp.toml": ramp(),
+                       "warm_up.toml": SCENARIO}.items():
+        (tmp_path / name).write_text(text)
+    shutil.copy(SCENARIOS / "devices/nominal.toml", tmp_path / "device.toml")
+    device = bg.Device(tmp_path / "device.toml")
+    limits = {"limits": {"residual_rms_deg_per_s":
+                         {"max": 0.1, "source": "a test"}}, "name": "own"}
+    shares = []
+    result = bg.validate(CUBIC, device=device, spec=limits,
+                         qualification=tmp_path / "short.toml",
+                         progress=shares.append)
+    assert "residual_rms_deg_per_s" in result.metrics
+    assert all(0 <= share <= 1 for share in shares)
+    with pytest.raises(ValueError, match="one of"):
+        bg.validate(CUBIC, "a.h5", device=device)

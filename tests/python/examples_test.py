@@ -62,7 +62,7 @@ def test_notebook(tmp_path):
         (EXAMPLES / "first_drift_curve.ipynb").read_text())
     cells = ["".join(cell["source"]) for cell in notebook["cells"]
              if cell["cell_type"] == "code"]
-    assert len(cells) == 7
+    assert len(cells) == 6
     (tmp_path / "scenarios").symlink_to(SCENARIOS)
     script = tmp_path / "notebook.py"
     script.write_text("\n\n".join(cells))
@@ -73,7 +73,9 @@ def test_types_of_the_examples(tmp_path):
     """mypy --strict, and what the stub says of the compiled part."""
     pytest.importorskip("mypy")
     cache = tmp_path / "mypy"
-    scripts = sorted(EXAMPLES.glob("*.py"))
+    # Reading the types of torch alone takes minutes.
+    scripts = sorted(script for script in EXAMPLES.glob("*.py")
+                     if script.stem != "torch_network")
     run(tmp_path, "-m", "mypy", "--strict", "--cache-dir", cache, *scripts,
         MYPYPATH=str(PACKAGE))
 
