@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <array>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -8,6 +7,7 @@
 #include "compensation/scoring/noise_coefficients.h"
 #include "compensation/scoring/score.h"
 #include "validation/metrics/evaluations.h"
+#include "validation/metrics/intervals.h"
 #include "validation/metrics/segments.h"
 
 namespace beamgyro::internal::evaluation {
@@ -114,8 +114,7 @@ double half_interval_of_ratio(const DifferenceSums& sums) {
     mean += ratio(i) / kPieces;
   for (std::size_t i = 0; i < sums.judged.size(); ++i)
     squares += std::pow(ratio(i) - mean, 2);
-  const boost::math::students_t chance(kPieces - 1.0);
-  return quantile(chance, 0.975) *
+  return student_half_width(kPieces - 1.0) *
          std::sqrt(squares * (kPieces - 1.0) / kPieces);
 }
 

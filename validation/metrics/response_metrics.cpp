@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "validation/metrics/evaluations.h"
 #include "validation/metrics/frequency_response.h"
+#include "validation/metrics/intervals.h"
 #include "validation/metrics/segments.h"
 
 namespace beamgyro::internal::evaluation {
@@ -19,8 +19,7 @@ constexpr double kLeastSpread = 1e-15;                     // [rad]
 Estimate with_t_interval(double value, double sigma, double freedom) {
   if (!(sigma > 0.0) || !(freedom >= 1.0))
     return {value, Interval{value, value}};
-  const boost::math::students_t chance(freedom);
-  const double half = quantile(chance, 0.975) * sigma;
+  const double half = student_half_width(freedom) * sigma;
   return {value, Interval{value - half, value + half}};
 }
 

@@ -28,8 +28,6 @@ struct SigmaEvidence {
   std::vector<ErrorGroup> soaks, ramps;
   std::vector<FilterRun> filter;
 
-  bool empty() const { return soaks.empty() && ramps.empty(); }
-
   /// Adds the evidence of another device, as one cluster.
   void add_device(const SigmaEvidence& device, std::size_t cluster);
 };

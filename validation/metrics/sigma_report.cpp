@@ -2,19 +2,18 @@
 #include "validation/metrics/sigma_report.h"
 
 #include <algorithm>
-#include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
+#include "validation/metrics/intervals.h"
+
 namespace beamgyro::internal {
 namespace {
-
-constexpr double kIntervalTail = 0.025;  // [-], on each side of an interval
 
 // A sum over a cluster, and the number of what it is over.
 struct ClusterSum {
@@ -50,16 +49,6 @@ double covered_share(const ErrorGroup& group, double limit) {
   return static_cast<double>(within) / static_cast<double>(group.z.size());
 }
 
-// Clopper and Pearson, of any number of trials.
-Interval proportion_interval(double share, double trials) {
-  using Beta = boost::math::beta_distribution<double>;
-  const double k = share * trials;
-  return {k > 0.0 ? quantile(Beta(k, trials - k + 1.0), kIntervalTail) : 0.0,
-          k < trials
-              ? quantile(complement(Beta(k + 1.0, trials - k), kIntervalTail))
-              : 1.0};
-}
-
 // Kolmogorov's distribution with the correction of Stephens (1970).
 double kolmogorov_p_value(double distance, double n) {
   const double x = distance * (std::sqrt(n) + 0.12 + 0.11 / std::sqrt(n));
@@ -70,8 +59,8 @@ double kolmogorov_p_value(double distance, double n) {
 }
 
 std::size_t clusters_of(std::span<const ErrorGroup> groups) {
-  std::map<std::size_t, int> seen;
-  for (const ErrorGroup& group : groups) seen[group.cluster] = 1;
+  std::set<std::size_t> seen;
+  for (const ErrorGroup& group : groups) seen.insert(group.cluster);
   return seen.size();
 }
 
@@ -102,7 +91,7 @@ std::optional<Estimate> coverage(std::span<const ErrorGroup> groups,
           ? std::clamp(p.value * (1.0 - p.value) / p.variance, 1.0, p.count)
           : static_cast<double>(p.clusters);
   const double share = std::clamp(p.value, 0.0, 1.0);
-  return Estimate{share, proportion_interval(share, trials)};
+  return Estimate{share, clopper_pearson(share * trials, trials)};
 }
 
 std::optional<PitReport> pit_report(std::span<const ErrorGroup> groups) {
@@ -141,10 +130,9 @@ std::optional<Estimate> mean_normalised(std::span<const FilterRun> runs) {
   if (clusters.empty()) return std::nullopt;
   const ClusterRatio mean = ratio_of(clusters);
   if (mean.clusters >= kLeastFilterClusters) {
-    const boost::math::students_t_distribution<double> student(
-        static_cast<double>(mean.clusters) - 1.0);
     const double half =
-        quantile(complement(student, kIntervalTail)) * std::sqrt(mean.variance);
+        student_half_width(static_cast<double>(mean.clusters) - 1.0) *
+        std::sqrt(mean.variance);
     return Estimate{mean.value, Interval{std::max(mean.value - half, 0.0),
                                          mean.value + half}};
   }

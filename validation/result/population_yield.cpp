@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <boost/math/distributions/binomial.hpp>
 #include <limits>
 #include <memory>
 #include <set>
@@ -14,6 +13,7 @@
 #include "parallel/work_queue.h"
 #include "sim/numerics/simulation_failure.h"
 #include "validation/external/file_compensator.h"
+#include "validation/metrics/intervals.h"
 #include "validation/result/judgement.h"
 
 namespace beamgyro::internal {
@@ -128,19 +128,11 @@ void count(const std::vector<DeviceOutcome>& outcomes,
     }
     if (outcome.metrics.empty()) ++result.not_simulated;
   }
-  result.interval = clopper_pearson(result.passed, outcomes.size());
+  result.interval = clopper_pearson(static_cast<double>(result.passed),
+                                    static_cast<double>(outcomes.size()));
 }
 
 }  // namespace
-
-Interval clopper_pearson(std::size_t successes, std::size_t trials) {
-  using Binomial = boost::math::binomial_distribution<double>;
-  constexpr double kTail = 0.025;  // [-], on each side
-  const auto n = static_cast<double>(trials);
-  const auto k = static_cast<double>(successes);
-  return {Binomial::find_lower_bound_on_p(n, k, kTail),
-          Binomial::find_upper_bound_on_p(n, k, kTail)};
-}
 
 PopulationYield population_yield(const PopulationTask& task,
                                  std::size_t threads,

@@ -12,10 +12,6 @@
 
 namespace beamgyro::internal {
 
-/// Returns the 95 % interval of Clopper and Pearson for the probability of a
-/// success that was seen `successes` times in `trials`, more than 0.
-Interval clopper_pearson(std::size_t successes, std::size_t trials);
-
 /// What a population is put through.
 struct PopulationTask {
   const Campaign* campaign;  // not owned, as everything here

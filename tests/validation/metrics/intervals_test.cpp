@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "validation/result/population_yield.h"
+#include "validation/metrics/intervals.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
-namespace beamgyro::internal::population_yield_test {
+namespace beamgyro::internal::intervals_test {
 namespace {
 
 // Returns the probability of `low` to `high` successes in `n` trials.
@@ -28,7 +30,8 @@ TEST(ClopperPearson, EndsLeaveATailOfTwoAndAHalfPercent) {
                              {7, 10},
                              {95, 100},
                              {523, 1000}}) {
-    const Interval interval = clopper_pearson(k, n);
+    const Interval interval =
+        clopper_pearson(static_cast<double>(k), static_cast<double>(n));
     EXPECT_NEAR(probability(n, interval.low, k, n), 0.025, 1e-9) << k;
     EXPECT_NEAR(probability(n, interval.high, 0, k), 0.025, 1e-9) << k;
   }
@@ -43,4 +46,11 @@ TEST(ClopperPearson, OfNoneAndOfAllReachesTheEnd) {
   EXPECT_EQ(all.high, 1.0);
 }
 
-}  // namespace beamgyro::internal::population_yield_test
+// Tables of t(0.975).
+TEST(StudentHalfWidth, IsThatOfTables) {
+  EXPECT_NEAR(student_half_width(1.0), 12.706, 5e-4);
+  EXPECT_NEAR(student_half_width(9.0), 2.262, 5e-4);
+  EXPECT_NEAR(student_half_width(1e6), 1.960, 5e-4);
+}
+
+}  // namespace beamgyro::internal::intervals_test
