@@ -2,18 +2,20 @@
 # SPDX-License-Identifier: MIT
 """Coverage of the sigma of devices adapted from a population.
 
-uncertainty.py [--program FILE] [--out DIR] [--set DIR] [--ramps DIR]
-               [--devices N] [--scored N] [--jobs N] [--runs NAME...]
+uncertainty.py [--program FILE] [--out DIR] [--campaign FILE] [--set DIR]
+               [--ramps DIR] [--devices N] [--scored N] [--jobs N]
+               [--runs NAME...]
 
-SET is scenarios/campaigns/population.toml as generated (its first --devices),
+SET is the campaign (population.toml) as generated, its first --devices,
 RAMPS the same devices on scenarios/ramp.toml; both are made where they are not
 there. A population is learned from the sweeps of the training devices and
 calibrated on those of the validation devices. Each of the first --scored test
 devices is adapted from --runs in turn. Its residuals on soaks at every kelvin
 without noise, and on ramps with noise, are compared with sigma, as
 docs/reference/compensator_file.md defines it. Prints the share of residuals
-within 50, 90 and 95 % intervals, devices of equal weight, and writes it to
-DIR/table.json; DIR is out/uncertainty.
+within 50, 90 and 95 % intervals and the mean square of residual over sigma,
+devices of equal weight, and writes them to DIR/table.json; DIR is
+out/uncertainty.
 """
 
 import argparse
@@ -86,7 +88,7 @@ class Coverage(few_points.Study):
             super().generate()
         if (self.ramps / "manifest.jsonl").exists():
             return
-        text = few_points.CAMPAIGN.read_text()
+        text = self.campaign.read_text()
         ramp = (few_points.SCENARIOS / "ramp.toml").read_text()
         nominal = few_points.SCENARIOS / "devices/nominal.toml"
         (self.out / "ramp.toml").write_text(
@@ -138,12 +140,14 @@ class Coverage(few_points.Study):
                 if len(own):
                     result[place] = {level: float(np.mean(own <= width))
                                      for level, width in LEVELS.items()}
+                    result[place]["square"] = float(np.mean(own ** 2))
         return result
 
     def run(self):
         self.generate()
         new = self.devices_of(few_points.TEST)[:self.scored]
-        self.population()
+        self.aged = False
+        self.populations()
         table, lines = {}, []
         for run in self.runs:
             with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
@@ -151,17 +155,18 @@ class Coverage(few_points.Study):
                                        [(device, run) for device in new]))
             table[run] = {}
             lines.append(f"adapted from {run}, {len(new)} new devices: share "
-                         "within the intervals of 50, 90, 95 %")
+                         "within the intervals of 50, 90, 95 %; mean square")
             for place in ["soaks", "ramps", "warm-up", "beyond"]:
                 found = [score[place] for score in scores if place in score]
                 if not found:
                     continue
                 table[run][place] = {
                     level: np.mean([score[level] for score in found])
-                    for level in LEVELS}
+                    for level in [*LEVELS, "square"]}
+                means = table[run][place]
                 lines.append(f"  {place:10}" + "".join(
-                    f"{100 * share:8.1f} %"
-                    for share in table[run][place].values()))
+                    f"{100 * means[level]:8.1f} %" for level in LEVELS)
+                    + f"{means['square']:8.2f}")
         (self.out / "table.json").write_text(json.dumps(
             {"devices": new, "coverage": table}, indent=1) + "\n")
         return "\n".join(lines)
@@ -173,6 +178,9 @@ def main():
                         default=ROOT / "build/release/beamgyro")
     parser.add_argument("--out", type=pathlib.Path,
                         default=ROOT / "out/uncertainty")
+    parser.add_argument("--campaign", type=pathlib.Path,
+                        default=few_points.SCENARIOS /
+                        "campaigns/population.toml")
     parser.add_argument("--set", type=pathlib.Path)
     parser.add_argument("--ramps", type=pathlib.Path)
     parser.add_argument("--devices", type=int, default=0)

@@ -199,13 +199,17 @@ std::string Writer::sigma_functions() const {
   float on, lag, sigma;
   if (state->sigma_samples < 0xffffffffu) ++state->sigma_samples;
   if (!is_finite(T)) return T - T;
+  if (T < {2}) T = {2};
+  if (T > {3}) T = {3};
   state->sigma_started = 1;
   on = sigma_terms[0] * exp_minus(since / sigma_terms[1]);
   lag = lowpass_lag(state->sigma_filter, first, T);
   sigma = sigma_at(sigma_temperatures, sigmas, {1}, sigma_growth, T, on,
                    sigma_terms[2] * (lag / sigma_terms[3]));
 )",
-      name_, model_.arrays().count("sigmas"));
+      name_, model_.arrays().count("sigmas"),
+      c_literal(static_cast<float>(kSigmaTemperatures.lowest)),
+      c_literal(static_cast<float>(kSigmaTemperatures.highest)));
   if (c_.scale_factor)
     text += fmt::format(
         "  if (T < range[0]) T = range[0];\n"

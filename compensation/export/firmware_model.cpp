@@ -177,6 +177,9 @@ float FirmwareModel::scale_factor_at(float temperature) const {
 // Before step() has counted the sample.
 float FirmwareModel::next_sigma(float temperature) {
   if (runtime::is_finite(temperature) == 0) return temperature - temperature;
+  temperature =
+      std::clamp(temperature, static_cast<float>(kSigmaTemperatures.lowest),
+                 static_cast<float>(kSigmaTemperatures.highest));
   const float* terms = arrays_.data("sigma_terms");
   const float since = static_cast<float>(state_->samples) * state_->period;
   const float on = terms[0] * runtime::exp_minus(since / terms[1]);

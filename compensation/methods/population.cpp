@@ -250,12 +250,23 @@ double curve_spread(const Population& population, Index curve) {
   return spreads(population.modes.middleRows(curve * grid, grid), grid)(0);
 }
 
+double steepest_bias(const Population& population) {
+  const Index last = population.grid() - 1;
+  const auto rise = [&](const MatrixXd& curves) -> MatrixXd {
+    return curves.middleRows(1, last) - curves.topRows(last);
+  };
+  const ArrayXd square = rise(population.mean).array().square() +
+                         rise(population.modes).rowwise().squaredNorm().array();
+  const ArrayXd& T = population.temperatures;
+  return (square.sqrt() / (T.tail(last) - T.head(last))).maxCoeff();
+}
+
 AdaptedBias adapted_bias(const Population& population,
                          const std::vector<Input>& inputs,
                          const TrainingRows& rows, const PointNoise& noise) {
   if (population.modes.cols() == 0)
     return {population.mean.head(population.grid()).array(),
-            ArrayXd::Zero(population.grid())};
+            ArrayXd::Zero(population.grid()), ArrayXd::Zero(population.grid())};
   const Equations all =
       all_equations(population, inputs, points_of(rows), noise);
   const Index modes = population.modes.cols(), grid = population.grid();
@@ -267,8 +278,15 @@ AdaptedBias adapted_bias(const Population& population,
       qr.matrixQR().topRows(modes).triangularView<Eigen::Upper>();
   const MatrixXd roots = R.transpose().triangularView<Eigen::Lower>().solve(
       bias_modes.transpose());
+  const ArrayXd variance = roots.colwise().squaredNorm().transpose().array();
+  const ArrayXd untold = R.triangularView<Eigen::Upper>()
+                             .solve(roots)
+                             .colwise()
+                             .squaredNorm()
+                             .transpose()
+                             .array();
   return {(population.mean.head(grid) + bias_modes * c).array(),
-          roots.colwise().norm().transpose().array()};
+          variance.sqrt(), (variance - untold).max(0.0).sqrt()};
 }
 
 CubicSpline bias_curve(const Population& population, const ArrayXd& values) {

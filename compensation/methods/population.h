@@ -19,6 +19,7 @@ struct AdaptationSigma {
   std::optional<SigmaTerm> power_on;          // as of BiasSigma
   std::optional<SigmaTerm> temperature_rate;  // likewise
   int devices = 0;
+  double half_width = 0.0;  // as of SigmaCalibration
 };
 
 /// The distribution of the gyros of a population. Over devices, the bias b and
@@ -53,6 +54,10 @@ constexpr Eigen::Index kMostCoefficients = 1000;
 /// 0 is the bias, the others are the channels in their order.
 double curve_spread(const Population& population, Eigen::Index curve);
 
+/// Returns the largest rms over devices of the slope of the bias between two
+/// temperatures of the grid [deg/s/K].
+double steepest_bias(const Population& population);
+
 /// Learns a population from the rows of two devices or more, whose inputs are
 /// the temperature and the channels. The curves of each device are splines
 /// through its rows (spline_knots() with a spacing of `grid_K` [K]). They are
@@ -81,6 +86,8 @@ struct PointNoise {
 struct AdaptedBias {
   Eigen::ArrayXd mean;       // [deg/s]
   Eigen::ArrayXd deviation;  // [deg/s], 1-sigma
+  // [deg/s], the share of it that the noise of the points makes.
+  Eigen::ArrayXd noise;
 };
 
 /// Returns the exact conditional E[b | y] of the Gaussian process and its
@@ -88,6 +95,9 @@ struct AdaptedBias {
 /// population at them, R their noise:
 ///
 ///   c | y ~ N(A^-1 H^T R^-1 (y - mu), A^-1),   A = I + H^T R^-1 H.
+///
+/// Of A^-1 the noise of y makes A^-1 H^T R^-1 H A^-1 = A^-1 - A^-2, and what
+/// the points do not tell makes A^-2.
 ///
 /// Without rows it is the mean of the population. `inputs` are the columns of
 /// the rows: the temperature, then some of the channels of the population.

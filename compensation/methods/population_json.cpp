@@ -29,16 +29,19 @@ VectorXd read_vector(const JsonNode& node, Index size) {
 
 Json adaptation_json(const AdaptationSigma& sigma) {
   Json json = {{"factor", finite_json(sigma.factor)},
-               {"devices", sigma.devices}};
+               {"devices", sigma.devices},
+               {"half_width", finite_json(sigma.half_width)}};
   put_sigma_terms(sigma.power_on, sigma.temperature_rate, json);
   return json;
 }
 
 AdaptationSigma read_adaptation(const JsonNode& node) {
-  node.require_only({"factor", "devices", "power_on", "temperature_rate"});
+  node.require_only(
+      {"factor", "devices", "half_width", "power_on", "temperature_rate"});
   return {read_positive(node.at("factor")), read_power_on_sigma(node),
           read_temperature_rate_sigma(node),
-          static_cast<int>(node.at("devices").integer(1, 2147483647))};
+          static_cast<int>(node.at("devices").integer(1, 2147483647)),
+          read_half_width(node)};
 }
 
 // The squares of c add up to the number of devices less one for each mode. Of

@@ -11,6 +11,7 @@
 #include "compensation/methods/fit.h"
 #include "compensation/methods/input_scales.h"
 #include "compensation/methods/method_inputs.h"
+#include "compensation/methods/population_sigma.h"
 #include "dataset/files/sha256.h"
 
 namespace beamgyro::internal {
@@ -87,15 +88,16 @@ std::string AdaptedSpec::method_name() const {
 Fit AdaptedSpec::fit(const FitTask& task) const {
   const AdaptedBias adapted =
       adapted_bias(population, task.inputs, task.rows, noise);
+  const BiasSigma sigma = adapted_sigma(population, adapted.deviation, noise);
   Eigen::Index worst = 0;
-  const double largest = adapted.deviation.maxCoeff(&worst);
+  const double largest = sigma.factor * sigma.curve.values.maxCoeff(&worst);
   Fit fit = BiasModel{unscaled(task), {}, bias_curve(population, adapted.mean)};
   fit.choices = {
       fmt::format("population: {}", source),
       fmt::format(
           "1-sigma left open by the rows: rms {:.4f} deg/s, largest {:.4f} "
           "deg/s at {:.1f} degC",
-          std::sqrt(adapted.deviation.square().mean()), largest,
+          sigma.factor * std::sqrt(sigma.curve.values.square().mean()), largest,
           population.temperatures(worst))};
   return fit;
 }

@@ -76,12 +76,15 @@ void add_predictions(const Population& population,
   const ArrayXd predicted =
       bias_curve(population, adapted.mean).predict(own.temperature);
   const LookupTable deviation{population.temperatures, adapted.deviation};
+  const LookupTable noise{population.temperatures, adapted.noise};
   const Index before = scales.size();
   Index added = 0;
   scales.conservativeResize(before + own.size());
   for (Index k = 0; k < own.size(); ++k) {
     if (adapted_to(k) || own.beyond_range(k)) continue;
-    scored.add(own.temperature(k), own.bias(k) - predicted(k), 0.0, 0.0,
+    const double error = own.bias(k) - predicted(k);
+    scored.add(own.temperature(k),
+               std::hypot(error, noise.at(own.temperature(k))), 0.0, 0.0,
                own.device(k));
     scales(before + added++) = deviation.at(own.temperature(k));
   }
@@ -113,6 +116,14 @@ void add_own_residuals(const TrainingRows& own, double grid_K,
   }
 }
 
+// Of what is left of a device's own curve on its soaks, which is no lag.
+double soak_rms(const ResidualRows& rows) {
+  const RowMask soaks = soak_rows(rows);
+  if (!soaks.any()) return 0.0;
+  return mean_square_amplitude(rows, soaks, ArrayXd::Zero(rows.size()),
+                               ArrayXd::Ones(rows.size()));
+}
+
 }  // namespace
 
 ResidualRows own_curve_residuals(const TrainingRows& rows, double grid_K) {
@@ -141,13 +152,14 @@ std::optional<AdaptationSigma> adaptation_sigma(
   if (rows.size() == 0 || !(scales > 0.0).all()) return std::nullopt;
   AdaptationSigma result;
   result.factor =
-      covering_amplitude(rows, all, ArrayXd::Zero(rows.size()), scales);
+      mean_square_amplitude(rows, all, ArrayXd::Zero(rows.size()), scales);
   result.devices = groups_among(rows, all);
   if (!(result.factor > 0.0)) return std::nullopt;
+  result.half_width = conformal_half_width(rows, result.factor * scales);
   BiasSigma terms;
   terms.factor = result.factor;
-  // Alone: what is left of the curve is not the lag's.
-  terms.curve = {ArrayXd::Zero(1), ArrayXd::Zero(1)};
+  terms.curve = {ArrayXd::Zero(1),
+                 ArrayXd::Constant(1, soak_rms(lagging) / result.factor)};
   calibrate_terms(terms, lagging);
   result.power_on = terms.power_on;
   result.temperature_rate = terms.temperature_rate;
@@ -159,17 +171,16 @@ BiasSigma adapted_sigma(const Population& population, const ArrayXd& deviation,
   BiasSigma sigma;
   sigma.source = SigmaSource::kPosterior;
   sigma.calibration.method = "none: the population has no devices to tell";
-  if (population.sigma) {
-    sigma.factor = population.sigma->factor;
-    sigma.power_on = population.sigma->power_on;
-    sigma.temperature_rate = population.sigma->temperature_rate;
-    const bool covers = population.sigma->devices >= kLeastConformalGroups;
+  if (const auto& learned = population.sigma) {
+    sigma.factor = learned->factor;
+    sigma.power_on = learned->power_on;
+    sigma.temperature_rate = learned->temperature_rate;
     sigma.calibration = {
         fmt::format("of the population, on devices adapted from {} and {} "
                     "soaks and predicted at the others",
                     kSoakCounts[0], kSoakCounts[1]),
-        "device", static_cast<std::size_t>(population.sigma->devices),
-        covers ? kSigmaLevel : 0.0};
+        "device", static_cast<std::size_t>(learned->devices),
+        learned->half_width > 0.0 ? kSigmaLevel : 0.0, learned->half_width};
   }
   const double run = std::sqrt(2.0) * noise.bias / sigma.factor;
   sigma.curve = {population.temperatures,

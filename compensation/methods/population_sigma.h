@@ -19,9 +19,12 @@ ResidualRows own_curve_residuals(const TrainingRows& rows, double grid_K);
 
 /// Returns the calibration of devices adapted from `population`, on devices it
 /// was not learned from. Each is adapted from few soaks of its `soaks`, evenly
-/// spaced, and predicted at the others; the factor covers these (covering_
-/// amplitude() by devices over the posterior deviation). a_rate and a_on cover
-/// `lagging`, own_curve_residuals(). Without rows to predict, nothing.
+/// spaced, and predicted at the others. The factor makes the mean square of
+/// what is missed there, together with the noise that AdaptedBias tells of its
+/// points, that of the posterior deviation: soaks of one run share their
+/// turn-on offset, so their rows do not show this noise. a_rate and a_on are
+/// those of `lagging`, own_curve_residuals(), beyond what soaks leave of the
+/// same curves. Without rows to predict, nothing.
 std::optional<AdaptationSigma> adaptation_sigma(
     const Population& population, const std::vector<Input>& inputs,
     const TrainingRows& soaks, const ResidualRows& lagging);

@@ -86,9 +86,18 @@ ArrayXd sigma_grid(const TemperatureRange& range) {
                             range.highest);
 }
 
-// A temperature that is clamped leaves the slope of the bias: the larger of
-// that at the end and the usual one.
-std::array<double, 2> growth_of(const Compensator& trained,
+// The population that a compensator was learned from, if there is one.
+const Population* population_of(const Compensator& trained,
+                                const FitSpec& kind) {
+  if (const auto* adapted = std::get_if<AdaptedSpec>(&kind))
+    return &adapted->population;
+  return trained.population ? &*trained.population : nullptr;
+}
+
+// A temperature that is clamped leaves the slope of the bias beyond the range.
+// Nothing there tells it: the steepest within the range stands for it, of the
+// bias and of the devices of its population.
+std::array<double, 2> growth_of(const Compensator& trained, const FitSpec& kind,
                                 const BiasSigma& sigma) {
   const LookupTable& curve = sigma.curve;
   const ArrayXd& T = curve.temperatures;
@@ -101,12 +110,15 @@ std::array<double, 2> growth_of(const Compensator& trained,
       trained.inputs[0] == Input{InputKind::kColumn, "temperature", 0.0};
   const ArrayXd bias =
       of_temperature ? trained.bias.predict(T) : trained.baseline.predict(T);
+  double steepest =
+      ((bias.tail(last) - bias.head(last)) / (T.tail(last) - T.head(last)))
+          .abs()
+          .maxCoeff();
+  if (const Population* population = population_of(trained, kind))
+    steepest = std::max(steepest, steepest_bias(*population));
   // Of sigma, which is the factor times the growth.
-  const ArrayXd slope = (bias.tail(last) - bias.head(last)) /
-                        (T.tail(last) - T.head(last)) / sigma.factor;
-  const double usual = std::sqrt(slope.square().mean());
-  return {std::max({growth[0], std::abs(slope(0)), usual}),
-          std::max({growth[1], std::abs(slope(last - 1)), usual})};
+  for (double& each : growth) each = std::max(each, steepest / sigma.factor);
+  return growth;
 }
 
 // s(T) from the soaks of held-out rows, or all where there are none.
@@ -150,7 +162,7 @@ std::optional<BiasSigma> uncalibrated(const Compensator& trained,
   sigma.calibration = {
       "none: residuals of groups of training rows that were "
       "left out in turn",
-      "soak", static_cast<std::size_t>(curve->groups), 0.0};
+      kLeftOutGroup, static_cast<std::size_t>(curve->groups)};
   return sigma;
 }
 
@@ -182,7 +194,7 @@ std::optional<BiasSigma> fit_bias_sigma(const Compensator& trained,
   } else if (sigma && sigma->source == SigmaSource::kCovariance) {
     calibrate_terms(*sigma, residuals_of(trained, task.runs, task));
   }
-  if (sigma) sigma->growth = growth_of(trained, *sigma);
+  if (sigma) sigma->growth = growth_of(trained, task.kind, *sigma);
   return sigma;
 }
 

@@ -15,6 +15,9 @@
 
 namespace beamgyro::internal {
 
+/// Kind of group of a sigma that no run calibrated, in SigmaCalibration.
+constexpr const char* kLeftOutGroup = "soak";
+
 /// What the sigma of a trained compensator is fitted to.
 struct SigmaTask {
   const FitSpec& kind;

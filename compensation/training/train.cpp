@@ -180,6 +180,17 @@ void fit_sigma(Compensator& c, const SigmaTask& task) {
   c.sigma = fit_bias_sigma(c, task);
 }
 
+void add_sigma_caution(const BiasSigma& sigma, const TrainingRows& rows,
+                       std::vector<std::string>& warnings) {
+  const bool is_calibrated = sigma.calibration.by != kLeftOutGroup;
+  if (sigma.source != SigmaSource::kCovariance || is_calibrated ||
+      rows.cycle.maxCoeff() > rows.cycle.minCoeff())
+    return;
+  warnings.emplace_back(
+      "sigma is too small by what all soaks of this one run share, turn-on "
+      "offset and slow noise: hold out runs to calibrate it");
+}
+
 }  // namespace
 
 TrainResult train(const ModelSpec& spec, const RunSource& runs,
@@ -254,6 +265,7 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
   p.warnings =
       cautions({c.inputs, c.bias, c.baseline, own, own_unseen,
                 facts.coarsest_resolution, known != TemperatureRange{}});
+  if (c.sigma) add_sigma_caution(*c.sigma, own, p.warnings);
   const std::string objection = why_no_claim(spec, groups, selected);
   if (!objection.empty()) p.warnings.push_back(objection);
   return result;

@@ -41,7 +41,8 @@ std::vector<Input> BiasSigma::inputs() const {
 }
 
 BiasSigmaStream::BiasSigmaStream(BiasSigma sigma)
-    : sigma_(std::move(sigma)), features_(sigma_.inputs()) {}
+    : sigma_(std::move(sigma)),
+      features_(sigma_.inputs(), kSigmaTemperatures) {}
 
 double BiasSigmaStream::step(double time, std::uint8_t status,
                              double temperature) {
@@ -54,7 +55,8 @@ double BiasSigmaStream::step(double time, std::uint8_t status,
 
 std::vector<double> sigma_of(const BiasSigma& sigma,
                              const Recording& recording) {
-  const Eigen::ArrayXXd x = features_of(sigma.inputs(), recording);
+  const Eigen::ArrayXXd x =
+      features_of(sigma.inputs(), recording, kSigmaTemperatures);
   std::vector<double> result(recording.time.size(),
                              std::numeric_limits<double>::quiet_NaN());
   for (std::size_t k = 0; k < result.size(); ++k)

@@ -23,6 +23,10 @@ enum class SigmaSource {
   kResiduals,   // of runs that were held out
 };
 
+/// A temperature beyond these [degC] is a glitch. Sigma counts it as the nearer
+/// one, so that its filters forget it.
+constexpr TemperatureRange kSigmaTemperatures = {-273.15, 1000.0};
+
 /// Time constants of the terms of power-on and temperature rate [s].
 constexpr double kSigmaTimeConstant = 300.0;
 
@@ -39,19 +43,24 @@ struct SigmaCalibration {
   std::string method;      // in words
   std::string by;          // "device", "run", "cycle", ...; "" without groups
   std::size_t groups = 0;  // that the method had
-  double level = 0.0;      // [-], of the interval that covers; 0 without
+  // Share of the residuals of a further group within half_width times sigma, of
+  // conformal prediction [-]; both 0 without.
+  double level = 0.0, half_width = 0.0;
 
   bool operator==(const SigmaCalibration&) const = default;
 };
 
-/// 1-sigma of the bias of a compensated rate [deg/s]:
+/// 1-sigma of the bias of a compensated rate [deg/s], its standard deviation
+/// over devices or runs: the mean square of bias / sigma is 1, whatever the
+/// distribution.
 ///
 ///   sigma^2 = k^2 {s(T)^2 + (a_on exp(-t / tau_on))^2 + (a_rate r)^2}
 ///
 /// T is the measured temperature, t the time since power-on and r the input
-/// temperature_rate(tau_rate) [K/s]. Unlike the inputs of a bias, they are not
-/// clamped. s(T) has straight lines between the values of `curve`. Beyond them,
-/// by d [K], it grows: s^2 = s_end^2 + (growth d)^2.
+/// temperature_rate(tau_rate) [K/s]. Unlike the inputs of a bias, they are
+/// clamped to kSigmaTemperatures only. s(T) has straight lines between the
+/// values of `curve`. Beyond them, by d [K], it grows: s^2 = s_end^2 + (growth
+/// d)^2.
 struct BiasSigma {
   LookupTable curve;               // [deg/s], > 0
   std::array<double, 2> growth{};  // [deg/s/K], > 0, below and above the curve

@@ -40,6 +40,17 @@ std::optional<SigmaTerm> read_term(const JsonNode& sigma,
   return SigmaTerm{number, read_positive(node.at("time_constant_s"))};
 }
 
+// Far from the least and the largest double, so that its square is neither 0
+// nor infinite.
+double read_sized(const JsonNode& node) {
+  constexpr double kLeast = 1e-12, kMost = 1e12;
+  const double number = read_positive(node);
+  if (number < kLeast || number > kMost)
+    node.fail(
+        fmt::format("{}, must lie within {:g} to {:g}", number, kLeast, kMost));
+  return number;
+}
+
 SigmaSource read_source(const JsonNode& node) {
   const std::string name = node.text();
   for (const SigmaSource source : kSigmaSources)
@@ -49,7 +60,7 @@ SigmaSource read_source(const JsonNode& node) {
 }
 
 SigmaCalibration read_calibration(const JsonNode& node) {
-  node.require_only({"method", "by", "groups", "level"});
+  node.require_only({"method", "by", "groups", "level", "half_width"});
   SigmaCalibration calibration{
       node.at("method").text(), node.at("by").text(),
       static_cast<std::size_t>(node.at("groups").integer(0, kMostGroups)),
@@ -57,6 +68,7 @@ SigmaCalibration read_calibration(const JsonNode& node) {
   if (!(calibration.level >= 0.0 && calibration.level < 1.0))
     node.at("level").fail(
         fmt::format("{}, must be 0 or above and below 1", calibration.level));
+  calibration.half_width = read_half_width(node);
   return calibration;
 }
 
@@ -71,7 +83,7 @@ LookupTable read_curve(const JsonNode& node) {
   if (curve.values.size() != T.size())
     sigmas.fail(fmt::format("{} values for {} temperatures, must be as many",
                             curve.values.size(), T.size()));
-  for (const JsonNode& each : sigmas.elements()) read_positive(each);
+  for (const JsonNode& each : sigmas.elements()) read_sized(each);
   return curve;
 }
 
@@ -97,6 +109,15 @@ void put_sigma_terms(const std::optional<SigmaTerm>& power_on,
     json["temperature_rate"] = term_json(*temperature_rate, kRateAmplitude);
 }
 
+double read_half_width(const JsonNode& node) {
+  if (!node.has("half_width")) return 0.0;
+  const double half_width = node.at("half_width").number();
+  if (!(half_width >= 0.0))
+    node.at("half_width")
+        .fail(fmt::format("{}, must not be below 0", half_width));
+  return half_width;
+}
+
 std::optional<SigmaTerm> read_power_on_sigma(const JsonNode& node) {
   return read_term(node, "power_on", kPowerOnAmplitude);
 }
@@ -112,10 +133,12 @@ Json bias_sigma_json(const BiasSigma& sigma) {
   put_sigma_terms(sigma.power_on, sigma.temperature_rate, json);
   json["factor"] = finite_json(sigma.factor);
   json["source"] = sigma_source_name(sigma.source);
-  json["calibration"] = {{"method", sigma.calibration.method},
-                         {"by", sigma.calibration.by},
-                         {"groups", sigma.calibration.groups},
-                         {"level", finite_json(sigma.calibration.level)}};
+  json["calibration"] = {
+      {"method", sigma.calibration.method},
+      {"by", sigma.calibration.by},
+      {"groups", sigma.calibration.groups},
+      {"level", finite_json(sigma.calibration.level)},
+      {"half_width", finite_json(sigma.calibration.half_width)}};
   return json;
 }
 
@@ -133,7 +156,7 @@ BiasSigma read_bias_sigma(const JsonNode& node) {
   sigma.growth = {read_positive(growth[0]), read_positive(growth[1])};
   sigma.power_on = read_power_on_sigma(node);
   sigma.temperature_rate = read_temperature_rate_sigma(node);
-  sigma.factor = read_positive(node.at("factor"));
+  sigma.factor = read_sized(node.at("factor"));
   sigma.source = read_source(node.at("source"));
   sigma.calibration = read_calibration(node.at("calibration"));
   return sigma;

@@ -21,6 +21,10 @@ void put_sigma_terms(const std::optional<SigmaTerm>& power_on,
 std::optional<SigmaTerm> read_power_on_sigma(const JsonNode& node);
 std::optional<SigmaTerm> read_temperature_rate_sigma(const JsonNode& node);
 
+/// Reads the member `half_width`; 0 where it is not there, as in files of older
+/// programs. Throws as read_bias_sigma().
+double read_half_width(const JsonNode& node);
+
 /// Returns the member `sigma` of a compensator file. Throws std::runtime_error
 /// for a number that is not finite.
 nlohmann::ordered_json bias_sigma_json(const BiasSigma& sigma);
@@ -31,6 +35,7 @@ nlohmann::ordered_json bias_sigma_json(const BiasSigma& sigma);
 ///   zero, or another number of sigmas;
 /// - a sigma, growth, time constant or factor that is not above 0 and finite,
 ///   and an amplitude that is below 0;
+/// - a half-width below 0;
 /// - a source or level that is not one.
 BiasSigma read_bias_sigma(const JsonNode& node);
 

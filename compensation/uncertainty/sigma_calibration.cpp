@@ -4,8 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -18,9 +22,8 @@ namespace {
 using Eigen::ArrayXd;
 using Eigen::Index;
 
-// Quantile 0.95 of Student's t with 1 ... 8 degrees of freedom.
-constexpr double kStudentQuantiles[] = {6.314, 2.920, 2.353, 2.132,
-                                        2.015, 1.943, 1.895, 1.860};
+// Of the largest amplitude that a row asks for; what is less counts as none.
+constexpr double kLeastShare = 1e-9;
 
 struct WeightedScore {
   double value, weight;
@@ -34,12 +37,31 @@ std::map<int, std::vector<Index>> rows_by_group(const ResidualRows& rows,
   return found;
 }
 
-// The amplitude for which the interval of `half_width` sigmas just covers.
-double amplitude_asked_for(double residual, double half_width, double others,
-                           double scale) {
-  const double needed = residual / half_width;
-  return std::sqrt(std::max(needed * needed - others * others, 0.0)) /
-         std::abs(scale);
+// Mean of residual^2 / (others^2 + (a scale)^2) over groups of equal weight.
+double mean_square(const std::map<int, std::vector<Index>>& by_group,
+                   const ResidualRows& rows, const ArrayXd& others,
+                   const ArrayXd& scale, double a) {
+  double sum = 0.0;
+  for (const auto& [group, own] : by_group) {
+    double squares = 0.0;
+    for (const Index k : own)
+      squares += std::pow(rows.residual(k), 2) /
+                 (std::pow(others(k), 2) + std::pow(a * scale(k), 2));
+    sum += squares / static_cast<double>(own.size());
+  }
+  return sum / static_cast<double>(by_group.size());
+}
+
+// What an amplitude from few groups has to be widened by, for intervals that
+// hold kSigmaLevel of normal residuals.
+double widening(std::size_t groups) {
+  if (groups >= std::size_t{kLeastConformalGroups}) return 1.0;
+  constexpr double kTail = 0.5 * (1.0 - kSigmaLevel);
+  const boost::math::students_t_distribution<double> student(
+      static_cast<double>(groups));
+  return quantile(complement(student, kTail)) /
+         quantile(
+             complement(boost::math::normal_distribution<double>(), kTail));
 }
 
 double quantile_of(std::vector<WeightedScore> scores) {
@@ -58,15 +80,20 @@ ArrayXd curve_at_rows(const BiasSigma& sigma, const ResidualRows& rows) {
       [&](double T) { return sigma.curve_at(T); });
 }
 
+ArrayXd sigma_at_rows(const BiasSigma& sigma, const ResidualRows& rows) {
+  ArrayXd result(rows.size());
+  for (Index k = 0; k < rows.size(); ++k)
+    result(k) = sigma.at(rows.temperature(k), rows.since_power_on(k),
+                         rows.temperature_rate(k));
+  return result;
+}
+
 std::string calibration_words(int groups) {
   if (groups >= kLeastConformalGroups)
-    return fmt::format(
-        "conformal: {:g} % of the residuals of a further group are within "
-        "{:.3f} sigma",
-        100.0 * kSigmaLevel, kSigmaHalfWidth);
+    return "mean square: that of residual over sigma is 1";
   return fmt::format(
-      "root mean square of the residuals of {} groups, widened by Student's t; "
-      "a quantile takes {}",
+      "mean square: that of residual over sigma is 1 for the residuals of {} "
+      "groups, widened by Student's t; a quantile takes {}",
       groups, kLeastConformalGroups);
 }
 
@@ -88,28 +115,39 @@ int groups_among(const ResidualRows& rows, const RowMask& mask) {
   return static_cast<int>(rows_by_group(rows, mask).size());
 }
 
-double covering_amplitude(const ResidualRows& rows, const RowMask& mask,
-                          const ArrayXd& others, const ArrayXd& scale) {
+double mean_square_amplitude(const ResidualRows& rows, const RowMask& mask,
+                             const ArrayXd& others, const ArrayXd& scale) {
   const auto by_group = rows_by_group(rows, mask);
   if (by_group.empty())
     throw std::invalid_argument("no rows to calibrate a sigma on");
-  const std::size_t groups = by_group.size();
-  const bool conformal = groups >= kLeastConformalGroups;
+  const auto excess = [&](double a) {
+    return mean_square(by_group, rows, others, scale, a) - 1.0;
+  };
+  // With this amplitude every row has z^2 <= 1.
+  double high = 0.0;
+  for (Index k = 0; k < rows.size(); ++k)
+    if (mask(k)) high = std::max(high, std::abs(rows.residual(k) / scale(k)));
+  const double least = high * kLeastShare;
+  if (!(high > 0.0) || excess(least) <= 0.0) return 0.0;
+  std::uintmax_t steps = 100;
+  const auto [below, above] = boost::math::tools::toms748_solve(
+      excess, least, high, boost::math::tools::eps_tolerance<double>(50),
+      steps);
+  return 0.5 * (below + above) * widening(by_group.size());
+}
+
+double conformal_half_width(const ResidualRows& rows, const ArrayXd& sigma) {
+  const auto by_group =
+      rows_by_group(rows, RowMask::Constant(rows.size(), true));
+  if (by_group.size() < std::size_t{kLeastConformalGroups}) return 0.0;
   std::vector<WeightedScore> scores;
-  double squares = 0.0;
   for (const auto& [group, own] : by_group) {
-    const auto count = static_cast<double>(own.size());
-    const double weight = 1.0 / (count * static_cast<double>(groups + 1));
-    for (const Index k : own) {
-      const double asked =
-          amplitude_asked_for(rows.residual(k), conformal ? kSigmaHalfWidth : 1,
-                              others(k), scale(k));
-      scores.push_back({asked, weight});
-      squares += asked * asked / (count * static_cast<double>(groups));
-    }
+    const double weight = 1.0 / (static_cast<double>(own.size()) *
+                                 static_cast<double>(by_group.size() + 1));
+    for (const Index k : own)
+      scores.push_back({std::abs(rows.residual(k)) / sigma(k), weight});
   }
-  if (conformal) return quantile_of(std::move(scores));
-  return std::sqrt(squares) * kStudentQuantiles[groups - 1] / kSigmaHalfWidth;
+  return quantile_of(std::move(scores));
 }
 
 void calibrate_terms(BiasSigma& sigma, const ResidualRows& rows) {
@@ -121,7 +159,7 @@ void calibrate_terms(BiasSigma& sigma, const ResidualRows& rows) {
   const RowMask ramps = ramp_rows(rows), warm_ups = warm_up_rows(rows);
   if (ramps.any()) {
     sigma.temperature_rate = SigmaTerm{
-        covering_amplitude(unit, ramps, others, rows.temperature_rate)};
+        mean_square_amplitude(unit, ramps, others, rows.temperature_rate)};
     others =
         (others.square() +
          (sigma.temperature_rate->amplitude * rows.temperature_rate).square())
@@ -129,23 +167,25 @@ void calibrate_terms(BiasSigma& sigma, const ResidualRows& rows) {
   }
   if (warm_ups.any())
     sigma.power_on = SigmaTerm{
-        covering_amplitude(unit, warm_ups, others, rows.since_power_on)};
+        mean_square_amplitude(unit, warm_ups, others, rows.since_power_on)};
 }
 
 void calibrate(BiasSigma& sigma, const ResidualRows& rows) {
   const RowMask soaks = soak_rows(rows);
   const bool any_soak = soaks.any();
   const RowMask mask = any_soak ? soaks : RowMask::Constant(rows.size(), true);
-  sigma.factor = covering_amplitude(rows, mask, ArrayXd::Zero(rows.size()),
-                                    curve_at_rows(sigma, rows));
+  sigma.factor = mean_square_amplitude(rows, mask, ArrayXd::Zero(rows.size()),
+                                       curve_at_rows(sigma, rows));
   // Residuals of 0 promise nothing.
   if (!(sigma.factor > 0.0)) sigma.factor = 1.0;
   const int groups = groups_among(rows, mask);
-  sigma.calibration = {calibration_words(groups), rows.by,
-                       static_cast<std::size_t>(groups),
-                       groups >= kLeastConformalGroups ? kSigmaLevel : 0.0};
   calibrate_terms(sigma, rows);
   if (!any_soak) sigma.temperature_rate.reset();
+  const double half_width =
+      conformal_half_width(rows, sigma_at_rows(sigma, rows));
+  sigma.calibration = {calibration_words(groups), rows.by,
+                       static_cast<std::size_t>(groups),
+                       half_width > 0.0 ? kSigmaLevel : 0.0, half_width};
 }
 
 }  // namespace beamgyro::internal

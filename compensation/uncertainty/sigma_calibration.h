@@ -8,10 +8,8 @@
 
 namespace beamgyro::internal {
 
-/// Share of residuals that an interval of sigma is calibrated to cover, and its
-/// half-width in sigmas for normal residuals.
+/// Share of residuals within the interval that is told of a calibrated sigma.
 constexpr double kSigmaLevel = 0.9;
-constexpr double kSigmaHalfWidth = 1.6448536269514722;
 
 /// Fewest groups with a quantile at kSigmaLevel: n / (n + 1) reaches it.
 constexpr int kLeastConformalGroups = 9;
@@ -44,19 +42,26 @@ RowMask warm_up_rows(const ResidualRows& rows);  // on a ramp or not
 /// Returns the number of different groups of the rows of `mask`.
 int groups_among(const ResidualRows& rows, const RowMask& mask);
 
-/// Returns the least a >= 0 for which the intervals
+/// Returns the a >= 0 for which
 ///
-///   |residual| <= q sqrt(others^2 + (a scale)^2),   q = kSigmaHalfWidth,
+///   z^2 = residual^2 / (others^2 + (a scale)^2)
 ///
-/// cover a new group's rows with probability kSigmaLevel on average: the
-/// quantile, over groups of equal weight and one more group beyond all, of the
-/// a that each row of `mask` asks for (split conformal prediction with pooled
-/// groups). With fewer than kLeastConformalGroups it is the root of the mean
-/// over groups of the squares asked for with q = 1, times Student's t over the
-/// normal quantile. Throws std::invalid_argument when no row is in `mask`.
-double covering_amplitude(const ResidualRows& rows, const RowMask& mask,
-                          const Eigen::ArrayXd& others,
-                          const Eigen::ArrayXd& scale);
+/// of the rows of `mask` is 1 on average, over groups of equal weight: sigma is
+/// then a standard deviation, whatever the distribution. It is 0 where the
+/// others are as large already. With fewer than kLeastConformalGroups it is
+/// widened by Student's t over the normal quantile of kSigmaLevel. Throws
+/// std::invalid_argument when no row is in `mask`.
+double mean_square_amplitude(const ResidualRows& rows, const RowMask& mask,
+                             const Eigen::ArrayXd& others,
+                             const Eigen::ArrayXd& scale);
+
+/// Returns the q for which |residual| <= q sigma holds of a new group's rows
+/// with probability kSigmaLevel on average: the quantile, over groups of equal
+/// weight and one more group beyond all, of |residual| / sigma (split conformal
+/// prediction with pooled groups). It is 1.645 for normal residuals. Returns 0
+/// with fewer than kLeastConformalGroups.
+double conformal_half_width(const ResidualRows& rows,
+                            const Eigen::ArrayXd& sigma);
 
 /// Calibrates the factor on the rows of soaks, then a_rate on those of ramps,
 /// then a_on on those of warm-ups, and describes it in `calibration`. Without

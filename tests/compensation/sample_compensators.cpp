@@ -104,7 +104,7 @@ Compensator with_sigma(Compensator c) {
   sigma.temperature_rate = SigmaTerm{7.7, 250.0};
   sigma.factor = 1.1;
   sigma.source = SigmaSource::kPosterior;
-  sigma.calibration = {"in words", "device", 92, 0.9};
+  sigma.calibration = {"in words", "device", 92, 0.9, 1.52};
   return c;
 }
 

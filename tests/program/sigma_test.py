@@ -3,6 +3,7 @@
 
 import importlib.util
 import json
+import re
 import subprocess
 import unittest
 
@@ -66,6 +67,16 @@ class OfOneGyro(ProgramTest):
         self.assertEqual(self.compensator["sigma"]["source"], "covariance")
         self.assertIn("power_on", self.compensator["sigma"])
         self.assertIn("temperature_rate", self.compensator["sigma"])
+
+    def test_what_all_soaks_of_one_run_share_is_warned_of(self):
+        self.ok("run", "soaks.toml", "-o", "more.h5", "--seed", 4)
+        for runs, is_warned in [(["soaks.h5"], True),
+                                (["soaks.h5", "more.h5"], False)]:
+            answer = self.beamgyro("train", *runs, "--model", "spline.toml",
+                                   "-o", "again.json")
+            self.assertEqual(answer.returncode, 0, answer.stderr)
+            self.assertEqual("sigma is too small by what all soaks of this one "
+                             "run share" in answer.stderr, is_warned)
 
     def test_outside_the_temperatures_of_training_it_grows(self):
         self.ok("run", "soaks.toml", "-o", "cold.h5", "--set",
@@ -173,13 +184,20 @@ class OfAPopulation(ProgramTest):
         self.assertEqual(sigma["calibration"]["groups"], validation)
         learned = population["population"]["sigma"]
         self.assertEqual(learned["devices"], validation)
-        self.ok("train", "set", "--run", "check", "--device",
-                int(np.flatnonzero(parts == 2)[0]), "--model", "adapted.toml",
-                "-o", "adapted.json")
+        words = self.ok(
+            "train", "set", "--run", "check", "--device",
+            int(np.flatnonzero(parts == 2)[0]), "--model", "adapted.toml",
+            "-o", "adapted.json")
         adapted = json.loads((self.dir / "adapted.json").read_text())["sigma"]
         self.assertEqual(adapted["factor"], learned["factor"])
         self.assertEqual(adapted["temperature_rate"],
                          learned["temperature_rate"])
+        # The sigma that is told is that of the file.
+        told = float(re.search(r"1-sigma left open by the rows: rms ([\d.]+)",
+                               words).group(1))
+        self.assertAlmostEqual(
+            told, adapted["factor"] * np.sqrt(np.mean(np.square(
+                adapted["sigma_deg_per_s"]))), delta=1e-4)
         # Known from two soaks, a device is surer than the population.
         self.assertLess(np.mean(adapted["sigma_deg_per_s"]),
                         np.mean(sigma["sigma_deg_per_s"]))

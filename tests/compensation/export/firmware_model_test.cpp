@@ -238,6 +238,25 @@ TEST(FirmwareModel, TemperatureThatIsInfiniteGivesNoneAndHarmsNoFilter) {
   }
 }
 
+TEST(FirmwareModel, SigmaForgetsAGlitchOfTheTemperature) {
+  const Compensator c = with_sigma(spline_compensator());
+  FirmwareModel model(c);
+  model.start(1.0f);
+  model.step(at(20.0f));
+  const float before = model.sigma();
+  for (const float glitch : {1e30f, -1e30f}) {
+    model.step(at(glitch));
+    EXPECT_TRUE(std::isfinite(model.sigma()));
+    model.step(at(20.0f));
+    // Of 1000 K for a second, a rate of 1000 K / tau^2 is left.
+    EXPECT_LT(
+        model.sigma(),
+        before + 2.0 * c.sigma->factor * c.sigma->temperature_rate->amplitude *
+                     1000.0 /
+                     std::pow(c.sigma->temperature_rate->time_constant, 2));
+  }
+}
+
 // A network would saturate at an infinite input, and answer.
 TEST(FirmwareModel, AnyInputThatIsNotFiniteGivesNone) {
   const Compensator c = one_of_each_kind().back().compensator;

@@ -49,6 +49,10 @@ TEST(BiasSigmaJson, TermsMayBeAbsent) {
             "no error");
 }
 
+TEST(BiasSigmaJson, FilesOfOlderProgramsHaveNoHalfWidth) {
+  EXPECT_EQ(error_with(R"({"calibration": {"half_width": null}})"), "no error");
+}
+
 struct Broken {
   std::string patch, place, words;
 };
@@ -90,10 +94,15 @@ TEST(BiasSigmaJson, EveryBrokenMemberIsNamed) {
        "is missing"},
       {R"({"temperature_rate": {"tau": 3}})", "temperature_rate", "not known"},
       {R"({"factor": 0})", "factor", "above 0"},
+      {R"({"factor": 1e-300})", "factor", "must lie within 1e-12 to 1e+12"},
+      {R"({"sigma_deg_per_s": [0.1, 1e-300, 0.1, 0.1]})", "sigma_deg_per_s[1]",
+       "must lie within 1e-12 to 1e+12"},
       {R"({"factor": "1"})", "factor", "finite number"},
       {R"({"source": "guess"})", "source", "must be"},
       {R"({"calibration": {"groups": -1}})", "calibration.groups", "integer"},
       {R"({"calibration": {"level": 1}})", "calibration.level", "below 1"},
+      {R"({"calibration": {"half_width": -1}})", "calibration.half_width",
+       "not be below 0"},
       {R"({"poweron": {}})", "sigma", "\"poweron\" is not known"},
   };
   for (const Broken& one : all) {

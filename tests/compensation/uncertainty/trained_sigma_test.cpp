@@ -19,6 +19,8 @@ namespace {
 using Eigen::ArrayXd;
 using Eigen::Index;
 
+constexpr double kNormalHalfWidth = 1.645;  // of 90 %
+
 const std::vector<Input> kTemperatureInput = {parse_input("temperature")};
 
 // Soaks of an hour every 10 K with ramps of 10 min. Each soak has an offset of
@@ -62,7 +64,7 @@ double covered_share(const Compensator& c, const Recording& recording) {
   const std::vector<double> sigma = compensated_rate_sigma(c, recording);
   double covered = 0.0;
   for (std::size_t k = 0; k < rate.size(); ++k)
-    if (std::abs(rate[k]) <= kSigmaHalfWidth * sigma[k]) covered += 1.0;
+    if (std::abs(rate[k]) <= kNormalHalfWidth * sigma[k]) covered += 1.0;
   return covered / static_cast<double>(rate.size());
 }
 
@@ -192,6 +194,16 @@ std::vector<double> every_five_kelvins() {
   return temperatures;
 }
 
+// Nothing tells the slope beyond the range: the steepest within it stands for
+// it, that of a device of the population where the own curve is flat.
+TEST(AdaptedSigma, GrowsByTheSteepestBiasOfThePopulation) {
+  const Population population = fit_population(
+      kTemperatureInput, parabolas(200, 3, every_five_kelvins()), 5.0);
+  // c_1 / 90 + T c_2 / 2025, largest at 50 degC; 200 devices tell it to 5 %.
+  EXPECT_NEAR(steepest_bias(population), std::hypot(1.0 / 90, 47.5 / 2025.0),
+              0.004);
+}
+
 // Adapted to one soak, a device is no more than the posterior says.
 TEST(AdaptedSigma, CoversUnseenDevicesOfANormalPopulation) {
   const Population population = fit_population(
@@ -209,14 +221,16 @@ TEST(AdaptedSigma, CoversUnseenDevicesOfANormalPopulation) {
         bias_curve(population, adapted.mean).predict(own.temperature);
     for (Index k = 0; k < own.size(); ++k)
       if (std::abs(error(k)) <=
-          kSigmaHalfWidth * sigma.at(own.temperature(k), 0.0, 0.0))
+          kNormalHalfWidth * sigma.at(own.temperature(k), 0.0, 0.0))
         share += 1.0 / (133.0 * static_cast<double>(own.size()));
   }
   // Rows of a device share their error: sqrt(0.09 / 133) = 0.026.
   EXPECT_NEAR(share, 0.9, 0.06);
 }
 
-TEST(AdaptationSigma, IsNarrowWhereFewSoaksTellAll) {
+// The posterior variance is linear in second moments: it is right on average,
+// though the rows of one run do not show the noise of its points.
+TEST(AdaptationSigma, IsOneForDevicesOfThePopulation) {
   const Population population = fit_population(
       kTemperatureInput, parabolas(200, 3, every_five_kelvins()), 5.0);
   const auto learned =
@@ -224,9 +238,9 @@ TEST(AdaptationSigma, IsNarrowWhereFewSoaksTellAll) {
                        parabolas(100, 4, every_five_kelvins()), {});
   ASSERT_TRUE(learned);
   EXPECT_EQ(learned->devices, 100);
-  // Three soaks without noise determine a parabola.
-  EXPECT_GT(learned->factor, 0.0);
-  EXPECT_LT(learned->factor, 0.5);
+  EXPECT_NEAR(learned->factor, 1.0, 0.05);
+  EXPECT_GT(learned->half_width, 0.9);
+  EXPECT_LT(learned->half_width, 1.7);
   EXPECT_FALSE(learned->power_on);
   EXPECT_FALSE(learned->temperature_rate);
 }
@@ -246,13 +260,14 @@ TEST(AdaptationSigma, IsWideWhereDevicesDifferMoreThanThePopulation) {
 TEST(AdaptedSigma, AddsTheTurnOnOfTwoRunsOutsideTheFactor) {
   Population population = fit_population(
       kTemperatureInput, parabolas(20, 6, every_five_kelvins()), 5.0);
-  population.sigma = AdaptationSigma{0.5, SigmaTerm{0.2, 300.0}, {}, 30};
+  population.sigma = AdaptationSigma{0.5, SigmaTerm{0.2, 300.0}, {}, 30, 1.5};
   const ArrayXd deviation = ArrayXd::Constant(population.grid(), 0.4);
   const BiasSigma sigma = adapted_sigma(population, deviation, {0.03, 0.01});
   EXPECT_NEAR(sigma.at(10.0, 0.0, 0.0),
               std::sqrt(0.2 * 0.2 + 2.0 * 0.03 * 0.03), 1e-12);
   EXPECT_EQ(sigma.power_on, population.sigma->power_on);
   EXPECT_EQ(sigma.calibration.groups, 30U);
+  EXPECT_EQ(sigma.calibration.half_width, 1.5);
   EXPECT_EQ(sigma.source, SigmaSource::kPosterior);
 }
 
