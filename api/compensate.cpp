@@ -53,9 +53,12 @@ std::vector<std::string> range_warnings(const RateCompensator& compensator,
   if (file == nullptr || answer.clamped == 0) return {};
   return {fmt::format(
       "{}: {} of {} samples lie outside {:g} to {:g} degC, the temperatures "
-      "seen in training; clamped",
+      "seen in training; clamped{}",
       name, answer.clamped, answer.rate.size(), file->lowest_temperature(),
-      file->highest_temperature())};
+      file->highest_temperature(),
+      answer.sigma.empty() ? ""
+                           : ", and sigma there is a guess that grows with the "
+                             "distance")};
 }
 
 void add_answer(const RateCompensator& compensator, CompensatedRate answer,

@@ -35,11 +35,40 @@ std::string index_text(const SensitivityIndex& index) {
                   unsigned_zero(index.high, 2)));
 }
 
+// So that a row has no more than 100 columns.
+constexpr std::size_t kWidestKey = 34;
+
 std::size_t key_width(const MeritResult& result) {
   std::size_t width = 9;
   for (const FactorResult& factor : result.factors)
     width = std::max(width, factor.key.size());
-  return width;
+  return std::min(width, kWidestKey);
+}
+
+// A key that is longer than its column stands above its row.
+std::string key_cell(const std::string& key, std::size_t width) {
+  if (key.size() <= width) return fmt::format("{:<{}}", key, width);
+  return fmt::format("{}\n{:<{}}", key, "", width);
+}
+
+// The bootstrap intervals of the first orders, as if independent, tell how well
+// their sum is known.
+double uncertainty_of_sum(const MeritResult& result) {
+  double squares = 0.0;
+  for (const FactorResult& factor : result.factors)
+    squares += std::pow(0.5 * (factor.first.high - factor.first.low), 2);
+  return std::sqrt(squares);
+}
+
+std::string words_of_interactions(const MeritResult& result) {
+  const double share = 1 - result.sum_of_first;
+  const double half = uncertainty_of_sum(result);
+  const double low = std::clamp(share - half, 0.0, 1.0);
+  const double high = std::clamp(share + half, 0.0, 1.0);
+  if (low == 0.0)
+    return fmt::format("interactions at most {:.0f} %", 100 * high);
+  return fmt::format("interactions {:.0f} % ({:.0f} to {:.0f} %)", 100 * share,
+                     100 * low, 100 * high);
 }
 
 std::string words_of_sum(const MeritResult& result) {
@@ -58,8 +87,8 @@ std::string words_of_sum(const MeritResult& result) {
                100 * (1 - std::max(result.sum_of_first, 0.0)));
   return text + fmt::format(
                     "The tolerances by themselves explain most of the "
-                    "variance,\ninteractions {:.0f} %.\n",
-                    100 * std::max(0.0, 1 - result.sum_of_first));
+                    "variance,\n{}.\n",
+                    words_of_interactions(result));
 }
 
 // Tolerances with a share that they have with others for the most part.
@@ -85,7 +114,7 @@ std::string yield_table(const MeritResult& result) {
   const YieldResult& yield = *result.yield;
   std::size_t width = 11;
   for (const HalvedYield& halved : yield.halved)
-    width = std::max(width, halved.key.size() + 2);
+    width = std::max(width, std::min(halved.key.size() + 2, kWidestKey));
   const FigureOfMerit& figure = figure_of_merit(result.merit);
   std::string text =
       fmt::format("Share of devices within {} = {:g}:\n{:<{}} {:>8} {:>15}\n",
@@ -95,7 +124,7 @@ std::string yield_table(const MeritResult& result) {
                  share_text(yield.as_is));
   for (const HalvedYield& halved : yield.halved)
     fmt::format_to(
-        out, "{:<{}} {}\n", halved.key + "/2", width,
+        out, "{} {}\n", key_cell(halved.key + "/2", width),
         halved.share ? share_text(*halved.share) : fmt::format("{:>8}", "-"));
   return text;
 }
@@ -184,7 +213,7 @@ std::string sensitivity_table(const MeritResult& result) {
                                            : fmt::format(" {}", figure.unit),
       "tolerance", width, "total", "95 %", "first", "95 %", "ranks", "95 %");
   for (const FactorResult& factor : result.factors)
-    text += fmt::format("{:<{}} {} {} {}\n", factor.key, width,
+    text += fmt::format("{} {} {} {}\n", key_cell(factor.key, width),
                         index_text(factor.total), index_text(factor.first),
                         index_text(factor.first_by_rank));
   text += words_of_sum(result) + words_of_partners(result);

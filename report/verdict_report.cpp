@@ -74,6 +74,9 @@ std::string why_without_value(const ValidationResult& result,
   const auto found = std::ranges::find_if(result.metrics, [&](const auto& one) {
     return one.metric->name == limit.metric;
   });
+  const Metric* metric = find_metric(limit.metric);
+  if (metric != nullptr && metric->is_of_sigma && !result.sigma)
+    return "the compensator states no sigma";
   if (found == result.metrics.end() || found->after) return "no number";
   std::vector<std::string_view> purposes;
   for (const RunPurpose purpose : found->metric->reads)
@@ -148,12 +151,16 @@ std::string sigma_lines(const SigmaReport& sigma) {
   return wrapped(text, 2);
 }
 
-// "nominal.toml, qualification.toml", the name of a set, or "3 recordings".
+// "nominal.toml, qualification.toml", "device 7 of set", or "3 recordings".
 std::string evidence_words(const ValidationResult& result) {
   const ResultProvenance& provenance = result.provenance;
   if (!provenance.device.empty())
     return provenance.device + ", " + provenance.qualification;
-  if (result.population) return result.population->campaign;
+  if (result.population)
+    return result.population->shown.empty()
+               ? result.population->campaign
+               : fmt::format("device {} of {}", result.population->shown,
+                             result.population->campaign);
   const auto runs = std::ranges::count(provenance.files, std::string("runs"),
                                        &ResultFile::group);
   return fmt::format("{} recording{}", runs, runs == 1 ? "" : "s");

@@ -62,14 +62,12 @@ double largest_walk(const std::vector<AllanPoint>& points,
 }
 
 // The middle, of the logarithm, between the taus where the flicker floor is
-// left by N and by K, or by the longest tau.
+// left by N and by K. Without K the curve does not show where the floor ends.
 std::optional<double> flicker_time_of(const NoiseCoefficients& c) {
-  if (!c.bias_instability) return std::nullopt;
+  if (!c.bias_instability || !c.rate_random_walk) return std::nullopt;
   const double floor = kFlickerFloor * std::pow(c.bias_instability->value, 2);
   const double begin = std::pow(c.angle_random_walk->value, 2) / floor;
-  const double end = c.rate_random_walk
-                         ? 3.0 * floor / std::pow(c.rate_random_walk->value, 2)
-                         : c.taus.back();
+  const double end = 3.0 * floor / std::pow(c.rate_random_walk->value, 2);
   return std::sqrt(begin * std::max(begin, end)) / kMarkovPeak;
 }
 

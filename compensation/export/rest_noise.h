@@ -20,7 +20,7 @@ struct RestNoise {
   bool walk_is_bound = false;
   // Time constant [s] of the first-order Gauss-Markov process whose Allan
   // deviation peaks, at 1.893 time constants, in the middle of the flicker
-  // floor; without B there is none.
+  // floor; without B or K there is none.
   std::optional<double> flicker_time;
   double sample_rate = 0.0;  // [Hz]
   std::size_t samples = 0;

@@ -69,9 +69,11 @@ std::string only_form(const ConfigTable& table,
   }
   if (present.size() == 1) return present.front();
   if (present.empty()) {
-    throw std::invalid_argument(fmt::format("{}: missing; expected one of {}",
-                                            table.place(forms[0]),
-                                            fmt::join(forms, ", ")));
+    const std::vector<std::string> keys = table.keys();
+    throw std::invalid_argument(fmt::format(
+        "{}: missing{}; expected one of {}", table.place(forms[0]),
+        keys.empty() ? "" : fmt::format(", beside {}", fmt::join(keys, ", ")),
+        fmt::join(forms, ", ")));
   }
   table.fail(present[1], fmt::format("given beside {}; expected only one of {}",
                                      present[0], fmt::join(forms, ", ")));

@@ -135,6 +135,7 @@ PiecewiseLinear read_ambient(const ConfigTable& ambient,
 std::optional<PiecewiseLinear> read_history(
     const std::optional<ConfigTable>& history) {
   if (!history) return {};
+  only_form(*history, {"points"});
   return read_points(*history, kAmbient);
 }
 

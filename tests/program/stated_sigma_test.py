@@ -98,6 +98,14 @@ class Stream(StatedSigmaTest):
             program.stdin.close()
             self.assertEqual(program.wait(timeout=20), 0)
 
+    def test_a_glitch_of_the_sensor_is_forgotten_with_the_next_sample(self):
+        lines = self.stream(
+            "z.json", "time,temperature,rate\n0,25,0\n1,1e12,0\n2,25,0\n"
+        ).stdout.splitlines()
+        before, after = (float(lines[k].split(",")[1]) for k in (1, 3))
+        # Of 1000 degC for a second 1000 K / 200 s of the rate are left.
+        self.assertLess(after, before + 2 * 3 * 1000 / 200 ** 2)
+
     def test_without_sigma_there_is_a_rate_a_line_and_no_header(self):
         answer = self.stream("without.json",
                              "time,temperature,rate\n0,25,1\n1,25,2\n")
@@ -115,6 +123,21 @@ class Stream(StatedSigmaTest):
             self.assertEqual(answer.returncode, 2, answer.stderr)
             self.assertIn(says, answer.stderr)
             self.assertEqual(len(answer.stderr.splitlines()), 1)
+
+
+class Compensate(StatedSigmaTest):
+    def test_sigma_outside_the_temperatures_of_training_is_warned_of(self):
+        for name in ("z", "without"):
+            stored = json.loads((self.dir / f"{name}.json").read_text())
+            stored["temperature_range_degC"] = [-20, 30]
+            self.write(f"{name}.json", json.dumps(stored))
+        words = "and sigma there is a guess"
+        answer = self.beamgyro("compensate", "z.json", "run.h5", "-o", "a.h5")
+        self.assertIn(words, answer.stderr)
+        answer = self.beamgyro("compensate", "without.json", "run.h5", "-o",
+                               "b.h5")
+        self.assertIn("clamped", answer.stderr)
+        self.assertNotIn(words, answer.stderr)
 
 
 class ExportEkf(StatedSigmaTest):
@@ -179,6 +202,17 @@ class ExportEkf(StatedSigmaTest):
             + 2 * lag / 200
         self.assertAlmostEqual(figures["bias_walk"], math.sqrt(expected),
                                delta=1e-5)
+
+    def test_without_a_walk_the_end_of_the_flicker_floor_is_not_told(self):
+        for duration, is_told in [(600, False), (7200, True)]:
+            self.run_scenario("rest", text=REST.replace(
+                "duration_s = 7200", f"duration_s = {duration}"))
+            told = json.loads((self.export() / "z_ekf.json").read_text())
+            noise = told["rest"]["noise"]
+            self.assertIsNotNone(noise["B"])
+            self.assertEqual(noise["K"] is not None, is_told)
+            time = told["figures"]["flicker_correlation_time"]["value"]
+            self.assertEqual(time is not None, is_told)
 
     def test_options_change_what_they_say(self):
         def figures(*arguments):
@@ -332,6 +366,8 @@ class Validate(StatedSigmaTest):
         self.assertEqual(answer.returncode, 3)
         self.assertEqual({limit["result"] for limit in found["limits"]},
                          {"undecided"})
+        self.assertIn("bias_filter_nis: the compensator states no sigma",
+                      " ".join(answer.stdout.split()))
 
 
 if __name__ == "__main__":

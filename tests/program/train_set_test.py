@@ -202,6 +202,11 @@ class InSample(TrainSet):
                           said["population"]["verdicts"]],
                          [str(number) for number in tests])
         self.assertIn(f"of {len(tests)} devices pass", said["words"])
+        # The table is that of one device, and says so.
+        shown = said["population"]["shown_device"]
+        self.assertIn(f"Device {shown}: ", said["words"])
+        self.assertIn(f"cubic.json on device {shown} of set; s",
+                      " ".join(answer.stdout.split()))
         (rms,) = said["population"]["metrics"]
         # The same figure as of the device alone, and on any number of threads.
         one, _ = self.judged("cubic.json", "--spec", "spec.toml", "--device",

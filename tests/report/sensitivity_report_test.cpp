@@ -40,6 +40,28 @@ TEST(SensitivityReport, SaysWhenInteractionsDominate) {
   EXPECT_EQ(sensitivity_table(merit(0.71)).find("dominate"), std::string::npos);
 }
 
+// Each first order is known to 0.02, their sum to 0.028.
+TEST(SensitivityReport, InteractionsHaveAnInterval) {
+  EXPECT_NE(
+      sensitivity_table(merit(0.71)).find("interactions 29 % (26 to 32 %).\n"),
+      std::string::npos);
+  EXPECT_NE(sensitivity_table(merit(0.98)).find("interactions at most 5 %.\n"),
+            std::string::npos);
+}
+
+TEST(SensitivityReport, ALongKeyStandsAboveItsRow) {
+  MeritResult result = merit(0.71);
+  const std::string key = "readout.offset_tc_deg_per_s_per_K + beam.side_m";
+  result.factors.push_back(factor(key, 0.01, 0.02));
+  const std::string text = sensitivity_table(result);
+  EXPECT_NE(text.find('\n' + key + '\n'), std::string::npos) << text;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = text.find('\n', begin);
+    EXPECT_LE(end - begin, 100U) << text;
+    begin = end + 1;
+  }
+}
+
 TEST(SensitivityReport, SaysWhenNothingVaries) {
   MeritResult result = merit(0);
   result.variance = 0;

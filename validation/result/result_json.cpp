@@ -112,6 +112,7 @@ Json yield_json(const PopulationYield& population) {
             {"not_simulated", population.not_simulated},
             {"yield", number_or_null(population.share())},
             {"interval", interval_json(population.interval)}};
+  if (!population.shown.empty()) json["shown_device"] = population.shown;
   Json& devices = json["verdicts"] = Json::array();
   for (const DeviceVerdict& device : population.devices) {
     devices.push_back({{"verdict", conformity_name(device.verdict)},

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "validation/metrics/intervals.h"
 #include "validation/metrics/sigma_evidence.h"
 #include "validation/metrics/sigma_report.h"
 #include "validation/result/judgement.h"
@@ -61,7 +62,7 @@ class SetJudge {
     if (found_.devices.devices.size() > 1 &&
         !is_more_severe(result.verdict, found_.shown.verdict))
       return;
-    shown_device_ = device;
+    found_.devices.shown = device;
     found_.shown = std::move(result);
     found_.evidence = std::move(evidence);
   }
@@ -75,11 +76,12 @@ class SetJudge {
     all.passed = number_of(Conformity::kPass);
     all.failed = number_of(Conformity::kFail);
     all.undecided = number_of(Conformity::kUndecided);
-    all.interval = clopper_pearson(all.passed, all.devices.size());
+    all.interval = clopper_pearson(static_cast<double>(all.passed),
+                                   static_cast<double>(all.devices.size()));
     if (found_.shown.sigma) found_.shown.sigma = sigma_report(sigma_);
     found_.shown.words =
         fmt::format("{} of {} devices pass. Device {}: {}", all.passed,
-                    all.devices.size(), shown_device_, found_.shown.words);
+                    all.devices.size(), all.shown, found_.shown.words);
     return std::move(found_);
   }
 
@@ -102,7 +104,6 @@ class SetJudge {
   std::size_t threads_;
   SetVerdicts found_;
   SigmaEvidence sigma_;
-  std::string shown_device_;
 };
 
 }  // namespace

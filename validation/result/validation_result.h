@@ -76,6 +76,8 @@ struct DeviceVerdict {
 /// The share of a population, or of the devices of a set, that passes.
 struct PopulationYield {
   std::string campaign;                // or the name of the set
+  std::string shown;                   // number of the device of a set whose
+                                       // metrics, limits and checks these are
   bool trained_on_each = false;        // or one compensator for all
   std::vector<DeviceVerdict> devices;  // by number
   std::size_t passed = 0, failed = 0, undecided = 0;

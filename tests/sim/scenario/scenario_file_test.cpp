@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "tests/sim/scenario/scenario_text.h"
 
@@ -30,6 +31,19 @@ TEST(ScenarioFile, SoaksHoldAndRampInTurn) {
   EXPECT_NEAR(celsius(3900 + 450), 35, 1e-9);  // down
   EXPECT_NEAR(celsius(3900 + 900), 20, 1e-9);
   EXPECT_NEAR(celsius(1e6), 20, 1e-9);
+}
+
+TEST(ScenarioFile, AKeyInPlaceOfThePointsOfAHistoryIsNamed) {
+  try {
+    scenario_from("[history]\npoint = [[0, 20]]\n");
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("history.points: missing, beside point; expected one "
+                        "of points"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 TEST(ScenarioFile, StepsAreHeldAndPointsAreJoined) {
