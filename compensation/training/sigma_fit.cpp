@@ -87,8 +87,8 @@ ArrayXd sigma_grid(const TemperatureRange& range) {
 }
 
 // The population that a compensator was learned from, if there is one.
-const Population* population_of(const Compensator& trained,
-                                const FitSpec& kind) {
+const Population* population_behind(const Compensator& trained,
+                                    const FitSpec& kind) {
   if (const auto* adapted = std::get_if<AdaptedSpec>(&kind))
     return &adapted->population;
   return trained.population ? &*trained.population : nullptr;
@@ -114,7 +114,7 @@ std::array<double, 2> growth_of(const Compensator& trained, const FitSpec& kind,
       ((bias.tail(last) - bias.head(last)) / (T.tail(last) - T.head(last)))
           .abs()
           .maxCoeff();
-  if (const Population* population = population_of(trained, kind))
+  if (const Population* population = population_behind(trained, kind))
     steepest = std::max(steepest, steepest_bias(*population));
   // Of sigma, which is the factor times the growth.
   for (double& each : growth) each = std::max(each, steepest / sigma.factor);

@@ -38,9 +38,9 @@ std::map<int, std::vector<Index>> rows_by_group(const ResidualRows& rows,
 }
 
 // Mean of residual^2 / (others^2 + (a scale)^2) over groups of equal weight.
-double mean_square(const std::map<int, std::vector<Index>>& by_group,
-                   const ResidualRows& rows, const ArrayXd& others,
-                   const ArrayXd& scale, double a) {
+double mean_normalised_square(const std::map<int, std::vector<Index>>& by_group,
+                              const ResidualRows& rows, const ArrayXd& others,
+                              const ArrayXd& scale, double a) {
   double sum = 0.0;
   for (const auto& [group, own] : by_group) {
     double squares = 0.0;
@@ -121,7 +121,7 @@ double mean_square_amplitude(const ResidualRows& rows, const RowMask& mask,
   if (by_group.empty())
     throw std::invalid_argument("no rows to calibrate a sigma on");
   const auto excess = [&](double a) {
-    return mean_square(by_group, rows, others, scale, a) - 1.0;
+    return mean_normalised_square(by_group, rows, others, scale, a) - 1.0;
   };
   // With this amplitude every row has z^2 <= 1.
   double high = 0.0;
