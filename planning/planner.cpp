@@ -47,6 +47,8 @@ Planner::Planner(const SoakModel& model, TemperatureRange chamber,
     throw std::invalid_argument(fmt::format(
         "--hold {}: soaks of {} min or more have settled; expected {} to {}",
         *behaviour_.minutes, shortest_, shortest_, rows.size()));
+  if (behaviour_.start_row && !model.reaches(behaviour_.start_row->temperature))
+    behaviour_.start_row.reset();
   limits_.start = time.start;
   for (double T = chamber.lowest; T <= chamber.highest + 1e-9;
        T += kCandidateStep)

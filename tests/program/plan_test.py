@@ -231,6 +231,10 @@ class Plan(ProgramTest):
         plan = json.loads((self.dir / "old.plan.json").read_text())
         self.assertEqual(plan["forecast"], "gaussian")
 
+    def test_a_start_that_the_population_does_not_know_is_planned_from(self):
+        plan = self.plan("--soaks", "2", "--start", "90")
+        self.assertEqual(plan["schedule"]["start_degC"], 90)
+
     def test_a_population_whose_coefficients_do_not_fit_is_refused(self):
         whole = json.loads((self.dir / "population.json").read_text())
         learned = whole["population"]
