@@ -20,7 +20,7 @@ command -v doxygen >/dev/null || fail "no doxygen here: scripts/setup.sh test"
 [ -e "$build/python/beamgyro/__init__.py" ] ||
   fail "no Python package in $build: scripts/build.sh release"
 
-export BEAMGYRO_SOURCE=$root BEAMGYRO_DOXYGEN=$output/doxygen/xml
+export BEAMGYRO_DOXYGEN=$output/doxygen/xml
 export BEAMGYRO_PYTHON_PACKAGE=$build/python
 BEAMGYRO_VERSION=$(sed -n 's/^#define BEAMGYRO_VERSION_[A-Z]* //p' \
   "$root/include/beamgyro/version.h" | paste -sd.)

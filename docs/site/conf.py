@@ -2,10 +2,8 @@
 """Settings of Sphinx; scripts/docs.sh builds the site without a network."""
 
 import os
-import pathlib
 import sys
 
-SOURCE = pathlib.Path(os.environ["BEAMGYRO_SOURCE"])
 sys.path.insert(0, os.environ["BEAMGYRO_PYTHON_PACKAGE"])
 
 project = "beamgyro"
