@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 
-from sklearn.ensemble import GradientBoostingRegressor
+from sklearn.ensemble import GradientBoostingRegressor  # type: ignore[import]
 
 import beamgyro as bg
 
