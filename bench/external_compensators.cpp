@@ -16,8 +16,8 @@
 
 namespace {
 
-using beamgyro::internal::Answer;
 using beamgyro::Recording;
+using beamgyro::internal::Answer;
 
 // The measured variables of a simulated run at 100 Hz.
 Recording run_of(std::size_t samples) {

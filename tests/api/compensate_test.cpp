@@ -89,7 +89,8 @@ TEST(PublicCompensator, TextTrainsReadsAndAnswersAlike) {
     return std::sqrt(sum / static_cast<double>(values.size()));
   };
   EXPECT_LT(rms(first.rate), 0.5 * rms(column_values(run, "rate")));
-  EXPECT_NE(trained.text.find("rms in-sample"), std::string::npos) << trained.text;
+  EXPECT_NE(trained.text.find("rms in-sample"), std::string::npos)
+      << trained.text;
   EXPECT_THROW(compensate(again, compensate(again, run).recording),
                std::invalid_argument);
 }

@@ -11,7 +11,7 @@
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace beamgyro::internal;
-  static const Recording recording = sample_recording(20);
+  static const beamgyro::Recording recording = sample_recording(20);
   accept_or_reject([&] {
     const Compensator compensator =
         parse_compensator(std::string(text_of(data, size)), "fuzz.json");

@@ -21,7 +21,8 @@ std::string with_checksums(std::string_view lines) {
       line = "{\"sha256_before\":\"" + beamgyro::internal::sha256(text) + "\"}";
     if (line.ends_with('}')) {
       line.pop_back();
-      line += ",\"check\":\"" + beamgyro::internal::sha256(line).substr(0, 16) + "\"}";
+      line += ",\"check\":\"" + beamgyro::internal::sha256(line).substr(0, 16) +
+              "\"}";
     }
     text += line + '\n';
   }

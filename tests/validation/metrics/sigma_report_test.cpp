@@ -201,7 +201,9 @@ TEST(SigmaReport, WithoutSigmaThereIsNothing) {
   Scene scene;
   scene.add({kRamp, {.temperature = [](double t) { return 0.1 * t; }}});
   EXPECT_FALSE(states_sigma(scene.evidence));
-  EXPECT_TRUE(sigma_evidence(scene.evidence).empty());
+  const SigmaEvidence found = sigma_evidence(scene.evidence);
+  EXPECT_TRUE(found.soaks.empty() && found.ramps.empty() &&
+              found.filter.empty());
   EXPECT_FALSE(coverage({}, 0.9).has_value());
   EXPECT_FALSE(pit_report({}).has_value());
   EXPECT_FALSE(mean_normalised({}).has_value());
