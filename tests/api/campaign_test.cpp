@@ -2,6 +2,7 @@
 #include "include/beamgyro/campaign.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -30,7 +31,9 @@ class Folder {
   const fs::path& path() const { return path_; }
 
  private:
-  fs::path path_ = fs::temp_directory_path() / "beamgyro_api_test_set";
+  // Tests run at the same time, each in a process of its own.
+  fs::path path_ = fs::temp_directory_path() /
+                   ("beamgyro_api_test_set_" + std::to_string(getpid()));
 };
 
 beamgyro::Campaign six() {

@@ -16,7 +16,9 @@ import pytest
 
 from program import PROGRAM, ROOT
 
-GUIDES = sorted((ROOT / "docs/guide").glob("*.md"))
+# What library.md shows is C++, and built by library_test.py.
+GUIDES = [page for page in sorted((ROOT / "docs/guide").glob("*.md"))
+          if page.stem != "library"]
 TUTORIALS = sorted((ROOT / "docs/tutorials").glob("*.md"))
 PAGES = [ROOT / "README.md", *GUIDES, *TUTORIALS]
 BLOCK = re.compile(r"^```(sh|python|text)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -82,6 +84,8 @@ def test_every_guide_is_found():
     assert {"first_run", "chamber_log", "firmware"} <= names
     assert len(TUTORIALS) >= 4
     for guide in GUIDES + TUTORIALS:
+        if guide.stem == "plots":
+            continue  # draws, and prints nothing
         assert any(text for _, _, text in steps(guide)), guide
 
 
