@@ -5,7 +5,6 @@ import json
 import pathlib
 import re
 import shutil
-import subprocess
 import tempfile
 import time
 import tomllib
@@ -14,31 +13,8 @@ import unittest
 import h5py
 import numpy as np
 
-from program import PROGRAM, SCENARIOS, ProgramTest
-
-DEVICES = 60
-
-
-def population_of(folder):
-    """FOLDER/population.json, learned from the sweeps of some devices."""
-    campaign = (SCENARIOS / "campaigns/population.toml").read_text()
-    first, *_ = campaign.split("[[run]]")
-    (folder / "campaigns").mkdir()
-    (folder / "campaigns/sweep.toml").write_text(
-        first.replace("../", f"{SCENARIOS}/") +
-        f'[[run]]\nname = "sweep"\n'
-        f'scenario = "{SCENARIOS}/soak_sweep_sparse.toml"\n'
-        '[output]\nvariables = ["rate", "temperature", "quadrature", '
-        '"true_rate"]\n')
-
-    def beamgyro(*words):
-        subprocess.run([PROGRAM, *words], cwd=folder, check=True,
-                       stdout=subprocess.DEVNULL)
-    beamgyro("generate", "campaigns/sweep.toml", "-o", "set", "--devices",
-             str(DEVICES))
-    beamgyro("train", "set", "--model",
-             SCENARIOS / "population/population.toml", "-o", "population.json")
-    return folder / "population.json"
+from plan_test_population import population_of
+from program import SCENARIOS, ProgramTest
 
 
 class Plan(ProgramTest):
