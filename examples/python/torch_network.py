@@ -49,13 +49,13 @@ def trained(made: bg.Set) -> BiasNetwork:
     optimiser = torch.optim.LBFGS(network.parameters(), max_iter=200,
                                   line_search_fn="strong_wolfe")
 
-    def loss() -> torch.Tensor:
+    def loss() -> float:
         optimiser.zero_grad()
         error = torch.mean((network(torch.from_numpy(rows)) - wanted) ** 2)
         error.backward()  # type: ignore[no-untyped-call]
-        return error
+        return float(error)
 
-    optimiser.step(loss)  # type: ignore[no-untyped-call]
+    optimiser.step(loss)
     return network
 
 
