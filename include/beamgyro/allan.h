@@ -54,7 +54,7 @@ struct AllanResult {
   std::vector<NoiseCoefficient> coefficients;  ///< those that the curve shows
   std::vector<std::string> warnings;
   std::string text;  ///< what `beamgyro allan` prints
-  std::string json;  ///< what --json writes
+  std::string json;  ///< what `--json` writes
 };
 
 /// Computes the deviations of a column of a recording. Samples without power

@@ -52,7 +52,7 @@ struct SoakPlanResult {
   std::vector<std::string> warnings = {};
   std::string schedule = {};  ///< scenario file, what -o writes
   std::string text = {};      ///< what `beamgyro plan` prints
-  std::string json = {};      ///< what --json writes
+  std::string json = {};      ///< what `--json` writes
 };
 
 /// Plans the soaks of a new device. `population` is a compensator that was

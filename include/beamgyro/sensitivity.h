@@ -51,7 +51,7 @@ struct SensitivityFigure {
 struct SensitivityResult {
   std::vector<SensitivityFigure> figures;
   std::string text;  ///< what `beamgyro sensitivity` prints
-  std::string json;  ///< what --json writes
+  std::string json;  ///< what `--json` writes
 };
 
 /// Samples devices of a campaign and computes the indices. The result does not

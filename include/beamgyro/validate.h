@@ -85,8 +85,8 @@ struct ValidationOutcome {
   std::vector<CheckRow> checks;
   std::vector<std::string> warnings;
   std::string text;  ///< the table that `beamgyro validate` prints
-  std::string json;  ///< what --json writes
-  std::string page;  ///< HTML, what --report writes
+  std::string json;  ///< what `--json` writes
+  std::string page;  ///< HTML, what `--report` writes
 };
 
 /// Judges a compensator by every metric, check and limit. The result does not
