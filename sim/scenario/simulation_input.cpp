@@ -30,9 +30,8 @@ Scenario scenario_of(const ConfigDocument& document) {
 LoadedScenario loaded(Scenario scenario, const ConfigDocument& document,
                       const ConfigDocument& unit, const Overrides& set) {
   LoadedDevice device = device_of(unit, set);
-  return {std::move(scenario), std::move(device.device),
-          document.text(),     std::move(device.text),
-          set.text(),          profile_files(document)};
+  return {std::move(scenario),    device.device, document.text(),
+          std::move(device.text), set.text(),    profile_files(document)};
 }
 
 }  // namespace
