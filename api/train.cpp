@@ -13,6 +13,7 @@
 #include "api/compensator_state.h"
 #include "api/model_state.h"
 #include "compensation/compensator/compensator_file.h"
+#include "compensation/compensator/training_use.h"
 #include "compensation/rows/recorded_runs.h"
 #include "compensation/rows/set_runs.h"
 #include "compensation/training/train.h"
@@ -97,8 +98,10 @@ internal::RunSource source_of_recordings(
     const std::vector<NamedRecording>& recordings) {
   return {.count = recordings.size(),
           .for_each = [&recordings](const internal::RunSource::Visitor& visit) {
+            // Of what was measured: there is no file.
             for (const NamedRecording& one : recordings)
-              visit({one.name, "", one.recording});
+              visit({one.name, internal::measured_sha256(one.recording),
+                     one.recording});
           }};
 }
 

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "api/compensator_state.h"
 #include "compensation/inputs/sample_ranges.h"
@@ -71,14 +74,31 @@ class UserCompensator final : public TestedCompensator {
     return answer;
   }
 
-  static void take(const Recording& run, const SampleRange& stretch,
-                   const CompensatedRate& part, Answer& answer) {
+  // Throws std::invalid_argument for sigmas that are too few or not above 0.
+  void require_sigma(const Recording& run, const SampleRange& stretch,
+                     const std::vector<double>& sigma) const {
+    if (sigma.empty()) return;
+    if (sigma.size() != stretch.size())
+      throw std::invalid_argument(fmt::format(
+          "{}: gave {} sigmas to the {} samples from {}", user_.name(),
+          sigma.size(), stretch.size(), sample_words(run, stretch.begin)));
+    for (std::size_t k = 0; k < sigma.size(); ++k)
+      if (!(sigma[k] > 0.0 && std::isfinite(sigma[k])))
+        throw std::invalid_argument(fmt::format(
+            "{}: gave a sigma of {} deg/s to {}; expected a finite value above "
+            "0",
+            user_.name(), sigma[k], sample_words(run, stretch.begin + k)));
+  }
+
+  void take(const Recording& run, const SampleRange& stretch,
+            const CompensatedRate& part, Answer& answer) const {
     const auto place = static_cast<std::ptrdiff_t>(stretch.begin);
     std::ranges::copy_n(
         part.rate.begin(),
         static_cast<std::ptrdiff_t>(std::min(part.rate.size(), stretch.size())),
         answer.rate.begin() + place);
-    if (part.sigma.size() == stretch.size()) {
+    require_sigma(run, stretch, part.sigma);
+    if (!part.sigma.empty()) {
       answer.sigma.resize(run.time.size(), kNoAnswer);
       std::ranges::copy(part.sigma, answer.sigma.begin() + place);
     }

@@ -17,7 +17,7 @@ namespace beamgyro {
 /// The answers of a compensator to one run.
 struct CompensatedRate {
   std::vector<double> rate;  ///< [deg/s], one per sample; NaN where unpowered
-  /// [deg/s], 1-sigma of the bias of each; empty where it states none.
+  /// [deg/s], 1-sigma of the bias of each, above 0; empty where it states none.
   std::vector<double> sigma = {};
   /// Samples outside the temperatures seen in training, whose temperature was
   /// clamped.

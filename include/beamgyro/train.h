@@ -94,8 +94,8 @@ TrainedCompensator train(
     const std::vector<std::filesystem::path>& held_out = {},
     const TrainingOptions& options = {});
 
-/// The same for recordings in memory. The provenance has no checksums of files
-/// then, but those of what was measured.
+/// The same for recordings in memory. In the provenance the checksums of what
+/// was measured stand in place of those of files.
 TrainedCompensator train(const Model& model,
                          const std::vector<NamedRecording>& recordings,
                          const std::vector<NamedRecording>& held_out = {},

@@ -185,3 +185,20 @@ def test_a_model_is_trained_and_judged_on_a_simulated_device(tmp_path):
     assert all(0 <= share <= 1 for share in shares)
     with pytest.raises(ValueError, match="one of"):
         bg.validate(CUBIC, "a.h5", device=device)
+
+
+def test_runs_in_memory_that_were_fitted_are_no_unseen_runs(sweeps):
+    trained = bg.train(CUBIC, sweeps[0])
+    result = bg.validate(trained, sweeps[0], full_scale=150)
+    assert result.verdict == "fail"
+    [check] = [one for one in result.checks if one["name"] == "hold_out"] \
+        if not isinstance(result.checks, dict) else [result.checks["hold_out"]]
+    assert check["passed"] is False
+
+
+@pytest.mark.parametrize("sigma", [-1.0, 0.0, np.nan, np.inf])
+def test_a_sigma_is_above_0(sweeps, sigma):
+    def stating(signals):
+        return signals.rate.values, np.full(signals.sizes["time"], sigma)
+    with pytest.raises(ValueError, match="stating: gave a sigma of"):
+        bg.compensate(stating, sweeps[0])
