@@ -9,7 +9,9 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 packages=$(realpath "${1:-$root/build/packages}")
 place=$(realpath -m "${2:-$root/build/debian12}")
 bare=$place/bare system=$place/system
-mirror=http://deb.debian.org/debian
+# That of this machine.
+mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' |
+  awk '!/security/ && !found++')
 
 fail() {
   echo "try_packages: $*" >&2
