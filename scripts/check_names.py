@@ -4,7 +4,8 @@
 
 Libraries are compiled in bundles of sources, which share their anonymous
 namespaces. There a name that another source of the library defines, or that a
-header declares, would silently hide the other.
+header declares, would silently hide the other. Headers share one namespace:
+two types of one name would be linked as if they were one.
 
 check_names.py [ROOT]; one line per offence, exit status 1 if there is one.
 """
@@ -45,6 +46,9 @@ CONSTANT = re.compile(
     r"^(?:inline |static )?(?:constexpr|const) [\w:<>,&* ]*?\b(\w+)"
     r"(?:\[\w*\])* ?[={]", re.MULTILINE)
 TYPE = re.compile(r"^(?:struct|class|enum class|enum) (\w+)", re.MULTILINE)
+DEFINED_TYPE = re.compile(
+    r"^(?:struct|class|enum class|enum) (\w+)(?: final)?(?:\s*:(?!:)[^;{}]*)?"
+    r"\s*\{", re.MULTILINE)
 LOCAL = re.compile(r"^namespace \{\n(.*?)^\}  // namespace$",
                    re.MULTILINE | re.DOTALL)
 
@@ -72,6 +76,7 @@ def sees(library, header):
 def offences(root):
     declared = collections.defaultdict(list)
     defined = collections.defaultdict(list)
+    types = collections.defaultdict(list)
     folders = {prefix.split("/")[0] for prefix in LIBRARIES}
     for path in sorted(path for folder in folders
                        for path in (root / folder).rglob("*")):
@@ -79,11 +84,16 @@ def offences(root):
         if path.suffix == ".h":
             for one in names(path.read_text()):
                 declared[one].append(name)
+            for one in DEFINED_TYPE.findall(path.read_text()):
+                types[one].append(name)
         if path.suffix == ".cpp":
             local = {one for part in LOCAL.findall(path.read_text())
                      for one in names(part)}
             for one in local:
                 defined[library_of(name), one].append(name)
+    for one, headers in sorted(types.items()):
+        if len(headers) > 1:
+            yield f"{one}: a type in {', '.join(headers)}"
     for (library, one), files in sorted(defined.items()):
         hidden = [header for header in declared[one] if sees(library, header)]
         if len(files) > 1 or hidden:

@@ -63,7 +63,7 @@ void MaterialLimits::check(
   }
 }
 
-bool MaterialLimits::stand(const TemperatureRange& range) {
+bool MaterialLimits::stand(const TemperatureSpan& range) {
   return !is_outside(range.low) && !is_outside(range.high);
 }
 

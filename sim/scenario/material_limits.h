@@ -28,7 +28,7 @@ class MaterialLimits {
       const std::array<std::vector<double>, kThermalNodeCount>& nodes) const;
 
   /// Returns whether the materials stand every temperature of `range`.
-  static bool stand(const TemperatureRange& range);
+  static bool stand(const TemperatureSpan& range);
 
   /// Every sample of a run.
   void check(const ThermalTrajectory& temperatures,

@@ -117,7 +117,7 @@ class RateResponse {
  public:
   /// `beam` is the range of the beam's temperature.
   RateResponse(const Gyro& gyro, const Motion& motion,
-               const TemperatureRange& beam, const MemoryTrajectory* memory,
+               const TemperatureSpan& beam, const MemoryTrajectory* memory,
                const SampleGrid& grid)
       : board_(gyro),
         filter_(gyro.device.readout.corner_frequency),
@@ -142,7 +142,7 @@ class RateResponse {
   }
 
  private:
-  static StaticMap map_of(const Gyro& gyro, const TemperatureRange& range,
+  static StaticMap map_of(const Gyro& gyro, const TemperatureSpan& range,
                           const MemoryTrajectory* memory, double fastest) {
     if (memory == nullptr) return {gyro, range.low, range.high, fastest};
     return {
@@ -203,7 +203,7 @@ class MotionResponse {
 using StaticResponse = std::function<void(RunSamples& samples)>;
 
 StaticResponse static_response(const Gyro& gyro, const Motion& motion,
-                               const TemperatureRange& beam,
+                               const TemperatureSpan& beam,
                                const MemoryTrajectory* memory,
                                const SampleGrid& grid) {
   if (motion.has_other_axes()) return MotionResponse(gyro, motion, grid.rate);
@@ -243,7 +243,7 @@ void simulate_quasistatic(const Scenario& given, const Gyro& gyro,
                                        memory ? memory->sink() : ThermalSink{});
   if (memory) memory->finish();
   const MaterialLimits limits(scenario, gyro.device.thermal);
-  const TemperatureRange beam = temperatures.range(kBeam);
+  const TemperatureSpan beam = temperatures.range(kBeam);
   // No table reaches so far: the failure names the first sample.
   if (!MaterialLimits::stand(beam)) limits.check(temperatures, grid);
   const StaticResponse respond =

@@ -66,7 +66,7 @@ RunNoise SensingNoise::rms() {
 }
 
 SlowDriveNoise::SlowDriveNoise(const Scenario& scenario, const Gyro& gyro,
-                               const TemperatureRange& beam, const RunKey& key)
+                               const TemperatureSpan& beam, const RunKey& key)
     : scenario_(scenario),
       gyro_(gyro),
       ode_(gyro, drive_heating(gyro)),

@@ -50,7 +50,7 @@ class SlowDriveNoise {
   /// `beam` holds all temperatures of the beam. `scenario` and `gyro` must
   /// outlive the object.
   SlowDriveNoise(const Scenario& scenario, const Gyro& gyro,
-                 const TemperatureRange& beam, const RunKey& key);
+                 const TemperatureSpan& beam, const RunKey& key);
 
   /// Writes the noise of the next samples.
   void add_next(RunSamples& samples);

@@ -68,11 +68,11 @@ void ThermalTrajectory::store(std::size_t last, const OdeStep& step) {
   }
 }
 
-TemperatureRange ThermalTrajectory::range(ThermalNode node) const {
+TemperatureSpan ThermalTrajectory::range(ThermalNode node) const {
   constexpr std::size_t kBlock = 4096;
   std::vector<double> block;
-  TemperatureRange range{std::numeric_limits<double>::infinity(),
-                         -std::numeric_limits<double>::infinity()};
+  TemperatureSpan range{std::numeric_limits<double>::infinity(),
+                        -std::numeric_limits<double>::infinity()};
   for (std::size_t k = 0; k < grid_.count; k += kBlock) {
     block.resize(std::min(kBlock, grid_.count - k));
     sample(node, k, grid_.times(k, block.size()), block);

@@ -11,7 +11,8 @@
 
 namespace beamgyro::internal {
 
-struct TemperatureRange {
+/// The lowest and the highest temperature of a node.
+struct TemperatureSpan {
   double low, high;  // [K]
 };
 
@@ -28,7 +29,7 @@ class ThermalTrajectory {
                     const ThermalSink& also = {});
 
   /// Of the temperatures of a node at the samples.
-  TemperatureRange range(ThermalNode node) const;
+  TemperatureSpan range(ThermalNode node) const;
 
   /// The temperature of a node [K] at the samples from `first` on, whose times
   /// are `times` [s], bit for bit that of simulate_temperatures().

@@ -41,6 +41,15 @@ class CheckNames(unittest.TestCase):
         self.assertIn("scaled: local to sim/device/a.cpp, sim/device/b.cpp",
                       answer.stdout)
 
+    def test_a_type_that_two_headers_define(self):
+        answer = self.check({
+            "compensation/a/a.h": "struct Answered {\n  int k;\n};\n",
+            "validation/b/b.h": "class Answered final : public Base {\n};\n",
+            "api/c.h": "struct Answered::State {\n};\nclass Answered;\n"})
+        self.assertEqual(answer.returncode, 1)
+        self.assertEqual(answer.stdout, "Answered: a type in compensation/a/"
+                         "a.h, validation/b/b.h\n")
+
     def test_names_that_cannot_meet(self):
         text = local("struct Points {};\n")
         answer = self.check({

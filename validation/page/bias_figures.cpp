@@ -20,7 +20,7 @@ constexpr double kWarmUpBlock = 30.0;            // [s]
 constexpr double kLeastTemperatureSlope = 0.05;  // [K/min], of a ramp
 constexpr int kHistogramBars = 31;
 
-FigureAxis bias_axis() { return {"Measured less true rate", "deg/s"}; }
+FigureAxis bias_axis() { return {"Rate less true rate", "deg/s"}; }
 
 std::string direction_name(const std::string& role, bool rising) {
   return role + (rising ? ", rising" : ", falling");

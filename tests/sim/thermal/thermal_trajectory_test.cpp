@@ -42,7 +42,7 @@ TEST(ThermalTrajectory, HoldsTheTemperaturesOfTheSamplesToTheLastBit) {
       EXPECT_EQ(temperature, expected) << rate << " Hz, node " << node;
       const auto [low, high] =
           std::minmax_element(expected.begin(), expected.end());
-      const TemperatureRange range =
+      const TemperatureSpan range =
           trajectory.range(static_cast<ThermalNode>(node));
       EXPECT_EQ(range.low, *low);
       EXPECT_EQ(range.high, *high);
