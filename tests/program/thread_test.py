@@ -9,7 +9,8 @@ import json
 import os
 import unittest
 
-from program import NETWORK, ramp
+from program import NETWORK, SCENARIOS, ramp
+from qualified import Qualified
 from sets import Set
 
 # Every sample a row: enough of them that one training uses two threads.
@@ -50,6 +51,23 @@ class Threads(Set):
         folds = self.trained("folds", few_epochs, "--cv", "run")
         self.assertEqual(
             folds["training"]["cross_validation"]["groups"], 2)
+
+    def test_devices_of_a_sensitivity_study(self):
+        for jobs in [1, 4]:
+            self.ok("sensitivity", SCENARIOS / "campaigns/population.toml",
+                    "--samples", 32, "--figure", "bias_pp_deg_per_s",
+                    "--jobs", jobs, "--json", f"{jobs}.json")
+        self.assertEqual((self.dir / "4.json").read_bytes(),
+                         (self.dir / "1.json").read_bytes())
+
+
+class ThreadsOfAValidation(Qualified):
+    def test_runs_and_devices(self):
+        for jobs in [1, 4]:
+            self.validate("--campaign", "campaign.toml", "--jobs", jobs)
+            (self.dir / "v.json").rename(self.dir / f"{jobs}.json")
+        self.assertEqual((self.dir / "4.json").read_bytes(),
+                         (self.dir / "1.json").read_bytes())
 
 
 if __name__ == "__main__":
