@@ -18,10 +18,9 @@ import tomllib
 
 import h5py
 import numpy as np
-from matplotlib.ticker import ScalarFormatter
 
 from demo import NOISE_OFF, ROOT, SCENARIOS, Demo
-from figures import BLUE, GREY, ORANGE, STYLE, pyplot, save
+from figures import BLUE, GREY, ORANGE, pyplot, save, style
 
 DEVICES = {"nominal": BLUE, "rebalance": ORANGE, "matched": GREY}
 LABELS = {"nominal": "nominal, open loop", "rebalance": "force rebalance",
@@ -144,10 +143,10 @@ def start_up(work):
                        textcoords="offset points", fontsize=9, color="#555555")
     panels[0].set(title="Virtual gyro: the first 0.4 s after power-on, 25 °C",
                   ylabel="drive voltage [V]")
-    panels[1].yaxis.set_major_formatter(ScalarFormatter(useOffset=False))
     panels[1].set(ylabel="drive frequency\n[Hz]")
     panels[2].set(ylabel="rate shown\n[°/s]")
-    panels[3].set(xlabel="time since power-on [ms]", yscale="log",
+    style.log_scale(panels[3].yaxis)
+    panels[3].set(xlabel="time since power-on [ms]",
                   ylabel=f"|rate − {final:.3f} °/s|\n[°/s]", xlim=(0, 400),
                   ylim=(1e-4, 200))
     figure.align_ylabels()
@@ -200,15 +199,17 @@ def frequency_response(work):
         bottom.plot(hertz, 100 * of_binary, color=colour, lw=1, alpha=0.4)
         bottom.plot(points, 100 * of_sines, "o", ms=4.5, color=colour)
         worst[device] = {"sines": of_sines.max(), "binary": of_binary.max()}
-    for style, label in [({"marker": "o", "ls": "", "ms": 4.5}, "sine rates"),
-                         ({"lw": 5, "alpha": 0.3}, "pseudo-random rate"),
-                         ({"lw": 1.2}, "closed form")]:
-        top.plot([], [], color="#555555", label=label, **style)
-    top.set(xscale="log", yscale="log", xlim=(1.8, 230),
+    for look, label in [({"marker": "o", "ls": "", "ms": 4.5}, "sine rates"),
+                        ({"lw": 5, "alpha": 0.3}, "pseudo-random rate"),
+                        ({"lw": 1.2}, "closed form")]:
+        top.plot([], [], color="#555555", label=label, **look)
+    for axis in (top.xaxis, top.yaxis, bottom.yaxis):
+        style.log_scale(axis)
+    top.set(xlim=(1.8, 230),
             title="Virtual gyro: gain over the frequency of the rate, 25 °C",
             ylabel="output rate / true rate")
     top.legend(loc="lower left")
-    bottom.set(yscale="log", ylim=(3e-5, 5), xlabel="frequency [Hz]",
+    bottom.set(ylim=(3e-5, 5), xlabel="frequency [Hz]",
                ylabel="|simulated / closed form − 1|\n[%]")
     bottom.set_xticks([2, 5, 10, 20, 50, 100, 200],
                       ["2", "5", "10", "20", "50", "100", "200"])
@@ -242,8 +243,9 @@ def fidelities(work):
         panel.annotate(f"{largest[scenario]:.1e} °/s at most\nafter 1 s",
                        (0.97, 0.97), xycoords="axes fraction", ha="right",
                        va="top", fontsize=9, color="#555555")
-    panels[0].set(xscale="log", xlim=(0.1, 3600), yscale="log",
-                  ylim=(1e-9, 1),
+    style.log_scale(panels[0].xaxis)
+    style.log_scale(panels[0].yaxis)
+    panels[0].set(xlim=(0.1, 3600), ylim=(1e-9, 1),
                   ylabel="|difference of the zero-rate output| [°/s]")
     save(figure, work.out, "fidelities")
     return {"zero_rate_difference_deg_per_s": largest}
@@ -262,7 +264,7 @@ def main():
                     arguments.jobs)
     print(f"{work.simulate()} runs simulated; drawing ...", file=sys.stderr)
     numbers = {}
-    with pyplot.rc_context(STYLE):
+    with style.look():
         for draw in (start_up, rate_step, frequency_response, fidelities):
             numbers |= draw(work)
     (work.out / "numbers.json").write_text(json.dumps(numbers, indent=2) + "\n")

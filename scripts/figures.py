@@ -15,31 +15,17 @@ import matplotlib
 import numpy as np
 
 matplotlib.use("Agg")
-from matplotlib import pyplot, ticker  # noqa: E402  (the backend comes first)
+from matplotlib import pyplot  # noqa: E402  (the backend comes first)
 
-# Different in grey, too: dark, middle, light.
-BLUE, ORANGE, GREY = "#174a7c", "#d9822b", "#a8a8a8"
-PALE, WORDS = "#c3d3e4", "#505050"
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "python/beamgyro"))
+from plots import style  # noqa: E402  (where it is comes first)
+from plots.style import BLUE, GREY, ORANGE, WORDS  # noqa: E402
+
+PALE = "#b3d4e8"
+DPI = 150  # small enough for a README
 BLOCK = 60.0  # [s], what scores are averaged over, too
 FLOOR = np.sqrt(2 * np.log(2) / np.pi)  # of the Allan deviation, over B
-
-STYLE = {
-    "figure.figsize": (7.2, 4.6),
-    "figure.dpi": 150,
-    "font.size": 10,
-    "axes.titlesize": 11,
-    "axes.titlelocation": "left",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#e4e4e4",
-    "grid.linewidth": 0.8,
-    "axes.axisbelow": True,
-    "lines.linewidth": 1.6,
-    "legend.frameon": False,
-    "savefig.bbox": "tight",
-    "svg.hashsalt": "beamgyro",  # else the ids in an SVG change with every run
-}
 
 
 def block_means(file, *names):
@@ -62,8 +48,8 @@ def titled(axes, title, about):
 
 
 def save(figure, folder, name):
-    for suffix, metadata in [("png", {"Software": None}), ("svg", {"Date": None})]:
-        figure.savefig(folder / f"{name}.{suffix}", metadata=metadata)
+    for suffix in style.FORMATS:
+        style.save(figure, folder / f"{name}.{suffix}", dpi=DPI)
     pyplot.close(figure)
 
 
@@ -132,9 +118,9 @@ def warm_up(folder):
     bottom.annotate(f"drift within 5 % of its change after {settled:.1f} min",
                     (settled, 0.04), xytext=(6, 0), textcoords="offset points",
                     fontsize=9, xycoords=("data", "axes fraction"), color=WORDS)
-    for (node, values), (colour, style) in zip(
+    for (node, values), (colour, dash) in zip(
             warmth.items(), [(BLUE, "-"), (GREY, "--"), (ORANGE, "-.")]):
-        bottom.plot(minutes, values, style, color=colour)
+        bottom.plot(minutes, values, dash, color=colour)
         bottom.annotate(node, (minutes[-1], values[-1]), xytext=(4, 0),
                         textcoords="offset points", va="center", color=WORDS)
     bottom.set(xlabel="time since power-on [min]", ylabel="temperature [°C]",
@@ -155,8 +141,7 @@ def fit(folder, method, title, name):
     """The paper's figures 6 and 7: a fit to the drift and what it leaves."""
     temperature, rate, residual = held_out_sweep(folder, method)
     figure, ((top, corner), (bottom, side)) = pyplot.subplots(
-        2, 2, figsize=(7.2, 5.8), height_ratios=[3, 2], width_ratios=[4, 1],
-        gridspec_kw={"wspace": 0.06})
+        2, 2, figsize=(7.2, 5.8), height_ratios=[3, 2], width_ratios=[4, 1])
     corner.axis("off")
     top.plot(temperature, rate, ".", ms=5, color=GREY,
              label="held-out soaks, 60 s means")
@@ -229,12 +214,11 @@ def allan(folder):
     axes.plot(tau, kept, "o-", ms=3.5, lw=1.2, color=BLUE,
               label="recommended network, 95 %")
     axes.fill_between(tau, low, high, color=PALE, lw=0)
-    axes.set(xscale="log", yscale="log", ylim=(raw.min() / 4, raw.max() * 1.4),
+    axes.set(yscale="log", ylim=(raw.min() / 4, raw.max() * 1.4),
              ylabel="overlapping Allan deviation [°/s]")
+    style.log_scale(axes.xaxis)
+    style.log_scale(axes.yaxis, (1, 2, 5))
     mark_terms(axes, tau, terms)
-    axes.yaxis.set_major_locator(ticker.LogLocator(subs=[1, 2, 5]))
-    axes.yaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
-    axes.yaxis.set_minor_formatter(ticker.NullFormatter())
     titled(axes, "Virtual gyro at rest, 25 °C, over six hours, after the warm-up",
            "run with noise; dotted: the terms that are fitted to the curve "
            "without compensation")
@@ -243,7 +227,8 @@ def allan(folder):
     cheat.plot(tau, cancelled, "--", color=ORANGE, lw=2,
                label="network on (output, T): it cancels the rate, and the "
                      "noise with it")
-    cheat.set(xlabel="averaging time τ [s]", yscale="log", ylabel="[°/s]",
+    style.log_scale(cheat.yaxis)
+    cheat.set(xlabel="averaging time τ [s]", ylabel="[°/s]",
               ylim=(cancelled.min() / 3, cancelled.max() * 30))
     cheat.legend(loc="upper right", fontsize=9)
     for each in (axes, cheat):
@@ -253,14 +238,13 @@ def allan(folder):
 
 def recommended(folder):
     """What the recommended network makes of motions that it never saw."""
-    figure, panels = pyplot.subplots(2, 2, figsize=(9.2, 5.6), sharex="col",
-                                     gridspec_kw={"wspace": 0.24})
+    figure, panels = pyplot.subplots(2, 2, figsize=(9.2, 5.6), sharex="col")
     for (top, bottom), name, title, scale, unit in zip(
             panels.T, ["ramp_0.75", "warm_up_25"],
             ["chamber ramp, 0.75 K/min", "warm-up in still air at 25 °C"],
             [3600, 60], ["h", "min"]):
         residuals = []
-        for suffix, style in [("_noise", {"marker": ".", "ls": "", "ms": 4,
+        for suffix, look in [("_noise", {"marker": ".", "ls": "", "ms": 4,
                                           "color": GREY,
                                           "label": "with noise, 60 s means"}),
                               ("", {"color": BLUE, "label": "without noise"})]:
@@ -268,8 +252,8 @@ def recommended(folder):
             with h5py.File(path) as file:
                 time, rate, after = block_means(file, "time", "rate",
                                                 "compensated_rate")
-            top.plot(time / scale, rate, **style)
-            bottom.plot(time / scale, after, **style)
+            top.plot(time / scale, rate, **look)
+            bottom.plot(time / scale, after, **look)
             residuals.append(after)
         mean, sigma = residuals[1].mean(), residuals[1].std()
         bottom.axhline(0, color=WORDS, lw=0.8)
@@ -283,20 +267,18 @@ def recommended(folder):
     panels[0, 0].set_ylabel("rate at rest [°/s]")
     panels[1, 0].set_ylabel("compensated [°/s]")
     panels[1, 0].legend(loc="upper left", fontsize=8.5, ncols=2)
-    figure.subplots_adjust(hspace=0.42)
     save(figure, folder / "more", "recommended_network")
 
 
 def trap(folder):
     """A network that sees the output cancels the rate."""
-    figure, panels = pyplot.subplots(1, 2, figsize=(9.2, 4.4),
-                                     gridspec_kw={"wspace": 0.24})
+    figure, panels = pyplot.subplots(1, 2, figsize=(9.2, 4.4))
     for axes, run, limit, title in zip(
             panels, ["rate_table_22", "small_rates_12"], [128, 2.2],
             ["rate table at 22 °C", "small rates at 12 °C"]):
         axes.plot([-limit, limit], [-limit, limit], color=GREY, lw=1,
                   label="a rate that is kept")
-        for method, style in [
+        for method, look in [
                 ("recommended", {"marker": "o", "ms": 5, "color": BLUE,
                                  "label": "recommended network"}),
                 ("output_and_temperature",
@@ -308,7 +290,7 @@ def trap(folder):
             rates = np.unique(truth[ready].round(6))
             means = [answer[ready & (truth.round(6) == rate)].mean()
                      for rate in rates]
-            axes.plot(rates, means, ls="", **style)
+            axes.plot(rates, means, ls="", **look)
         titled(axes, title, "held-out run without noise, mean of each rate")
         axes.set(xlabel="true rate [°/s]", xlim=(-limit, limit),
                  ylim=(-limit, limit))
@@ -319,7 +301,7 @@ def trap(folder):
 
 def main(folder):
     (folder / "more").mkdir(exist_ok=True)
-    with pyplot.rc_context(STYLE):
+    with style.look():
         rest_output(folder)
         warm_up(folder)
         fit(folder, "cubic", "least-squares cubic", "figure_6_cubic")

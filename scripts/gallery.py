@@ -8,11 +8,15 @@ They go to docs/pictures/plot_*.png, in few colours to keep them small.
 import argparse
 import pathlib
 import subprocess
+import sys
 import tempfile
 
 from PIL import Image
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "python/beamgyro"))
+import plots  # noqa: E402  (where it is comes first)
+
 PICTURES = ROOT / "docs/pictures"
 WIDTH = 800  # [px]
 COLORS = (128, 64, 40, 20, 12)  # fewer where a picture is larger than LARGEST
@@ -40,17 +44,20 @@ validate {0}/spline.json {0}/warm_up.h5 {0}/held_out.h5 {0}/rest.h5 \
 --json {0}/scores.json
 validate scenarios/models/cubic.toml --spec specs/uav.toml \
 --device scenarios/devices/nominal.toml --json {0}/validation.json
-plot {0}/compensated.h5 -o {0}/plot_recording.png
-plot {0}/nominal.csv -o {0}/plot_table.png
-plot {0}/spline.json -o {0}/plot_compensator.png
-plot {0}/allan.json -o {0}/plot_allan.png
-plot {0}/small -o {0}/plot_set.png
-plot {0}/sensitivity.json -o {0}/plot_sensitivity.png
-plot {0}/population.json -o {0}/plot_population.png
-plot {0}/plan.json -o {0}/plot_plan.png
-plot {0}/scores.json -o {0}/plot_scores.png
-plot {0}/validation.json -o {0}/plot_validation.png
 """
+# Each picture, and the file that it shows.
+DRAWN = {
+    "recording": "compensated.h5",
+    "table": "nominal.csv",
+    "compensator": "spline.json",
+    "allan": "allan.json",
+    "set": "small",
+    "sensitivity": "sensitivity.json",
+    "population": "population.json",
+    "plan": "plan.json",
+    "scores": "scores.json",
+    "validation": "validation.json",
+}
 
 
 def main():
@@ -65,10 +72,12 @@ def main():
                                     stdout=subprocess.DEVNULL).returncode
             if status not in (0, NOT_PASSED):
                 raise SystemExit(f"{line}: ended with status {status}")
-        for path in sorted(pathlib.Path(folder).glob("plot_*.png")):
-            picture = Image.open(path).convert("RGB")
+        for name, file in DRAWN.items():
+            drawn = pathlib.Path(folder) / f"{name}.png"
+            plots.save(plots.plot(pathlib.Path(folder) / file), drawn)
+            picture = Image.open(drawn).convert("RGB")
             picture.thumbnail((WIDTH, 4 * WIDTH), Image.LANCZOS)
-            target = PICTURES / path.name
+            target = PICTURES / f"plot_{name}.png"
             for colors in COLORS:
                 picture.quantize(colors, Image.MAXCOVERAGE).save(
                     target, optimize=True)

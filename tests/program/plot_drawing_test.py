@@ -104,6 +104,16 @@ class Recordings(ProgramTest):
         levels = sorted({float(line.get_ydata()[0]) for line in left.lines})
         self.assertEqual(levels, [-0.5, 0.0, 0.2, 0.5])
 
+    def test_the_histogram_of_a_set_is_clear_of_its_neighbour(self):
+        self.ok("generate", SCENARIOS / "campaigns/small.toml", "--devices",
+                "6", "-o", "set")
+        figure = plots.plot(self.dir / "set")
+        figure.draw_without_rendering()
+        left, right = figure.axes
+        gap = (right.yaxis.label.get_window_extent().x0
+               - left.get_window_extent().x1)
+        self.assertGreater(gap, 10 * figure.dpi / 72)  # a letter's height
+
     def test_a_set_of_devices_and_nothing_are_refused(self):
         with self.assertRaisesRegex(plots.PlotError, "isel"):
             plots.plot_recording({"time": np.arange(3.0),
@@ -112,6 +122,69 @@ class Recordings(ProgramTest):
             plots.plot_recording({"time": np.empty(0), "rate": np.empty(0)})
         with self.assertRaises(plots.PlotError):
             plots.plot([])
+
+
+class Validations(ProgramTest):
+    def test_no_legend_lies_over_a_title_or_a_bar(self):
+        self.write("model.toml", CUBIC)
+        self.run_scenario("train", text=ramp())
+        self.run_scenario("held", text=ramp(seed=8))
+        self.run_scenario("check", text=ramp(seed=5))
+        self.ok("train", "train.h5", "--held-out", "held.h5", "--model",
+                "model.toml", "-o", "c.json")
+        self.beamgyro("validate", "c.json", "check.h5", "--spec",
+                      ROOT / "specs/uav.toml", "--json", "v.json")
+        figure = plots.plot(self.dir / "v.json")
+        figure.draw_without_rendering()
+        legends = [one for part in [*figure.subfigs, *figure.axes]
+                   for one in (getattr(part, "legends", None) or
+                               filter(None, [getattr(part, "legend_", None)]))]
+        self.assertGreaterEqual(len(legends), 2)
+        drawn = [axes.title.get_window_extent() for axes in figure.axes]
+        drawn += [bar.get_window_extent() for axes in figure.axes
+                  for bar in axes.patches if bar.get_height() > 0]
+        for legend in legends:
+            box = legend.get_window_extent().padded(-1)
+            for other in drawn:
+                self.assertFalse(box.overlaps(other), (box, other))
+        labels = [axes.get_xlabel() for axes in figure.axes]
+        self.assertIn("Φ(residual / σ)", labels)
+
+
+class Scores(unittest.TestCase):
+    def test_curves_of_the_devices_of_a_set_differ_without_colours(self):
+        figure = plots.plot_validation({"set": "few", "devices": [
+            {"device": str(k), "passed": True, "raw_rms_deg_per_s": 3.0 + k,
+             "cubic_rms_deg_per_s": 2.0 + k, "residual_rms_deg_per_s": 1.0 + k}
+            for k in range(20)]})
+        lines = figure.axes[0].lines
+        self.assertEqual(len({str(line._dash_pattern) for line in lines}), 3)
+
+    def test_a_score_without_values_has_no_panel(self):
+        """A single block of 60 s has no spread."""
+        run = {"run": "a.h5", **{kind: {
+            "rms_deg_per_s": 1.0, "sigma_deg_per_s": 0.0}
+            for kind in ("raw", "cubic", "residual")}}
+        figure = plots.plot_validation({
+            "verdict": "pass", "method": "cubic", "words": "keeps the rate",
+            "runs": [run], "overall": run})
+        self.assertEqual([axes.get_xlabel() for axes in figure.axes],
+                         ["rms about zero [°/s]"])
+
+
+class Allan(unittest.TestCase):
+    def test_a_line_of_another_height_than_its_letter_says_so(self):
+        figure = plots.plot_allan({
+            "oadev": [{"tau_s": tau, "deviation": 0.7}
+                      for tau in (0.1, 1.0, 10.0)],
+            "noise": {"B": {"per_second": {"value": 1.0, "unit": "deg/s"}}},
+            "series": {"dataset": "rate", "unit": "deg/s", "rate_Hz": 10.0,
+                       "from_s": 0.0, "to_s": 100.0, "samples": 1000}})
+        line = figure.axes[0].lines[-1]
+        label, = figure.axes[0].texts
+        self.assertEqual(label.get_text(), "0.664 B")
+        np.testing.assert_allclose(line.get_ydata(), 0.664, atol=5e-4)
+        self.assertEqual(label.xy[1], line.get_ydata()[0])
 
 
 class Compensators(ProgramTest):

@@ -4,14 +4,17 @@
 import os
 import re
 import struct
+import subprocess
+import time
 import unittest
 import xml.etree.ElementTree as ElementTree
 
 import h5py
 import numpy as np
 
-from program import (CUBIC, NETWORK, ROOT, SCENARIO, SCENARIOS, ProgramTest,
-                     ramp)
+import windows
+from program import (CUBIC, NETWORK, PROGRAM, ROOT, SCENARIO, SCENARIOS,
+                     ProgramTest, ramp)
 
 CAMPAIGN = """\
 name = "few"
@@ -130,6 +133,47 @@ class Recordings(PlotTest):
         self.assertEqual(curves(svg), ["curve-1-one-h5", "curve-1-two-h5",
                                        "curve-2-one-h5", "curve-2-two-h5"])
 
+    def test_files_of_one_name_are_told_apart(self):
+        self.run_scenario("one")
+        for folder in ("first", "second"):
+            (self.dir / folder).mkdir()
+            (self.dir / folder / "run.h5").write_bytes(
+                (self.dir / "one.h5").read_bytes())
+        self.says(self.picture("first/run.h5", "second/run.h5", "--compare"),
+                  "first/run.h5", "second/run.h5")
+        self.says(self.picture("one.h5", "one.h5", "--compare"),
+                  "one.h5 (1)", "one.h5 (2)")
+        begin, end = 30 * "a" + "_x_" + 30 * "b", 30 * "a" + "_y_" + 30 * "b"
+        for name in (begin, end):
+            (self.dir / f"{name}.h5").write_bytes(
+                (self.dir / "one.h5").read_bytes())
+        self.says(self.picture(f"{begin}.h5", f"{end}.h5", "--compare"),
+                  "aaa…bbb", "bbb.h5 (1)", "bbb.h5 (2)")
+
+    def test_letters_that_the_font_lacks_are_named(self):
+        self.run_scenario("rest")
+        for name, shown in [("測定 ü.h5", r"\u6e2c\u5b9a ü.h5"),
+                            ("two\nlines.h5", r"two\nlines.h5"),
+                            (b"\xff.h5".decode(errors="surrogateescape"),
+                             r"\udcff.h5")]:
+            with self.subTest(shown):
+                (self.dir / "rest.h5").rename(self.dir / name)
+                self.says(self.picture(name), shown)
+                (self.dir / name).rename(self.dir / "rest.h5")
+
+    def test_one_sample_and_samples_apart_are_marked(self):
+        # Of each series the values that a marker shows.
+        for name, times, marked in [
+                ("one", [7], 1), ("minutes", [*range(999), 2000], 1),
+                ("weeks", [*range(9), *range(10**6, 10**6 + 9)], 2),
+                ("whole", range(9), 0)]:
+            with self.subTest(name):
+                self.write("log.csv", "time,status,rate\n" + "".join(
+                    f"{t},0,{k % 5}\n" for k, t in enumerate(times)))
+                figure = ElementTree.parse(self.picture("log.csv")).find(
+                    f".//{SVG}g[@id='curve-1-measured']")
+                self.assertEqual(len(figure.findall(f".//{SVG}use")), marked)
+
     def test_a_name_with_spaces_and_dollars(self):
         self.run_scenario("rest")
         (self.dir / "rest.h5").rename(self.dir / "my -run $x^$ 2.h5")
@@ -159,7 +203,8 @@ class Results(PlotTest):
         self.ok("allan", "rest.h5", "--json", "a.json", "--kind",
                 "oadev,adev,hdev")
         svg = self.picture("a.json")
-        self.says(svg, "deviation [°/s]", "averaging time τ [s]", "N = ")
+        self.says(svg, "deviation [°/s]", "averaging time τ [s]", "N = ",
+                  "over 9.99 min")
         self.assertEqual(curves(svg), [
             "curve-1-overlapping-Allan-deviation", "curve-1-Allan-deviation",
             "curve-1-Hadamard-deviation"])
@@ -294,6 +339,14 @@ class Refusals(PlotTest):
             with self.subTest(name):
                 self.refused(name, "-o", "p.png", says=[name, says])
 
+    def test_a_log_is_not_yet_a_recording(self):
+        self.write("log.csv", "time,rate\n0,1\n1,2\n")
+        self.write("other.csv", "a,b\n1,2\n")
+        self.refused("log.csv", "-o", "p.png", says=[
+            "log.csv: no column status;", "beamgyro import"])
+        self.refused("other.csv", "-o", "p.png", says=[
+            "no column time and none status;", "beamgyro import"])
+
     def test_results_that_were_changed(self):
         self.write("table.csv", "temperature_degC,bias_deg_per_s\n1,2\n3\n")
         self.write("head.csv", "temperature_degC,bias_deg_per_s\n")
@@ -304,7 +357,7 @@ class Refusals(PlotTest):
         for name, says in [("table.csv", "table.csv:3: 1 values"),
                            ("head.csv", "no rows"),
                            ("few.csv", "no column scale_factor_rel"),
-                           ("allan.json", "no key 'deviation'"),
+                           ("allan.json", "adev[0].deviation: missing"),
                            ("unit.csv", "furlong/s")]:
             with self.subTest(name):
                 self.refused(name, "-o", "p.png", says=[name, says])
@@ -330,8 +383,13 @@ class Refusals(PlotTest):
     def test_names_of_the_picture(self):
         self.run_scenario("rest")
         for name, says in [("p.jpg", '".jpg"'), ("p", '""'),
-                           ("none/p.png", "none")]:
+                           ("none/p.png", "none"),
+                           ("", '--output "": is empty')]:
             self.refused("rest.h5", "-o", name, says=says)
+        self.ok("plot", "rest.h5", "-o", "p.PNG")
+        self.assertEqual((self.dir / "p.PNG").read_bytes()[:4], b"\x89PNG")
+        self.ok("plot", "rest.h5", "-o", "p.Svg")
+        self.assertIn(b"<svg", (self.dir / "p.Svg").read_bytes())
         (self.dir / "rest.h5").rename(self.dir / "rest.png")
         self.refused("rest.png", "-o", "rest.png", says="rest.png")
         self.refused("-o", "p.png", says="FILE")
@@ -371,6 +429,74 @@ class Surroundings(PlotTest):
         self.assertEqual(answer.returncode, 2, answer.stderr)
         self.assertIn("no display", answer.stderr)
         self.assertIn("-o PICTURE.png", answer.stderr)
+
+    @unittest.skipIf(windows.missing(), windows.missing())
+    def test_a_window_for_each_file_until_all_are_closed(self):
+        self.run_scenario("rest")
+        self.ok("allan", "rest.h5", "--json", "allan.json")
+        with windows.display() as name:
+            env = {**os.environ, "DISPLAY": name}
+            env.pop("MPLBACKEND", None)
+            plot = subprocess.Popen(
+                [PROGRAM, "plot", "rest.h5", "allan.json"], cwd=self.dir,
+                env=env, stderr=subprocess.PIPE, text=True)
+            there = windows.Windows(name)
+            until = time.monotonic() + 60
+            while len(there.titles()) < 2 and plot.poll() is None:
+                self.assertLess(time.monotonic(), until, "no window came")
+                time.sleep(0.1)
+            titles = there.titles()
+            self.assertEqual(set(titles), {"rest.h5", "allan.json"})
+            # As wide as a picture, not as matplotlib's 640 pixels.
+            self.assertEqual([there.width(one) for one in titles.values()],
+                             [800, 800])
+            there.close(titles["rest.h5"])
+            while "rest.h5" in there.titles():
+                self.assertLess(time.monotonic(), until, "it was not closed")
+                time.sleep(0.1)
+            self.assertIsNone(plot.poll())
+            there.close(titles["allan.json"])
+            self.assertEqual(plot.communicate(timeout=60), (None, ""))
+            self.assertEqual(plot.returncode, 0)
+
+    def test_what_the_user_set_for_matplotlib_does_not_matter(self):
+        self.run_scenario("rest")
+        plain = self.picture("rest.h5").read_bytes()
+        (self.dir / "settings").mkdir()
+        self.write("settings/matplotlibrc", "text.usetex: true\n"
+                   "font.size: 40\naxes.facecolor: red\nlines.marker: o\n"
+                   "savefig.bbox: tight\nsvg.fonttype: path\n")
+        for change in ({"MPLCONFIGDIR": str(self.dir / "settings")},
+                       {"MPLBACKEND": "nonsense"}, {"HOME": "/proc"}):
+            with self.subTest(change):
+                answer = self.beamgyro("plot", "rest.h5", "-o", "other.svg",
+                                       env={**os.environ, **change})
+                self.assertEqual((answer.returncode, answer.stderr), (0, ""))
+                self.assertEqual((self.dir / "other.svg").read_bytes(), plain)
+
+    def test_windows_that_cannot_be(self):
+        self.run_scenario("rest")
+        for backend, status, says in [
+                ("nonsense", 2, "MPLBACKEND is nonsense; expected"),
+                ("agg", 1, "MPLBACKEND is agg")]:
+            answer = self.beamgyro("plot", "rest.h5", env={
+                **os.environ, "DISPLAY": ":987", "MPLBACKEND": backend})
+            self.assertEqual(answer.returncode, status, answer.stderr)
+            self.assertIn(says, answer.stderr)
+            self.assertEqual(len(answer.stderr.splitlines()), 1)
+
+    def test_a_full_disk_leaves_no_picture(self):
+        self.run_scenario("rest")
+        before = self.files()
+        answer = subprocess.run(
+            ["/bin/bash", "-c",
+             'ulimit -f 10; exec "$0" plot rest.h5 -o p.png',
+             str(PROGRAM)], cwd=self.dir, capture_output=True, text=True,
+            check=False)
+        self.assertEqual(answer.returncode, 1, answer.stderr)
+        self.assertEqual(answer.stderr, "beamgyro: the picture was not "
+                         "written: File too large\n")
+        self.assertEqual(self.files(), before)
 
     def test_the_rest_of_the_package_is_not_needed(self):
         """The pictures are there where only they were installed."""

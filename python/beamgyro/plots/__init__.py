@@ -15,13 +15,12 @@ import os
 import pathlib
 from typing import Any, Mapping, Sequence, Union
 
-import matplotlib
 from matplotlib.figure import Figure
 
 from .errors import PlotError
 from .kinds import KINDS, figure_of, kind_of
 from .recording import Run
-from .style import STYLE, save
+from .style import look, names_of, save
 
 __all__ = ["PlotError", "kind_of", "plot", "plot_allan", "plot_compensator",
            "plot_plan", "plot_recording", "plot_sensitivity", "plot_table",
@@ -38,24 +37,31 @@ def plot(files: Path | Sequence[Path] | Mapping[Any, Any],
     picture."""
     if isinstance(files, Mapping):
         return plot_recording(files)
-    paths = [pathlib.Path(files)] if isinstance(files, (str, os.PathLike)) \
-        else [pathlib.Path(file) for file in files]
+    paths = [_path_of(file) for file in _several(files)]
     if not paths:
         raise PlotError("no file to plot; expected one or more")
     kinds = [kind_of(path) for path in paths]
     _require_comparable(paths, kinds, compare)
-    sources = [KINDS[kinds[0]].read(path) for path in paths]
-    try:
-        return _plotted(kinds[0], *sources)
-    except (KeyError, TypeError, IndexError) as error:
-        if not isinstance(sources[0], dict):
-            raise
-        raise PlotError(f"{paths[0]}: {_said(error)}; expected the file as "
-                        "the command wrote it") from error
+    sources = [KINDS[kinds[0]].read(path, name)
+               for path, name in zip(paths, names_of(paths))]
+    return _plotted(kinds[0], *sources, places=paths)
 
 
-def _said(error: Exception) -> str:
-    return f"no key {error}" if isinstance(error, KeyError) else str(error)
+def _several(files: Any) -> Sequence[Any]:
+    if isinstance(files, (str, os.PathLike)) or not hasattr(files, "__iter__"):
+        return [files]
+    return list(files)
+
+
+def _path_of(file: Any) -> pathlib.Path:
+    if not isinstance(file, (str, os.PathLike)):
+        raise PlotError(f"{type(file).__name__}: has no picture; expected "
+                        "the name of a file, several names, or a recording")
+    path = pathlib.Path(file)
+    if "\0" in str(path):
+        raise PlotError(f"{str(path)!r}: holds a NUL; expected the name of a "
+                        "file")
+    return path
 
 
 def _require_comparable(paths: Sequence[Any], kinds: Sequence[str],
@@ -63,12 +69,13 @@ def _require_comparable(paths: Sequence[Any], kinds: Sequence[str],
     if len(paths) == 1:
         if compare:
             raise PlotError(f"{paths[0]}: one file is compared with nothing; "
-                            "expected two or more with --compare")
+                            "expected two or more with compare=True "
+                            "(--compare)")
         return
     if not compare:
         raise PlotError(f"{paths[1]}: a second file for one picture; expected "
-                        "--compare, which draws files of one kind over each "
-                        "other")
+                        "compare=True (--compare), which draws files of one "
+                        "kind over each other")
     first = KINDS[kinds[0]]
     for path, kind in zip(paths[1:], kinds[1:]):
         if kind != kinds[0]:
@@ -82,13 +89,21 @@ def _require_comparable(paths: Sequence[Any], kinds: Sequence[str],
                         f"be compared; expected one of: {known}")
 
 
-def _plotted(kind: str, *sources: Any) -> Figure:
-    with matplotlib.rc_context(STYLE):
+def _plotted(kind: str, *sources: Any, places: Sequence[object] = ()
+             ) -> Figure:
+    names = [place or KINDS[kind].name for place in
+             [*places, *[None] * (len(sources) - len(places))]]
+    for source, name in zip(sources, names):
+        KINDS[kind].check(source, name)
+    with look():
         return figure_of(kind, sources)
 
 
 def _named(data: Mapping[str, Any], name: str) -> dict[str, Any]:
-    return {"name": name, **data} if name else dict(data)
+    if not isinstance(data, Mapping):
+        raise PlotError(f"{name}: {type(data).__name__}; expected the JSON "
+                        "of a command as a dict")
+    return {"name": name, **data}
 
 
 def plot_recording(*recordings: Any, names: Sequence[str] = ()) -> Figure:
@@ -111,19 +126,21 @@ def plot_allan(*results: Mapping[str, Any], names: Sequence[str] = ()
                ) -> Figure:
     """Results of `allan --json`, as dicts."""
     names = [*names, *["Allan deviation"] * (len(results) - len(names))]
-    return _plotted("allan", *map(_named, results, names))
+    return _plotted("allan", *map(_named, results, names), places=names)
 
 
 def plot_compensator(*compensators: Mapping[str, Any],
                      names: Sequence[str] = ()) -> Figure:
     """Compensators or populations, as dicts of their JSON."""
     names = [*names, *["compensator"] * (len(compensators) - len(names))]
-    return _plotted("compensator", *map(_named, compensators, names))
+    return _plotted("compensator", *map(_named, compensators, names),
+                    places=names)
 
 
 def plot_validation(result: Mapping[str, Any]) -> Figure:
     """The result of `validate --json`, as a dict."""
-    return _plotted("validation" if "figures" in result else "scores", result)
+    is_validation = isinstance(result, Mapping) and "figures" in result
+    return _plotted("validation" if is_validation else "scores", result)
 
 
 def plot_plan(plan: Mapping[str, Any]) -> Figure:
@@ -145,8 +162,10 @@ def save_each(file: Path, folder: Path) -> list[str]:
         raise PlotError(f"{path}: one picture only; expected the --json of "
                         "validate or sensitivity")
     names = []
-    with matplotlib.rc_context(STYLE):
-        for name, figure in kind.each(kind.read(path)):
+    source = kind.read(path, path.name)
+    kind.check(source, path)
+    with look():
+        for name, figure in kind.each(source):
             names.append(f"{name}.png")
             save(figure, pathlib.Path(folder) / names[-1])
     return names

@@ -15,6 +15,7 @@ from typing import Any, NoReturn
 
 HERE = pathlib.Path(__file__).resolve().parent
 WRONG_INPUT, NOT_POSSIBLE = 2, 3
+DPI, HIGHEST_WINDOW = 100.0, 900.0  # of a window, which a screen has to hold
 
 
 def load_package() -> Any:
@@ -33,13 +34,15 @@ def load_package() -> Any:
 
 
 def fail(status: int, message: object) -> NoReturn:
-    print(message, file=sys.stderr)
+    """Ends with a message of one line: a file name may have several."""
+    print("\\n".join(str(message).splitlines()), file=sys.stderr)
     sys.exit(status)
 
 
 def require_window() -> None:
     """Ends unless a window can be opened."""
-    if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+    display = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    if not display:
         fail(WRONG_INPUT, "no display for a window; expected "
              "-o PICTURE.png or -o PICTURE.svg")
     import matplotlib
@@ -51,17 +54,25 @@ def require_window() -> None:
              "use -o PICTURE.png")
     if pyplot.get_backend().lower() not in map(
             str.lower, matplotlib.rcsetup.interactive_bk):
-        fail(NOT_POSSIBLE, "no window: matplotlib has none here (python3-tk "
-             "in Debian); or use -o PICTURE.png")
+        wanted = os.environ.get("MPLBACKEND")
+        fail(NOT_POSSIBLE, f"no window on display {display}: " +
+             (f"MPLBACKEND is {wanted}" if wanted else "it is not there, or "
+              "matplotlib has no windows (python3-tk in Debian)") +
+             "; or use -o PICTURE.png")
 
 
-def show(figures: list[Any]) -> None:
+def show(figures: list[Any], names: list[str]) -> None:
     """Opens a window for each figure and waits until all are closed."""
     from matplotlib import pyplot
-    for figure in figures:
-        manager = pyplot.figure().canvas.manager
+    for figure, name in zip(figures, names):
+        width, height = figure.get_size_inches()
+        dpi = min(DPI, HIGHEST_WINDOW / height)
+        figure.set_dpi(dpi)
+        manager = pyplot.figure(figsize=(width, height),
+                                dpi=dpi).canvas.manager
         figure.set_canvas(manager.canvas)
         manager.canvas.figure = figure
+        manager.set_window_title(name)
     pyplot.show()
 
 
@@ -74,8 +85,13 @@ def main() -> None:
     parser.add_argument("--each", type=pathlib.Path)
     parser.add_argument("--dpi", type=float)
     arguments = parser.parse_args()
+    if arguments.output or arguments.each:  # whatever MPLBACKEND says
+        os.environ["MPLBACKEND"] = "agg"
     try:
         plots = load_package()
+    except ValueError:  # of matplotlib, which reads it first
+        fail(WRONG_INPUT, f"MPLBACKEND is {os.environ.get('MPLBACKEND')}; "
+             "expected one that matplotlib knows, or none")
     except ImportError as error:
         fail(NOT_POSSIBLE, f"{error}; pictures need Python 3 with matplotlib "
              "and h5py (python3-matplotlib and python3-h5py in Debian)")
@@ -85,6 +101,11 @@ def main() -> None:
         fail(WRONG_INPUT, error)
     except ModuleNotFoundError as error:
         fail(NOT_POSSIBLE, f"{error}; pictures need python3-{error.name}")
+    except OSError as error:
+        fail(NOT_POSSIBLE, f"the picture was not written: {error.strerror}")
+    except MemoryError:
+        fail(NOT_POSSIBLE, f"{arguments.files[0]}: not enough memory to draw "
+             "it")
 
 
 def draw(plots: Any, arguments: argparse.Namespace) -> None:
@@ -97,7 +118,8 @@ def draw(plots: Any, arguments: argparse.Namespace) -> None:
         require_window()
         groups = [arguments.files] if arguments.compare \
             else [[file] for file in arguments.files]
-        show([plots.plot(group, arguments.compare) for group in groups])
+        show([plots.plot(group, arguments.compare) for group in groups],
+             [", ".join(group) for group in groups])
 
 
 if __name__ == "__main__":

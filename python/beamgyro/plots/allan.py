@@ -11,7 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
+from .documents import (NOT_NEGATIVE, NUMBER, POSITIVE, TEXT, both, in_order,
+                        maybe, record, rows, wrong)
 from .errors import PlotError
+from .units import duration
 
 KINDS = {"oadev": "overlapping Allan", "adev": "Allan",
          "mdev": "modified Allan", "totdev": "total",
@@ -23,7 +26,46 @@ TERMS: dict[str, Callable[[Any, float], Any]] = {
     "B": lambda t, b: math.sqrt(2 * math.log(2) / math.pi) * b + 0 * t,
     "K": lambda t, k: k * np.sqrt(t / 3),
     "R": lambda t, r: r * t / math.sqrt(2)}
+DRAWN = {"B": "0.664 B"}  # where a line has another height than its letter
+# The unit of each term of angular rates, and what it adds to another unit.
+UNITS = {"Q": ("deg", " s"), "N": ("deg/sqrt(s)", " sqrt(s)"),
+         "B": ("deg/s", ""), "K": ("deg/s/sqrt(s)", "/sqrt(s)"),
+         "R": ("deg/s/s", "/s")}
 HEIGHT = 5.2
+
+
+def _units_agree(data: Mapping[str, Any], _: str) -> None:
+    """The terms are in the unit that follows from that of the series."""
+    unit = _unit(data)
+    for symbol, (of_rates, factor) in UNITS.items():
+        term = _term(data, symbol)
+        expected = of_rates if unit == "deg/s" else unit + factor
+        if term and term["unit"] != expected:
+            raise wrong(f"noise.{symbol}.per_second.unit",
+                        f'"{term["unit"]}"',
+                        f'"{expected}", as the series is in {unit}')
+
+
+_POINT = record(
+    {"tau_s": POSITIVE, "deviation": NOT_NEGATIVE},
+    {"interval": maybe(both(rows(maybe(NOT_NEGATIVE), 2, 2), in_order))})
+_TERM = record({"per_second": record({"value": POSITIVE, "unit": TEXT})})
+SHAPE = both(record({}, {
+    **{kind: rows(_POINT) for kind in KINDS},
+    "series": record({"dataset": TEXT, "unit": TEXT, "rate_Hz": POSITIVE,
+                      "from_s": NUMBER, "to_s": NUMBER,
+                      "samples": NOT_NEGATIVE}),
+    "noise": maybe(record({}, {symbol: maybe(_TERM) for symbol in TERMS}))}),
+    _units_agree)
+
+
+def _unit(data: Mapping[str, Any]) -> str:
+    return str((data.get("series") or {}).get("unit", "deg/s"))
+
+
+def _term(data: Mapping[str, Any], symbol: str) -> Mapping[str, Any] | None:
+    found = (data.get("noise") or {}).get(symbol)
+    return found["per_second"] if found else None
 
 
 def kinds_in(data: Mapping[str, Any]) -> list[str]:
@@ -34,6 +76,8 @@ def _curve(axes: Axes, points: Sequence[Mapping[str, Any]], k: int,
            label: str, interval: bool = True) -> None:
     tau, deviation = (np.array([point[key] for point in points], dtype=float)
                       for key in ("tau_s", "deviation"))
+    # A logarithmic axis has no place for 0.
+    deviation[deviation == 0] = np.nan
     ends = np.array([point.get("interval") or (np.nan, np.nan)
                      for point in points], dtype=float).T
     color = style.COLORS[k % len(style.COLORS)]
@@ -48,31 +92,28 @@ def _terms(axes: Axes, data: Mapping[str, Any], kind: str) -> None:
     """The asymptotes of the fitted terms where the picture shows them."""
     tau = np.geomspace(data[kind][0]["tau_s"], data[kind][-1]["tau_s"], 200)
     low, high = axes.get_ylim()
-    words = []
     for symbol, law in TERMS.items():
-        term = ((data.get("noise") or {}).get(symbol) or {}).get("per_second")
+        term = _term(data, symbol)
         if not term:
             continue
-        words.append(f"{symbol} = {term['value']:.3g} "
-                     f"{style.spoken(term['unit'])}")
         line = law(tau, term["value"])
         seen = (line > low) & (line < high)
         axes.plot(tau[seen], line[seen], ":", color=style.WORDS, lw=1.2,
                   zorder=1.5)
         if seen.any():  # named at its low end, where no curve is
             falls = symbol in "QN"
-            axes.annotate(symbol, (tau[seen][-1 if falls else 0],
-                                   line[seen][-1 if falls else 0]),
-                          xytext=(-6 if falls else 6, 6), ha="center",
+            axes.annotate(DRAWN.get(symbol, symbol),
+                          (tau[seen][-1 if falls else 0],
+                           line[seen][-1 if falls else 0]),
+                          xytext=(-6 if falls else 6, 6),
+                          ha="center" if falls else "left",
                           textcoords="offset points", color=style.WORDS)
-    axes.text(0.02, 0.04, "\n".join(words), transform=axes.transAxes,
-              fontsize=9, color=style.WORDS, linespacing=1.5)
 
 
 def draw(figure: Figure, results: Sequence[Mapping[str, Any]]) -> None:
     """Every deviation of one result, or one deviation of several."""
     axes = figure.subplots()
-    names = style.shortened([str(one.get("name", "")) for one in results])
+    names = style.labels([str(one.get("name", "")) for one in results])
     kinds = [kind for kind in KINDS
              if all(kind in kinds_in(one) for one in results)]
     if not kinds:
@@ -80,7 +121,7 @@ def draw(figure: Figure, results: Sequence[Mapping[str, Any]]) -> None:
             f"{names[0]}: no deviation in common with {', '.join(names[1:])}; "
             "expected results of the same --kind" if len(results) > 1 else
             f"{names[0]}: no deviation; expected one of {', '.join(KINDS)}")
-    units = [(one.get("series") or {}).get("unit", "deg/s") for one in results]
+    units = [_unit(one) for one in results]
     if len(set(units)) > 1:
         raise PlotError(f"{names[0]}: deviations in {' and '.join(units)} "
                         "cannot be compared; expected one unit")
@@ -95,17 +136,17 @@ def draw(figure: Figure, results: Sequence[Mapping[str, Any]]) -> None:
              ylabel=style.quantity("deviation" if len(kinds) > 1 else
                                    KINDS[kinds[0]] + " deviation", units[0]))
     shown = [point["deviation"] for one in results for kind in kinds
-             for point in one[kind]]
+             for point in one[kind] if point["deviation"] > 0]
+    if not shown:
+        raise PlotError(f"{names[0]}: every deviation is 0; expected one "
+                        "above 0 for a logarithmic axis")
     style.log_scale(axes.xaxis)
     style.log_scale(axes.yaxis,
                     (1, 2, 5) if max(shown) < 100 * min(shown) else ())
     axes.set_ylim(min(shown) / 3, max(shown) * 3)
     if len(results) == 1:
         _terms(axes, results[0], kinds[0])
-    if len(results) == 1:
-        axes.legend(loc="upper right")
-    else:
-        style.legend_above(axes, 3)
+    style.legend_above(axes, 3)
     _title(figure, results, names)
 
 
@@ -115,12 +156,16 @@ def _title(figure: Figure, results: Sequence[Mapping[str, Any]],
         style.titled(figure, f"{len(results)} Allan deviations",
                      "bands: intervals of 95 %")
         return
-    series = results[0].get("series") or {}
-    about = "band: interval of 95 %"
-    if results[0].get("noise"):
-        about += "; dotted: the fitted terms of the noise"
+    parts = []
+    terms = [(symbol, _term(results[0], symbol)) for symbol in TERMS]
+    words = [f"{symbol} = {term['value']:.3g} {style.spoken(term['unit'])}"
+             for symbol, term in terms if term]
+    if words:
+        parts.append(f"dotted: fitted noise, {', '.join(words)}")
+    series = results[0].get("series")
     if series:
-        hours = (series["to_s"] - series["from_s"]) / 3600
-        about = (f"{series['dataset']}, {series['samples']:,} samples at "
-                 f"{series['rate_Hz']:g} Hz over {hours:.3g} h; ") + about
-    style.titled(figure, names[0], about)
+        span = duration(series["to_s"] - series["from_s"])
+        parts.append(f"{series['dataset']}, {series['samples']:,} samples at "
+                     f"{series['rate_Hz']:g} Hz over {span}")
+    style.titled(figure, names[0],
+                 "; ".join([*parts, "band: interval of 95 %"]))

@@ -12,6 +12,9 @@ from typing import Any, Mapping
 import numpy as np
 import numpy.typing as npt
 
+from .documents import (COUNT, NUMBER, POSITIVE, both, either, record,
+                        require_count, rising, rows, wrong)
+
 Values = npt.NDArray[np.float64]
 ZERO_CELSIUS, NOMINAL = 273.15, 298.15  # [K]
 
@@ -66,6 +69,10 @@ def _table(p: Parameters, x: Values) -> Values:
     return np.interp(x[:, 0], p["temperatures_degC"], p["values_deg_per_s"])
 
 
+SPLINE = ("knots_degC", "values_deg_per_s",
+          "second_derivatives_deg_per_s_per_K2")
+
+
 def spline(knots: Values, values: Values, curvature: Values, x: Values
            ) -> Values:
     k = np.clip(np.searchsorted(knots, x, "right") - 1, 0, len(knots) - 2)
@@ -77,8 +84,8 @@ def spline(knots: Values, values: Values, curvature: Values, x: Values
 
 
 def _spline(p: Parameters, x: Values) -> Values:
-    return spline(p["knots_degC"], p["values_deg_per_s"],
-                  p["second_derivatives_deg_per_s_per_K2"], x[:, 0])
+    knots, values, curvature = (p[name] for name in SPLINE)
+    return spline(knots, values, curvature, x[:, 0])
 
 
 def _thermistor(p: Parameters, x: Values) -> Values:
@@ -121,6 +128,74 @@ _FUNCTIONS = {"none": _none, "constant": _constant, "polynomial": _polynomial,
               "table": _table, "spline": _spline, "thermistor": _thermistor,
               "fuzzy": _fuzzy, "radial_basis": _radial_basis, "bp": _bp}
 KINDS = tuple(_FUNCTIONS)
+
+# --- what a model has to be ---
+
+_SOME = rows(NUMBER, 1)
+_PARAMETERS = {
+    "none": record({}),
+    "constant": record({"value_deg_per_s": NUMBER}),
+    "polynomial": record({"coefficients": _SOME, "slopes": rows(NUMBER)}),
+    "table": record({"temperatures_degC": rising(_SOME),
+                     "values_deg_per_s": _SOME},
+                    alike=("temperatures_degC", "values_deg_per_s")),
+    "spline": record({**dict.fromkeys(SPLINE, rows(NUMBER, 2)),
+                      SPLINE[0]: rising(rows(NUMBER, 2))}, alike=SPLINE),
+    "thermistor": record({**dict.fromkeys(
+        ("b_K", "offset_deg_per_s", "gain_deg_per_s"), NUMBER),
+        **dict.fromkeys(("series", "parallel", "divider"), POSITIVE)}),
+    "fuzzy": record({"centres": _SOME, "width": POSITIVE,
+                     "consequents": rows(_SOME)},
+                    alike=("centres", "consequents")),
+    "radial_basis": record({"centres": rows(_SOME), "width": POSITIVE,
+                            "plane": _SOME, "weights": _SOME},
+                           alike=("centres", "weights")),
+    "bp": record({"layer_sizes": rows(COUNT, 2), "weights": _SOME}),
+}
+
+
+def _lists(kind: str, p: Mapping[str, Any], inputs: int
+           ) -> list[tuple[str, Any, int]]:
+    """Lists whose length follows from the number of inputs, and that."""
+    if kind == "polynomial":
+        return [("slopes", p["slopes"], max(0, inputs - 1))]
+    if kind == "fuzzy":
+        return [(f"consequents[{k}]", rule, inputs + 1)
+                for k, rule in enumerate(p["consequents"])]
+    if kind == "radial_basis":
+        return [("plane", p["plane"], inputs + 1),
+                *((f"centres[{k}]", centre, inputs)
+                  for k, centre in enumerate(p["centres"]))]
+    if kind == "bp":
+        sizes = p["layer_sizes"]
+        return [("weights", p["weights"], sum(
+            (a + 1) * b for a, b in zip(sizes, sizes[1:])))]
+    return []
+
+
+def _parameters_fit(model: Mapping[str, Any], key: str) -> None:
+    kind, p = model["kind"], model["parameters"]
+    place = f"{key}.parameters" if key else "parameters"
+    _PARAMETERS[kind].check(p, place)
+    inputs = len(model.get("inputs", model["input_scales"]))
+    if "inputs" in model:
+        require_count(model["input_scales"], "input_scales", inputs,
+                      "one for each of the inputs")
+    if kind not in ("none", "constant") and not inputs:
+        raise wrong("inputs", "none", "one or more")
+    for name, values, count in _lists(kind, p, inputs):
+        require_count(values, f"{place}.{name}", count,
+                      f"with {inputs} inputs")
+    if kind == "bp" and [p["layer_sizes"][0], p["layer_sizes"][-1]] != \
+            [inputs, 1]:
+        raise wrong(f"{place}.layer_sizes", str(p["layer_sizes"]),
+                    f"{inputs} first and 1 last")
+
+
+_SCALE = record({"centre": NUMBER, "half_width": POSITIVE})
+MODEL = both(record({"kind": either(*KINDS), "input_scales": rows(_SCALE),
+                     "bias_scale": _SCALE, "parameters": record({})}),
+             _parameters_fit)
 
 
 def sigma(stated: Mapping[str, Any], temperature: Values) -> Values:

@@ -11,15 +11,48 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
-from .bias_curve import KINDS, bias, other_inputs, sigma, steady_inputs
-from .errors import PlotError
+from .bias_curve import (MODEL, bias, other_inputs, sigma, steady_inputs)
+from .documents import (NOT_NEGATIVE, NUMBER, PAIR, POSITIVE, RANGE, TEXT,
+                        both, maybe, record, require_count, rising, rows)
 
 BEYOND = 0.08  # of the range, drawn at both ends
 POINTS = 300
 SCORES = [("constant", "constant", style.GREY),
           ("cubic", "baseline", style.YELLOW),
           ("compensator", "", style.AFTER)]
+SAMPLES = [("in-sample", "in_sample_rms_deg_per_s"),
+           ("held out", "held_out_rms_deg_per_s")]
 Document = Mapping[str, Any]
+
+
+def _population_fits(one: Document, key: str) -> None:
+    size = len(one["temperatures_degC"]) * (1 + len(one["channels"]))
+    lists = [("mean", one["mean"]), *((f"modes[{k}]", mode) for k, mode in
+                                      enumerate(one["modes"]))]
+    for name, values in lists:
+        require_count(values, f"{key}.{name}", size,
+                      "the temperatures of bias and channels")
+
+
+_MEMBERS = record(
+    {"inputs": rows(TEXT), "temperature_range_degC": RANGE,
+     "training": record({"method": TEXT}, {
+         **{f"{prefix}_{key}" if prefix else key: maybe(NOT_NEGATIVE)
+            for _, prefix, _ in SCORES for _, key in SAMPLES},
+         "cross_validation": maybe(record({}, {
+             "constant_rms_deg_per_s": maybe(NOT_NEGATIVE),
+             "rms_deg_per_s": maybe(NOT_NEGATIVE)}))})},
+    {"baseline": MODEL,
+     "sigma": record(
+         {"temperature_degC": rising(rows(NUMBER, 1)),
+          "sigma_deg_per_s": rows(NUMBER, 1),
+          "growth_deg_per_s_per_K": PAIR, "factor": POSITIVE},
+         alike=("temperature_degC", "sigma_deg_per_s")),
+     "population": both(record(
+         {"devices": NOT_NEGATIVE, "channels": rows(TEXT),
+          "temperatures_degC": rising(rows(NUMBER, 2)), "mean": rows(NUMBER),
+          "modes": rows(rows(NUMBER), 1)}), _population_fits)})
+SHAPE = both(_MEMBERS, MODEL.check)
 
 
 def height(compensators: Sequence[Document]) -> float:
@@ -29,10 +62,6 @@ def height(compensators: Sequence[Document]) -> float:
 
 
 def draw(figure: Figure, compensators: Sequence[Document]) -> None:
-    for one in compensators:
-        if one["kind"] not in KINDS:
-            raise PlotError(f"{one.get('name', '')}: kind: \"{one['kind']}\"; "
-                            f"expected {', '.join(KINDS)}")
     if len(compensators) == 1 and "population" in compensators[0]:
         _population(figure, compensators[0])
     elif len(compensators) == 1:
@@ -111,9 +140,7 @@ def _one(figure: Figure, one: Document) -> None:
 def _scores(axes: Axes, one: Document) -> None:
     """The residuals that training found, beside those of two baselines."""
     training = one["training"]
-    samples = [("in-sample", "in_sample_rms_deg_per_s"),
-               ("held out", "held_out_rms_deg_per_s")]
-    shown = [(words, key) for words, key in samples
+    shown = [(words, key) for words, key in SAMPLES
              if training.get(key) is not None]
     validated = training.get("cross_validation")
     for k, (words, prefix, color) in enumerate(SCORES):
@@ -134,7 +161,7 @@ def _scores(axes: Axes, one: Document) -> None:
     if validated:
         labels.append("cross-validation")
     axes.set_yticks(range(len(labels)), labels)
-    axes.set_ylim(len(labels) - 0.5, -0.5)
+    axes.set_ylim(max(1, len(labels)) - 0.5, -0.5)
     axes.set_xlabel("rms left [°/s]")
     axes.set_xlim(0, 1.15 * axes.dataLim.x1 or 1.0)
     axes.grid(axis="y", visible=False)
@@ -145,7 +172,7 @@ def _several(figure: Figure, compensators: Sequence[Document]) -> None:
     stated = any("sigma" in one for one in compensators)
     rows = figure.subplots(2 if stated else 1, 1, squeeze=False, sharex=True,
                            height_ratios=[3, 1.6] if stated else [1])[:, 0]
-    names = style.shortened([str(one.get("name", "")) for one in compensators])
+    names = style.labels([str(one.get("name", "")) for one in compensators])
     without = []
     for k, (one, name) in enumerate(zip(compensators, names)):
         look: dict[str, Any] = {"ls": style.DASHES[k % len(style.DASHES)]}
@@ -195,8 +222,8 @@ def _population(figure: Figure, one: Document) -> None:
                         ls=style.DASHES[k],
                         label=("1st", "2nd", "3rd", "4th")[k])
         row[1].axhline(0, color=style.GREY, lw=0.8)
-        unit = style.spoken(_channel_unit(name))
-        row[0].set_ylabel(f"{name.replace('_', ' ')} [{unit}]")
+        row[0].set_ylabel(style.quantity(name.replace("_", " "),
+                                         _channel_unit(name)))
     style.legend_above(grid[0, 0])
     style.legend_above(grid[0, 1])
     for axes in grid[-1]:

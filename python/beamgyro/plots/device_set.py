@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import pathlib
 import re
 from dataclasses import dataclass, field
@@ -14,15 +13,21 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from . import style
+from . import documents, hdf5, style
 from .errors import PlotError
+from .units import time_unit
 
 Values = npt.NDArray[np.float64]
 MOST_DEVICES = 200  # that are read, evenly over the set
 MOST_RUNS = 3
+LONGEST_NAME = 60  # of a run [letters]
 BINS = 300
+MANIFEST = "manifest.jsonl"
 FILE = re.compile(r"[a-z][a-z0-9_]{0,199}_\d{5,}\.h5")
 PARTS = {0: "train", 1: "validation", 2: "test"}
+_HEAD = documents.record({"runs": documents.rows(documents.TEXT, 1),
+                          "devices": documents.COUNT})
+_LINE = documents.record({}, {"file": documents.TEXT})
 
 
 @dataclass
@@ -48,16 +53,20 @@ class DeviceSet:
         return max(len(run.rate) for run in self.runs)
 
 
-def read(path: pathlib.Path) -> DeviceSet:
+def read(path: pathlib.Path, _: str = "") -> DeviceSet:
     """A set by its directory, or one of its files or views."""
     if path.is_dir():
         lines = _manifest(path)
         names = lines[0]["runs"]
         files = {name: [path / line["file"] for line in lines
-                        if FILE.fullmatch(str(line.get("file", "")))
+                        if FILE.fullmatch(line.get("file", ""))
                         and line["file"].rpartition("_")[0] == name]
                  for name in names}
-        total = int(lines[0]["devices"])
+        for name in names:
+            if not files[name]:
+                raise PlotError(f"{path / MANIFEST}: no file of the run "
+                                f"{name}; expected one or more")
+        total = lines[0]["devices"]
     else:
         files, total = {_run_of(path): [path]}, 0
     shown = list(files)[:MOST_RUNS]
@@ -82,24 +91,22 @@ def read(path: pathlib.Path) -> DeviceSet:
 
 
 def _manifest(path: pathlib.Path) -> list[dict[str, Any]]:
-    manifest = path / "manifest.jsonl"
-    lines = []
-    for number, line in enumerate(manifest.read_text().splitlines(), 1):
-        try:
-            lines.append(json.loads(line))
-        except ValueError:
-            raise PlotError(f"{manifest}:{number}: no JSON; `beamgyro verify` "
-                            "says what is damaged") from None
-    if not lines or "runs" not in lines[0]:
-        raise PlotError(f"{manifest}:1: no runs; expected the manifest of a "
+    manifest = path / MANIFEST
+    lines: list[dict[str, Any]] = []
+    for number, text in enumerate(documents.text_of(manifest).splitlines(), 1):
+        where = f"{manifest}:{number}"
+        line = documents.parsed(text, where)
+        documents.check(line, _LINE if lines else _HEAD, where)
+        lines.append(line)
+    if not lines:
+        raise PlotError(f"{manifest}: empty; expected the manifest of a "
                         "whole set")
     return lines
 
 
 def _run_of(path: pathlib.Path) -> str:
-    import h5py
-    with h5py.File(path) as file:
-        return str(file.attrs["run"].decode())
+    with hdf5.opened(path) as file:
+        return hdf5.text_of(file.attributes.get("run", path.stem))
 
 
 def _decoded(variable: Any, device: int) -> Values:
@@ -115,31 +122,47 @@ def _decoded(variable: Any, device: int) -> Values:
 def _read_run(run: SetRun, files: list[pathlib.Path], total: int
               ) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
     """Reads some devices, and part and status of all."""
-    import h5py
     parts, states = [], []
     step = max(1, -(-total // MOST_DEVICES))
     for path in files:
-        with h5py.File(path) as file:
-            parts.append(file["part"][()])
-            states.append(file["device_status"][()])
+        with hdf5.opened(path) as file:
+            numbers, part, state = (file.numbers(name) for name in
+                                    ("device", "part", "device_status"))
+            if not len(numbers) == len(part) == len(state):
+                raise PlotError(f"{path}: {len(numbers)} values of device, "
+                                f"{len(part)} of part and {len(state)} of "
+                                "device_status; expected as many of each")
+            parts.append(part)
+            states.append(state)
             if not total:
-                step = max(1, -(-len(parts[0]) // MOST_DEVICES))
+                step = max(1, -(-len(part) // MOST_DEVICES))
             if "rate" in file:
-                _read_devices(run, file, states[-1], step)
+                _read_devices(run, file, np.flatnonzero(
+                    (state == 0) & (numbers % step == 0)), len(numbers))
     return np.concatenate(parts), np.concatenate(states)
 
 
-def _read_devices(run: SetRun, file: Any, states: Any, step: int) -> None:
-    time = file["time"][()]
+def _read_devices(run: SetRun, file: hdf5.File, shown: npt.NDArray[np.int64],
+                  devices: int) -> None:
+    time = file.numbers("time")
+    rates = [file.variable(name, 2) for name in ("rate", "true_rate")
+             if name in file]
+    for variable in rates:
+        if variable.shape != (devices, len(time)) or not len(time):
+            raise PlotError(
+                f"{file.path}: {variable.name[1:]}: {variable.shape}; "
+                f"expected {devices} devices and {len(time)} times, 1 or more")
     edges = np.unique(np.linspace(0, len(time), BINS + 1).astype(int))[:-1]
+    if run.rate and len(edges) != len(run.time):
+        raise PlotError(f"{file.path}: time: {len(time)} values; expected as "
+                        f"many as the first file of run {run.name} has")
     run.time = np.add.reduceat(time, edges) / np.diff([*edges, len(time)])
-    for row, number in enumerate(file["device"][()]):
-        if number % step or states[row] != 0:
-            continue
-        values = _decoded(file["rate"], row)
-        if "true_rate" in file and file["true_rate"].shape[-1] == len(time):
-            values = values - _decoded(file["true_rate"], row)
-        run.rate.append(_means(values, edges))
+    for row in shown:
+        values = _decoded(rates[0], row)
+        for truth in rates[1:]:
+            values = values - _decoded(truth, row)
+        if np.isfinite(values).any():
+            run.rate.append(_means(values, edges))
 
 
 def _means(values: Values, edges: npt.NDArray[np.int64]) -> Values:
@@ -158,12 +181,14 @@ def height(devices: DeviceSet) -> float:
 
 def draw(figure: Figure, devices: DeviceSet) -> None:
     grid = figure.subplots(len(devices.runs), 2, squeeze=False,
-                           width_ratios=[3, 1.25])
+                           width_ratios=[3, 1.25],
+                           gridspec_kw={"wspace": 0.06})
     for row, run in zip(grid, devices.runs):
         _spread(row[0], run)
         _histogram(row[1], run)
-        row[0].set_title(f"run {run.name}")
-        row[0].legend(loc="upper right", ncols=4)
+        row[0].set_title(f"run {style.shortened(run.name, LONGEST_NAME)}")
+        if run.rate:
+            row[0].legend(loc="upper right", ncols=4)
     counts = ", ".join(f"{count:,} {words}" for words, count in
                        devices.parts.items() if count)
     words = f"{devices.devices:,} devices ({counts})"
@@ -180,8 +205,7 @@ def _spread(axes: Axes, run: SetRun) -> None:
     rates = np.array(run.rate)
     if not len(rates):
         return
-    longest = run.time[-1] - run.time[0]
-    unit, scale = ("h", 3600.0) if longest > 3 * 3600 else ("min", 60.0)
+    unit, scale = time_unit(float(run.time[-1] - run.time[0]))
     time = run.time / scale
     with np.errstate(all="ignore"):
         low, q5, q25, q50, q75, q95, high = np.nanpercentile(
@@ -193,8 +217,9 @@ def _spread(axes: Axes, run: SetRun) -> None:
     axes.fill_between(time, q25, q75, color=style.AFTER, alpha=0.35, lw=0,
                       label="half")
     axes.plot(time, q50, color=style.AFTER, label="median device")
-    axes.set(xlabel=f"time [{unit}]", ylabel="drift [°/s]",
-             xlim=(time[0], time[-1]))
+    axes.set(xlabel=f"time [{unit}]", ylabel="drift [°/s]")
+    if time[-1] > time[0]:
+        axes.set_xlim(time[0], time[-1])
     bottom, top = axes.get_ylim()
     axes.set_ylim(bottom, top + 0.25 * (top - bottom))  # for the legend
 

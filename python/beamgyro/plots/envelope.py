@@ -16,6 +16,7 @@ Values = npt.NDArray[np.float64]
 BINS = 1000  # finer than a picture in a document shows
 MEANS = 250  # of a noisy series, so that noise does not hide its drift
 GAP = 5.0  # median distances of samples
+SHORTEST_LINE = 500  # of them make a picture wide
 
 
 @dataclass
@@ -83,6 +84,17 @@ def envelope(bins: Bins, values: Values) -> Envelope:
                   _means(bins, values), np.fmax.reduceat(values, starts)]
     return Envelope(*(np.insert(one, bins.breaks, np.nan)
                       for one in series))
+
+
+def lonely(found: Envelope, span: float) -> npt.NDArray[np.int64]:
+    """The middle of each stretch of values that is too short to be seen as a
+    line in a picture of this span."""
+    there = np.isfinite(found.mean).astype(np.int8)
+    edges = np.flatnonzero(np.diff(there, prepend=0, append=0))
+    begins, lasts = edges[::2], edges[1::2] - 1
+    short = found.time[lasts] - found.time[begins] <= span / SHORTEST_LINE
+    middles: npt.NDArray[np.int64] = ((begins + lasts) // 2)[short]
+    return middles
 
 
 def spans(bins: Bins, flags: npt.NDArray[np.bool_]

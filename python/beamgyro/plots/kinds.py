@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-import json
+import csv
 import os
 import pathlib
 from dataclasses import dataclass
@@ -11,8 +11,8 @@ from typing import Any, Callable, Iterator, Sequence
 
 from matplotlib.figure import Figure
 
-from . import (allan, compensator, device_set, plan, recording, scores,
-               sensitivity, style, table, validation)
+from . import (allan, compensator, device_set, documents, hdf5, plan,
+               recording, scores, sensitivity, style, table, validation)
 from .errors import PlotError
 
 Source = Any  # what a kind reads from a file
@@ -23,23 +23,17 @@ class Kind:
     """How the files of a kind are read and drawn."""
 
     name: str
-    read: Callable[[pathlib.Path], Source]
+    read: Callable[[pathlib.Path, str], Source]
     draw: Callable[[Figure, Any], None]
     height: Callable[[Any], float]
     compares: bool = False  # draw() and height() take a list
+    shape: documents.Shape | None = None  # of a JSON document
     each: Callable[[Source], Iterator[tuple[str, Figure]]] | None = None
 
-
-def _read_json(path: pathlib.Path) -> dict[str, Any]:
-    try:
-        data = json.loads(path.read_text())
-    except (ValueError, RecursionError) as error:
-        raise PlotError(f"{path}: no JSON: {error}") from None
-    if not isinstance(data, dict):
-        raise PlotError(f"{path}: no JSON object; expected what a command "
-                        "wrote to --json")
-    data["name"] = path.name
-    return data
+    def check(self, source: Source, where: object) -> None:
+        """Raises PlotError for a document that is not of its shape."""
+        if self.shape is not None:
+            documents.check(source, self.shape, where)
 
 
 def _draw_recordings(figure: Figure, runs: Sequence[recording.Run]) -> None:
@@ -55,17 +49,21 @@ KINDS = {
                       _height_of_recordings, True),
     "table": Kind("table of characterise", table.read, table.draw,
                   lambda _: table.HEIGHT, True),
-    "allan": Kind("Allan deviation", _read_json, allan.draw,
-                  lambda _: allan.HEIGHT, True),
-    "compensator": Kind("compensator", _read_json, compensator.draw,
-                        compensator.height, True),
+    "allan": Kind("Allan deviation", documents.read, allan.draw,
+                  lambda _: allan.HEIGHT, True, allan.SHAPE),
+    "compensator": Kind("compensator", documents.read, compensator.draw,
+                        compensator.height, True, compensator.SHAPE),
     "set": Kind("set", device_set.read, device_set.draw, device_set.height),
-    "validation": Kind("validation", _read_json, validation.draw,
-                       validation.height, each=validation.each),
-    "scores": Kind("scores", _read_json, scores.draw, scores.height),
-    "plan": Kind("plan", _read_json, plan.draw, lambda _: plan.HEIGHT),
-    "sensitivity": Kind("sensitivity", _read_json, sensitivity.draw,
-                        sensitivity.height, each=sensitivity.each),
+    "validation": Kind("validation", documents.read, validation.draw,
+                       validation.height, False, validation.SHAPE,
+                       validation.each),
+    "scores": Kind("scores", documents.read, scores.draw, scores.height,
+                   False, scores.SHAPE),
+    "plan": Kind("plan", documents.read, plan.draw, lambda _: plan.HEIGHT,
+                 False, plan.SHAPE),
+    "sensitivity": Kind("sensitivity", documents.read, sensitivity.draw,
+                        sensitivity.height, False, sensitivity.SHAPE,
+                        sensitivity.each),
 }
 
 EXPECTED = ("a recording (.h5, .csv), a table of characterise, a compensator, "
@@ -77,7 +75,7 @@ def kind_of(path: str | os.PathLike[str]) -> str:
     no picture."""
     path = pathlib.Path(path)
     if path.is_dir():
-        if (path / "manifest.jsonl").exists():
+        if (path / device_set.MANIFEST).exists():
             return "set"
         raise PlotError(f"{path}: a directory without manifest.jsonl; "
                         "expected that of a whole set")
@@ -88,6 +86,13 @@ def kind_of(path: str | os.PathLike[str]) -> str:
         raise PlotError(f"{path}: {error.strerror}") from None
     kind = _kind_of_head(path, head)
     if kind is None:
+        if path.suffix.lower() == ".csv":
+            missing = [name for name in ("time", "status")
+                       if name not in _columns(head)]
+            raise PlotError(
+                f"{path}: no column {' and none '.join(missing)}; expected a "
+                "recording or a table of characterise as beamgyro writes "
+                "them; beamgyro import makes a recording of another log")
         raise PlotError(f"{path}: has no picture; expected {EXPECTED}")
     return kind
 
@@ -96,32 +101,33 @@ def _kind_of_head(path: pathlib.Path, head: bytes) -> str | None:
     if head.startswith(b"\x89HDF"):
         return _kind_of_hdf5(path)
     if head.lstrip().startswith(b"{"):
-        return _kind_of_json(_read_json(path))
-    names = [name.partition(b"[")[0].strip() for name in
-             head.removeprefix(b"\xef\xbb\xbf").split(b"\n")[0].split(b",")]
-    if names[:2] == [b"temperature_degC", b"bias_deg_per_s"]:
+        return _kind_of_json(documents.read(path))
+    names = _columns(head)
+    if names[:2] == ["temperature_degC", "bias_deg_per_s"]:
         return "table"
-    return "recording" if {b"time", b"status"} <= set(names) else None
+    return "recording" if {"time", "status"} <= set(names) else None
+
+
+def _columns(head: bytes) -> list[str]:
+    """The names in the first line of a CSV, without their units."""
+    line = head.decode("utf-8-sig", "replace").partition("\n")[0]
+    return [name.partition("[")[0].strip() for name in
+            next(csv.reader([line]), [])]
 
 
 def _kind_of_hdf5(path: pathlib.Path) -> str | None:
-    import h5py
-    try:
-        with h5py.File(path) as file:
-            filetype = file.attrs.get("filetype", b"")
-    except OSError as error:
-        raise PlotError(f"{path}: HDF5 cannot read it: {error}") from None
-    if isinstance(filetype, bytes):
-        filetype = filetype.decode(errors="replace")
+    with hdf5.opened(path) as file:
+        filetype = hdf5.text_of(file.attributes.get("filetype", ""))
     return {"beamgyro-recording": "recording", "beamgyro-set": "set"}.get(
-        str(filetype))
+        filetype)
 
 
 def _kind_of_json(data: dict[str, Any]) -> str | None:
     filetypes = {"beamgyro-compensator": "compensator",
                  "beamgyro-validation": "validation"}
-    if data.get("filetype") in filetypes:
-        return filetypes[data["filetype"]]
+    filetype = str(data.get("filetype"))
+    if filetype in filetypes:
+        return filetypes[filetype]
     members = {"plan": {"schedule", "trade_off"},
                "sensitivity": {"figures", "campaign", "temperatures"},
                "allan": {"series", "noise"}}

@@ -9,8 +9,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
+from .documents import NUMBER, POSITIVE, RANGE, TEXT, record, rows
 
 HEIGHT = 4.8
+_FORECAST = record({"median": POSITIVE, "p95": POSITIVE})
+_CANDIDATE = record({"hours": NUMBER, "expected_rms_deg_per_s": _FORECAST})
+_SOAKS = record({"hours": NUMBER, "expected_rms_deg_per_s": _FORECAST,
+                 "temperatures_degC": rows(NUMBER)})
+SHAPE = record({
+    "trade_off": rows(record({"even": _SOAKS, "planned": _SOAKS}), 1),
+    "candidates": rows(_CANDIDATE),
+    "schedule": record({"hours": NUMBER, "temperatures_degC": rows(NUMBER)}),
+    "expected_rms_deg_per_s": _FORECAST,
+    "range_degC": RANGE,
+    "observed": rows(TEXT)})
 
 
 def _curve(axes: Axes, plans: Sequence[Mapping[str, Any]], color: str,

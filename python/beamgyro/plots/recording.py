@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import csv
 import pathlib
-from typing import Any, Iterable, Mapping, Sequence
+from typing import Any, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -14,10 +14,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from . import style
-from .envelope import MEANS, bins_of, envelope, spans
+from . import hdf5, style
+from .envelope import MEANS, bins_of, envelope, lonely, spans
 from .errors import PlotError
-from .units import converted, unit_of
+from .units import converted, duration, time_unit, unit_of
 
 Values = npt.NDArray[np.float64]
 
@@ -28,8 +28,7 @@ DRAWN = ("rate", "compensated_rate", "compensated_rate_sigma", "temperature",
 STATES = [(1, "unpowered", "#c9c9c9", 0.6), (4, "loop not locked", "#e69f00",
                                             0.3), (2, "saturated", "#cc79a7",
                                                    0.35)]
-TIME_UNITS = [("h", 3600.0, 3 * 3600.0), ("min", 60.0, 300.0),
-              ("s", 1.0, 0.05), ("ms", 1e-3, 0.0)]
+MARKER_ROOM = 0.01  # of the span of time, at both ends of a picture
 
 
 class Run:
@@ -39,25 +38,40 @@ class Run:
         # Of a dataset or a mapping.
         attributes: Any = getattr(data, "attrs", None) or data.get("attrs", {})
         self.name = name
-        self.title = _text(attributes.get("title", ""))
-        self.compensator = _text(attributes.get("compensator", ""))
-        self.values = {key: _values(data[key], key, name)
+        place = name or "recording"
+        self.title = hdf5.text_of(attributes.get("title", ""))
+        self.compensator = hdf5.text_of(attributes.get("compensator", ""))
+        self.values = {key: _values(data[key], key, place)
                        for key in ("time", *DRAWN) if key in data}
         if "time" not in self.values:
-            raise PlotError(f"{name}: no variable time; expected a recording "
+            raise PlotError(f"{place}: no variable time; expected a recording "
                             "with time, rate and temperature")
         self.time = self.values["time"]
         if len(self.time) == 0:
-            raise PlotError(f"{name}: no samples; expected one or more")
+            raise PlotError(f"{place}: no samples; expected one or more")
         if not _panels_of(self):
-            raise PlotError(f"{name}: no value of {', '.join(DRAWN[:2])}, "
+            raise PlotError(f"{place}: no value of {', '.join(DRAWN[:2])}, "
                             "temperature, drive_frequency or quadrature; "
                             "expected one or more")
-        self.status = np.asarray(data["status"]).astype(np.uint8) \
-            if "status" in data else np.zeros(len(self.time), np.uint8)
+        self.status = _status(_values(data["status"], "status", place),
+                              place) if "status" in data else \
+            np.zeros(len(self.time), np.uint8)
+        self._require_sense()
         self.bins = bins_of(self.time)
         self.means = bins_of(self.time, MEANS) if self.bins.merged \
             else self.bins
+
+    def _require_sense(self) -> None:
+        where = f"{self.name}: " if self.name else ""
+        counts = {key: len(values) for key, values in self.values.items()}
+        for key, count in {**counts, "status": len(self.status)}.items():
+            if count != len(self.time):
+                raise PlotError(f"{where}{key}: {count} values; expected "
+                                f"{len(self.time)}, as time has")
+        if not (np.isfinite(self.time).all()
+                and (np.diff(self.time) >= 0).all()):
+            raise PlotError(f"{where}time: does not grow; expected times in "
+                            "their order")
 
     def __contains__(self, key: str) -> bool:
         return key in self.values and bool(
@@ -74,39 +88,50 @@ class Run:
         return truth is not None and bool(np.any(truth != 0))
 
 
-def _text(value: object) -> str:
-    return value.decode() if isinstance(value, bytes) else str(value)
+def _status(values: Values, name: str) -> npt.NDArray[np.uint8]:
+    wrong = ~((values >= 0) & (values <= 255) & (values == np.floor(values)))
+    if wrong.any():
+        raise PlotError(f"{name}: status: {values[np.argmax(wrong)]:g}; "
+                        "expected whole numbers from 0 to 255")
+    return values.astype(np.uint8)
 
 
 def _values(variable: Any, key: str, name: str) -> Values:
     attributes = getattr(variable, "attrs", {})
     values = np.asarray(variable)
+    if isinstance(variable, np.ma.MaskedArray):
+        values = np.ma.filled(variable.astype(float), np.nan)
     if values.dtype.kind == "m":  # as xarray decodes the time
         return values / np.timedelta64(1, "ns") * 1e-9
     if values.ndim != 1:
         raise PlotError(f"{name}: {key} has {values.ndim} dimensions; "
                         "expected one device, as isel(device=0) gives it")
-    unit = _text(attributes.get("units", unit_of(key)))
-    return converted(key, values.astype(float), unit,
+    if values.dtype.kind not in "biuf":
+        raise PlotError(f"{name}: {key}: values of type {values.dtype}; "
+                        "expected numbers")
+    if key == "status":
+        return values
+    unit = hdf5.text_of(attributes.get("units", unit_of(key)))
+    return converted(key, values.astype(float, copy=False), unit,
                      f"{name}: " if name else "")
 
 
-def read(path: pathlib.Path) -> Run:
-    return Run(_read_csv(path) if path.suffix == ".csv" else _read_h5(path),
-               path.name)
+def read(path: pathlib.Path, name: str) -> Run:
+    with open(path, "rb") as file:
+        is_hdf5 = file.read(4) == b"\x89HDF"
+    return Run(_read_h5(path) if is_hdf5 else _read_csv(path), name)
 
 
 def _read_h5(path: pathlib.Path) -> dict[str, Any]:
-    import h5py
-    with h5py.File(path) as file:
-        data: dict[str, Any] = {"attrs": dict(file.attrs)}
+    with hdf5.opened(path) as file:
+        data: dict[str, Any] = {"attrs": file.attributes}
         for key in ("time", *DRAWN):
             if key in file:
-                unit = _text(file[key].attrs.get("units", unit_of(key)))
-                data[key] = converted(key, file[key][()].astype(float), unit,
-                                      f"{path}: ")
+                values = file.numbers(key).astype(float, copy=False)
+                data[key] = converted(key, values, file.unit(
+                    key, unit_of(key)), f"{path}: ")
         if "status" in file:
-            data["status"] = file["status"][()]
+            data["status"] = file.numbers("status")
         return data
 
 
@@ -116,7 +141,10 @@ def _read_csv(path: pathlib.Path) -> dict[str, Any]:
         names, units = zip(*(_column(head) for head in header))
         wanted = [k for k, key in enumerate(names)
                   if key in ("time", "status", *DRAWN)]
-        table = np.loadtxt(file, delimiter=",", usecols=wanted, ndmin=2)
+        try:
+            table = np.loadtxt(file, delimiter=",", usecols=wanted, ndmin=2)
+        except ValueError as error:
+            raise PlotError(f"{path}: {error}; expected numbers") from None
     data: dict[str, Any] = {}
     for k, values in zip(wanted, table.T):
         data[names[k]] = values if names[k] == "status" else converted(
@@ -163,7 +191,7 @@ def _panels_of(run: Run) -> list[str]:
 def _draw_one(figure: Figure, run: Run) -> None:
     panels = _panels_of(run)
     rows = _rows(figure, panels)
-    unit, scale = _time_unit([run])
+    unit, scale = time_unit(float(run.time[-1] - run.time[0]))
     for kind, axes in zip(panels, rows):
         _PANELS[kind](axes, run, scale)
         _shade(axes, run, scale)
@@ -174,7 +202,7 @@ def _draw_one(figure: Figure, run: Run) -> None:
         words.append(f"compensated by {run.compensator}")
     if run.bins.merged:
         words.append(f"bands: lowest to highest of the {len(run.time):,} "
-                     f"samples, lines: means of {_duration(run.means.width)} "
+                     f"samples, lines: means of {duration(run.means.width)} "
                      "or less")
     style.titled(figure, run.name or "Recording", "; ".join(words))
 
@@ -196,8 +224,14 @@ def _band(axes: Axes, run: Run, values: Values, scale: float, color: str,
                           color=color, alpha=alpha, lw=0.5)
     if noisy:
         found = envelope(run.means, values)
+    # Samples that no line joins to others, or too short a line to be seen.
+    alone = lonely(found, run.time[-1] - run.time[0])
+    if run.bins.merged and len(alone):
+        axes.vlines(found.time[alone] / scale, found.low[alone],
+                    found.high[alone], color=color, alpha=alpha)
     axes.plot(found.time / scale, found.mean, color=color, label=label,
-              **{"lw": 1.3, **options})
+              marker="o" if len(alone) else "", ms=3.5,
+              markevery=list(alone), **{"lw": 1.3, **options})
 
 
 def _rate(axes: Axes, run: Run, scale: float) -> None:
@@ -298,24 +332,16 @@ def _patches(run: Run) -> list[Patch]:
             if np.any(run.status & mask)]
 
 
-def _time_unit(runs: Iterable[Run]) -> tuple[str, float]:
-    longest = max(float(run.time[-1] - run.time[0]) for run in runs)
-    return next((unit, scale) for unit, scale, least in TIME_UNITS
-                if longest >= least)
-
-
-def _duration(seconds: float) -> str:
-    return next(f"{seconds / scale:.3g} {unit}" for unit, scale, _ in
-                TIME_UNITS if seconds >= scale or unit == "ms")
-
-
 def _time_axis(rows: Sequence[Axes], runs: Sequence[Run], unit: str,
                scale: float) -> None:
     rows[-1].set_xlabel(f"time [{unit}]")
     begin = min(float(run.time[0]) for run in runs)
     end = max(float(run.time[-1]) for run in runs)
     if end > begin:
-        rows[-1].set_xlim(begin / scale, end / scale)
+        markers = any(line.get_marker() == "o" for axes in rows
+                      for line in axes.lines)
+        reach = MARKER_ROOM * (end - begin) if markers else 0.0
+        rows[-1].set_xlim((begin - reach) / scale, (end + reach) / scale)
 
 
 # --- several ---
@@ -336,8 +362,9 @@ def _compared(runs: Sequence[Run]) -> list[str]:
 def _draw_several(figure: Figure, runs: Sequence[Run]) -> None:
     panels = _compared(runs)
     rows = _rows(figure, panels)
-    unit, scale = _time_unit(runs)
-    names = style.shortened([run.name for run in runs])
+    unit, scale = time_unit(max(float(run.time[-1] - run.time[0])
+                                for run in runs))
+    names = style.labels([run.name for run in runs])
     key = {"rate": "rate", "temperature": "temperature"}
     for kind, axes in zip(panels, rows):
         for k, (run, name) in enumerate(zip(runs, names)):

@@ -10,11 +10,22 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
+from .documents import (NOT_NEGATIVE, NUMBER, PAIR, TEXT, members, record,
+                        rows)
 
 BAR = 0.38  # of the distance between tolerances
+LONGEST_KEY = 48  # [letters]
 MOST_BARS = 20  # tolerances; the others are the least
 LETTERS_OF_TITLE = 74
 MOST_OF_SEVERAL = 10  # where one picture has several figures of merit
+SHAPE = record({
+    "campaign": TEXT,
+    "devices": NOT_NEGATIVE,
+    "figures": members(record({
+        "of": TEXT, "meaning": TEXT,
+        "indices": rows(record({
+            "key": TEXT, "first": NUMBER, "first_interval": PAIR,
+            "total": NUMBER, "total_interval": PAIR}), 1)}))})
 
 
 def _bars(axes: Axes, indices: Sequence[Mapping[str, Any]], kind: str,
@@ -33,7 +44,8 @@ def _panel(axes: Axes, figure: Mapping[str, Any], most: int) -> None:
     indices = figure["indices"][:most]
     _bars(axes, indices, "total", -BAR / 2, style.BLUE, "total")
     _bars(axes, indices, "first", BAR / 2, style.YELLOW, "first order")
-    axes.set_yticks(range(len(indices)), [index["key"] for index in indices])
+    axes.set_yticks(range(len(indices)), style.labels(
+        [index["key"] for index in indices], LONGEST_KEY))
     axes.invert_yaxis()
     axes.set_xlim(left=0)
     axes.grid(axis="y", visible=False)

@@ -3,17 +3,23 @@
 
 from __future__ import annotations
 
+import collections
+import functools
 import os
 import pathlib
 import re
 import textwrap
-from typing import Any, Sequence
+from typing import Any, ContextManager, Sequence
 
-import matplotlib
-from matplotlib import ticker
+import matplotlib.style
+import numpy as np
+from matplotlib import ft2font, ticker
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties, findfont
+
+from .errors import PlotError
 
 # Of Okabe and Ito: told apart by colour-blind eyes.
 BLUE, ORANGE, GREEN, PURPLE = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
@@ -32,6 +38,7 @@ RESULTS = {"pass": BLUE, "fail": ORANGE, "undecided": GREY, None: BLACK}
 WIDTH = 8.0  # [inch]
 LETTERS_PER_INCH = 14  # of the words below a title
 LONGEST_TITLE = 75
+FONT = "DejaVu Sans"  # comes with matplotlib
 STYLE = {
     "figure.figsize": (WIDTH, 4.5),  # 1600 x 900 pixels
     "figure.dpi": 100,
@@ -55,12 +62,19 @@ STYLE = {
     "svg.hashsalt": "beamgyro",  # else the ids in an SVG change with every run
     "svg.fonttype": "none",  # text stays text
     "text.parse_math": False,  # a name may have a dollar
-    "font.family": ["DejaVu Sans"],
+    "font.family": [FONT],
 }
 # Nothing that changes with the day or the machine.
 METADATA: dict[str, dict[str, Any]] = {
     "png": {"Software": None}, "svg": {"Date": None, "Creator": None}}
 FORMATS = tuple(METADATA)
+
+
+def look() -> ContextManager[None]:
+    """The style of all pictures, whatever the user set for others."""
+    context: ContextManager[None] = matplotlib.style.context(
+        ["default", STYLE])
+    return context
 
 
 def new_figure(height: float, width: float = WIDTH) -> Figure:
@@ -79,23 +93,63 @@ def _name_curves(figure: Figure) -> None:
 def save(figure: Figure, path: str | os.PathLike[str],
          kind: str | None = None, dpi: float | None = None) -> None:
     """Writes a picture; without `kind` the name says whether PNG or SVG."""
-    kind = kind or pathlib.Path(path).suffix.removeprefix(".")
+    kind = (kind or pathlib.Path(path).suffix.removeprefix(".")).lower()
+    if kind not in FORMATS:
+        raise PlotError(f"{path}: unknown kind of picture \"{kind}\"; "
+                        "expected a name that ends in .png or .svg")
     _name_curves(figure)
-    with matplotlib.rc_context(STYLE):
+    with look():
+        _fix_places(figure)
         figure.savefig(path, format=kind, metadata=METADATA[kind],
                        dpi=dpi or STYLE["savefig.dpi"])
 
 
+def _fix_places(figure: Figure) -> None:
+    """Lays a figure out, to places that are the same in every process.
+
+    The solver adds in the order of a set of objects, which depends on their
+    addresses: the last bit of a place differs now and then, and names of
+    clipping paths in an SVG are made from all bits.
+    """
+    if figure.get_layout_engine() is None:
+        return
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    for axes in figure.get_axes():
+        if axes.get_axes_locator() is None:
+            axes.set_position(np.round(axes.get_position().bounds, 9))
+
+
 def spoken(text: str) -> str:
     """Text with its units as they are printed."""
-    for written, printed in [("degC", "°C"), ("degree", "°"), ("deg", "°"),
-                             ("m/s2", "m/s²")]:
-        text = re.sub(rf"\b{written}\b", printed, text)
-    return re.sub(r"sqrt\((\w)\)", r"√\1", text)
+    for written, printed in [(r"\bdegC\b", "°C"), (r"\bdegree\b", "°"),
+                             (r"\bdeg\b", "°"), (r"\bm/s2\b", "m/s²"),
+                             (r"\b1-sigma\b", "1σ"),
+                             (r"\bPhi\((.*?)sigma\)", r"Φ(\1σ)"),
+                             (r"sqrt\((\w)\)", r"√\1")]:
+        text = re.sub(written, printed, text)
+    return printable(text)
+
+
+@functools.lru_cache(maxsize=None)
+def _letters() -> frozenset[int]:
+    """What the font has, upright and bold."""
+    fonts = [ft2font.FT2Font(findfont(FontProperties(
+        family=[FONT], weight=weight))) for weight in ("normal", "bold")]
+    return frozenset.intersection(*(frozenset(font.get_charmap())
+                                    for font in fonts))
+
+
+def printable(text: str) -> str:
+    """Text whose letters the font lacks are written as their numbers."""
+    return "".join(letter if ord(letter) in _letters() and letter.isprintable()
+                   else letter.encode("unicode_escape").decode()
+                   for letter in text)
 
 
 def quantity(words: str, unit: str) -> str:
     """The label of an axis."""
+    words = spoken(words)
     return f"{words} [{spoken(unit)}]" if unit not in ("", "1") else words
 
 
@@ -112,9 +166,10 @@ def log_scale(axis: Axis, marks: Sequence[int] = ()) -> None:
 def titled(figure: Figure, title: str, about: str = "") -> None:
     """A title at the left, and in smaller letters what it is about."""
     width, height = figure.get_size_inches()
-    lines = textwrap.wrap(spoken(about), int(LETTERS_PER_INCH * width))
+    lines = textwrap.wrap(spoken(" ".join(about.split())),
+                          int(LETTERS_PER_INCH * width))
     # The layout leaves room for as many empty lines.
-    title, = shortened([title], LONGEST_TITLE)
+    title = shortened(title, LONGEST_TITLE)
     figure.suptitle(title + "\n " * len(lines), x=0.01, ha="left",
                     weight="bold")
     if lines:
@@ -134,7 +189,32 @@ def legend_above(axes: Axes, columns: int = 6,
                 borderaxespad=0.2, columnspacing=1.2, handlelength=1.6)
 
 
-def shortened(names: Sequence[str], most: int = 28) -> list[str]:
-    """Names that fit a legend."""
-    return [name if len(name) <= most else name[:most - 1] + "…"
-            for name in names]
+def shortened(text: str, most: int) -> str:
+    """Text without its middle where it is longer than that."""
+    text = printable(text)
+    if len(text) <= most:
+        return text
+    end = (most - 1) // 2
+    return f"{text[:most - 1 - end]}…{text[-end:]}"
+
+
+def labels(names: Sequence[str], most: int = 28) -> list[str]:
+    """Names that fit a legend and are told apart there."""
+    short = [shortened(name, most) for name in names]
+    count = collections.Counter(short)
+    seen: collections.Counter[str] = collections.Counter()
+    for k, name in enumerate(short):
+        if count[name] > 1:
+            seen[name] += 1
+            short[k] = f"{name} ({seen[name]})"
+    return short
+
+
+def names_of(paths: Sequence[pathlib.Path]) -> list[str]:
+    """File names, with as many of their folders as tell them apart."""
+    longest = max(len(path.parts) for path in paths)
+    for count in range(1, longest + 1):
+        names = ["/".join(path.parts[-count:]) for path in paths]
+        if len(set(names)) == len(names):
+            return names
+    return [path.name for path in paths]

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.figure import Figure
 
-from . import style
+from . import documents, style
 from .errors import PlotError
 
 Values = npt.NDArray[np.float64]
@@ -27,10 +27,11 @@ PANELS = [("bias", "°/s", ["bias_deg_per_s"]),
           ("Q", "", ["q_drive", "q_sense"]),
           ("drive voltage", "V", ["drive_voltage_V"])]
 HEIGHT = 7.6
+LARGEST = 1e12  # as in a recording
 
 
-def read(path: pathlib.Path) -> dict[str, Any]:
-    lines = path.read_text().splitlines()
+def read(path: pathlib.Path, name: str) -> dict[str, Any]:
+    lines = documents.text_of(path).splitlines()
     names = lines[0].split(",")
     for number, line in enumerate(lines[1:], 2):
         if line.count(",") + 1 != len(names):
@@ -39,30 +40,40 @@ def read(path: pathlib.Path) -> dict[str, Any]:
     try:
         values = np.loadtxt(lines[1:], delimiter=",", ndmin=2)
     except ValueError as error:
-        raise PlotError(f"{path}: {error}") from None
+        raise PlotError(f"{path}: {error}; expected numbers") from None
     if values.size == 0:
         raise PlotError(f"{path}: no rows; expected one or more temperatures")
-    return {"name": path.name, **dict(zip(names, values.T))}
+    return {"name": name, **dict(zip(names, values.T))}
 
 
 def _column(table: Mapping[str, Any], name: str) -> Values:
     if name not in table:
         raise PlotError(f"{table.get('name', 'table')}: no column {name}; "
                         f"expected {', '.join(COLUMNS)}")
-    values = np.asarray(table[name], dtype=float)
+    values = np.asarray(table[name])
+    if values.dtype.kind not in "biuf" or values.ndim != 1 or \
+            len(values) != len(table[COLUMNS[0]]):
+        raise PlotError(f"{table.get('name', 'table')}: {name}: "
+                        f"{values.shape} of type {values.dtype}; expected a "
+                        f"number for each {COLUMNS[0]}")
+    if not (np.abs(values) <= LARGEST).all():
+        raise PlotError(f"{table.get('name', 'table')}: {name}: "
+                        f"{values[~(np.abs(values) <= LARGEST)][0]:g}; "
+                        f"expected numbers up to {LARGEST:g}")
     return 100 * (values - 1) if name == "scale_factor_rel" else values
 
 
 def draw(figure: Figure, tables: Sequence[Mapping[str, Any]]) -> None:
     grid = figure.subplots(4, 2, sharex=True)
     figure.align_ylabels(grid)
-    names = style.shortened([str(table.get("name", "")) for table in tables])
+    names = style.labels([str(table.get("name", "")) for table in tables])
     for (words, unit, columns), axes in zip(PANELS, grid.flat):
         for k, (table, name) in enumerate(zip(tables, names)):
             T = _column(table, "temperature_degC")
+            order = np.argsort(T, kind="stable")
             for j, column in enumerate(columns):
                 label = column[2:] if len(columns) > 1 and not k else None
-                axes.plot(T, _column(table, column),
+                axes.plot(T[order], _column(table, column)[order],
                           marker="" if len(T) > 1 else "o",
                           color=style.COLORS[k % len(style.COLORS)],
                           ls=style.DASHES[j if len(tables) == 1 else

@@ -27,6 +27,22 @@ _UNITS: dict[str, dict[str, tuple[float, float]]] = {
 }
 
 
+# Unit, its seconds, and the least span that is drawn in it.
+TIME_UNITS = [("d", 86400.0, 3 * 86400.0), ("h", 3600.0, 3 * 3600.0),
+              ("min", 60.0, 300.0), ("s", 1.0, 0.05), ("ms", 1e-3, 0.0)]
+
+
+def time_unit(span: float) -> tuple[str, float]:
+    """Unit of the axis of a span of time, and its seconds."""
+    return next((unit, scale) for unit, scale, least in TIME_UNITS
+                if span >= least) if span > 0 else ("s", 1.0)
+
+
+def duration(seconds: float) -> str:
+    return next(f"{seconds / scale:.3g} {unit}" for unit, scale, _ in
+                TIME_UNITS if seconds >= scale or unit == "ms")
+
+
 def unit_of(name: str) -> str:
     """The unit in which a variable of a recording is drawn."""
     if name == "time":

@@ -8,10 +8,12 @@ from typing import Any, Iterator, Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
 from . import style
+from .documents import (FLAG, NAME, NOT_NEGATIVE, NUMBER, TEXT, both, either,
+                        maybe, record, rows, wrong)
 
 # Colours, dashes and markers of series are those of the page of the report
 # (validation/page/page.html).
@@ -21,6 +23,42 @@ MOST_MARKERS = 14  # on one curve
 SHOWN = ("population_yield", "bias_over_temperature", "warm_up", "hysteresis",
          "residual_histogram", "scale_factor_over_temperature", "allan")
 MOST_SHOWN = 6
+LONGEST_METRIC = 40  # [letters]
+ROW, LEGEND = 2.6, 0.3  # height of a row of figures, of what is above [inch]
+LEAST_LIMIT = 1e-30  # a share of a smaller one tells nothing
+
+_KIND = either("line", "points", "bars")
+_ENDS = rows(maybe(NUMBER))  # of intervals that may be open
+_AXIS = record({"label": TEXT, "unit": TEXT,
+                "scale": either("linear", "log")})
+_SERIES = record(
+    {"name": TEXT, "x": rows(NUMBER), "y": rows(NUMBER)},
+    {"role": TEXT, "kind": _KIND, "low": _ENDS, "high": _ENDS},
+    alike=("x", "y", "low", "high"))
+_FIGURE = record({"id": NAME, "title": TEXT, "kind": _KIND, "x": _AXIS,
+                  "y": _AXIS, "series": rows(_SERIES)})
+
+
+def _has_an_end(limit: Mapping[str, Any], key: str) -> None:
+    if limit["min"] is None and limit["max"] is None:
+        raise wrong(key, "neither min nor max is a number", "one or both")
+
+
+_LIMIT = both(record({
+    "metric": TEXT, "min": maybe(NUMBER), "max": maybe(NUMBER),
+    "absolute": FLAG, "relative_to": maybe(TEXT), "margin": maybe(NUMBER),
+    "compared": maybe(record({"value": maybe(NUMBER)},
+                             {"interval": maybe(rows(maybe(NUMBER), 2, 2))})),
+    "result": maybe(either("pass", "fail", "undecided"))}), _has_an_end)
+SHAPE = record({
+    "verdict": TEXT, "words": TEXT, "compensator": record({"name": TEXT}),
+    "limits": rows(_LIMIT), "figures": rows(_FIGURE),
+    "checks": rows(record({"name": TEXT, "passed": maybe(FLAG)}))},
+    {"population": maybe(record({"devices": NOT_NEGATIVE,
+                                 "passed": NOT_NEGATIVE})),
+     # These are not drawn, but a result without them is not whole.
+     "metrics": rows(record({})), "provenance": record({}),
+     "sigma": record({}), "warnings": rows(TEXT)})
 
 
 def _styles(figure: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
@@ -97,17 +135,16 @@ def each(result: Mapping[str, Any]) -> Iterator[tuple[str, Figure]]:
 
 def _shown(result: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """The figures that matter most, then others in their order."""
-    by_id = {figure["id"]: figure for figure in result.get("figures", [])
+    by_id = {figure["id"]: figure for figure in result["figures"]
              if any(series["x"] for series in figure["series"])}
     first = [by_id[name] for name in SHOWN if name in by_id]
     others = [one for one in by_id.values() if one not in first]
     return (first + others)[:MOST_SHOWN]
 
 
-
 def height(result: Mapping[str, Any]) -> float:
     rows = -(-len(_shown(result)) // 2)
-    return 1.2 + _limit_height(result) + 2.6 * rows
+    return 1.2 + _limit_height(result) + (LEGEND + ROW * rows) * bool(rows)
 
 
 def _limit_height(result: Mapping[str, Any]) -> float:
@@ -116,7 +153,7 @@ def _limit_height(result: Mapping[str, Any]) -> float:
 
 
 def _judged(result: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    return [limit for limit in result.get("limits", [])
+    return [limit for limit in result["limits"]
             if (limit.get("compared") or {}).get("value") is not None]
 
 
@@ -126,11 +163,13 @@ def _share(limit: Mapping[str, Any], value: float) -> float:
     high: float | None = limit["max"]
     value = abs(value) if limit["absolute"] else value
     if low is not None and high is not None:
-        return abs(value - (low + high) / 2) / ((high - low) / 2)
+        return abs(value - (low + high) / 2) / max((high - low) / 2,
+                                                   LEAST_LIMIT)
     if high is not None:
-        return value / high if high > 0 else 1 + (value - high)
+        return value / high if high > LEAST_LIMIT else 1 + (value - high)
     assert low is not None
-    return low / value if low > 0 and value > 0 else 1 + (low - value)
+    return low / value if low > 0 and value > LEAST_LIMIT \
+        else 1 + (low - value)
 
 
 def _limits(axes: Axes, limits: Sequence[Mapping[str, Any]]) -> None:
@@ -139,15 +178,15 @@ def _limits(axes: Axes, limits: Sequence[Mapping[str, Any]]) -> None:
     for k, limit in enumerate(limits):
         compared = limit["compared"]
         if limit.get("relative_to"):  # the limit is that of another rate
-            used = max(least, 1.0 if limit["margin"] == 0 else
-                       compared["value"] / (compared["value"] +
-                                            limit["margin"])
-                       if compared["value"] + limit["margin"] > 0 else 1.0)
+            allowed = compared["value"] + (limit.get("margin") or 0)
+            used = max(least, compared["value"] / allowed if allowed > 0
+                       else 1.0)
             ends = [used, used]
         else:
             used = max(least, _share(limit, compared["value"]))
-            ends = sorted(max(least, _share(limit, end)) for end in
-                          compared.get("interval") or [compared["value"]] * 2)
+            ends = sorted(max(least, _share(limit, compared["value"] if end is
+                                            None else end)) for end in
+                          compared.get("interval") or [None, None])
         color = style.RESULTS.get(limit["result"], style.BLACK)
         axes.barh(k, used - least, left=least, height=0.6, color=color)
         axes.plot(ends, [k, k], color=style.BLACK, lw=1.2)
@@ -155,7 +194,8 @@ def _limits(axes: Axes, limits: Sequence[Mapping[str, Any]]) -> None:
                       xytext=(4, 0), textcoords="offset points", va="center",
                       fontsize=9, color=style.BLACK)
     axes.axvline(1, color=style.BLACK, lw=1.4)
-    axes.set_yticks(range(len(limits)), [one["metric"] for one in limits])
+    axes.set_yticks(range(len(limits)), style.labels(
+        [one["metric"] for one in limits], LONGEST_METRIC))
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     style.log_scale(axes.xaxis)
@@ -167,7 +207,7 @@ def _limits(axes: Axes, limits: Sequence[Mapping[str, Any]]) -> None:
 
 def _words(result: Mapping[str, Any]) -> str:
     words = str(result["words"])
-    failed = [check["name"] for check in result.get("checks", [])
+    failed = [check["name"] for check in result["checks"]
               if check["passed"] is False]
     if failed:
         words += f" Checks failed: {', '.join(failed)}."
@@ -190,7 +230,19 @@ def _small(axes: Axes, figure: Mapping[str, Any]) -> None:
     axes.tick_params(labelsize=8)
     roles = {series.get("role") for series in figure["series"]}
     if not {"before", "after"} <= roles and 1 < len(figure["series"]) < 5:
-        axes.legend(loc="best", fontsize=7, handlelength=1.6)
+        _legend_within(axes)
+
+
+def _legend_within(axes: Axes) -> None:
+    """A legend above what is drawn, for which the axis becomes longer."""
+    texts = axes.get_legend_handles_labels()[1]
+    columns = len(texts) if sum(map(len, texts)) < 40 else 1
+    if axes.get_yscale() == "linear":
+        low, high = axes.get_ylim()
+        lines = -(-len(texts) // columns)
+        axes.set_ylim(low, high + (0.06 + 0.1 * lines) * (high - low))
+    axes.legend(loc="upper right", ncols=columns, fontsize=7,
+                handlelength=1.6)
 
 
 def draw(figure: Figure, result: Mapping[str, Any]) -> None:
@@ -198,7 +250,8 @@ def draw(figure: Figure, result: Mapping[str, Any]) -> None:
     rows = -(-len(shown) // 2)
     style.titled(figure, f"{result['verdict'].upper()}: "
                  f"{result['compensator']['name']}", _words(result))
-    parts = [_limit_height(result)] * bool(limits) + [2.6 * rows] * bool(rows)
+    parts = [_limit_height(result)] * bool(limits) + \
+        [LEGEND, ROW * rows] * bool(rows)
     if not parts:
         return
     # Each part has a layout of its own.
@@ -208,13 +261,19 @@ def draw(figure: Figure, result: Mapping[str, Any]) -> None:
         _limits(below.pop(0).subplots(), limits)
     if not rows:
         return
+    _legend(below.pop(0))
     grid = below[0].subplots(rows, 2, squeeze=False)
     for axes, one in zip(grid.flat, shown):
         _small(axes, one)
     for axes in grid.flat[len(shown):]:
         axes.axis("off")
-    handles = [Line2D([], [], color=color, label=words, lw=2)
-               for words, color in [("before compensation", style.BEFORE),
-                                    ("after", style.AFTER)]]
-    below[0].legend(handles=handles, loc="upper right", ncols=2)
-    below[0].suptitle(" ", fontsize=9)
+
+
+def _legend(strip: SubFigure) -> None:
+    """What the colours of the figures below say."""
+    looks = [("before compensation", style.BEFORE, "none"),
+             ("after", style.AFTER, style.AFTER)]
+    strip.legend(handles=[Line2D([], [], color=color, label=words, lw=2,
+                                 marker="D", mfc=inside, ms=5)
+                          for words, color, inside in looks],
+                 loc="center left", ncols=2)

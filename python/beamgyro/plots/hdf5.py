@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: MIT
+"""Arrays and texts of HDF5 files, checked as they are read."""
+
+from __future__ import annotations
+
+import pathlib
+from contextlib import contextmanager
+from typing import Any, Iterator
+
+import numpy.typing as npt
+
+from .errors import PlotError
+
+Values = npt.NDArray[Any]
+
+
+def text_of(value: object) -> str:
+    return value.decode(errors="replace") if isinstance(value, bytes) \
+        else str(value)
+
+
+class File:
+    """An open HDF5 file."""
+
+    def __init__(self, path: pathlib.Path, file: Any) -> None:
+        self.path = path
+        self._file = file
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._file
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        return dict(self._file.attrs)
+
+    def variable(self, name: str, dimensions: int = 1) -> Any:
+        """A dataset of numbers that is not read yet."""
+        import h5py
+        found = self._file.get(name)
+        if not isinstance(found, h5py.Dataset):
+            met = "missing" if found is None else "no variable"
+            raise PlotError(f"{self.path}: {name}: {met}; expected numbers")
+        if found.dtype.kind not in "iuf":
+            raise PlotError(f"{self.path}: {name}: values of type "
+                            f"{found.dtype}; expected numbers")
+        if found.ndim != dimensions:
+            raise PlotError(f"{self.path}: {name}: {found.ndim} dimensions; "
+                            f"expected {dimensions}")
+        return found
+
+    def numbers(self, name: str) -> Values:
+        """All values of a variable of one dimension."""
+        values: Values = self.variable(name)[()]
+        return values
+
+    def unit(self, name: str, otherwise: str) -> str:
+        return text_of(self._file[name].attrs.get("units", otherwise))
+
+
+@contextmanager
+def opened(path: pathlib.Path) -> Iterator[File]:
+    """Raises PlotError where HDF5 fails, at opening or at reading."""
+    import h5py
+    try:
+        with h5py.File(path) as file:
+            yield File(path, file)
+    except (OSError, RuntimeError) as error:
+        raise PlotError(f"{path}: HDF5 cannot read it: {error}; expected a "
+                        "whole file as beamgyro wrote it") from None
