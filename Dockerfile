@@ -5,10 +5,10 @@ FROM debian:12 AS build
 WORKDIR /src
 COPY . .
 RUN apt-get update \
-    && apt-get install -y --no-install-recommends ca-certificates git dpkg-dev \
+    && apt-get install -y --no-install-recommends ca-certificates dpkg-dev file git \
     && git config --global --add safe.directory /src \
-    && scripts/setup.sh demo \
-    && scripts/package.sh
+    && scripts/setup.sh demo
+RUN scripts/package.sh
 
 FROM debian:12-slim
 COPY --from=build /src/build/packages/*.deb /tmp/packages/

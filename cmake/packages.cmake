@@ -5,7 +5,7 @@ set(CPACK_PACKAGE_VENDOR "beamgyro")
 set(CPACK_PACKAGE_CONTACT "beamgyro authors <beamgyro@users.noreply.github.com>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL runtime dev)
+set(CPACK_COMPONENTS_ALL runtime debian_dev)
 if(TARGET _core)
   list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
@@ -35,12 +35,12 @@ firmware or as parameters of autopilots.
 This package has the program with devices, scenarios, campaigns, models and
 specifications to run and to copy from, and its documentation.")
 
-set(CPACK_DEBIAN_DEV_PACKAGE_NAME libbeamgyro-dev)
-set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
+set(CPACK_DEBIAN_DEBIAN_DEV_PACKAGE_NAME libbeamgyro-dev)
+set(CPACK_DEBIAN_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEBIAN_DEV_PACKAGE_DEPENDS
   "libsundials-dev (>= 6.4), libhdf5-dev (>= 1.10), libfmt-dev, libssl-dev (>= 3.0), libdeflate-dev")
-set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "beamgyro, cmake, pkg-config")
-set(CPACK_DEBIAN_DEV_DESCRIPTION "simulator of vibrating-beam piezo gyros - C++ library
+set(CPACK_DEBIAN_DEBIAN_DEV_PACKAGE_SUGGESTS "beamgyro, cmake, pkg-config")
+set(CPACK_DEBIAN_DEBIAN_DEV_DESCRIPTION "simulator of vibrating-beam piezo gyros - C++ library
 Simulates a vibrating-beam piezoelectric gyro, from its beam, patches, glue and
 mount up to the volts at its pin, and trains and scores compensators of its
 thermal drift.
@@ -53,7 +53,8 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
   "python3 (>= 3.11~), python3 (<< 3.12~), python3-numpy, python3-xarray, python3-h5py, python3-h5netcdf")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "beamgyro, python3-matplotlib")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "beamgyro")  # loads plug-ins; the runs of validate(device=...)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${DEBIAN}/postinst;${DEBIAN}/prerm")
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "simulator of vibrating-beam piezo gyros - Python package
 Simulates a vibrating-beam piezoelectric gyro, from its beam, patches, glue and

@@ -20,12 +20,14 @@ beamgyro ($version) unstable; urgency=medium
 TEXT
 }
 
-for pair in runtime=beamgyro dev=libbeamgyro-dev python=python3-beamgyro; do
+for pair in runtime=beamgyro debian_dev=libbeamgyro-dev python=python3-beamgyro; do
   root=$stage/${pair%=*} package=${pair#*=}
   [ -d "$root" ] || continue
   documents=$root/usr/share/doc/$package
   install -d -m 755 "$documents"
   install -m 644 "$source/packaging/debian/copyright" "$documents"
+  # Pages link to it; Debian has a licence once.
+  [ ! -e "$documents/LICENSE" ] || ln -sf copyright "$documents/LICENSE"
   gzip -9n <"$source/CHANGELOG.md" >"$documents/changelog.gz"
   changelog "$package" | gzip -9n >"$documents/changelog.Debian.gz"
   find "$root" -name '*.a' -exec strip --strip-debug \

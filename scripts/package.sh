@@ -13,8 +13,9 @@ fail() {
   exit 1
 }
 
-for tool in cpack dpkg-shlibdeps strip; do
-  command -v "$tool" >/dev/null || fail "no $tool here: apt-get install cmake dpkg-dev"
+for tool in cpack dpkg-shlibdeps file strip; do
+  command -v "$tool" >/dev/null ||
+    fail "no $tool here: apt-get install cmake dpkg-dev file"
 done
 [ $# -gt 0 ] || "$root/scripts/build.sh" release
 [ -e "$build/CPackConfig.cmake" ] || fail "$build is no build of beamgyro"

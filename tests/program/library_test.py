@@ -2,6 +2,7 @@
 """The installed C++ library, as its users build and call it."""
 
 import filecmp
+import json
 import pathlib
 import re
 import shutil
@@ -25,6 +26,22 @@ int main(int, char** argv) {
   const auto scenario = beamgyro::Scenario::read(argv[1]);
   const auto run = beamgyro::simulate(scenario);
   std::printf("%zu samples\\n", run.recording.time.size());
+}
+"""
+OWN_EIGEN = """\
+#include <beamgyro/train.h>
+
+#include <Eigen/Dense>
+
+int main(int, char** argv) {
+  const std::filesystem::path scenarios = argv[1];
+  const Eigen::MatrixXd a = Eigen::MatrixXd::Random(50, 4);
+  const Eigen::VectorXd y = Eigen::VectorXd::Random(50);
+  const Eigen::VectorXd own = a.colPivHouseholderQr().solve(y);
+  const auto model = beamgyro::Model::read(scenarios / "models/cubic.toml");
+  beamgyro::train(model, {std::filesystem::path(argv[2])})
+      .compensator.write("own.json");
+  return own.allFinite() ? 0 : 1;
 }
 """
 GUIDE = (ROOT / "docs/guide/library.md").read_text()
@@ -151,6 +168,30 @@ class Library(Call):
         said = self.call("build/few", SCENARIOS / "ten_minutes.toml")
         self.assertEqual(said.stdout, "3000 samples\n")
 
+    def found(self, components):
+        """What find_package says of components, in a project of C++."""
+        folder = self.dir / "components"
+        folder.mkdir(exist_ok=True)
+        (folder / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\n"
+            "project(user LANGUAGES CXX)\n"
+            f"find_package(beamgyro 0.1 {components})\n"
+            "message(STATUS \"found: ${beamgyro_FOUND}; "
+            "${beamgyro_NOT_FOUND_MESSAGE}\")\n")
+        said = self.call("cmake", "-G", "Ninja", "-B", "build",
+                         f"-DCMAKE_PREFIX_PATH={self.prefix}", cwd=folder)
+        return " ".join((said.stdout + said.stderr).split())
+
+    def test_find_package_takes_its_parts_as_components(self):
+        self.assertIn("found: 1;", self.found(
+            "REQUIRED COMPONENTS dataset sim compensation validation"))
+        self.assertIn("found: 1;", self.found("OPTIONAL_COMPONENTS plot"))
+        for unknown in ["plot", "internal_sim"]:
+            said = self.found(f"COMPONENTS sim {unknown}")
+            self.assertRegex(said, "found: (0|FALSE);")
+            self.assertIn(f"beamgyro has no component {unknown}; it has "
+                          "compensation, dataset, sim and validation.", said)
+
     def test_each_part_links_alone(self):
         for part in ["dataset", "compensation", "validation"]:
             self.call(f"build/{part}")
@@ -167,6 +208,30 @@ class Library(Call):
             capture_output=True, env={"PKG_CONFIG_PATH": str(pkgconfig)})
         stated = self.call(self.prefix / "bin/beamgyro", "--version").stdout
         self.assertIn(f"beamgyro {version.stdout.strip()} (", stated)
+
+    def test_a_user_may_have_eigen_with_other_instructions(self):
+        # Templates of Eigen, compiled for vectors of 32 bytes by the user, are
+        # not those that the library calls.
+        if not {"avx", "fma"} <= set(re.findall(
+                r"\w+", pathlib.Path("/proc/cpuinfo").read_text())):
+            self.skipTest("needs a processor with AVX and FMA")
+        (self.dir / "eigen.cpp").write_text(OWN_EIGEN)
+        pkgconfig = next(self.prefix.rglob("beamgyro.pc")).parent
+        eigen = self.call("pkg-config", "--cflags", "eigen3").stdout.strip()
+        self.call(PROGRAM, "run", SCENARIOS / "ten_minutes.toml", "-o",
+                  "of_program.h5")
+        self.call(PROGRAM, "train", "of_program.h5", "--model",
+                  SCENARIOS / "models/cubic.toml", "-o", "of_program.json")
+        for flags in ["-O2", "-O2 -mavx -mfma"]:
+            self.call("sh", "-c", f"PKG_CONFIG_PATH={pkgconfig} && "
+                      f"export PKG_CONFIG_PATH && c++ -std=c++20 {flags} "
+                      f"eigen.cpp {eigen} -o own_eigen "
+                      "$(pkg-config --cflags --libs beamgyro)")
+            self.call("./own_eigen", SCENARIOS, "of_program.h5")
+            of_program = json.loads((self.dir / "of_program.json").read_text())
+            own = json.loads((self.dir / "own.json").read_text())
+            self.assertEqual(own["parameters"], of_program["parameters"],
+                             flags)
 
     def test_the_guide_builds_and_runs(self):
         folder = self.dir / "guide"

@@ -114,6 +114,49 @@ class Packages(unittest.TestCase):
                     self.assertIn(name, depends)
             self.assertNotIn("-dev", self.field("beamgyro", "Depends"))
 
+    def test_the_module_recommends_the_files_that_it_reads(self):
+        self.assertIn("beamgyro", self.field("python3-beamgyro",
+                                             "Recommends"))
+
+    def test_libraries_stand_in_the_folder_of_their_architecture(self):
+        triple = said("gcc", "-print-multiarch").strip()
+        folders = {os.path.dirname(name)
+                   for name in self.files("libbeamgyro-dev")
+                   if name.startswith("usr/lib")}
+        lib = f"usr/lib/{triple}"
+        self.assertEqual(folders, {lib, f"{lib}/cmake/beamgyro",
+                                   f"{lib}/pkgconfig"})
+
+    def test_a_program_is_built_with_the_unpacked_library(self):
+        usr = self.dir / "libbeamgyro-dev/usr"
+        user = self.dir / "user"
+        user.mkdir()
+        (user / "user.cpp").write_text(
+            "#include <beamgyro/version.h>\n"
+            "int main() { return beamgyro::version()[0] == '0' ? 0 : 1; }\n")
+        (user / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\n"
+            "project(user LANGUAGES CXX)\n"
+            "find_package(beamgyro REQUIRED COMPONENTS dataset)\n"
+            "add_executable(user user.cpp)\n"
+            "target_link_libraries(user PRIVATE beamgyro::dataset)\n")
+        said("cmake", "-B", "build", f"-DCMAKE_PREFIX_PATH={usr}", cwd=user)
+        said("cmake", "--build", "build", cwd=user)
+        said(user / "build/user")
+        pkgconfig = next(usr.rglob("beamgyro.pc")).parent
+        stated = said("pkg-config", "--variable=libdir", "beamgyro", env={
+            **os.environ, "PKG_CONFIG_PATH": str(pkgconfig)}).strip()
+        libraries = pathlib.Path(stated.replace("\\ ", " "))
+        self.assertGreater(len(list(libraries.glob("libbeamgyro_*.a"))), 10)
+
+    def test_links_of_the_pages_lead_to_files_of_the_package(self):
+        documents = self.dir / "beamgyro/usr/share/doc/beamgyro"
+        for page in documents.rglob("*.md"):
+            text = re.sub("```.*?```", "", page.read_text(), flags=re.DOTALL)
+            for link in re.findall(r"\]\(([^)\s#:]+)(?:#[^)]*)?\)", text):
+                with self.subTest(f"{page.name}: {link}"):
+                    self.assertTrue((page.parent / link).exists())
+
     def test_the_unpacked_program_runs_an_unpacked_scenario(self):
         usr = self.dir / "beamgyro/usr"
         said(usr / "bin/beamgyro", "run",

@@ -53,6 +53,20 @@ class Site(unittest.TestCase):
                 with self.subTest(f"{page.name}: {link}"):
                     self.assertTrue((page.parent / link).exists())
 
+    def test_every_page_is_reached_from_the_front_page(self):
+        seen, waiting = set(), [self.site / "index.html"]
+        while waiting:
+            page = waiting.pop()
+            if page in seen:
+                continue
+            seen.add(page)
+            waiting += [(page.parent / link).resolve() for link in
+                        re.findall(r'<a [^>]*href="([^"#:]+\.html)',
+                                   page.read_text())]
+        pages = {page for page in self.site.rglob("*.html")
+                 if page.name != "search.html"}  # by the form of each page
+        self.assertEqual(sorted(pages - seen), [])
+
     def test_nothing_is_loaded_from_elsewhere(self):
         for page in self.site.rglob("*.html"):
             text = page.read_text()
