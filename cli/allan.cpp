@@ -100,7 +100,7 @@ void add_allan(CommandLine& program) {
   command.number(
       {"--rate-Hz", "F", "Sample rate of a CSV that has no column of times",
        "that of the times"},
-      arguments->rate, {0, 1e9, true, true});
+      arguments->rate, {1e-9, 1e9});
   command.text({"--unit", "U",
                 "Unit of a CSV: deg/s, deg/h, rad/s, or any other text, which "
                 "is printed as it is",

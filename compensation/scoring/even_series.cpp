@@ -13,6 +13,7 @@ namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kMostPlacesPerSample = 4;
+constexpr std::size_t kBlockSteps = 64, kLeastBlockSteps = 16;
 
 /// Indices of the usable samples of each stretch with power.
 std::vector<std::vector<std::size_t>> usable_samples(
@@ -55,12 +56,46 @@ double mean_step(const std::vector<double>& time,
   return steps > 0 ? duration / static_cast<double>(steps) : 0.0;
 }
 
+/// How far steps depart from the places that they are given.
+class Evenness {
+ public:
+  explicit Evenness(double interval) : interval_(interval) {}
+
+  void add(double duration, double places) {
+    duration_ += duration;
+    places_ += places;
+    if (++steps_ == kBlockSteps) end_block();
+  }
+
+  void end_block() {
+    if (steps_ >= kLeastBlockSteps) {
+      departures_ += std::abs(duration_ - places_ * interval_);
+      durations_ += duration_;
+    }
+    duration_ = places_ = 0.0;
+    steps_ = 0;
+  }
+
+  double departure() const {
+    return durations_ > 0.0 ? departures_ / durations_ : 0.0;
+  }
+
+ private:
+  double interval_;
+  double duration_ = 0.0, places_ = 0.0;
+  std::size_t steps_ = 0;
+  double departures_ = 0.0, durations_ = 0.0;
+};
+
 /// Fills the stretches of a series whose interval is known.
 class Grid {
  public:
   Grid(const std::vector<double>& time, const std::vector<double>& values,
        EvenSeries& series)
-      : time_(time), values_(values), series_(series) {}
+      : time_(time),
+        values_(values),
+        series_(series),
+        evenness_(series.interval) {}
 
   void add(const std::vector<std::size_t>& usable) {
     for (std::size_t i = 0; i < usable.size(); ++i) {
@@ -70,6 +105,7 @@ class Grid {
       end_ = usable[i];
     }
     close();
+    series_.unevenness = evenness_.departure();
   }
 
  private:
@@ -80,6 +116,7 @@ class Grid {
     if (static_cast<double>(places_.size()) + steps - 1.0 > most) {
       close();
     } else {
+      evenness_.add(duration, std::max(steps, 1.0));
       places_.resize(
           places_.size() + static_cast<std::size_t>(std::max(steps, 1.0)) - 1,
           NAN);
@@ -96,11 +133,13 @@ class Grid {
     }
     places_.clear();
     samples_ = 0;
+    evenness_.end_block();
   }
 
   const std::vector<double>& time_;
   const std::vector<double>& values_;
   EvenSeries& series_;
+  Evenness evenness_;
   std::vector<double> places_;
   std::size_t samples_ = 0, start_ = 0, end_ = 0;
 };

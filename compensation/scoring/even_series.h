@@ -26,6 +26,9 @@ struct EvenSeries {
   std::size_t left_out = 0;  // samples of the recording that no stretch holds
   double first = 0.0;        // [s], time of the first sample
   double last = 0.0;         // [s], of the last one
+  // [-], how far 64 steps after each other depart from the time that their
+  // places span, over that time: mean of all. Jitter gives 0.03 at most.
+  double unevenness = 0.0;
 };
 
 /// Puts the samples of column `name` that are powered, finite and within

@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "compensation/scoring/difference_covariance.h"
+#include "config/range.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -180,8 +181,12 @@ TermFit best_of(const std::vector<TermFit>& fits) {
   return *std::ranges::min_element(fits, {}, &TermFit::cost);
 }
 
+// Fourth powers of both stay numbers.
+constexpr Range kUsableDeviations{1e-60, 1e60}, kUsableTaus{1e-60, 1e60};
+
 bool is_usable(const AllanPoint& point) {
-  return point.deviation > 0.0 && point.clusters > 1 &&
+  return kUsableDeviations.contains(point.deviation) &&
+         kUsableTaus.contains(point.tau) && point.clusters > 1 &&
          relative_uncertainty(point) <= kMostUncertain;
 }
 

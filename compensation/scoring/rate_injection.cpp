@@ -121,8 +121,8 @@ void append_blocks(const Recording& recording, const Injection& injection,
       double sum = 0.0;
       double samples = 0.0;
       std::size_t k = begin;
-      for (; k < stretch.end && rate[k] == rate[begin] &&
-             number(k) == number(begin);
+      for (; k < stretch.end && (k == begin || (rate[k] == rate[begin] &&
+                                                number(k) == number(begin)));
            ++k) {
         if (since[k] >= kSettlingTime &&
             std::abs(value_at(truth, k, 0.0) + rate[k]) <=

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <functional>
+#include <numbers>
 #include <stdexcept>
 
 #include "compensation/scoring/allan_deviation.h"
@@ -90,6 +93,46 @@ TEST(EvenSeries, TakesAWindowOfTime) {
       [] { even_series(two_cycles(), "rate", {.from = 31.0, .to = 39.0}); });
   EXPECT_NE(empty.find("from 31 to 39 s"), std::string::npos) << empty;
   EXPECT_THROW(even_series(two_cycles(), "speed"), std::invalid_argument);
+}
+
+/// 2,000 samples at times of steps [s] that `step_of` gives.
+Recording steps_of(const std::function<double(std::size_t)>& step_of) {
+  Recording run = RecordedRun{
+      .duration = 2000.0, .step = 1.0, .powered = [](double) {
+        return true;
+      }}.recording();
+  for (std::size_t k = 1; k < run.time.size(); ++k)
+    run.time[k] = run.time[k - 1] + step_of(k);
+  return run;
+}
+
+TEST(EvenSeries, TellsJitterAndGapsFromStepsThatAreNotEven) {
+  const auto unevenness = [](const std::function<double(std::size_t)>& step) {
+    return even_series(steps_of(step), "rate").unevenness;
+  };
+  // The golden section spreads numbers evenly from 0 to 1.
+  const auto spread = [](std::size_t k) {
+    return std::fmod(static_cast<double>(k) * std::numbers::phi, 1.0);
+  };
+  EXPECT_EQ(unevenness([](std::size_t) { return 1.0; }), 0.0);
+  EXPECT_EQ(unevenness([](std::size_t k) { return k % 9 == 0 ? 4.0 : 1.0; }),
+            0.0);
+  EXPECT_LT(unevenness([&](std::size_t k) { return 0.6 + 0.8 * spread(k); }),
+            0.05);
+  // Times in whole milliseconds of 700 samples a second.
+  EXPECT_LT(unevenness([](std::size_t k) {
+              const double at = static_cast<double>(k) / 0.7;
+              return std::floor(at + 1.0 / 0.7) - std::floor(at);
+            }),
+            0.05);
+  // Events at random have steps of an exponential distribution.
+  EXPECT_GT(unevenness([&](std::size_t k) { return -std::log(spread(k)); }),
+            0.05);
+  // A clock that slows down without a gap.
+  EXPECT_GT(unevenness([](std::size_t k) {
+              return std::pow(static_cast<double>(k), 0.2);
+            }),
+            0.05);
 }
 
 // In powers of two, so that every sum is exact: the gaps change nothing.

@@ -55,6 +55,13 @@ TEST(RateInjection, ShowsTheShareOfTheRateThatIsEaten) {
   EXPECT_NEAR(*injected_scale_factor(eats(0.3), run), 0.7, 1e-9);
 }
 
+TEST(RateInjection, EndsWhateverTheFullScale) {
+  const Recording run = kDrifting.recording();
+  const auto blocks = replay(bias_only, run, bias_only(run), std::nan(""), 0);
+  ASSERT_TRUE(blocks);
+  EXPECT_TRUE(blocks->empty());  // no rate is within a full scale of NaN
+}
+
 TEST(RateInjection, CatchesAFilterThatForgetsAConstantRate) {
   // rate - slow mean: passes steps, loses a rate held for ten minutes.
   const auto high_pass = [](const Recording& run) {
