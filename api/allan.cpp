@@ -15,9 +15,11 @@
 #include "api/reported_progress.h"
 #include "compensation/scoring/allan_deviation.h"
 #include "compensation/scoring/noise_coefficients.h"
+#include "config/range.h"
 #include "dataset/files/text_file.h"
 #include "dataset/log/csv_file.h"
 #include "dataset/log/recording_csv.h"
+#include "dataset/recording/recording_defect.h"
 #include "dataset/recording/units.h"
 #include "report/allan_report.h"
 
@@ -26,7 +28,9 @@ namespace internal {
 namespace {
 
 constexpr const char* kRateUnit = "deg/s";
-constexpr double kSameRate = 0.01;  // [-], of two sample rates
+constexpr double kSameRate = 0.01;        // [-], of two sample rates
+constexpr Range kSampleRates{1e-9, 1e9};  // [Hz]
+constexpr double kMostUneven = 0.05;      // [-], of the steps of a series
 
 /// A file of samples and what is asked of it.
 struct AllanQuestion {
@@ -56,6 +60,16 @@ std::string csv_column(const AllanQuestion& asked, const CsvTable& csv) {
   throw std::invalid_argument(
       fmt::format("{}: has {} columns; expected --dataset NAME to choose one",
                   asked.file, csv.columns.size()));
+}
+
+/// The same for a signal in memory.
+void require_increasing(const std::string& file,
+                        const std::vector<double>& time) {
+  for (std::size_t k = 0; k < time.size(); ++k)
+    if (!std::isfinite(time[k]) || (k > 0 && !(time[k] > time[k - 1])))
+      throw std::invalid_argument(fmt::format(
+          "{}: time: sample {} is {} s{}; expected times that increase", file,
+          k, time[k], k > 0 ? fmt::format(" after {} s", time[k - 1]) : ""));
 }
 
 void require_increasing(const CsvTable& csv, const std::vector<double>& time) {
@@ -202,6 +216,14 @@ void check_rate(const AllanQuestion& asked, const EvenSeries& series) {
         *asked.about.rate_Hz, asked.file, 1.0 / series.interval));
 }
 
+void require_even(const AllanQuestion& asked, const EvenSeries& series) {
+  if (series.unevenness > kMostUneven)
+    throw std::invalid_argument(fmt::format(
+        "{}: time: 64 samples span {:.0f} % more or less than 64 steps of "
+        "{:g} s; expected even times, with or without gaps",
+        asked.file, 100.0 * series.unevenness, series.interval));
+}
+
 nlohmann::ordered_json series_json(const EvenSeries& series,
                                    const AllanSignal& signal) {
   return {{"dataset", signal.column},
@@ -270,10 +292,33 @@ void add_coefficients(const NoiseCoefficients& found, AllanResult& result) {
   }
 }
 
+// Without them a curve of what is beside the samples would come out.
+void require_complete(const AllanQuestion& asked, const AllanSignal& signal) {
+  const Recording& recording = signal.recording;
+  const std::size_t times = recording.time.size();
+  const Column* column = find_column(recording, signal.column);
+  if (recording.status.size() != times ||
+      (column != nullptr && column->values.size() != times))
+    throw std::invalid_argument(fmt::format(
+        "{}: {} times, {} values of status and {} of {}; expected as many of "
+        "each",
+        asked.file, times, recording.status.size(),
+        column != nullptr ? column->values.size() : 0, signal.column));
+  if (column == nullptr) return;
+  for (std::size_t k = 0; k < times; ++k)
+    if (std::abs(column->values[k]) > kLargestValue)
+      throw std::invalid_argument(fmt::format(
+          "{}: {}: sample {} is {:g}; expected at most +-{:g}", asked.file,
+          signal.column, k, column->values[k], kLargestValue));
+}
+
 AllanResult result_of(const AllanQuestion& asked, AllanSignal signal) {
+  require_complete(asked, signal);
+  require_increasing(asked.file, signal.recording.time);
   const EvenSeries series =
       even_series(signal.recording, signal.column, window_of(asked.options));
   check_rate(asked, series);
+  require_even(asked, series);
   if (series.missing + series.left_out > 0)
     signal.warnings.push_back(fmt::format(
         "{}: {} of {} samples used; {} missing between them", asked.file,
@@ -319,9 +364,10 @@ AllanResult allan(const Recording& recording, const std::string& column,
 
 AllanResult allan(std::span<const double> samples, double rate_Hz,
                   const std::string& unit, const AllanOptions& options) {
-  if (!(rate_Hz > 0 && std::isfinite(rate_Hz)))
+  if (!internal::kSampleRates.contains(rate_Hz))
     throw std::invalid_argument(
-        fmt::format("{} samples a second; expected more than 0", rate_Hz));
+        fmt::format("{} samples a second; expected {:g} to {:g}", rate_Hz,
+                    internal::kSampleRates.low, internal::kSampleRates.high));
   const internal::AllanQuestion asked{"the series", {}, options};
   internal::AllanSignal signal;
   signal.column = "rate";

@@ -40,8 +40,8 @@ Campaign Campaign::parse(const std::vector<CampaignFile>& files,
   return campaign_of(internal::Campaign::of_copies(copies, as_long(devices)));
 }
 
-const std::string& Campaign::name() const { return state_->campaign.name(); }
-const std::string& Campaign::text() const { return state_->campaign.text(); }
+std::string Campaign::name() const { return state_->campaign.name(); }
+std::string Campaign::text() const { return state_->campaign.text(); }
 
 std::vector<CampaignFile> Campaign::files() const {
   std::vector<CampaignFile> files;
@@ -62,6 +62,10 @@ std::vector<std::string> Campaign::runs() const {
 
 std::vector<std::string> Campaign::device_overrides(
     std::uint32_t number) const {
+  if (number >= devices())
+    throw std::invalid_argument(
+        fmt::format("{}: has no device {}; expected a number from 0 to {}",
+                    name(), number, devices() - 1));
   const internal::VirtualDevice drawn = state_->campaign.device(number);
   if (!drawn.device)
     throw std::runtime_error(

@@ -9,6 +9,7 @@
 #include "api/program_version.h"
 #include "api/user_compensator.h"
 #include "dataset/files/sha256.h"
+#include "dataset/recording/recording_defect.h"
 #include "dataset/recording/signals.h"
 
 namespace beamgyro {
@@ -30,6 +31,12 @@ std::string sha256_of(const RateCompensator& compensator) {
 
 }  // namespace
 
+void require_sound(const Recording& recording, const std::string& name) {
+  const std::string defect = recording_defect(recording);
+  if (!defect.empty())
+    throw std::invalid_argument(fmt::format("{}: {}", name, defect));
+}
+
 void require_uncompensated(const Recording& recording,
                            const std::string& name) {
   if (find_column(recording, kCompensated) == nullptr) return;
@@ -50,7 +57,11 @@ std::vector<std::string> range_warnings(const RateCompensator& compensator,
                                         const CompensatedRate& answer,
                                         const std::string& name) {
   const auto* file = dynamic_cast<const beamgyro::Compensator*>(&compensator);
-  if (file == nullptr || answer.clamped == 0) return {};
+  if (answer.clamped == 0) return {};
+  if (file == nullptr)
+    return {fmt::format("{}: {} of {} samples were clamped, as {} says", name,
+                        answer.clamped, answer.rate.size(),
+                        compensator.name())};
   return {fmt::format(
       "{}: {} of {} samples lie outside {:g} to {:g} degC, the temperatures "
       "seen in training; clamped{}",
@@ -78,6 +89,7 @@ void add_answer(const RateCompensator& compensator, CompensatedRate answer,
 CompensatedRun compensate(const RateCompensator& compensator,
                           Recording recording) {
   const std::string name = "the recording";
+  internal::require_sound(recording, name);
   internal::require_uncompensated(recording, name);
   CompensatedRate answer =
       internal::checked_answer(compensator, recording, name);
@@ -86,6 +98,9 @@ CompensatedRun compensate(const RateCompensator& compensator,
         fmt::format("{}: {}", compensator.name(), answer.faults.front()));
   CompensatedRun run{{}, internal::range_warnings(compensator, answer, name)};
   internal::add_answer(compensator, std::move(answer), recording);
+  const std::string defect = internal::recording_defect(recording);
+  if (!defect.empty())
+    throw std::runtime_error(fmt::format("{}: {}", compensator.name(), defect));
   run.recording = std::move(recording);
   return run;
 }

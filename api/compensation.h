@@ -7,6 +7,10 @@
 
 namespace beamgyro::internal {
 
+/// Throws std::invalid_argument "name: ..." for a recording that could not be
+/// written to a file, such as one whose times do not increase.
+void require_sound(const Recording& recording, const std::string& name);
+
 /// Throws std::invalid_argument for a recording, called `name`, that holds a
 /// compensated rate already.
 void require_uncompensated(const Recording& recording, const std::string& name);

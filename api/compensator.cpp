@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "include/beamgyro/compensator.h"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
 #include <utility>
 
+#include "api/compensation.h"
 #include "api/compensator_state.h"
 #include "api/user_compensator.h"
 #include "compensation/compensator/compensator_file.h"
@@ -52,6 +56,8 @@ RateCompensator::~RateCompensator() = default;
 std::shared_ptr<const RateCompensator> compensator_of(
     std::string name, std::vector<std::string> inputs,
     std::function<std::vector<double>(const Recording&)> rate_of) {
+  if (!rate_of)
+    throw std::invalid_argument(name + ": no function; expected one");
   return std::make_shared<FunctionCompensator>(
       std::move(name), std::move(inputs), std::move(rate_of));
 }
@@ -69,7 +75,7 @@ Compensator Compensator::parse(const std::string& text,
   return compensator_of_text(text, name, "");
 }
 
-const std::string& Compensator::text() const { return state_->text; }
+std::string Compensator::text() const { return state_->text; }
 
 void Compensator::write(const std::filesystem::path& file) const {
   internal::write_text_file(file, state_->text);
@@ -82,6 +88,7 @@ std::vector<std::string> Compensator::inputs() const {
 }
 
 CompensatedRate Compensator::answer(const Recording& recording) const {
+  internal::require_sound(recording, "the recording");
   const internal::Compensator& own = state_->compensator;
   return {.rate = internal::compensated_rate(own, recording),
           .sigma = internal::compensated_rate_sigma(own, recording),
@@ -100,7 +107,7 @@ double Compensator::highest_temperature() const {
 bool Compensator::states_sigma() const {
   return state_->compensator.sigma.has_value();
 }
-const std::vector<std::string>& Compensator::warnings() const {
+std::vector<std::string> Compensator::warnings() const {
   return state_->compensator.provenance.warnings;
 }
 
@@ -108,6 +115,18 @@ std::shared_ptr<const RateCompensator> open_compensator(
     const std::string& argument, const ProcessOptions& options) {
   if (!internal::is_command(argument) && !internal::is_library(argument))
     return std::make_shared<Compensator>(Compensator::read(argument));
+  if (!(options.stall_s > 0))
+    throw std::invalid_argument(
+        fmt::format("stall_s {}: expected a time above 0", options.stall_s));
+  if (internal::is_library(argument)) {
+    if (!std::filesystem::exists(argument))
+      throw std::invalid_argument(argument + ": No such file or directory");
+    if (options.program.empty())
+      throw std::invalid_argument(
+          argument +
+          ": no program to load it; expected the place of the "
+          "program beamgyro");
+  }
   return std::make_shared<internal::OpenedCompensator>(
       argument, internal::ProcessLimits{.stall = options.stall_s,
                                         .memory = options.memory,

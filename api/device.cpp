@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <stdexcept>
 #include <utility>
 
@@ -15,6 +17,8 @@
 
 namespace beamgyro {
 namespace {
+
+constexpr std::size_t kMostTemperatures = 1000000;
 
 std::shared_ptr<const Device::State> state_of(
     internal::LoadedDevice loaded, std::string name,
@@ -28,6 +32,8 @@ std::shared_ptr<const Device::State> state_of(
 }
 
 void require_material_temperatures(std::span<const double> temperatures) {
+  if (temperatures.empty())
+    throw std::invalid_argument("no temperatures; expected at least one");
   for (const double celsius : temperatures)
     if (!internal::kMaterialTemperatures.contains(celsius))
       throw std::invalid_argument(fmt::format(
@@ -58,10 +64,30 @@ Device Device::with(const std::vector<std::string>& overrides) const {
                internal::merged_overrides(state_->overrides, overrides));
 }
 
-const std::string& Device::text() const { return state_->text; }
-const std::string& Device::name() const { return state_->name; }
-const std::vector<std::string>& Device::overrides() const {
-  return state_->overrides;
+std::string Device::text() const { return state_->text; }
+std::string Device::name() const { return state_->name; }
+std::vector<std::string> Device::overrides() const { return state_->overrides; }
+
+std::vector<double> even_temperatures(double start, double stop, double step) {
+  for (const double number : {start, stop, step})
+    if (!std::isfinite(number))
+      throw std::invalid_argument(fmt::format(
+          "{} is no finite number; expected START, STOP and STEP", number));
+  const double steps = (stop - start) / step;
+  if (!(steps >= 0.0) || step == 0.0)
+    throw std::invalid_argument(
+        fmt::format("a step of {:g} K does not lead from {:g} to {:g} degC",
+                    step, start, stop));
+  const double count = std::floor(steps + 1e-9) + 1.0;
+  if (count > static_cast<double>(kMostTemperatures))
+    throw std::invalid_argument(fmt::format(
+        "a step of {:g} K makes {:g} temperatures from {:g} to {:g} degC; "
+        "expected at most {}",
+        step, count, start, stop, kMostTemperatures));
+  std::vector<double> grid;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+    grid.push_back(start + static_cast<double>(i) * step);
+  return grid;
 }
 
 Characteristic characterise(const Device& device,

@@ -7,15 +7,22 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
+#include "api/checked_number.h"
 #include "api/compensator_state.h"
 #include "compensation/export/export_c.h"
 #include "compensation/export/export_ekf.h"
 #include "compensation/export/export_parameters.h"
 #include "compensation/firmware/c_text.h"
+#include "dataset/files/atomic_file.h"
+#include "dataset/files/made_directories.h"
 #include "dataset/files/sha256.h"
 
 namespace beamgyro {
@@ -96,6 +103,10 @@ void parameter_texts(const ExportRequest& asked, const std::string& name,
   }
   const bool px4 = asked.format == "px4";
   const auto gyro_id = asked.options.device_id.value_or(0);
+  if (gyro_id < 0 || gyro_id > std::numeric_limits<std::int32_t>::max())
+    throw std::invalid_argument(
+        fmt::format("device id {}: expected 0 to {}", gyro_id,
+                    std::numeric_limits<std::int32_t>::max()));
   const AutopilotGyro gyro{asked.options.instance.value_or(px4 ? 0 : 1),
                            static_cast<long>(gyro_id)};
   result.files.push_back(
@@ -170,6 +181,10 @@ void ekf_files(const ExportRequest& asked, const std::string& name,
 }
 
 void require_options(const ExportRequest& asked) {
+  check_number("--ramp-K-per-min", asked.options.ramp_K_per_min, {0.0, 1000.0});
+  check_number("--correlation-K", asked.options.correlation_K, positive());
+  check_number("--temperature-degC", asked.options.temperature_degC,
+               {-273.15, 1000.0});
   const auto refuse = [&](bool given, const char* option, const char* formats) {
     if (given)
       throw std::invalid_argument(
@@ -233,6 +248,23 @@ ExportResult export_files(const std::vector<Compensator>& compensators,
   else
     internal::parameter_texts(asked, name, result);
   return result;
+}
+
+void write_exported(const std::filesystem::path& directory,
+                    const std::vector<ExportedFile>& files) {
+  const internal::MadeDirectories made(directory);
+  std::vector<std::filesystem::path> written;
+  try {
+    for (const auto& [called, text] : files) {
+      internal::write_text_file(directory / called, text);
+      written.push_back(directory / called);
+    }
+  } catch (...) {
+    std::error_code ignored;
+    for (const std::filesystem::path& path : written)
+      std::filesystem::remove(path, ignored);
+    throw;
+  }
 }
 
 }  // namespace beamgyro

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "api/checked_number.h"
 #include "api/compensator_state.h"
 #include "api/device_state.h"
 #include "api/soak_plan.h"
@@ -27,13 +28,6 @@ namespace internal {
 namespace {
 
 constexpr std::size_t kLeastTable = 7;  // soaks in the table of trade-offs
-
-void check_number(const char* what, std::optional<double> value,
-                  const Range& range) {
-  if (value && !range.contains(*value))
-    throw std::invalid_argument(
-        fmt::format("{} {:g}; expected {}", what, *value, text_of(range)));
-}
 
 TemperatureRange checked_range(const char* what, const ChamberRange& range) {
   if (range.first < range.second &&

@@ -75,16 +75,16 @@ Scenario Scenario::with_device(const Device& device) const {
   return parse(text(), device, state_->overrides, name());
 }
 
-const std::string& Scenario::text() const { return state_->scenario.text; }
-const std::string& Scenario::name() const { return state_->scenario.name; }
+std::string Scenario::text() const { return state_->scenario.text; }
+std::string Scenario::name() const { return state_->scenario.name; }
 Device Scenario::device() const {
   return Device::parse(state_->device.text, state_->device.name,
                        state_->device_overrides);
 }
-const std::vector<std::string>& Scenario::overrides() const {
+std::vector<std::string> Scenario::overrides() const {
   return state_->overrides;
 }
-const std::vector<std::filesystem::path>& Scenario::files() const {
+std::vector<std::filesystem::path> Scenario::files() const {
   return state_->loaded.files;
 }
 

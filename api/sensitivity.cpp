@@ -8,6 +8,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "api/campaign_state.h"
 #include "api/compensator_state.h"
@@ -32,7 +33,7 @@ CurveGrid grid_of(const SensitivityOptions& options) {
         kMaterialTemperatures.low, kMaterialTemperatures.high));
   if (!(high - low >= 1))
     throw std::invalid_argument(fmt::format(
-        "--range {:g}:{:g}: spans {:g} K; expected LOW at least 1 K below HIGH",
+        "temperatures from {:g} to {:g} degC span {:g} K; expected 1 K or more",
         low, high, high - low));
   CurveGrid grid;
   grid.low = low;
@@ -57,10 +58,10 @@ std::vector<Merit> merits_of(const SensitivityOptions& options) {
   }
   const bool asks = std::ranges::count(merits, Merit::kCompensatorRms) > 0;
   if (asks && !has_compensator)
-    throw std::invalid_argument(fmt::format(
-        "--figure {}: no compensator to score; expected --compensator "
-        "FILE.json with it",
-        figure_of_merit(Merit::kCompensatorRms).name));
+    throw std::invalid_argument(
+        fmt::format("figure {}: no compensator to score; expected a "
+                    "compensator with it",
+                    figure_of_merit(Merit::kCompensatorRms).name));
   if (options.figures.empty())
     merits = {Merit::kBiasPeakToPeak, Merit::kCubicRms,
               Merit::kScaleFactorDrift, Merit::kWarmUpChange};
@@ -75,8 +76,9 @@ std::map<Merit, double> limits_of(const SensitivityOptions& options,
     const Merit merit = merit_of(name);
     if (std::ranges::count(merits, merit) == 0)
       throw std::invalid_argument(fmt::format(
-          "--limit {}: {} is not studied; expected --figure {} with it",
-          fmt::format("{}={:g}", name, limit), name, name));
+          "limit {:g} of {}, which is not studied; expected it among the "
+          "figures",
+          limit, name));
     if (!(limit > 0))
       throw std::invalid_argument(
           fmt::format("limit {} of {}; expected one above 0", limit, name));
@@ -103,45 +105,47 @@ std::vector<std::string> merit_names() {
   return names;
 }
 
-DeviceSampleOptions sample_options(const beamgyro::Campaign& campaign,
-                                   const SensitivityOptions& options) {
-  DeviceSampleOptions asked;
-  asked.merits = merits_of(options);
-  asked.merit.grid = grid_of(options);
+std::uint64_t SensitivityStudy::devices() const {
+  return devices_of_sample(campaign.state().campaign, sample);
+}
+
+SensitivityStudy checked_study(const beamgyro::Campaign& campaign,
+                               const SensitivityOptions& options) {
+  DeviceSampleOptions sample;
+  sample.merits = merits_of(options);
+  sample.merit.grid = grid_of(options);
   if (options.compensator)
-    asked.merit.compensator = std::make_shared<const Compensator>(
+    sample.merit.compensator = std::make_shared<const Compensator>(
         options.compensator->state().compensator);
-  if (options.samples < 32)
+  if (options.samples < 32 || options.samples > 1000000)
     throw std::invalid_argument(
-        fmt::format("{} samples; expected 32 or more", options.samples));
-  asked.rows = options.samples;
-  asked.seed = options.seed.value_or(campaign.seed());
-  asked.halves_tolerances = !options.limits.empty();
-  asked.jobs = options.jobs;
-  limits_of(options, asked.merits);
+        fmt::format("{} samples; expected 32 to 1000000", options.samples));
+  sample.rows = options.samples;
+  sample.seed = options.seed.value_or(campaign.seed());
+  sample.halves_tolerances = !options.limits.empty();
+  sample.jobs = options.jobs;
+  std::map<Merit, double> limits = limits_of(options, sample.merits);
   const internal::Campaign& own = campaign.state().campaign;
   require_comparable(factors_of(own.device_plan()),
                      own.sources().front().path.string());
-  return asked;
+  return {campaign, std::move(sample), std::move(limits), options.linear};
 }
 
-SensitivityResult sensitivity_study(const beamgyro::Campaign& campaign,
-                                    const SensitivityOptions& options,
-                                    DeviceSampleCounts& counts) {
-  const DeviceSampleOptions asked = sample_options(campaign, options);
-  const std::map<Merit, double> limits = limits_of(options, asked.merits);
+SensitivityResult studied(const SensitivityStudy& study,
+                          DeviceSampleCounts& counts) {
+  const DeviceSampleOptions& asked = study.sample;
   const DeviceSample sample =
-      sample_devices(campaign.state().campaign, asked, counts);
-  const StudyHead head{campaign.name(), asked.seed, asked.merit.grid};
+      sample_devices(study.campaign.state().campaign, asked, counts);
+  const StudyHead head{study.campaign.name(), asked.seed, asked.merit.grid};
   SensitivityResult result;
   result.text = sample_lines(sample, head);
   std::vector<MeritResult> found;
   for (std::size_t m = 0; m < asked.merits.size(); ++m) {
     const Merit merit = asked.merits[m];
-    const auto limit = limits.find(merit);
-    MeritQuestion question{
-        merit, figure_of_merit(merit).is_positive && !options.linear};
-    if (limit != limits.end()) question.limit = limit->second;
+    const auto limit = study.limits.find(merit);
+    MeritQuestion question{merit,
+                           figure_of_merit(merit).is_positive && !study.linear};
+    if (limit != study.limits.end()) question.limit = limit->second;
     found.push_back(analysed(sample, m, question, asked.seed));
     result.text += '\n' + sensitivity_table(found.back());
     result.figures.push_back(figure_of(found.back()));
@@ -154,18 +158,18 @@ SensitivityResult sensitivity_study(const beamgyro::Campaign& campaign,
 
 SensitivityResult sensitivity(const Campaign& campaign,
                               const SensitivityOptions& options) {
+  const internal::SensitivityStudy study =
+      internal::checked_study(campaign, options);
+  const auto total = static_cast<double>(study.devices());
   internal::DeviceSampleCounts counts;
-  if (!options.progress)
-    return internal::sensitivity_study(campaign, options, counts);
-  const auto total = static_cast<double>(internal::devices_of_sample(
-      campaign.state().campaign, internal::sample_options(campaign, options)));
   std::mutex one_at_a_time;
-  counts.on_device = [&] {
-    const std::lock_guard lock(one_at_a_time);
-    internal::report(options.progress,
-                     static_cast<double>(counts.devices.load()) / total);
-  };
-  return internal::sensitivity_study(campaign, options, counts);
+  if (options.progress)
+    counts.on_device = [&] {
+      const std::lock_guard lock(one_at_a_time);
+      internal::report(options.progress,
+                       static_cast<double>(counts.devices.load()) / total);
+    };
+  return internal::studied(study, counts);
 }
 
 }  // namespace beamgyro

@@ -102,9 +102,7 @@ Set Set::open(const std::filesystem::path& directory) {
   return Set(std::move(state));
 }
 
-const std::filesystem::path& Set::directory() const {
-  return state_->directory;
-}
+std::filesystem::path Set::directory() const { return state_->directory; }
 std::string Set::campaign() const { return state_->head().campaign; }
 std::uint32_t Set::devices() const { return state_->head().devices; }
 std::vector<std::string> Set::runs() const { return state_->head().runs; }
@@ -113,9 +111,7 @@ std::string Set::program_version() const {
   return state_->head().program_version;
 }
 std::string Set::git_revision() const { return state_->head().git_revision; }
-const std::vector<SetFailure>& Set::failures() const {
-  return state_->failures;
-}
+std::vector<SetFailure> Set::failures() const { return state_->failures; }
 
 SetPart Set::part(std::uint32_t device) const {
   const State::Place place =

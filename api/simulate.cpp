@@ -2,6 +2,7 @@
 #include "include/beamgyro/simulate.h"
 
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "api/program_version.h"
@@ -31,6 +32,8 @@ void stamp(const internal::LoadedScenario& input, Recording& recording) {
 std::vector<std::string> simulate_blocks(const Scenario& scenario,
                                          const RecordingSink& on_block,
                                          const SimulationOptions& options) {
+  if (!on_block)
+    throw std::invalid_argument("no function for the blocks; expected one");
   const Scenario::State& state = scenario.state();
   const internal::LoadedScenario& input = state.loaded;
   const auto samples = static_cast<double>(scenario.samples());

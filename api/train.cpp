@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "api/compensation.h"
 #include "api/compensator_state.h"
 #include "api/model_state.h"
 #include "compensation/compensator/compensator_file.h"
@@ -54,14 +55,14 @@ std::optional<internal::Grouping> grouping_of(const std::string& name) {
 void observe_epochs(internal::ModelSpec& spec, const TrainingOptions& options) {
   if (!options.progress) return;
   auto one_at_a_time = std::make_shared<std::mutex>();
-  internal::observe(spec, [one_at_a_time, tell = options.progress](
+  internal::observe(spec, [one_at_a_time, on_epoch = options.progress](
                               const internal::EpochReport& report) {
     const std::lock_guard lock(*one_at_a_time);
     const bool goes_on =
-        tell({static_cast<std::size_t>(report.restart),
-              static_cast<std::size_t>(report.restarts),
-              static_cast<std::size_t>(report.epoch),
-              static_cast<std::size_t>(report.max_epochs), report.rms});
+        on_epoch({static_cast<std::size_t>(report.restart),
+                  static_cast<std::size_t>(report.restarts),
+                  static_cast<std::size_t>(report.epoch),
+                  static_cast<std::size_t>(report.max_epochs), report.rms});
     if (!goes_on) throw Cancelled();
   });
 }
@@ -124,9 +125,9 @@ Model Model::parse(const std::string& text, const std::string& name) {
   return Model(std::move(state));
 }
 
-const std::string& Model::text() const { return state_->spec.text; }
-const std::string& Model::name() const { return state_->name; }
-const std::vector<std::filesystem::path>& Model::files() const {
+std::string Model::text() const { return state_->spec.text; }
+std::string Model::name() const { return state_->name; }
+std::vector<std::filesystem::path> Model::files() const {
   return state_->spec.files;
 }
 
@@ -152,6 +153,9 @@ TrainedCompensator train(const Model& model,
                          const std::vector<NamedRecording>& recordings,
                          const std::vector<NamedRecording>& held_out,
                          const TrainingOptions& options) {
+  for (const auto* runs : {&recordings, &held_out})
+    for (const NamedRecording& run : *runs)
+      internal::require_sound(run.recording, run.name);
   return trained(model, source_of_recordings(recordings),
                  source_of_recordings(held_out), options);
 }

@@ -11,14 +11,22 @@
 #include <utility>
 #include <vector>
 
+#include "api/compensation.h"
 #include "api/compensator_state.h"
 #include "compensation/inputs/sample_ranges.h"
 #include "validation/external/answering.h"
+#include "validation/external/asked_run.h"
 #include "validation/external/file_compensator.h"
 #include "validation/external/measured_signals.h"
 
 namespace beamgyro::internal {
 namespace {
+
+// Names a sample, and the run that it is of where that is known.
+std::string asked_sample_words(const Recording& run, std::size_t sample) {
+  const std::string name = AskedRun::name();
+  return sample_words(run, sample) + (name.empty() ? "" : " of " + name);
+}
 
 constexpr double kNoAnswer = std::numeric_limits<double>::quiet_NaN();
 
@@ -79,15 +87,17 @@ class UserCompensator final : public TestedCompensator {
                      const std::vector<double>& sigma) const {
     if (sigma.empty()) return;
     if (sigma.size() != stretch.size())
-      throw std::invalid_argument(fmt::format(
-          "{}: gave {} sigmas to the {} samples from {}", user_.name(),
-          sigma.size(), stretch.size(), sample_words(run, stretch.begin)));
+      throw std::invalid_argument(
+          fmt::format("{}: gave {} sigmas to the {} samples from {}",
+                      user_.name(), sigma.size(), stretch.size(),
+                      asked_sample_words(run, stretch.begin)));
     for (std::size_t k = 0; k < sigma.size(); ++k)
       if (!(sigma[k] > 0.0 && std::isfinite(sigma[k])))
         throw std::invalid_argument(fmt::format(
             "{}: gave a sigma of {} deg/s to {}; expected a finite value above "
             "0",
-            user_.name(), sigma[k], sample_words(run, stretch.begin + k)));
+            user_.name(), sigma[k],
+            asked_sample_words(run, stretch.begin + k)));
   }
 
   void take(const Recording& run, const SampleRange& stretch,
@@ -103,6 +113,8 @@ class UserCompensator final : public TestedCompensator {
       std::ranges::copy(part.sigma, answer.sigma.begin() + place);
     }
     answer.clamped += part.clamped;
+    for (const std::string& words : part.faults)
+      answer.faults.push_back({AnswerFault::kOfItsOwn, stretch.begin, words});
     if (part.rate.size() == stretch.size() || !answer.faults.empty()) return;
     const bool too_few = part.rate.size() < stretch.size();
     answer.faults.push_back(
@@ -143,6 +155,7 @@ std::vector<std::string> OpenedCompensator::inputs() const {
 }
 
 CompensatedRate OpenedCompensator::answer(const Recording& recording) const {
+  require_sound(recording, "the recording");
   return public_answer(opened_->answer(recording));
 }
 

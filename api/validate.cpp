@@ -3,23 +3,28 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
+#include "api/checked_number.h"
 #include "api/compensator_state.h"
 #include "api/model_state.h"
 #include "api/program_version.h"
 #include "api/reported_progress.h"
 #include "api/user_compensator.h"
 #include "api/validation_texts.h"
+#include "compensation/rows/recorded_runs.h"
+#include "config/range.h"
 #include "parallel/work_queue.h"
 #include "report/verdict_report.h"
 #include "validation/page/figures.h"
 #include "validation/page/page.h"
 #include "validation/result/result_json.h"
+#include "validation/specification/decision.h"
 
 namespace beamgyro {
 namespace internal {
@@ -80,13 +85,28 @@ void require_one_subject(const ValidationOptions& options) {
     throw std::invalid_argument(
         "a qualification or a campaign is for a simulated device; expected a "
         "device");
+  if (!options.set && !(options.runs.empty() && options.devices.empty()))
+    throw std::invalid_argument(
+        "runs and devices choose from a set; expected a set, or none of them");
+  if (options.full_scale && options.device)
+    throw std::invalid_argument(
+        "full_scale is for recordings; a device file says its own");
   if (options.campaign_devices && !options.campaign)
     throw std::invalid_argument(
         "campaign_devices needs a campaign, from which they are drawn");
 }
 
+void require_different(const std::vector<std::filesystem::path>& recordings) {
+  std::vector<std::string> names;
+  for (const std::filesystem::path& path : recordings)
+    names.push_back(path.string());
+  internal::require_different_runs(names);
+}
+
 internal::ValidationRequest request_of(const ValidationOptions& options) {
   require_one_subject(options);
+  internal::check_number("full_scale", options.full_scale,
+                         internal::positive());
   internal::ValidationRequest request;
   if (options.device) {
     request.device = options.device->name();
@@ -95,6 +115,7 @@ internal::ValidationRequest request_of(const ValidationOptions& options) {
     request.qualification = *options.qualification;
   }
   request.runs = options.recordings;
+  require_different(options.recordings);
   if (options.set) {
     request.set = options.set->directory();
     request.selection.runs = options.runs;
@@ -112,16 +133,15 @@ internal::ValidationRequest request_of(const ValidationOptions& options) {
   return request;
 }
 
+static_assert(static_cast<int>(Verdict::kPass) ==
+                  static_cast<int>(internal::Conformity::kPass) &&
+              static_cast<int>(Verdict::kFail) ==
+                  static_cast<int>(internal::Conformity::kFail) &&
+              static_cast<int>(Verdict::kUndecided) ==
+                  static_cast<int>(internal::Conformity::kUndecided));
+
 Verdict public_verdict(internal::Conformity conformity) {
-  switch (conformity) {
-    case internal::Conformity::kPass:
-      return Verdict::kPass;
-    case internal::Conformity::kFail:
-      return Verdict::kFail;
-    case internal::Conformity::kUndecided:
-      break;
-  }
-  return Verdict::kUndecided;
+  return static_cast<Verdict>(conformity);
 }
 
 std::optional<IntervalEstimate> estimate_of(
@@ -183,28 +203,25 @@ ValidationOutcome validated(internal::ValidationRequest request,
                             const ValidationOptions& options) {
   const internal::Validator validator(std::move(request));
   std::mutex one_at_a_time;
+  double reported = 0.0;
   internal::ProgressOfWork progress;
   if (options.progress)
     progress = [&](double share) {
       const std::lock_guard lock(one_at_a_time);
-      internal::report(options.progress, share);
+      // Threads may overtake each other on the way here.
+      reported = std::max(reported, share);
+      internal::report(options.progress, reported);
     };
-  return public_outcome(
-      validator.validate(internal::thread_count(options.jobs), progress));
+  const internal::CompletedValidation found =
+      validator.validate(internal::thread_count(options.jobs), progress);
+  if (progress) progress(1.0);
+  return public_outcome(found);
 }
 
 }  // namespace
 
 std::string_view verdict_name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kPass:
-      return "pass";
-    case Verdict::kFail:
-      return "fail";
-    case Verdict::kUndecided:
-      break;
-  }
-  return "undecided";
+  return internal::conformity_name(static_cast<internal::Conformity>(verdict));
 }
 
 ValidationOutcome validate(const RateCompensator& compensator,

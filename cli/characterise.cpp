@@ -56,14 +56,11 @@ std::vector<double> temperature_grid(const std::string& text) {
   if (parts.size() == 1) return parts;
   if (parts.size() != 3)
     fail_temperatures(text, "neither one nor three values");
-  const double steps = (parts[1] - parts[0]) / parts[2];
-  if (!(steps >= 0 && steps < 1e7))
-    fail_temperatures(text, "STEP does not lead from START to STOP");
-  std::vector<double> grid;
-  const auto count = static_cast<std::size_t>(std::floor(steps + 1e-9)) + 1;
-  for (std::size_t i = 0; i < count; ++i)
-    grid.push_back(parts[0] + static_cast<double>(i) * parts[2]);
-  return grid;
+  try {
+    return even_temperatures(parts[0], parts[1], parts[2]);
+  } catch (const std::invalid_argument& error) {
+    fail_temperatures(text, error.what());
+  }
 }
 
 int characterise(const CharacteriseArguments& arguments) {

@@ -26,6 +26,14 @@ struct Command::Option {
   std::string long_name() const {
     return text.names.substr(text.names.find(',') + 1);
   }
+  // A name that a script left empty is no name.
+  const std::string& text_in(const std::string& word) const {
+    if (word.empty())
+      throw std::invalid_argument(
+          fmt::format("{} \"\": is empty; expected {}", long_name(),
+                      text.is_option() ? text.value : "a name"));
+    return word;
+  }
   bool is_called(std::string_view name) const {
     return text.is_option() &&
            (name == long_name() || name == text.names.substr(0, 2));
@@ -65,17 +73,25 @@ void Command::argument(const OptionText& text, std::string& value) {
 
 void Command::arguments(const OptionText& text,
                         std::vector<std::string>& values, int most) {
-  add(
-      text, Count::kList, [&values](const auto& words) { values = words; },
-      most);
+  Option& option = add(text, Count::kList, {}, most);
+  option.take = [&values, &option](const auto& words) {
+    for (const std::string& word : words) option.text_in(word);
+    values = words;
+  };
 }
 
 void Command::text(const OptionText& text, std::string& value) {
-  add(text, Count::kOne, [&value](const auto& words) { value = words[0]; });
+  Option& option = add(text, Count::kOne, {});
+  option.take = [&value, &option](const auto& words) {
+    value = option.text_in(words[0]);
+  };
 }
 
 void Command::text(const OptionText& text, std::optional<std::string>& value) {
-  add(text, Count::kOne, [&value](const auto& words) { value = words[0]; });
+  Option& option = add(text, Count::kOne, {});
+  option.take = [&value, &option](const auto& words) {
+    value = option.text_in(words[0]);
+  };
 }
 
 void Command::texts(const OptionText& text, std::vector<std::string>& values) {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/file_kind.h"
+#include "api/file_kind.h"
 #include "cli/help_text.h"
 #include "config/range.h"
 

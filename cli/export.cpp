@@ -16,7 +16,6 @@
 #include "cli/terminal.h"
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
-#include "dataset/files/made_directories.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -48,23 +47,6 @@ void require_outputs(const fs::path& directory,
     require_output(directory / called, inputs);
 }
 
-// Writes all files or none.
-void write_texts(const fs::path& directory,
-                 const std::vector<ExportedFile>& texts) {
-  const MadeDirectories made(directory);
-  std::vector<fs::path> written;
-  try {
-    for (const auto& [called, text] : texts) {
-      write_text_file(directory / called, text);
-      written.push_back(directory / called);
-    }
-  } catch (...) {
-    std::error_code ignored;
-    for (const fs::path& path : written) fs::remove(path, ignored);
-    throw;
-  }
-}
-
 ExportOptions options_of_export(const ExportArguments& arguments) {
   ExportOptions options{.name = arguments.name,
                         .axes = arguments.axes,
@@ -92,7 +74,7 @@ int run_export(const ExportArguments& arguments) {
   if (arguments.rest) inputs.emplace_back(*arguments.rest);
   require_outputs(arguments.output, result.files, inputs);
   require_directory_name(arguments.output);
-  write_texts(arguments.output, result.files);
+  write_exported(arguments.output, result.files);
   for (const std::string& warning : result.warnings) print_warning(warning);
   return 0;
 }

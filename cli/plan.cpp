@@ -60,7 +60,8 @@ std::string device_name(const PlanArguments& arguments) {
 }
 
 ChamberRange chamber_range(const char* option, const std::string& text) {
-  const TemperatureRange range = temperature_range(option, text);
+  const TemperatureRange range =
+      temperature_range(option, text, kChamberTemperatures);
   return {range.lowest, range.highest};
 }
 

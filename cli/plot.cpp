@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "api/file_kind.h"
 #include "cli/commands.h"
 #include "cli/figure_pictures.h"
-#include "cli/file_kind.h"
 #include "cli/inputs.h"
 #include "cli/progress.h"
 #include "compensation/compensator/compensator_file.h"
@@ -16,7 +17,7 @@ namespace {
 
 struct PlotArguments {
   std::vector<std::string> files;
-  std::string output;
+  std::optional<std::string> output;
   bool compare = false;
 };
 
@@ -29,18 +30,18 @@ void require_whole(const std::string& file) {
 }
 
 int plot(const PlotArguments& arguments) {
-  if (!arguments.output.empty()) {
-    require_picture_name("-o", arguments.output);
-    require_output(arguments.output,
+  if (arguments.output) {
+    require_picture_name("-o", *arguments.output);
+    require_output(*arguments.output,
                    {arguments.files.begin(), arguments.files.end()});
   }
   for (const std::string& file : arguments.files) require_whole(file);
-  if (arguments.output.empty()) {
+  if (!arguments.output) {
     show_files(arguments.files, arguments.compare);
     return 0;
   }
   const Progress progress("drawing " + arguments.files.front());
-  draw_files(arguments.files, arguments.compare, arguments.output);
+  draw_files(arguments.files, arguments.compare, *arguments.output);
   return 0;
 }
 

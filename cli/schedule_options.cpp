@@ -54,16 +54,16 @@ std::vector<double> schedule_of(const std::string& text,
 }  // namespace
 
 TemperatureRange temperature_range(const std::string& option,
-                                   const std::string& text) {
+                                   const std::string& text,
+                                   const Range& allowed) {
   const std::vector<double> ends = numbers_between(text, ':');
-  if (ends.size() == 2 && ends[0] < ends[1] &&
-      kChamberTemperatures.contains(ends[0]) &&
-      kChamberTemperatures.contains(ends[1]))
+  if (ends.size() == 2 && ends[0] < ends[1] && allowed.contains(ends[0]) &&
+      allowed.contains(ends[1]))
     return {ends[0], ends[1]};
   throw std::invalid_argument(fmt::format(
       "{} {}: not a range; expected LOW:HIGH in degC, LOW below HIGH, within "
       "{:g} to {:g}",
-      option, text, kChamberTemperatures.low, kChamberTemperatures.high));
+      option, text, allowed.low, allowed.high));
 }
 
 std::vector<std::vector<double>> candidate_schedules(

@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "compensation/inputs/features.h"
+#include "config/range.h"
 
 namespace beamgyro::internal {
 
-/// Reads LOW:HIGH in degC. Throws std::invalid_argument "--option TEXT: what is
-/// wrong; what would be right".
+/// Reads LOW:HIGH in degC, both `allowed`. Throws std::invalid_argument
+/// "--option TEXT: what is wrong; what would be right".
 TemperatureRange temperature_range(const std::string& option,
-                                   const std::string& text);
+                                   const std::string& text,
+                                   const Range& allowed);
 
 /// Reads the schedules that --candidates names: each word is a list of
 /// temperatures between commas, or a file with such a list on each line, where

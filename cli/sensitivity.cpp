@@ -20,10 +20,11 @@
 #include "cli/inputs.h"
 #include "cli/option_values.h"
 #include "cli/progress.h"
+#include "cli/schedule_options.h"
 #include "cli/terminal.h"
+#include "compensation/inputs/features.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/made_directories.h"
-#include "sensitivity/figures/static_curve.h"
 #include "sim/thermal/material_range.h"
 
 namespace beamgyro::internal {
@@ -36,23 +37,6 @@ struct SensitivityArguments {
   std::optional<long> samples, jobs, seed;
   bool linear = false;
 };
-
-CurveGrid curve_grid(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  if (colon == std::string::npos)
-    throw std::invalid_argument(fmt::format(
-        "--range {}: expected LOW:HIGH in degC, for instance -40:50", text));
-  CurveGrid grid;
-  grid.low =
-      decimal_number("--range", text.substr(0, colon), kMaterialTemperatures);
-  grid.high =
-      decimal_number("--range", text.substr(colon + 1), kMaterialTemperatures);
-  if (!(grid.high - grid.low >= 1))
-    throw std::invalid_argument(fmt::format(
-        "--range {}: spans {:g} K; expected LOW at least 1 K below HIGH", text,
-        grid.high - grid.low));
-  return grid;
-}
 
 std::map<std::string, double> limits_of(const SensitivityArguments& arguments) {
   std::map<std::string, double> limits;
@@ -76,19 +60,17 @@ std::map<std::string, double> limits_of(const SensitivityArguments& arguments) {
   return limits;
 }
 
-SensitivityResult study_with_progress(const beamgyro::Campaign& campaign,
-                                      const SensitivityOptions& options) {
+SensitivityResult studied_with_progress(const SensitivityStudy& study) {
   DeviceSampleCounts counts;
-  const auto total = static_cast<double>(devices_of_sample(
-      campaign.state().campaign, sample_options(campaign, options)));
+  const auto total = static_cast<double>(study.devices());
   const auto done = [&] {
     const auto devices = static_cast<double>(counts.devices.load());
     return Progress::Status{devices / total,
                             fmt::format("{} of {} devices, {} failed", devices,
                                         total, counts.failures.load())};
   };
-  const Progress progress("sampling " + campaign.name(), done);
-  return sensitivity_study(campaign, options, counts);
+  const Progress progress("sampling " + study.campaign.name(), done);
+  return studied(study, counts);
 }
 
 void require_places(const SensitivityArguments& arguments,
@@ -107,12 +89,13 @@ void require_places(const SensitivityArguments& arguments,
 }
 
 SensitivityOptions options_of(const SensitivityArguments& arguments) {
-  const CurveGrid grid = curve_grid(arguments.range);
+  const TemperatureRange range =
+      temperature_range("--range", arguments.range, kMaterialTemperatures);
   SensitivityOptions options{.figures = arguments.figures};
   if (!arguments.compensator.empty())
     options.compensator = beamgyro::Compensator::read(arguments.compensator);
-  options.lowest_degC = grid.low;
-  options.highest_degC = grid.high;
+  options.lowest_degC = range.lowest;
+  options.highest_degC = range.highest;
   options.linear = arguments.linear;
   options.limits = limits_of(arguments);
   if (arguments.samples)
@@ -125,10 +108,9 @@ SensitivityOptions options_of(const SensitivityArguments& arguments) {
 
 int sensitivity(const SensitivityArguments& arguments) {
   const auto campaign = beamgyro::Campaign::read(arguments.campaign);
-  const SensitivityOptions options = options_of(arguments);
-  sample_options(campaign, options);  // throws before anything is made
+  const SensitivityStudy study = checked_study(campaign, options_of(arguments));
   require_places(arguments, campaign);
-  const SensitivityResult result = study_with_progress(campaign, options);
+  const SensitivityResult result = studied_with_progress(study);
   print_result(result.text);
   if (!arguments.json.empty()) write_text_file(arguments.json, result.json);
   if (!arguments.pictures.empty()) {

@@ -4,16 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
-#include <system_error>
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
@@ -209,28 +206,6 @@ void require_check_alone(const ValidateArguments& arguments) {
       "--check {}: the bundle says what is validated; expected no more than "
       "--jobs, --timeout-s and --memory-GiB beside it",
       arguments.check));
-}
-
-// Throws when a recording is there twice, under whatever name: it would count
-// twice.
-void require_different_runs(const std::vector<std::string>& runs) {
-  std::map<std::uintmax_t, std::vector<std::string>> of_size;  // [bytes]
-  for (const std::string& run : runs) {
-    std::error_code error;  // shows when the run is read
-    const std::uintmax_t size = std::filesystem::file_size(run, error);
-    if (!error) of_size[size].push_back(run);
-  }
-  for (const auto& [size, names] : of_size) {
-    std::map<std::string, std::string> of_hash;
-    if (names.size() < 2) continue;
-    for (const std::string& name : names) {
-      const auto [same, is_new] = of_hash.emplace(sha256_of_file(name), name);
-      if (!is_new)
-        throw std::invalid_argument(
-            fmt::format("{}: is the same recording as {}; expected each once",
-                        name, same->second));
-    }
-  }
 }
 
 void require_device(const ValidateArguments& arguments) {

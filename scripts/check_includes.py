@@ -50,8 +50,9 @@ MAY_INCLUDE = {
     "api": {*ALL, *VALIDATION, *SENSITIVITY, "planning", "report"},
     "cli": {*ALL, *VALIDATION, *SENSITIVITY, "planning", "report", "api"},
     # The package of Python, over the public headers.
-    "python": {"include", "dataset/recording", "dataset/netcdf",
-               "compensation/inputs"},
+    "python": {"include", "api", "dataset/files", "dataset/recording",
+               "dataset/netcdf", "compensation/inputs",
+               "validation/external"},
     "bench": {*ALL, *VALIDATION, *SENSITIVITY, "planning", "report"},
     "fuzz": set(ALL),  # of tests/ only
     # of tests/ only

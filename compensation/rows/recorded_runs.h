@@ -16,6 +16,10 @@ RunSource runs_of_files(
     const std::vector<std::string>& paths,
     const std::function<Recording(const std::filesystem::path&)>& read);
 
+/// Throws std::invalid_argument when a recording is there twice, under whatever
+/// name: it would count twice.
+void require_different_runs(const std::vector<std::string>& paths);
+
 /// Returns whether the paths are a single directory, that of a set. Throws
 /// std::invalid_argument when one of several paths is a directory.
 bool is_set(const std::vector<std::string>& paths);

@@ -193,12 +193,12 @@ std::vector<Candidate> read_candidates(const MethodSource& source) {
 }  // namespace
 
 void observe(ModelSpec& spec, const EpochObserver& observer) {
-  const auto tell = [&](FitSpec& kind) {
+  const auto set_observer = [&](FitSpec& kind) {
     if (auto* network = std::get_if<BpSpec>(&kind))
       network->training.observer = observer;
   };
-  tell(spec.kind);
-  for (Candidate& candidate : spec.candidates) tell(candidate.kind);
+  set_observer(spec.kind);
+  for (Candidate& candidate : spec.candidates) set_observer(candidate.kind);
 }
 
 ModelSpec read_model(const std::filesystem::path& file) {

@@ -102,9 +102,9 @@ bool is_beyond(haddr_t place, std::size_t size) {
 /// Returns whether these are the first bytes of a global heap. HDF5 1.10 does
 /// not check it: damage there crashes or hangs the library.
 bool is_global_heap(std::span<const std::byte> bytes) {
-  constexpr std::string_view kStart = "GCOL\x01";
-  return bytes.size() >= kStart.size() &&
-         std::memcmp(bytes.data(), kStart.data(), kStart.size()) == 0;
+  constexpr std::string_view kHeapStart = "GCOL\x01";
+  return bytes.size() >= kHeapStart.size() &&
+         std::memcmp(bytes.data(), kHeapStart.data(), kHeapStart.size()) == 0;
 }
 
 herr_t read_driven(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t place,

@@ -8,11 +8,10 @@
 #include <set>
 #include <string_view>
 
+#include "dataset/recording/signals.h"
+
 namespace beamgyro::internal {
 namespace {
-
-// Beyond it sums of squares overflow, and no signal of a gyro comes near.
-constexpr double kLargestValue = 1e12;
 
 bool is_identifier(std::string_view name) {
   const auto is_letter = [](char c) {
@@ -60,6 +59,11 @@ std::string defect_of_texts(const Recording& recording) {
         holds_nul(column.comment))
       return fmt::format("{}: a NUL in units, long_name or comment",
                          column.name);
+    const RecordedSignal* signal = find_recorded_signal(column.name);
+    if (signal != nullptr && !column.units.empty() &&
+        column.units != signal->units)
+      return fmt::format("{}: unit '{}'; expected '{}'", column.name,
+                         column.units, signal->units);
   }
   for (const std::string* text :
        {&recording.title, &recording.history, &recording.compensator,

@@ -59,8 +59,8 @@ struct AllanResult {
 
 /// Computes the deviations of a column of a recording. Samples without power
 /// and gaps are left out. Throws std::invalid_argument for a column that is not
-/// there, an unknown kind, an empty window or a series that is too short, and
-/// Cancelled.
+/// there, an unknown kind, an empty window, a series that is too short, times
+/// that do not increase and times that are not even, and Cancelled.
 AllanResult allan(const Recording& recording,
                   const std::string& column = "rate",
                   const AllanOptions& options = {});

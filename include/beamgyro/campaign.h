@@ -41,8 +41,8 @@ class Campaign {
   static Campaign parse(const std::vector<CampaignFile>& files,
                         std::optional<std::uint32_t> devices = {});
 
-  const std::string& name() const;
-  const std::string& text() const;  ///< byte for byte as read
+  std::string name() const;
+  std::string text() const;  ///< byte for byte as read
   /// Campaign, device, scenarios and their profiles in the order of reading.
   std::vector<CampaignFile> files() const;
   std::uint32_t devices() const;

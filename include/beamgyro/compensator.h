@@ -23,7 +23,8 @@ struct CompensatedRate {
   /// clamped.
   std::size_t clamped = 0;
   /// What is wrong with the way the compensator answered, in words: it crashed,
-  /// gave too few numbers, a NaN, ...
+  /// gave too few numbers, a NaN, ... Those of a class of the user's own end
+  /// compensate() and fail validate().
   std::vector<std::string> faults = {};
 };
 
@@ -55,7 +56,7 @@ class RateCompensator {
 };
 
 /// Returns a compensator that calls `rate_of` with a stretch of samples for
-/// their rates [deg/s].
+/// their rates [deg/s]. Throws std::invalid_argument without a function.
 std::shared_ptr<const RateCompensator> compensator_of(
     std::string name, std::vector<std::string> inputs,
     std::function<std::vector<double>(const Recording&)> rate_of);
@@ -74,15 +75,15 @@ class Compensator final : public RateCompensator {
   static Compensator parse(const std::string& text,
                            const std::string& name = "compensator.json");
 
-  const std::string& text() const;  ///< of its file, byte for byte
+  std::string text() const;  ///< of its file, byte for byte
   /// Writes text(). Throws std::invalid_argument for a name that cannot be
   /// written, and std::runtime_error when writing fails.
   void write(const std::filesystem::path& file) const;
 
   std::string name() const override;
   std::vector<std::string> inputs() const override;
-  /// Throws std::invalid_argument naming an input that the recording lacks, or
-  /// the time of a powered sample whose input is not finite.
+  /// Throws std::invalid_argument for a recording that write_recording()
+  /// refuses, and one that lacks an input.
   CompensatedRate answer(const Recording& recording) const override;
 
   std::string method() const;          ///< "cubic as PX4 fits it", ...
@@ -90,7 +91,7 @@ class Compensator final : public RateCompensator {
   double highest_temperature() const;  ///< [degC]
   bool states_sigma() const;
   /// What the data of its training do not support.
-  const std::vector<std::string>& warnings() const;
+  std::vector<std::string> warnings() const;
 
   explicit Compensator(std::shared_ptr<const State> state);
   const State& state() const { return *state_; }
@@ -101,7 +102,8 @@ class Compensator final : public RateCompensator {
 
 /// What a compensator may use that runs in a process of its own.
 struct ProcessOptions {
-  double stall_s = 10.0;  ///< without taking a sample or giving an answer
+  /// Longest time without taking a sample or giving an answer, above 0.
+  double stall_s = 10.0;
   std::size_t memory = std::size_t{2} << 30;  ///< [bytes]; 0: no limit
   /// The program `beamgyro`, which loads shared libraries in a process of its
   /// own; commands do not need it.
@@ -110,7 +112,8 @@ struct ProcessOptions {
 
 /// Opens what `beamgyro compensate` takes: FILE.json, a shared library FILE.so
 /// with the functions of beamgyro/plugin.h, or "cmd:PROGRAM ARGS". Throws
-/// std::invalid_argument when it is none of them or cannot be read.
+/// std::invalid_argument when it is none of them or cannot be read, and for a
+/// library without ProcessOptions::program.
 std::shared_ptr<const RateCompensator> open_compensator(
     const std::string& argument, const ProcessOptions& options = {});
 
@@ -123,7 +126,8 @@ struct CompensatedRun {
 /// Returns `recording` with the columns compensated_rate and, where the
 /// compensator states one, compensated_rate_sigma [deg/s], its name and a line
 /// of history, as `beamgyro compensate` writes it. Throws std::invalid_argument
-/// for a recording that was compensated already or lacks an input, and
+/// for a recording that write_recording() refuses, that was compensated already
+/// or lacks an input, and for a sigma that is not above 0, and
 /// std::runtime_error with its words for a fault of the compensator.
 CompensatedRun compensate(const RateCompensator& compensator,
                           Recording recording);

@@ -33,9 +33,9 @@ class Device {
   /// before takes the new value. Throws as read().
   Device with(const std::vector<std::string>& overrides) const;
 
-  const std::string& text() const;  ///< byte for byte as read
-  const std::string& name() const;  ///< of the file, in messages
-  const std::vector<std::string>& overrides() const;  ///< in their order
+  std::string text() const;                    ///< byte for byte as read
+  std::string name() const;                    ///< of the file, in messages
+  std::vector<std::string> overrides() const;  ///< in their order
 
   explicit Device(std::shared_ptr<const State> state);
   const State& state() const { return *state_; }
@@ -63,9 +63,15 @@ struct Characteristic {
   std::string csv;  ///< byte for byte what `beamgyro characterise` writes
 };
 
+/// Returns start, start + step, ... [degC] up to `stop`, which belongs to them.
+/// Throws std::invalid_argument for a number that is not finite, a step that
+/// does not lead from start to stop, and more than 1,000,000 temperatures.
+std::vector<double> even_temperatures(double start, double stop, double step);
+
 /// Computes the steady state at beam temperatures [degC], in their order.
-/// Throws std::invalid_argument for a temperature beyond -100 to 150 degC or
-/// that is not finite, and std::runtime_error when the drive loop cannot lock.
+/// Throws std::invalid_argument for none, for a temperature beyond -100 to
+/// 150 degC or that is not finite, and std::runtime_error when the drive loop
+/// cannot lock.
 Characteristic characterise(const Device& device,
                             std::span<const double> temperatures_degC);
 

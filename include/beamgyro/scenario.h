@@ -44,12 +44,12 @@ class Scenario {
   /// of the scenario that are about a device are kept, and win.
   Scenario with_device(const Device& device) const;
 
-  const std::string& text() const;  ///< byte for byte as read
-  const std::string& name() const;  ///< of the file, in messages
-  Device device() const;            ///< without the overrides of the scenario
-  const std::vector<std::string>& overrides() const;  ///< in their order
+  std::string text() const;  ///< byte for byte as read
+  std::string name() const;  ///< of the file, in messages
+  Device device() const;     ///< without the overrides of the scenario
+  std::vector<std::string> overrides() const;  ///< in their order
   /// All files that were read.
-  const std::vector<std::filesystem::path>& files() const;
+  std::vector<std::filesystem::path> files() const;
 
   std::string title() const;
   double duration() const;       ///< [s]

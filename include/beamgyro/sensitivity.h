@@ -28,7 +28,7 @@ struct SensitivityOptions {
   bool linear = false;
   /// Largest magnitudes that are good, by figure; they add yields.
   std::map<std::string, double> limits = {};
-  /// Each takes a device for every tolerance and three more; 32 or more.
+  /// Each takes a device for every tolerance and three more; 32 to 1,000,000.
   std::size_t samples = 2048;
   std::optional<std::uint64_t> seed = {};  ///< that of the campaign without
   unsigned jobs = 0;                       ///< threads; 0: one per core

@@ -50,14 +50,14 @@ class Set {
   /// none, or when it is not finished.
   static Set open(const std::filesystem::path& directory);
 
-  const std::filesystem::path& directory() const;
+  std::filesystem::path directory() const;
   std::string campaign() const;           ///< name of its file
   std::uint32_t devices() const;          ///< numbers from 0
   std::vector<std::string> runs() const;  ///< their names
   std::uint64_t seed() const;
   std::string program_version() const;
   std::string git_revision() const;
-  const std::vector<SetFailure>& failures() const;
+  std::vector<SetFailure> failures() const;
 
   /// Returns the part of a device. This and the next four throw
   /// std::invalid_argument for a run or device that the set does not have, and

@@ -32,9 +32,9 @@ class Model {
   static Model parse(const std::string& text,
                      const std::string& name = "model.toml");
 
-  const std::string& text() const;  ///< byte for byte as read
-  const std::string& name() const;  ///< of the file, in messages
-  const std::vector<std::filesystem::path>& files() const;  ///< that were read
+  std::string text() const;  ///< byte for byte as read
+  std::string name() const;  ///< of the file, in messages
+  std::vector<std::filesystem::path> files() const;  ///< that were read
 
   explicit Model(std::shared_ptr<const State> state);
   const State& state() const { return *state_; }

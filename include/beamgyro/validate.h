@@ -35,7 +35,7 @@ struct ValidationOptions {
   /// A campaign whose devices are judged, too, for a yield; how many of them.
   std::optional<std::filesystem::path> campaign = {};
   std::optional<std::uint32_t> campaign_devices = {};
-  std::optional<double> full_scale = {};  ///< [deg/s], of recordings
+  std::optional<double> full_scale = {};  ///< [deg/s], above 0; not of a device
   unsigned jobs = 0;                      ///< threads; 0: one per core
   Progress progress = {};
 };
@@ -92,8 +92,9 @@ struct ValidationOutcome {
 /// Judges a compensator by every metric, check and limit. The result does not
 /// depend on the number of threads. A class of the user's own is called by
 /// several threads at once. Throws std::invalid_argument for what is wrong in a
-/// file or missing among the options, std::runtime_error when a simulation or a
-/// process cannot go on, Cancelled, and what a class of the user's own throws.
+/// file or missing among the options, and for a recording that is there twice,
+/// std::runtime_error when a simulation or a process cannot go on, Cancelled,
+/// and what a class of the user's own throws.
 ValidationOutcome validate(const RateCompensator& compensator,
                            const ValidationOptions& options);
 

@@ -7,8 +7,9 @@
 >>> print(bg.validate(compensator, ["test.h5"]))
 
 Values and files are those of the program `beamgyro`, to the last bit. What
-is wrong in an input raises ValueError with file and key; work that failed
-raises RuntimeError. Long calls leave the other threads of Python running and
+is wrong in an input raises ValueError with file and key, or the argument, the
+value that was met and what would be right; work that failed raises
+RuntimeError. Long calls leave the other threads of Python running and
 end within a fraction of a second after Ctrl-C.
 
 xarray, pandas and matplotlib are imported when they are first needed.

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import xarray
 
@@ -11,9 +11,7 @@ from beamgyro import _lazy
 from beamgyro._analysis import allan
 from beamgyro._compensation import compensate
 from beamgyro._dataset import Path, save_recording
-
-if TYPE_CHECKING:
-    from beamgyro._results import AllanResult
+from beamgyro._results import AllanResult
 
 
 class RecordingAccessor:

@@ -7,16 +7,17 @@ from a power-on to the next loss of power.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import contextlib
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Optional
 
 import numpy as np
 
-from beamgyro import _core, _lazy
+from beamgyro import _arguments, _checks, _core, _lazy
 from beamgyro._dataset import dataset_of
 
 _Answer = tuple["np.ndarray[Any, Any]", Optional["np.ndarray[Any, Any]"]]
-Answering = Callable[[_core.Recording], _Answer]
+Answering = Callable[[_core.Recording, str], _Answer]
 
 DEFAULT_INPUTS = ("temperature",)
 
@@ -39,12 +40,14 @@ def is_estimator(thing: object) -> bool:
 def inputs_of(thing: object,
               inputs: Optional[Sequence[str]]) -> list[str]:
     """Return the features that an estimator or a network is given."""
-    if inputs is not None:
-        return list(inputs)
+    names = {"inputs": inputs}
     for name in ("beamgyro_inputs", "feature_names_in_"):
-        told = getattr(thing, name, None)
-        if told is not None:
-            return [str(one) for one in told]
+        names[name] = getattr(thing, name, None)
+    for name, given in names.items():
+        if given is not None:
+            found = _checks.texts(given, name)
+            _arguments.not_empty(found, name)
+            return found
     return list(DEFAULT_INPUTS)
 
 
@@ -60,65 +63,118 @@ def measured_columns(features: Sequence[str]) -> list[str]:
 
 
 def _numbers(values: Any, what: str) -> np.ndarray[Any, Any]:
-    if hasattr(values, "detach"):  # of torch
-        values = values.detach().cpu().numpy()
-    numbers = np.asarray(values, dtype=float)
-    if numbers.ndim == 2 and numbers.shape[1] == 1:
-        numbers = numbers[:, 0]
-    if numbers.ndim != 1:
+    shape: tuple[int, ...] = getattr(values, "shape", ())
+    if len(shape) == 2 and shape[1] == 1:
+        values = values.reshape(-1) if hasattr(values, "reshape") else (
+            np.asarray(values)[:, 0])
+    return _arguments.numbers(values, f"the answer of {what}")
+
+
+def _split(answer: Any, what: str, time: np.ndarray[Any, Any]) -> _Answer:
+    if not isinstance(answer, tuple):
+        answer = (answer, None)
+    if len(answer) != 2:
         raise ValueError(
-            f"{what} gave an array of the shape {numbers.shape}; expected one "
-            "number for each sample")
-    return numbers
+            f"the answer of {what}: is a tuple of {len(answer)}; expected "
+            "rates, or (rates, sigmas)")
+    rates, sigmas = answer
+    for one in answer:
+        _require_times(one, what, time)
+    return (_numbers(rates, what),
+            None if sigmas is None else _numbers(sigmas, what))
 
 
-def _split(answer: Any, what: str) -> _Answer:
-    if isinstance(answer, tuple):
-        if len(answer) != 2:
-            raise ValueError(
-                f"{what} gave a tuple of {len(answer)}; expected rates, or "
-                "(rates, sigmas)")
-        return _numbers(answer[0], what), _numbers(answer[1], what)
-    return _numbers(answer, what), None
+def _require_times(values: Any, what: str,
+                   time: np.ndarray[Any, Any]) -> None:
+    """Refuse an array of xarray, or a series of pandas, in another order."""
+    if "time" in getattr(values, "coords", ()):
+        own = values.coords["time"]
+    elif getattr(getattr(values, "index", None), "name", None) == "time":
+        own = values.index
+    else:
+        return
+    own = np.asarray(own)
+    if own.shape == time.shape and not np.array_equal(own, time):
+        raise ValueError(
+            f"the answer of {what}: has other times than the signals; "
+            "expected a rate for each sample in the order of these")
+
+
+@contextlib.contextmanager
+def _asking(name: str, recording: _core.Recording,
+            run: str) -> Iterator[str]:
+    """Tell, in an error of the user's code, which compensator was asked what.
+
+    The error stays what it is; the words are a note below it. Yields the same
+    words for errors of the answer.
+    """
+    time = recording.arrays()["time"]
+    what = (f"{name} to the {time.size} samples from {time[0]:g} s"
+            + (f" of {run}" if run else ""))
+    try:
+        yield what
+    except Exception as error:
+        error.add_note(f"while beamgyro asked for the answer of {what}")
+        raise
 
 
 def answering_function(function: Callable[[Any], Any], arrays: bool,
                        name: str) -> Answering:
     """Return how a function of the signals answers with rates."""
-    def answer(recording: _core.Recording) -> _Answer:
+    def answer(recording: _core.Recording, run: str) -> _Answer:
         signals = (recording.arrays() if arrays else dataset_of(recording))
-        return _split(function(signals), name)
+        time = recording.arrays()["time"].copy()
+        with _asking(name, recording, run) as what:
+            answered = function(signals)
+        return _split(answered, what, time)
     return answer
 
 
 def _rate_less(recording: _core.Recording,
-               bias: np.ndarray[Any, Any], name: str) -> _Answer:
+               bias: np.ndarray[Any, Any], what: str) -> _Answer:
     rate = recording.arrays()["rate"]
     if bias.shape != rate.shape:
         raise ValueError(
-            f"{name} gave {bias.size} biases; expected {rate.size}, one for "
-            "each sample")
+            f"the answer of {what}: holds {bias.size} biases; expected one "
+            "for each sample")
     return rate - bias, None
+
+
+def _require_order(fitted: Sequence[str], inputs: Sequence[str],
+                   name: str) -> None:
+    """Refuse inputs that are fitted names in other places.
+
+    Names that are no inputs, such as "T", are given the inputs in their order.
+    """
+    moved = any(one in inputs and list(inputs).index(one) != place
+                for place, one in enumerate(fitted))
+    if moved or len(fitted) != len(inputs):
+        raise ValueError(
+            f"inputs {list(inputs)!r}: {name} was fitted to {fitted!r}; "
+            "expected an input for each of these, in their order")
 
 
 def answering_estimator(estimator: Any, inputs: Sequence[str],
                         name: str) -> Answering:
     """Return how an estimator, which predicts the bias, answers."""
     names = getattr(estimator, "feature_names_in_", None)
+    if names is not None:
+        _require_order(list(names), inputs, name)
 
-    def answer(recording: _core.Recording) -> _Answer:
+    def answer(recording: _core.Recording, run: str) -> _Answer:
         rows: Any = _core.features(inputs, recording)
         if names is not None:  # fitted to a table with names
             rows = _lazy.module("pandas").DataFrame(rows, columns=list(names))
-        return _rate_less(recording,
-                          _numbers(estimator.predict(rows), name), name)
+        with _asking(name, recording, run) as what:
+            bias = estimator.predict(rows)
+        return _rate_less(recording, _numbers(bias, what), what)
     return answer
 
 
 def answering_network(network: Any, inputs: Sequence[str],
                       name: str) -> Answering:
     """Return how a torch module, whose output is the bias, answers."""
-    def answer(recording: _core.Recording) -> _Answer:
+    def answer(recording: _core.Recording, run: str) -> _Answer:
         torch = _lazy.module("torch")
         rows = torch.from_numpy(_core.features(inputs, recording))
         parameter = next(iter(network.parameters()), None)
@@ -126,12 +182,15 @@ def answering_network(network: Any, inputs: Sequence[str],
             rows = rows.to(torch.get_default_dtype())
         else:
             rows = rows.to(parameter.dtype).to(parameter.device)
-        was_training = network.training
+        # eval() and train() set all modules; the user may have frozen some.
+        was_training = [(module, module.training)
+                        for module in network.modules()]
         network.eval()
         try:
-            with torch.no_grad():
-                bias = _numbers(network(rows), name)
+            with torch.no_grad(), _asking(name, recording, run) as what:
+                bias = network(rows)
         finally:
-            network.train(was_training)
-        return _rate_less(recording, bias, name)
+            for module, flag in was_training:
+                module.training = flag
+        return _rate_less(recording, _numbers(bias, what), what)
     return answer

@@ -9,7 +9,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, Optional, Union
 
-from beamgyro import _core, _shipped, _toml
+import numpy as np
+
+from beamgyro import _arguments, _checks, _core, _shipped, _toml
 from beamgyro._compensation import (Compensator, Runs, compensator_of,
                                     core_recording, model_of, named_runs)
 from beamgyro._dataset import Path, recording_of
@@ -27,9 +29,17 @@ if TYPE_CHECKING:
 Range = tuple[float, float]
 
 
+# Kinds of files that may be any CSV with a column of samples.
+_TABLES = ("a table that characterise wrote", "a profile over time")
+
+
 def _given(**options: Any) -> dict[str, Any]:
     return {name: value for name, value in options.items()
             if value is not None}
+
+
+def _file(value: Any, name: str, kind: str) -> Optional[str]:
+    return None if value is None else _checks.file(value, name, kind)
 
 
 class _Files:
@@ -41,9 +51,21 @@ class _Files:
     def __enter__(self) -> _Files:
         return self
 
-    def __exit__(self, *error: object) -> None:
-        if self._directory is not None:
-            self._directory.cleanup()
+    def __exit__(self, kind: object, error: Optional[BaseException],
+                 traceback: object) -> None:
+        if self._directory is None:
+            return
+        self._directory.cleanup()
+        if isinstance(error, (ValueError, RuntimeError)):
+            error.args = tuple(self._named(one) for one in error.args)
+        notes = getattr(error, "__notes__", [])
+        notes[:] = [self._named(note) for note in notes]
+
+    def _named(self, message: Any) -> Any:
+        """Return a message that calls what was in memory by its name."""
+        if self._directory is None or not isinstance(message, str):
+            return message
+        return message.replace(self._directory.name + os.sep, "")
 
     def _path(self, name: str) -> str:
         if self._directory is None:
@@ -53,10 +75,13 @@ class _Files:
     def of_run(self, name: str, run: Union[xr.Dataset, Path]) -> str:
         """Return the file of a recording."""
         if isinstance(run, (str, os.PathLike)):
-            return os.fspath(run)
-        path = self._path(name if name.endswith((".h5", ".csv"))
-                          else f"{name}.h5")
-        recording_of(run).write(path)
+            return _checks.file(run, "runs", "a recording")
+        # Never as CSV, which has no place for the text of the device.
+        path = self._path(name if name.endswith(".h5") else f"{name}.h5")
+        if os.path.exists(path):
+            raise ValueError(f"{os.path.basename(path)}: is the name of two "
+                             "runs; expected a name of its own for each")
+        recording_of(run, name).write(path)
         return path
 
     def of_text(self, name: str, text: str) -> str:
@@ -65,12 +90,12 @@ class _Files:
         FilePath(path).write_text(text, encoding="utf-8")
         return path
 
-    def of_table(self, name: str, table: Union[Path, Mapping[str, Any]]
-                 ) -> str:
-        """Return the file of a nested mapping."""
-        if isinstance(table, Mapping):
+    def of_table(self, name: str, table: Union[Path, Mapping[str, Any]],
+                 kind: str) -> str:
+        """Return the file of a nested mapping, or of a kind."""
+        if _checks.is_table(table):
             return self.of_text(name, _toml.text(table))
-        return os.fspath(table)
+        return _checks.file(table, name, kind, _checks.MAPPING)
 
 
 def validate(compensator: Any, runs: Optional[Runs] = None, *,
@@ -101,14 +126,16 @@ def validate(compensator: Any, runs: Optional[Runs] = None, *,
         qualification: the runs that it goes through; the shipped ones
             without.
         spec: a specification with limits, as a file or a mapping; without,
-            some drift must be removed.
+            some drift must be removed. Unlike the command without ``--spec``,
+            which only scores, this judges by every metric and check, as the
+            command does with ``--report``.
         workbench: a compensator file to compare the answers with.
         campaign: a campaign whose devices are judged, too.
         devices: how many of them.
-        full_scale: of recordings, the largest rate [degree/s].
+        full_scale: of recordings, the largest rate [degree/s], above 0.
         jobs: threads; 0: one for each core.
         progress: True for a bar on standard error, or a function that is
-            told the share of the work that is done.
+            told the share of the work that is done, from 0 to 1.
 
     Returns:
         The result, which prints as a table; ``passed`` tells the verdict.
@@ -120,26 +147,36 @@ def validate(compensator: Any, runs: Optional[Runs] = None, *,
     if sum(one is not None for one in (runs, set, device)) != 1:
         raise ValueError("nothing to validate on, or too much; expected one "
                          "of runs, set= and device=")
+    if isinstance(runs, Set):
+        raise _checks.wrong(runs, "runs", "recordings; a set is given as set=")
+    jobs = _arguments.jobs(jobs)
+    if devices is not None:
+        devices = _arguments.whole(devices, "devices", least=1)
+    if full_scale is not None:
+        full_scale = _arguments.number(full_scale, "full_scale", above=0)
     with _Files() as files, Watched(progress, "validating") as function:
-        options = _given(workbench=workbench, campaign=campaign,
-                         campaign_devices=devices, full_scale=full_scale,
-                         jobs=jobs)
+        options = _given(
+            workbench=_file(workbench, "workbench", "a compensator"),
+            campaign=_file(campaign, "campaign", "a campaign"),
+            campaign_devices=devices, full_scale=full_scale, jobs=jobs)
         if runs is not None:
             options["recordings"] = [files.of_run(name, run)
                                      for name, run in named_runs(runs)]
         elif set is not None:
             options["set"] = (set if isinstance(set, Set)
                               else Set(set))._native
-            options["runs"] = list(set_runs)
-            options["devices"] = list(set_devices)
+            options["runs"] = _checks.texts(set_runs, "set_runs")
+            options["devices"] = _checks.wholes(set_devices, "set_devices")
         else:
             assert device is not None
             options["device"] = device_of(device)._native
             options["qualification"] = (
                 _shipped.file("scenarios/qualification.toml")
-                if qualification is None else qualification)
+                if qualification is None else _checks.file(
+                    qualification, "qualification", "a qualification"))
         if spec is not None:
-            options["specification"] = files.of_table("spec", spec)
+            options["specification"] = files.of_table("spec", spec,
+                                                      "a specification")
         found = _judged(compensator, options, function)
     text, json_text, warnings, page = found
     warn(warnings)
@@ -148,13 +185,50 @@ def validate(compensator: Any, runs: Optional[Runs] = None, *,
 
 def _judged(compensator: Any, options: dict[str, Any],
             function: Any) -> tuple[str, str, list[str], str]:
-    is_model = isinstance(compensator, Mapping) or (
+    is_model = _checks.is_table(compensator) or (
         isinstance(compensator, (str, os.PathLike))
-        and os.fspath(compensator).endswith(".toml"))
+        and os.fsdecode(compensator).endswith(".toml"))
     if is_model:
         return _core.validate_model(model_of(compensator), options, function)
     return _core.validate(compensator_of(compensator)._native, options,
                           function)
+
+
+def _refuse(reason: str, **options: Any) -> None:
+    for name, value in options.items():
+        if value is not None:
+            raise ValueError(f"{name} {value!r}: is {reason}; expected "
+                             f"no {name}")
+
+
+def _checked_rate(data: Any, rate_Hz: float) -> float:
+    """Return the rate of samples, whose times an array may state, too."""
+    if "time" in getattr(data, "coords", ()):
+        times = data.coords["time"]
+    elif getattr(getattr(data, "index", None), "name", None) == "time":
+        times = data.index  # of pandas
+    else:
+        return rate_Hz
+    if data.size < 2:
+        return rate_Hz
+    steps = np.diff(_arguments.seconds(times, "time"))
+    if not np.allclose(steps * rate_Hz, 1.0, atol=0.5) or abs(
+            steps.mean() * rate_Hz - 1.0) > 0.01:
+        raise ValueError(
+            f"rate_Hz {rate_Hz:g}: the times of the array have steps from "
+            f"{steps.min():g} to {steps.max():g} s; expected their rate, or a "
+            "dataset, which may have gaps")
+    return rate_Hz
+
+
+def _checked_unit(data: Any, unit: Optional[str]) -> str:
+    """Return the unit of samples, which an array of xarray may state."""
+    units = [unit, getattr(data, "attrs", {}).get("units")]
+    given, stated = ["deg/s" if one == "degree/s" else one for one in units]
+    if None not in (given, stated) and given != stated:
+        raise ValueError(f"unit {unit!r}: the array states {stated!r}; "
+                         "expected that one, or no unit")
+    return str(given or stated or "deg/s")
 
 
 def allan(data: Union[xr.Dataset, Path, npt.ArrayLike], *,
@@ -166,31 +240,50 @@ def allan(data: Union[xr.Dataset, Path, npt.ArrayLike], *,
     """Compute Allan deviations and noise coefficients.
 
     Args:
-        data: a recording, a file as of ``beamgyro allan``, or even samples,
-            which need `rate_Hz`.
-        column: of a recording; "rate" without.
+        data: a recording, a file as of ``beamgyro allan``, or even samples
+            in one dimension, which need `rate_Hz`. Samples that are NaN are
+            left out.
+        column: of a recording or a file; "rate" without.
         rate_Hz: samples in a second, of an array or of a CSV without times.
-        unit: of an array or of a CSV; "deg/s" without.
+        unit: of an array or of a CSV; without, what an array of xarray
+            states, or "deg/s".
         kinds: of "adev", "oadev", "mdev", "hdev", "ohdev", "totdev".
         taus: "octave", "decade" or "all".
         from_s, to_s: the window of a recording [s].
 
     Raises:
-        ValueError: the column is not there, or the series is too short.
+        ValueError: the column is not there, the series is too short, its
+            times do not increase or are not even, or an argument is given
+            that the data state themselves.
     """
-    rest = (list(kinds), taus, from_s, to_s)
+    if rate_Hz is not None:
+        rate_Hz = _arguments.number(rate_Hz, "rate_Hz", above=0)
+    column = None if column is None else _checks.text(column, "column")
+    unit = None if unit is None else _checks.text(unit, "unit")
+    names = _checks.texts(kinds, "kinds")
+    _arguments.not_empty(names, "kinds")
+    rest = (names,
+            _checks.text(taus, "taus", "\"octave\", \"decade\" or \"all\""),
+            _checks.bound(from_s, "from_s"), _checks.bound(to_s, "to_s"))
     if isinstance(data, (str, os.PathLike)):
-        found = _core.allan_file(os.fspath(data), column, rate_Hz, unit,
-                                 *rest)
+        file = _checks.file(data, "data", "a recording", tables=_TABLES)
+        found = _core.allan_file(file, column, rate_Hz, unit, *rest)
     elif hasattr(data, "data_vars"):
         recording: Any = data
-        found = _core.allan_recording(core_recording(recording),
-                                      column or "rate", *rest)
+        _refuse("for a CSV or an array; a dataset states its own",
+                rate_Hz=rate_Hz, unit=unit)
+        found = _core.allan_recording(
+            recording_of(recording, is_sound=False),
+            "rate" if column is None else column, *rest)
     else:
+        _refuse("for a recording or a file; an array has none", column=column)
+        samples = _arguments.numbers(data, "data")
         if rate_Hz is None:
             raise ValueError("rate_Hz: is missing, which an array needs; "
                              "expected the number of samples in a second")
-        found = _core.allan_samples(data, rate_Hz, unit or "deg/s", *rest)
+        found = _core.allan_samples(
+            samples, _checked_rate(data, rate_Hz),
+            _checked_unit(data, unit), *rest)
     text, json_text, warnings = found
     warn(warnings)
     return AllanResult(text, json_text, warnings)
@@ -220,20 +313,43 @@ def plan(population: Union[Compensator, Path], device: DeviceLike, *,
         hold_min: the length of a soak in whole minutes.
         candidates: soaks of your own to compare.
         bias_only: soaks observe the bias, but no channel.
+
+    Raises:
+        ValueError: the compensator is no population, or something is wrong
+            in the device or an argument.
     """
     unit = device_of(device)
-    options = _given(
-        soaks=soaks, hours=hours, residual_deg_per_s=residual_deg_per_s,
-        range_degC=range_degC, chamber_degC=chamber_degC,
-        ramp_K_per_min=ramp_K_per_min, start_degC=start_degC,
-        hold_min=hold_min, bias_only=bias_only, device_name=unit.name)
+    options = _given(bias_only=_checks.flag(bias_only, "bias_only"),
+                     device_name=unit.name)
+    for name, value in _given(soaks=soaks, hold_min=hold_min).items():
+        options[name] = _arguments.whole(value, name, least=1)
+    for name, value in _given(
+            hours=hours, residual_deg_per_s=residual_deg_per_s,
+            ramp_K_per_min=ramp_K_per_min, start_degC=start_degC).items():
+        options[name] = _arguments.number(value, name)
+    for name, value in _given(range_degC=range_degC,
+                              chamber_degC=chamber_degC).items():
+        options[name] = _arguments.ends(value, name)
     if candidates is not None:
-        options["candidates"] = [list(one) for one in candidates]
+        options["candidates"] = _checks.several(
+            candidates, "candidates", lambda one, name: list(
+                _arguments.numbers(one, name).tolist()))
     text, json_text, warnings, schedule = _core.plan(
         compensator_of(population)._trained("population"), unit._native,
         options)
     warn(warnings)
     return PlanResult(text, json_text, warnings, schedule, unit)
+
+
+def _limits(given: Optional[Mapping[str, float]]) -> dict[str, float]:
+    if given is None:
+        return {}
+    if not _checks.is_table(given):
+        raise _checks.wrong(given, "limits",
+                            "a mapping of figures to their largest values")
+    return {_checks.text(name, "limits"):
+            _arguments.number(limit, f"limits: {name}", above=0)
+            for name, limit in given.items()}
 
 
 def sensitivity(campaign: CampaignLike, *, figures: Sequence[str] = (),
@@ -258,16 +374,25 @@ def sensitivity(campaign: CampaignLike, *, figures: Sequence[str] = (),
         seed: that of the campaign without.
         jobs: threads; 0: one for each core.
         progress: True for a bar on standard error, or a function that is
-            told the share of the work that is done.
+            told the share of the work that is done, from 0 to 1.
+
+    Raises:
+        ValueError: something is wrong in the campaign or an argument.
+        RuntimeError: no device works.
     """
-    options = _given(figures=list(figures), lowest_degC=range_degC[0],
-                     highest_degC=range_degC[1], linear=linear,
-                     limits=dict(limits or {}), samples=samples, seed=seed,
-                     jobs=jobs)
+    low, high = _arguments.ends(range_degC, "range_degC")
+    options = _given(
+        figures=_checks.texts(figures, "figures"), lowest_degC=low,
+        highest_degC=high, linear=_checks.flag(linear, "linear"),
+        limits=_limits(limits),
+        samples=_arguments.whole(samples, "samples", least=1),
+        seed=None if seed is None else _arguments.seed(seed),
+        jobs=_arguments.jobs(jobs))
     if compensator is not None:
         options["compensator"] = compensator_of(compensator)._trained("file")
     with Watched(progress, "studying") as function:
-        found = _core.sensitivity(Campaign(campaign)._native, options, function)
+        found = _core.sensitivity(Campaign(campaign)._native, options,
+                                  function)
     return SensitivityResult(*found)
 
 

@@ -4,14 +4,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
-from beamgyro import _adapters, _core, _toml
-from beamgyro._dataset import Path, dataset_of, recording_of
+from beamgyro import _adapters, _arguments, _checks, _core, _toml
+from beamgyro._dataset import (Path, dataset_of, read_recording,
+                               recording_of)
 from beamgyro._progress import ProgressArgument, Watched
 from beamgyro._set import Set
 from beamgyro._shipped import program
@@ -40,6 +41,13 @@ class Compensator:
             - an estimator of scikit-learn that predicts the bias [degree/s]
               from `inputs`, a column each;
             - a torch module that computes the bias from a tensor of them.
+              It answers in eval mode; the mode of each of its modules is then
+              as before.
+
+            A function, an estimator or a network owns what it is given and
+            may write into it. Validation calls it many times, also with
+            changed signals and with parts of a run: it must keep nothing from
+            one call to the next.
         inputs: of an estimator or a network: its features, as model files
             name them ("temperature", "temperature_lowpass(100)",
             "since_power_on(300)", ...); by default its attribute
@@ -62,12 +70,13 @@ class Compensator:
                  inputs: Optional[Sequence[str]] = None,
                  arrays: bool = False, name: Optional[str] = None,
                  stall_s: float = 10.0) -> None:
+        stall_s = _arguments.number(stall_s, "stall_s", above=0)
         self._source: Optional[tuple[Any, ...]] = (
             source, inputs, arrays, name, stall_s)
         if isinstance(source, Compensator):
             self._native, self._source = source._native, source._source
         elif isinstance(source, (str, os.PathLike)):
-            self._native = _opened(os.fspath(source), stall_s)
+            self._native = _opened(source, stall_s)
         else:
             self._native = _of_python(source, inputs, arrays, name)
 
@@ -75,7 +84,8 @@ class Compensator:
     def parse(cls, text: str,
               name: str = "compensator.json") -> Compensator:
         """Read the text of a compensator file, called `name` in messages."""
-        return cls._of(_core.Compensator.parse(text, name))
+        return cls._of(_core.Compensator.parse(
+            _checks.text(text, "text"), _checks.text(name, "name")))
 
     @classmethod
     def _of(cls, core: _core.Compensator) -> Compensator:
@@ -117,8 +127,13 @@ class Compensator:
         return core.lowest_temperature, core.highest_temperature
 
     def save(self, path: Path) -> None:
-        """Write the file of a trained compensator."""
-        self._trained("file").write(os.fspath(path))
+        """Write the file of a trained compensator.
+
+        Raises:
+            ValueError: it was not trained, or the name cannot be written.
+            RuntimeError: writing failed.
+        """
+        self._trained("file").write(_checks.path(path, "path"))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Compensator):
@@ -153,7 +168,11 @@ def _compensator_of(source: Any, inputs: Optional[Sequence[str]],
                        stall_s=stall_s)
 
 
-def _opened(argument: str, stall_s: float) -> _core.RateCompensator:
+def _opened(source: Path, stall_s: float) -> _core.RateCompensator:
+    text = os.fspath(source)
+    argument = (_checks.command(text, "compensator")
+                if isinstance(text, str) and text.startswith("cmd:")
+                else _checks.file(source, "compensator", "a compensator"))
     if argument.endswith(".json"):
         return _core.Compensator.read(argument)
     return _core.open_compensator(argument, program(), stall_s)
@@ -161,8 +180,12 @@ def _opened(argument: str, stall_s: float) -> _core.RateCompensator:
 
 def _of_python(source: Any, inputs: Optional[Sequence[str]], arrays: bool,
                name: Optional[str]) -> _core.RateCompensator:
-    called = str(name
-                 or getattr(source, "__name__", type(source).__name__))
+    if isinstance(source, type):
+        raise ValueError(
+            f"compensator {_checks.shown(source)}: is a class; expected an "
+            f"instance of it, such as {source.__name__}()")
+    called = (_checks.text(name, "name") if name is not None else
+              str(getattr(source, "__name__", type(source).__name__)))
     if _adapters.is_torch_module(source) or _adapters.is_estimator(source):
         features = _adapters.inputs_of(source, inputs)
         make = (_adapters.answering_network
@@ -173,11 +196,11 @@ def _of_python(source: Any, inputs: Optional[Sequence[str]], arrays: bool,
             make(source, features, called))
     if callable(source):
         return _core.function_compensator(
-            called, list(inputs or []),
+            called, [] if inputs is None else _checks.texts(inputs, "inputs"),
             _adapters.answering_function(source, arrays, called))
     raise ValueError(
-        f"{source!r} is no compensator; expected a file, a function, an "
-        "estimator with predict() or a torch module")
+        f"compensator {_checks.shown(source)}: is no compensator; expected a "
+        "file, a function, an estimator with predict() or a torch module")
 
 
 def compensator_of(source: Any) -> Compensator:
@@ -207,41 +230,60 @@ def compensate(compensator: Any, recording: Union[xr.Dataset, Path]
     return dataset_of(core)
 
 
-def core_recording(run: Union[xr.Dataset, Path]) -> _core.Recording:
+def core_recording(run: Union[xr.Dataset, Path],
+                   name: str = "recording") -> _core.Recording:
     """Return a recording of a dataset or a file."""
     if isinstance(run, (str, os.PathLike)):
-        recording, warnings = _core.read_recording(os.fspath(run))
-        warn(warnings)
-        return recording
-    return recording_of(run)
+        return read_recording(run, name)
+    return recording_of(run, name)
 
 
-def named_runs(runs: Runs) -> list[tuple[str, Union[xr.Dataset, Path]]]:
+def named_runs(runs: Runs, argument: str = "runs"
+               ) -> list[tuple[str, Union[xr.Dataset, Path]]]:
     """Return runs with their names."""
     if isinstance(runs, (str, os.PathLike)):
         return [(FilePath(runs).name, runs)]
     given: Any = [runs] if hasattr(runs, "data_vars") else runs
-    if isinstance(given, Mapping):
-        return list(given.items())
+    if _checks.is_table(given):
+        return [(_run_name(name, argument), run)
+                for name, run in given.items()]
+    if hasattr(given, "shape") or isinstance(given, (bytes, Mapping)) or (
+            not isinstance(given, Iterable)):
+        raise _checks.wrong(given, argument, "recordings: datasets of run() "
+                            "or open_recording(), or files")
     return [(FilePath(run).name if isinstance(run, (str, os.PathLike))
              else f"run {number}", run)
             for number, run in enumerate(given, start=1)]
 
 
-def _recordings(runs: Runs) -> list[tuple[str, _core.Recording]]:
-    return [(name, core_recording(run)) for name, run in named_runs(runs)]
+def _run_name(name: Any, argument: str) -> str:
+    right = "the name of a recording, a text without \"/\""
+    if "/" in _checks.text(name, argument, right) or "\0" in name or not name:
+        raise _checks.wrong(name, argument, right)
+    return str(name)
 
 
-def _all_files(*groups: Runs) -> bool:
-    return all(isinstance(run, (str, os.PathLike))
-               for runs in groups for _, run in named_runs(runs))
+_NamedRuns = list[tuple[str, Union["xr.Dataset", Path]]]
+
+
+def _recordings(runs: _NamedRuns) -> list[tuple[str, _core.Recording]]:
+    return [(name, core_recording(run, name)) for name, run in runs]
+
+
+def _all_files(runs: _NamedRuns) -> bool:
+    return all(isinstance(run, (str, os.PathLike)) for _, run in runs)
+
+
+def _files(runs: _NamedRuns, argument: str) -> list[str]:
+    return [_checks.file(run, argument, "a recording") for _, run in runs]
 
 
 def model_of(model: Union[Path, Mapping[str, Any]]) -> _core.Model:
     """Return a model file, or a nested mapping with its contents."""
-    if isinstance(model, Mapping):
+    if _checks.is_table(model):
         return _core.Model.parse(_toml.text(model), "model.toml")
-    return _core.Model.read(os.fspath(model))
+    return _core.Model.read(_checks.file(model, "model", "a model file",
+                                          _checks.MAPPING))
 
 
 def train(model: Union[Path, Mapping[str, Any]],
@@ -266,7 +308,7 @@ def train(model: Union[Path, Mapping[str, Any]],
         cross_validation: "run", "cycle" or "leg": groups that are held out
             in turn.
         progress: True for a bar on standard error, or a function that is
-            told the share of the epochs that are done.
+            told the share of the epochs that are done, from 0 to 1.
 
     Raises:
         ValueError: something is wrong in the model or the recordings, or
@@ -274,23 +316,26 @@ def train(model: Union[Path, Mapping[str, Any]],
         RuntimeError: the fit failed.
     """
     core = model_of(model)
+    seed = _arguments.seed(seed)
+    groups = _checks.text(cross_validation, "cross_validation")
+    kept = named_runs(held_out, "held_out")
     with Watched(progress, "training") as function:
         if isinstance(runs, Set):
-            if held_out or cross_validation:
+            if kept or groups:
                 raise ValueError(
                     "held_out and cross_validation are for recordings; a set "
                     "holds out its own validation devices")
-            found = _core.train_set(core, runs._native, list(set_runs),
-                                    list(devices), seed, function)
-        elif _all_files(runs, held_out):
+            found = _core.train_set(
+                core, runs._native, _checks.texts(set_runs, "set_runs"),
+                _checks.wholes(devices, "devices"), seed, function)
+        elif _all_files(fitted := named_runs(runs)) and _all_files(kept):
             found = _core.train_files(
-                core, [str(run) for _, run in named_runs(runs)],
-                [str(run) for _, run in named_runs(held_out)], seed,
-                cross_validation, function)
+                core, _files(fitted, "runs"), _files(kept, "held_out"), seed,
+                groups, function)
         else:
             found = _core.train_recordings(
-                core, _recordings(runs), _recordings(held_out), seed,
-                cross_validation, function)
+                core, _recordings(fitted), _recordings(kept), seed, groups,
+                function)
     compensator, warnings, _ = found
     warn(warnings)
     return Compensator._of(compensator)
@@ -302,8 +347,17 @@ def features(recording: Union[xr.Dataset, Path],
     """Compute the features of a model, a row for each sample.
 
     Rows without power are NaN. `inputs` are named as in model files.
+
+    Raises:
+        ValueError: there is no such input, or the recording lacks one.
     """
-    return _core.features(list(inputs), core_recording(recording))
+    return _core.features(_features(inputs), core_recording(recording))
+
+
+def _features(inputs: Sequence[str]) -> list[str]:
+    found = _checks.texts(inputs, "inputs")
+    _arguments.not_empty(found, "inputs")
+    return found
 
 
 def training_rows(runs: Union[Runs, Set],
@@ -326,14 +380,19 @@ def training_rows(runs: Union[Runs, Set],
         The features (rows, inputs) and the labels (rows).
     """
     recordings: Iterable[_core.Recording]
+    every_s = _arguments.number(every_s, "every_s", least=0)
+    names = _features(inputs)
     if isinstance(runs, Set):
         recordings = runs._recordings_of(part)
     else:
-        recordings = (one for _, one in _recordings(runs))
-    found = [_rows_of(one, list(inputs), every_s) for one in recordings]
+        recordings = (one for _, one in _recordings(named_runs(runs)))
+    found = [_rows_of(one, names, every_s) for one in recordings]
     if not found:
         raise ValueError("no recordings to make rows of; expected at least "
                          "one")
+    if not any(labels.size for _, labels in found):
+        raise ValueError("runs: have no sample with power and within the full "
+                         "scale; expected at least one")
     return (np.concatenate([rows for rows, _ in found]),
             np.concatenate([labels for _, labels in found]))
 
@@ -348,13 +407,38 @@ def _rows_of(recording: _core.Recording, inputs: list[str], every_s: float
     labels = arrays["rate"] - arrays["true_rate"]
     good = (arrays["status"] & 3) == 0
     rows, labels, time = rows[good], labels[good], arrays["time"][good]
-    if every_s <= 0 or not time.size:
+    if every_s == 0 or not time.size:
         return rows, labels
     block = np.floor(time / every_s)
     starts = np.flatnonzero(np.diff(block, prepend=-np.inf))
     counts = np.diff(np.append(starts, time.size))
     return (np.add.reduceat(rows, starts, axis=0) / counts[:, None],
             np.add.reduceat(labels, starts) / counts)
+
+
+def _int32(value: Any, name: str) -> int:
+    return _arguments.whole(value, name, -2 ** 31, 2 ** 31 - 1)
+
+
+def _rest(value: Any, name: str) -> str:
+    return _checks.file(value, name, "a recording")
+
+
+_EXPORT_OPTIONS: dict[str, Callable[[Any, str], Any]] = {
+    "name": _checks.text, "axes": _checks.texts, "force": _checks.flag,
+    "fit_cubic": _checks.flag, "instance": _int32,
+    "device_id": _arguments.whole, "rest": _rest,
+    "ramp_K_per_min": _arguments.number, "correlation_K": _arguments.number,
+    "temperature_degC": _arguments.number}
+
+
+def _export_options(given: Mapping[str, Any]) -> dict[str, Any]:
+    for name in given:
+        if name not in _EXPORT_OPTIONS:
+            raise ValueError(f"{name}: no option of export; expected one of "
+                             f"{', '.join(sorted(_EXPORT_OPTIONS))}")
+    return {name: _EXPORT_OPTIONS[name](value, name)
+            for name, value in given.items() if value is not None}
 
 
 def export(compensators: Any, format: str,
@@ -371,24 +455,22 @@ def export(compensators: Any, format: str,
 
     Returns:
         The texts of the files by name.
+
+    Raises:
+        ValueError: the format cannot hold the compensator, an option is not
+            for it, or the directory cannot be made.
+        RuntimeError: writing failed.
     """
-    known = {"name", "axes", "force", "fit_cubic", "instance", "device_id",
-             "rest", "ramp_K_per_min", "correlation_K", "temperature_degC"}
-    for name in options:
-        if name not in known:
-            raise ValueError(f"{name}: no option of export; expected one of "
-                             f"{', '.join(sorted(known))}")
     several = (compensators if isinstance(compensators, (list, tuple))
                else [compensators])
+    folder = None if directory is None else FilePath(_checks.path(
+        directory, "directory", "the name of a directory"))
     files, warnings = _core.export_files(
-        [compensator_of(one)._trained("formula") for one in several], format,
-        options)
+        [compensator_of(one)._trained("formula") for one in several],
+        _checks.text(format, "format"), _export_options(options))
     warn(warnings)
-    if directory is not None:
-        folder = FilePath(directory)
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, text in files:
-            (folder / name).write_text(text, encoding="utf-8")
+    if folder is not None:
+        _core.write_texts(folder, files)
     return dict(files)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
 
-from beamgyro import _core, _lazy
+from beamgyro import _arguments, _checks, _core, _lazy
 from beamgyro._warnings import warn
 
 if TYPE_CHECKING:
@@ -48,38 +48,88 @@ def dataset_of(recording: _core.Recording) -> xr.Dataset:
 
 
 def _column_attributes(attributes: Mapping[Any, Any]) -> dict[str, str]:
-    return {name: str(attributes[name])
-            for name in ("units", "long_name", "role", "comment")
-            if name in attributes}
+    found = {name: _checks.text(str(attributes[name]), name)
+             for name in ("units", "long_name", "role", "comment")
+             if name in attributes}
+    if found.get("units") == "deg/s":
+        found["units"] = "degree/s"
+    return found
 
 
-def recording_of(dataset: xr.Dataset) -> _core.Recording:
-    """Return a dataset with the dimension `time` as a recording."""
-    if "time" not in dataset.variables or set(dataset.sizes) != {"time"}:
+def _require_units(variable: Any, name: str, expected: str) -> None:
+    units = variable.attrs.get("units", expected)
+    if units != expected:
+        raise ValueError(f"{name}: units {_checks.shown(units)}; expected "
+                         f"{expected!r}")
+
+
+def _warn_of_lost_units(dataset: xr.Dataset) -> None:
+    """Warn of signals without units beside others that state theirs.
+
+    Arithmetic of xarray drops the attributes of what it computes.
+    """
+    stated = {name for name, variable in dataset.variables.items()
+              if "units" in variable.attrs}
+    warn(f"{name}: states no units, though others do; taken as "
+         f"{_core.unit_of(str(name))}"
+         for name in dataset.variables
+         if stated and name not in stated and _core.unit_of(str(name)))
+
+
+def recording_of(dataset: xr.Dataset, argument: str = "recording", *,
+                 is_sound: bool = True) -> _core.Recording:
+    """Return a dataset with the dimension `time` as a recording.
+
+    It is checked as a file is when it is written, unless `is_sound` is false.
+    """
+    if not hasattr(dataset, "data_vars"):
+        raise _checks.wrong(dataset, argument, "a dataset of run() or "
+                            "open_recording(), or the file of a recording")
+    if set(dataset.sizes) != {"time"}:
         raise ValueError(
-            f"a dataset of the dimensions {', '.join(map(str, dataset.dims))};"
-            " expected a recording, over time alone")
+            f"{argument}: a dataset of the dimensions "
+            f"{', '.join(map(str, dataset.dims))}; expected a recording, over "
+            "time alone")
+    if "time" not in dataset.variables:
+        raise ValueError(f"{argument}: has no variable time; expected the "
+                         "times of its samples [s]")
+    _warn_of_lost_units(dataset)
     size = dataset.sizes["time"]
-    time = np.asarray(dataset.variables["time"].values, dtype=float)
-    status = (np.asarray(dataset.variables["status"].values, dtype=np.uint8)
+    _require_units(dataset.variables["time"], "time", "s")
+    time = _arguments.seconds(dataset.variables["time"].values, "time")
+    status = (_arguments.status(dataset.variables["status"].values)
               if "status" in dataset.variables
               else np.zeros(size, dtype=np.uint8))
     recording = _core.Recording(time, status)
     for name, variable in dataset.variables.items():
-        if name in ("time", "status"):
-            continue
-        recording.add(str(name), np.asarray(variable.values, dtype=float),
+        if name in ("time", "status") or variable.ndim == 0:
+            continue  # a coordinate without a dimension, as isel() leaves it
+        recording.add(_checks.text(str(name), "variable"),
+                      _arguments.numbers(variable.values, str(name)),
                       _column_attributes(variable.attrs))
     about = dataset.attrs
-    recording.seed = int(about.get("seed", 0))
-    recording.fidelity = str(about.get("fidelity", "imported"))
+    recording.seed = _arguments.seed(about.get("seed", 0))
+    recording.fidelity = _checks.text(
+        str(about.get("fidelity", "imported")), "fidelity")
     for name in ("title", "history", "compensator", "compensator_sha256",
                  "git_revision"):
-        setattr(recording, name, str(about.get(name, "")))
-    recording.program_version = str(about.get("beamgyro_version", ""))
+        setattr(recording, name,
+                _checks.text(str(about.get(name, "")), name))
+    recording.program_version = _checks.text(
+        str(about.get("beamgyro_version", "")), "beamgyro_version")
     texts = dataset.encoding.get("beamgyro", {})
     for name, member in _META.items():
-        setattr(recording, member, texts.get(name, ""))
+        setattr(recording, member, _checks.text(texts.get(name, ""), name))
+    if is_sound:
+        recording.require_sound()
+    return recording
+
+
+def read_recording(path: Path, name: str) -> _core.Recording:
+    """Return the recording in a file."""
+    recording, warnings = _core.read_recording(
+        _checks.file(path, name, "a recording"))
+    warn(warnings)
     return recording
 
 
@@ -93,9 +143,7 @@ def open_recording(path: Path) -> xr.Dataset:
     Raises:
         ValueError: the file is missing, damaged or no recording.
     """
-    recording, warnings = _core.read_recording(os.fspath(path))
-    warn(warnings)
-    return dataset_of(recording)
+    return dataset_of(read_recording(path, "path"))
 
 
 def save_recording(dataset: xr.Dataset, path: Path) -> None:
@@ -108,4 +156,4 @@ def save_recording(dataset: xr.Dataset, path: Path) -> None:
         ValueError: the dataset is no recording, or the name cannot be written.
         RuntimeError: writing failed.
     """
-    recording_of(dataset).write(os.fspath(path))
+    recording_of(dataset, "dataset").write(_checks.path(path, "path"))

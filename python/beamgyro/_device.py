@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
-from beamgyro import _core, _lazy, _toml
+from beamgyro import _arguments, _checks, _core, _lazy, _toml
 from beamgyro._warnings import warn
 
 if TYPE_CHECKING:
@@ -45,17 +45,22 @@ class Device:
         if isinstance(source, Device):
             self._native = (source._native.with_(overrides) if overrides
                           else source._native)
-        elif isinstance(source, Mapping):
+        elif _checks.is_table(source):
             self._native = _core.Device.parse(_toml.text(source), "device",
-                                            overrides)
+                                              overrides)
         else:
-            self._native = _core.Device.read(os.fspath(source), overrides)
+            self._native = _core.Device.read(
+                _checks.file(source, "device", "a device file",
+                             _checks.MAPPING),
+                overrides)
 
     @classmethod
     def parse(cls, text: str, name: str = "device",
               set: Optional[Keys] = None) -> Device:
         """Read the text of a device file, called `name` in messages."""
-        return cls._of(_core.Device.parse(text, name, _toml.overrides(set)))
+        return cls._of(_core.Device.parse(
+            _checks.text(text, "text"), _checks.text(name, "name"),
+            _toml.overrides(set)))
 
     @classmethod
     def _of(cls, core: _core.Device) -> Device:
@@ -70,7 +75,7 @@ class Device:
         >>> device.with_(beam={"length_m": 0.041})
         """
         return Device._of(
-            self._native.with_(_toml.overrides({**(keys or {}), **more})))
+            self._native.with_(_toml.overrides(_toml.merged(keys, more))))
 
     @property
     def text(self) -> str:
@@ -116,13 +121,22 @@ _GRID = "START, STOP and STEP, or temperatures"
 
 
 def _temperatures(given: Union[slice, float, Iterable[float]]) -> list[float]:
-    if not isinstance(given, slice):
-        return [float(one) for one in np.atleast_1d(np.asarray(given))]
-    start, stop, step = given.start, given.stop, given.step
-    if start is None or stop is None or not step or (stop - start) / step < 0:
-        raise ValueError(f"beam_temperature {given}: expected {_GRID}")
-    count = int(np.floor((stop - start) / step + 1e-9)) + 1
-    return [start + k * step for k in range(count)]
+    name = "beam_temperature"
+    if isinstance(given, slice):
+        ends = (given.start, given.stop, given.step)
+        if None in ends:
+            raise ValueError(f"{name} {given}: expected {_GRID}")
+        numbers = [_arguments.number(one, name) for one in ends]
+        try:
+            return _core.even_temperatures(*numbers)
+        except ValueError as error:
+            raise ValueError(f"{name} {given}: {error}") from None
+    one_or_more: Any = list(given) if isinstance(given, Iterator) else given
+    if np.ndim(one_or_more) == 0:
+        one_or_more = np.atleast_1d(one_or_more)
+    found = _arguments.numbers(one_or_more, name)
+    _arguments.not_empty(found, name)
+    return list(found.tolist())
 
 
 def characterise(
@@ -135,7 +149,8 @@ def characterise(
     Args:
         device: a device, its file, or a mapping.
         beam_temperature: temperatures in degC: one, several, or
-            ``slice(start, stop, step)`` with both ends included.
+            ``slice(start, stop, step)`` with both ends included, of at most
+            1,000,000.
         set: keys of the device to replace.
 
     Returns:

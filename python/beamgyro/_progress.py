@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import Optional, Union
 
 ProgressFunction = Callable[[float], object]
-ProgressArgument = Union[bool, ProgressFunction]
+ProgressArgument = Union[bool, ProgressFunction, None]
 
 _DELAY_S = 2.0
 _WIDTH = 30
@@ -52,6 +52,10 @@ class Watched:
     """The function that a long call tells its progress, or None."""
 
     def __init__(self, progress: ProgressArgument, title: str) -> None:
+        if not (progress is None or isinstance(progress, bool)
+                or callable(progress)):
+            raise ValueError(f"progress {progress!r}: expected True, False or "
+                             "a function of the share that is done")
         self._bar = Bar(title) if progress is True else None
         self._function: Optional[ProgressFunction] = (
             self._bar if self._bar is not None

@@ -8,10 +8,10 @@ import json
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Optional
 
+from beamgyro._scenario import Scenario
+
 if TYPE_CHECKING:
     import xarray as xr
-
-    from beamgyro._scenario import Scenario
 
 
 class Report:
@@ -123,19 +123,26 @@ class AllanResult(Report):
 
     @property
     def coefficients(self) -> dict[str, Any]:
-        """The noise coefficients that the curve shows."""
-        found = self.data.get("coefficients", {})
-        if isinstance(found, list):
-            return {str(one.get("symbol") or one.get("name")): one
-                    for one in found}
-        return dict(found)
+        """The noise coefficients that the curve shows, of Q, N, B, K and R.
+
+        Each has ``per_second`` and ``per_hour`` with value, interval and
+        unit.
+        """
+        found = self.data["noise"] or {}
+        return {symbol: found[symbol] for symbol in "QNBKR"
+                if found.get(symbol) is not None}
 
     def to_dataset(self, kind: str = "oadev") -> xr.Dataset:
         """Return a deviation over the averaging time ``tau`` [s]."""
         from beamgyro import _lazy
-        points = self.data.get(kind)
-        if not isinstance(points, list):
-            raise ValueError(f"kind {kind!r}: was not computed")
+        points = (self.data.get(kind) if isinstance(kind, str)
+                  and kind.endswith("dev") else None)
+        if points is None:
+            raise ValueError(f"kind {kind!r}: was not computed; expected one "
+                             "of the kinds that allan() was given")
+        if not points:
+            raise ValueError(f"kind {kind!r}: has no averaging time; expected "
+                             "a longer series")
         xarray = _lazy.xarray()
         names = [name for name in points[0] if name != "tau_s"
                  and not isinstance(points[0][name], (list, dict))]
@@ -163,7 +170,6 @@ class PlanResult(Report):
     @property
     def schedule(self) -> Scenario:
         """The schedule as a scenario of the device."""
-        from beamgyro._scenario import Scenario
         return Scenario.parse(self.schedule_text, self._device,
                               "schedule.toml")
 

@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal, Optional, Union, overload
 
 import numpy as np
 
-from beamgyro import _core, _toml
+from beamgyro import _arguments, _checks, _core, _toml
 from beamgyro._dataset import dataset_of
 from beamgyro._device import Device, DeviceLike, Keys, Path, device_of
 from beamgyro._progress import ProgressArgument, Watched
@@ -48,7 +47,7 @@ class Scenario:
                  device: Optional[DeviceLike] = None,
                  set: Optional[Keys] = None) -> None:
         overrides = _toml.overrides(set)
-        if isinstance(source, Mapping):
+        if _checks.is_table(source):
             self._native = _scenario_of_keys(source, device, overrides)
             return
         if isinstance(source, Scenario):
@@ -56,13 +55,13 @@ class Scenario:
             if device is not None:
                 core = core.with_device(device_of(device)._native)
             self._native = core.with_(overrides) if overrides else core
-        elif device is None:
-            self._native = _core.Scenario.read(os.fspath(source), overrides)
-        else:
-            with open(source, encoding="utf-8", newline="") as file:
-                text = file.read()
-            self._native = _core.Scenario.parse(
-                text, device_of(device)._native, overrides, os.fspath(source))
+            return
+        file = _checks.file(source, "scenario", "a scenario",
+                            _checks.MAPPING)
+        self._native = (
+            _core.Scenario.read(file, overrides) if device is None
+            else _core.Scenario.read_with(file, device_of(device)._native,
+                                          overrides))
 
     @classmethod
     def parse(cls, text: str, device: DeviceLike, name: str = "scenario",
@@ -72,7 +71,8 @@ class Scenario:
         Profiles that it names are relative to the folder of `name`.
         """
         return cls._of(_core.Scenario.parse(
-            text, device_of(device)._native, _toml.overrides(set), name))
+            _checks.text(text, "text"), device_of(device)._native,
+            _toml.overrides(set), _checks.text(name, "name")))
 
     @classmethod
     def _of(cls, core: _core.Scenario) -> Scenario:
@@ -88,7 +88,7 @@ class Scenario:
         >>> scenario.with_({"ambient.constant_degC": 40.0})
         >>> scenario.with_(device="other.toml")
         """
-        return Scenario(self, device=device, set={**(keys or {}), **more})
+        return Scenario(self, device=device, set=_toml.merged(keys, more))
 
     @property
     def text(self) -> str:
@@ -174,10 +174,10 @@ def _scenario_of_keys(keys: Keys, device: Optional[DeviceLike],
         raise ValueError(
             "scenario: device: is missing; expected the key \"device\" or the "
             "argument device=")
-    told: Any = named if device is None else device
-    unit = device_of(told)
-    written = {**keys, "device": (named if isinstance(named, (str, os.PathLike))
-                                  else unit.name)}
+    wanted: Any = named if device is None else device
+    unit = device_of(wanted)
+    is_path = isinstance(named, (str, os.PathLike))
+    written = {**keys, "device": named if is_path else unit.name}
     return _core.Scenario.parse(_toml.text(written), unit._native, overrides,
                                 "scenario")
 
@@ -185,8 +185,10 @@ def _scenario_of_keys(keys: Keys, device: Optional[DeviceLike],
 def _simulated(source: ScenarioLike, device: Optional[DeviceLike],
                set: Optional[Keys], seed: Optional[int],
                fidelity: Optional[Fidelity]) -> _core.Scenario:
-    keys = dict(set or {})
+    keys = _toml.merged(set, {}, "set")
     for name, value in (("seed", seed), ("fidelity", fidelity)):
+        if name == "seed" and value is not None:
+            value = _arguments.seed(value)
         if value is not None:
             keys.pop(name, None)
             keys[name] = value
@@ -198,8 +200,9 @@ def _simulated(source: ScenarioLike, device: Optional[DeviceLike],
 def _recorded(scenario: _core.Scenario, stop_on_unlock: bool,
               progress: ProgressArgument) -> _core.Recording:
     with Watched(progress, "simulating") as function:
-        recording, warnings = _core.simulate(scenario, stop_on_unlock,
-                                             function)
+        recording, warnings = _core.simulate(
+            scenario, _checks.flag(stop_on_unlock, "stop_on_unlock"),
+            function)
     if warnings:
         warn(f"{scenario.name}: {text}" for text in warnings)
     return recording
@@ -244,7 +247,7 @@ def run(scenario: ScenarioLike, *, device: Optional[DeviceLike] = None,
         stop_on_unlock: fail where the drive loop is not locked one second
             after a power-on or later.
         progress: True for a bar on standard error, or a function that is
-            told the share of the work that is done.
+            told the share of the work that is done, from 0 to 1.
 
     Returns:
         The recording, with the variables and attributes of its file. No
@@ -255,8 +258,7 @@ def run(scenario: ScenarioLike, *, device: Optional[DeviceLike] = None,
         RuntimeError: the run cannot go on.
     """
     if output not in ("dataset", "arrays"):
-        raise ValueError(
-            f"output {output!r}: expected \"dataset\" or \"arrays\"")
+        raise _checks.wrong(output, "output", "\"dataset\" or \"arrays\"")
     recording = _recorded(
         _simulated(scenario, device, set, seed, fidelity), stop_on_unlock,
         progress)
@@ -275,7 +277,9 @@ def run_to_file(scenario: ScenarioLike, path: Path, *,
     Memory does not grow with the run. Arguments and errors as of `run`.
     """
     core = _simulated(scenario, device, set, seed, fidelity)
+    file = _checks.path(path, "path")
     with Watched(progress, "simulating") as function:
-        warnings = _core.simulate_to_file(core, os.fspath(path),
-                                          stop_on_unlock, function)
+        warnings = _core.simulate_to_file(
+            core, file, _checks.flag(stop_on_unlock, "stop_on_unlock"),
+            function)
     warn(f"{core.name}: {text}" for text in warnings)

@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
-from beamgyro import _core, _lazy
+from beamgyro import _arguments, _checks, _core, _lazy
 from beamgyro._dataset import Path, dataset_of
 from beamgyro._device import Device
 from beamgyro._progress import ProgressArgument, Watched
@@ -42,11 +41,14 @@ class Campaign:
 
     def __init__(self, source: CampaignLike,
                  devices: Optional[int] = None) -> None:
+        count = (None if devices is None else
+                 _arguments.whole(devices, "devices", least=1))
         if isinstance(source, Campaign):
-            self._native = (source._native if devices is None else
-                          _core.Campaign.parse(source._native.files, devices))
+            self._native = (source._native if count is None else
+                            _core.Campaign.parse(source._native.files, count))
         else:
-            self._native = _core.Campaign.read(os.fspath(source), devices)
+            self._native = _core.Campaign.read(
+                _checks.file(source, "campaign", "a campaign"), count)
 
     @property
     def name(self) -> str:
@@ -74,8 +76,13 @@ class Campaign:
         return self._native.runs
 
     def device(self, number: int) -> Device:
-        """Return a device of the population; numbers start at 0."""
-        return Device._of(self._native.device(number))
+        """Return a device of the population; numbers start at 0.
+
+        Raises:
+            ValueError: there is no such device.
+        """
+        return Device._of(self._native.device(
+            _arguments.whole(number, "device")))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Campaign):
@@ -105,7 +112,9 @@ class Set(Mapping[tuple[str, int], "xr.Dataset"]):
     """The recordings of many devices in one directory.
 
     A mapping of (run, device) to recordings, which are read when they are
-    asked for. Devices that failed are left out.
+    asked for. Devices that failed are left out. As of every mapping, any
+    other key raises KeyError in ``set[key]`` and is not ``in`` the set; the
+    methods raise ValueError.
 
     Args:
         directory: what `generate` or ``beamgyro generate`` wrote.
@@ -119,7 +128,8 @@ class Set(Mapping[tuple[str, int], "xr.Dataset"]):
     _native: _core.Set
 
     def __init__(self, directory: Path) -> None:
-        self._native = _core.Set.open(os.fspath(directory))
+        self._native = _core.Set.open(
+            _checks.file(directory, "set", "the directory of a set"))
 
     @property
     def directory(self) -> FilePath:
@@ -148,13 +158,13 @@ class Set(Mapping[tuple[str, int], "xr.Dataset"]):
 
     def part(self, device: int) -> str:
         """Return what a device is for: "train", "validation" or "test"."""
-        return self._native.part(device)
+        return self._native.part(_arguments.whole(device, "device"))
 
     def devices_of(self, part: str) -> list[int]:
         """Return the devices of a part, in their order."""
         if part not in ("train", "validation", "test"):
-            raise ValueError(f"part {part!r}: expected \"train\", "
-                             "\"validation\" or \"test\"")
+            raise _checks.wrong(part, "part",
+                                "\"train\", \"validation\" or \"test\"")
         return [device for device in range(self.devices)
                 if self.part(device) == part]
 
@@ -165,11 +175,13 @@ class Set(Mapping[tuple[str, int], "xr.Dataset"]):
             ValueError: there is no such run or device, the device failed, or
                 its file has other bytes than the manifest says.
         """
-        return dataset_of(self._native.recording(run, device))
+        return dataset_of(self._native.recording(
+            _checks.text(run, "run"), _arguments.whole(device, "device")))
 
     def slow_recording(self, run: str, device: int) -> xr.Dataset:
         """Return the truths that are stored at a lower rate."""
-        return dataset_of(self._native.slow_recording(run, device))
+        return dataset_of(self._native.slow_recording(
+            _checks.text(run, "run"), _arguments.whole(device, "device")))
 
     def parameters(self, run: Optional[str] = None) -> xr.Dataset:
         """Return the numbers that were drawn, over ``device``.
@@ -177,7 +189,7 @@ class Set(Mapping[tuple[str, int], "xr.Dataset"]):
         `run` is by default the first one; numbers of the devices are the
         same in all runs. Those of a device that failed are NaN.
         """
-        name = self.runs[0] if run is None else run
+        name = self.runs[0] if run is None else _checks.text(run, "run")
         drawn: dict[str, tuple[Any, dict[str, str]]] = {}
         failed = {device for one, device, _ in self.failures if one == name}
         for device in range(self.devices):
@@ -202,8 +214,9 @@ class Set(Mapping[tuple[str, int], "xr.Dataset"]):
         The data are those of the file RUN.nc; close the dataset after use.
         """
         if run not in self.runs:
-            raise ValueError(f"{self.directory}: has no run {run}; expected "
-                             f"one of {', '.join(self.runs)}")
+            raise ValueError(
+                f"{self.directory}: has no run {_checks.shown(run)}; expected "
+                f"one of {', '.join(self.runs)}")
         dataset: xr.Dataset = _lazy.xarray().open_dataset(
             self.directory / f"{run}.nc", engine="h5netcdf")
         return dataset
@@ -229,11 +242,22 @@ class Set(Mapping[tuple[str, int], "xr.Dataset"]):
                     yield self._native.recording(run, device)
 
     def __getitem__(self, key: tuple[str, int]) -> xr.Dataset:
+        if key not in self:
+            raise KeyError(
+                f"{_checks.shown(key)}: expected (run, device) with a run of "
+                f"{', '.join(self.runs)} and a device from 0 to "
+                f"{self.devices - 1} that did not fail")
         run, device = key
-        there = run in self.runs and 0 <= device < self.devices
-        if not there or key in self._failed():
-            raise KeyError(key)
         return self.recording(run, device)
+
+    def __contains__(self, key: object) -> bool:
+        if not isinstance(key, tuple) or len(key) != 2:
+            return False
+        run, device = key
+        return (isinstance(run, str) and run in self.runs
+                and not isinstance(device, bool)
+                and hasattr(device, "__index__")
+                and 0 <= device < self.devices and key not in self._failed())
 
     def __iter__(self) -> Iterator[tuple[str, int]]:
         failed = self._failed()
@@ -281,7 +305,7 @@ def generate(campaign: CampaignLike, directory: Path, *,
         jobs: threads; 0: one for each core.
         resume: continues the set that is in the directory.
         progress: True for a bar on standard error, or a function that is
-            told the share of the work that is done.
+            told the share of the work that is done, from 0 to 1.
 
     Raises:
         ValueError: something is wrong in the campaign, or the directory
@@ -289,11 +313,14 @@ def generate(campaign: CampaignLike, directory: Path, *,
         RuntimeError: writing failed, or no device works.
     """
     core = Campaign(campaign, devices)._native
+    folder = _checks.path(directory, "directory", "the name of a directory")
+    threads = _arguments.jobs(jobs)
+    go_on = _checks.flag(resume, "resume")
     with Watched(progress, "generating") as function:
-        failures, warnings, _ = _core.generate(core, os.fspath(directory),
-                                               jobs, resume, function)
+        failures, warnings, _ = _core.generate(core, folder, threads, go_on,
+                                               function)
     warn(warnings)
     if failures:
-        warn([f"{os.fspath(directory)}: {failures} runs have no values, since "
+        warn([f"{folder}: {failures} runs have no values, since "
               "their devices do not work; see Set.failures"])
     return Set(directory)

@@ -9,36 +9,41 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from beamgyro import _checks
+
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+\Z")
 
 
 def key(name: object) -> str:
     """Return one part of a key as TOML spells it."""
     if not isinstance(name, str):
-        raise ValueError(f"{name!r}: a key is a text; expected a string")
+        raise _checks.wrong(name, "key", "a text")
+    _checks.text(name, "key")
     return name if _BARE_KEY.match(name) else json.dumps(name)
 
 
 def value(item: Any, where: str) -> str:
     """Return a value in TOML syntax. `where` is its key, for messages."""
-    if hasattr(item, "tolist"):  # of numpy
+    if hasattr(item, "tolist") and not isinstance(item, memoryview):  # numpy
         item = item.tolist()
     if isinstance(item, bool):
         return "true" if item else "false"
     if isinstance(item, (int, float)):
         return repr(item)
     if isinstance(item, (str, os.PathLike)):
-        return json.dumps(os.fspath(item), ensure_ascii=False).replace(
+        return json.dumps(_checks.text(os.fspath(item), f"{where}:"),
+                          ensure_ascii=False).replace(
             "\x7f", "\\u007f")
     if isinstance(item, Mapping):
         inside = (f"{key(name)} = {value(part, f'{where}.{name}')}"
                   for name, part in item.items())
         return "{ " + ", ".join(inside) + " }"
-    if isinstance(item, Sequence):
+    if isinstance(item, Sequence) and not isinstance(
+            item, (bytes, bytearray, memoryview)):
         return "[" + ", ".join(value(part, where) for part in item) + "]"
     raise ValueError(
-        f"{where}: {item!r} is a {type(item).__name__}; expected a number, a "
-        "text, true or false, a sequence or a mapping of these")
+        f"{where}: {_checks.shown(item)} is a {type(item).__name__}; expected "
+        "a number, a text, true or false, a sequence or a mapping of these")
 
 
 def text(table: Mapping[str, Any]) -> str:
@@ -57,6 +62,13 @@ def text(table: Mapping[str, Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def merged(keys: Mapping[str, Any] | None,
+           more: Mapping[str, Any], name: str = "keys"
+           ) -> dict[str, Any]:
+    """Return the keys of both; a value of `more` stands for the same key."""
+    return {**(_checks.keys(keys, name) or {}), **more}
+
+
 def overrides(keys: Mapping[str, Any] | None) -> list[str]:
     """Return KEY=VALUE for each value of a mapping, as `--set` takes it.
 
@@ -73,5 +85,5 @@ def overrides(keys: Mapping[str, Any] | None) -> list[str]:
             else:
                 found.append(f"{prefix}{name}={value(item, prefix + name)}")
 
-    add("", keys or {})
+    add("", _checks.keys(keys, "set") or {})
     return found

@@ -185,6 +185,15 @@ void bind_analysis(py::module_& core) {
            py::arg("options"), py::arg("progress"));
   core.def("sensitivity", &study_sensitivity, py::arg("campaign"),
            py::arg("options"), py::arg("progress"));
+  core.def(
+      "write_texts",
+      [](const Path& directory,
+         const std::vector<std::pair<std::string, std::string>>& texts) {
+        std::vector<ExportedFile> files;
+        for (const auto& [name, text] : texts) files.push_back({name, text});
+        write_exported(directory, files);
+      },
+      py::arg("directory"), py::arg("texts"));
   core.def("export_files", &export_compensators, py::arg("compensators"),
            py::arg("format"), py::arg("options"));
 }

@@ -6,7 +6,10 @@
 namespace beamgyro::python {
 
 // Each adds the classes and functions of one header of the library to the
-// module `_core`; `_core.pyi` declares them for Python.
+// module `_core`; `_core.pyi` declares them for Python. bind_errors() gives
+// exceptions of the library the words of Python.
+void bind_errors(pybind11::module_& core);
+void bind_kinds(pybind11::module_& core);
 void bind_recording(pybind11::module_& core);
 void bind_device(pybind11::module_& core);
 void bind_scenario(pybind11::module_& core);

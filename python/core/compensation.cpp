@@ -20,6 +20,7 @@
 #include "python/core/bindings.h"
 #include "python/core/long_call.h"
 #include "python/core/recording.h"
+#include "validation/external/asked_run.h"
 
 namespace beamgyro::python {
 namespace {
@@ -33,7 +34,8 @@ std::vector<double> values_of(const py::object& given) {
 }
 
 /// A Python function that takes a Recording with the measured signals of a
-/// powered stretch, and returns (rates, sigmas or None).
+/// powered stretch and the name of its run, and returns (rates, sigmas or
+/// None).
 class FunctionCompensator final : public RateCompensator {
  public:
   FunctionCompensator(std::string name, std::vector<std::string> inputs,
@@ -47,8 +49,9 @@ class FunctionCompensator final : public RateCompensator {
 
   CompensatedRate answer(const Recording& recording) const override {
     const py::gil_scoped_acquire acquired;
-    const auto answers =
-        (*function_)(std::make_shared<Recording>(recording)).cast<py::tuple>();
+    const auto answers = (*function_)(std::make_shared<Recording>(recording),
+                                      internal::AskedRun::name())
+                             .cast<py::tuple>();
     CompensatedRate compensated;
     compensated.rate = values_of(answers[0]);
     if (!answers[1].is_none()) compensated.sigma = values_of(answers[1]);
@@ -112,13 +115,14 @@ std::vector<NamedRecording> named(const NamedRecordings& recordings) {
 TrainingOptions options_of(std::uint64_t seed,
                            const std::string& cross_validation,
                            const Progress& progress) {
-  const auto tell = [progress](const TrainingProgress& now) {
+  const auto on_epoch = [progress](const TrainingProgress& now) {
     const double epochs = static_cast<double>(now.max_epochs);
     const double done = static_cast<double>(now.restart) +
                         static_cast<double>(now.epoch) / epochs;
     return progress(done / static_cast<double>(now.restarts));
   };
-  return {.seed = seed, .cross_validation = cross_validation, .progress = tell};
+  return {
+      .seed = seed, .cross_validation = cross_validation, .progress = on_epoch};
 }
 
 py::tuple trained(TrainedCompensator found) {

@@ -49,6 +49,8 @@ void bind_device(py::module_& core) {
       .def_property_readonly("text", &Device::text)
       .def_property_readonly("name", &Device::name)
       .def_property_readonly("overrides", &Device::overrides);
+  core.def("even_temperatures", &even_temperatures, py::arg("start"),
+           py::arg("stop"), py::arg("step"));
   core.def("characterise", &characterise_device, py::arg("device"),
            py::arg("temperatures_degC"));
 }

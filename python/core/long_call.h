@@ -3,6 +3,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <exception>
@@ -61,6 +62,29 @@ inline void look_at_python(const py::object& on_progress, double share) {
   if (!on_progress.is_none()) on_progress(share);
 }
 
+/// Calls `on_progress` with 0 when work begins, with numbers that do not fall,
+/// and with 1 when it is done.
+class ReportedProgress {
+ public:
+  explicit ReportedProgress(const py::object& on_progress)
+      : on_progress_(on_progress) {
+    look_at_python(on_progress_, reported_);
+  }
+
+  void report(double share) {
+    if (share > reported_) reported_ = std::min(share, 1.0);
+    look_at_python(on_progress_, reported_);
+  }
+
+  void report_end() {
+    if (reported_ < 1.0) report(1.0);
+  }
+
+ private:
+  const py::object& on_progress_;
+  double reported_ = 0.0;
+};
+
 /// Returns work(progress), which runs in a thread of its own without the GIL;
 /// the thread of the caller looks at Python meanwhile. What look_at_python()
 /// throws stops the work and reaches the caller at once; work that looks at its
@@ -69,6 +93,7 @@ inline void look_at_python(const py::object& on_progress, double share) {
 template <class Work>
 auto long_call(const py::object& on_progress, Work work) {
   using Result = std::invoke_result_t<Work, const Progress&>;
+  ReportedProgress reported(on_progress);
   const auto state = std::make_shared<SharedProgress>();
   std::packaged_task<Result()> task(
       [state, work = std::move(work)]() mutable -> Result {
@@ -92,7 +117,7 @@ auto long_call(const py::object& on_progress, Work work) {
            result.wait_for(kSignalPeriod) != std::future_status::ready) {
       const py::gil_scoped_acquire acquired;
       try {
-        look_at_python(on_progress, state->share);
+        reported.report(state->share);
       } catch (const py::error_already_set&) {
         raised = std::current_exception();
         state->is_stopped = true;
@@ -104,7 +129,9 @@ auto long_call(const py::object& on_progress, Work work) {
       thread.join();
   }
   if (raised) std::rethrow_exception(raised);
-  return result.get();
+  Result found = result.get();
+  reported.report_end();
+  return found;
 }
 
 /// Returns an owner of a Python object that any thread may destroy.

@@ -12,6 +12,8 @@ PYBIND11_MODULE(_core, core) {
   core.doc() = "The compiled part of beamgyro.";
   core.attr("version") = beamgyro::version();
   core.attr("git_revision") = beamgyro::git_revision();
+  python::bind_errors(core);
+  python::bind_kinds(core);
   python::bind_recording(core);
   python::bind_device(core);
   python::bind_scenario(core);

@@ -20,6 +20,7 @@
 #include "dataset/netcdf/recording_reader.h"
 #include "dataset/recording/attributes.h"
 #include "dataset/recording/recording.h"
+#include "dataset/recording/recording_defect.h"
 #include "dataset/recording/signals.h"
 #include "python/core/bindings.h"
 
@@ -154,7 +155,13 @@ Column column_of(const std::string& name, const Doubles& values,
       column.units = text;
     }
     if (attribute == "long_name") column.long_name = text;
-    if (attribute == "role") column.role = role_of(text);
+    if (attribute == "role") {
+      column.role = role_of(text);
+      if (known != nullptr && column.role != known->role)
+        throw std::invalid_argument(
+            fmt::format("{}: role \"{}\"; expected \"{}\"", name, text,
+                        role_name(known->role)));
+    }
     if (attribute == "comment") column.comment = text;
   }
   return column;
@@ -185,6 +192,18 @@ void add_column(Recording& recording, const std::string& name,
   require_length(recording, name, recording.columns.back().values.size());
 }
 
+/// The unit of a variable that beamgyro knows; empty for another one, and for
+/// one without a unit.
+std::string unit_of(const std::string& name) {
+  const std::string_view unit = internal::unit_of_variable(name);
+  return unit == "1" ? "" : std::string(unit);
+}
+
+void require_sound(const Recording& recording) {
+  const std::string defect = internal::recording_defect(recording);
+  if (!defect.empty()) throw std::invalid_argument(defect);
+}
+
 py::tuple read(const std::filesystem::path& path) {
   std::vector<std::string> warnings;
   Recording recording = [&] {
@@ -203,10 +222,12 @@ py::tuple with_warnings(Recording&& recording,
 }
 
 void bind_recording(py::module_& core) {
+  core.def("unit_of", &unit_of, py::arg("name"));
   py::class_<Recording, SharedRecording> recording(core, "Recording");
   recording.def(py::init(&recording_of), py::arg("time"), py::arg("status"))
       .def("add", &add_column, py::arg("name"), py::arg("values"),
            py::arg("attributes"))
+      .def("require_sound", &require_sound)
       .def("arrays", &arrays_of)
       .def("variable_attributes", &variable_attributes)
       .def("file_attributes", &file_attributes)

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "dataset/files/text_file.h"
 #include "include/beamgyro/progress.h"
 #include "include/beamgyro/simulate.h"
 #include "python/core/bindings.h"
@@ -40,11 +41,19 @@ std::vector<std::string> simulate_into(const Scenario& scenario,
   });
 }
 
+Scenario read_with(const std::filesystem::path& file, const Device& device,
+                   const std::vector<std::string>& overrides) {
+  return Scenario::parse(internal::read_text_file(file), device, overrides,
+                         file.string());
+}
+
 }  // namespace
 
 void bind_scenario(py::module_& core) {
   py::class_<Scenario>(core, "Scenario")
       .def_static("read", &Scenario::read, py::arg("file"),
+                  py::arg("overrides"))
+      .def_static("read_with", &read_with, py::arg("file"), py::arg("device"),
                   py::arg("overrides"))
       .def_static("parse", &Scenario::parse, py::arg("text"), py::arg("device"),
                   py::arg("overrides"), py::arg("name"))

@@ -56,6 +56,11 @@ TEST(PublicCampaign, TextsInMemoryDrawTheSameDevices) {
   EXPECT_EQ(read.device(3).overrides(), read.device_overrides(3));
 }
 
+TEST(PublicCampaign, HasNoDeviceBeyondItsNumber) {
+  EXPECT_THROW(six().device(6), std::invalid_argument);
+  EXPECT_THROW(six().device_overrides(99), std::invalid_argument);
+}
+
 TEST(PublicSet, ACancelledGenerationGoesOnToTheSameBytes) {
   const Folder folder;
   const auto campaign = six();

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "include/beamgyro/compensator.h"
+#include "include/beamgyro/device.h"
 #include "include/beamgyro/simulate.h"
 #include "include/beamgyro/train.h"
 #include "include/beamgyro/validate.h"
@@ -53,6 +55,50 @@ TEST(UserCompensator, SeesTheMeasuredSignalsOfEachPoweredStretchOnly) {
     else
       EXPECT_EQ(rate[k], recorded[k]) << k;
   EXPECT_EQ(answered.compensator, "mine");
+}
+
+TEST(UserCompensator, IsNotGivenWhatCouldNotBeWritten) {
+  Recording run = run_of();
+  run.time[200] = run.time[100];
+  const auto user = compensator_of("mine", {}, [](const Recording& seen) {
+    return column_values(seen, "rate");
+  });
+  EXPECT_THROW(compensate(*user, run), std::invalid_argument);
+  const auto model = beamgyro::Model::read(kScenarios / "models/cubic.toml");
+  EXPECT_THROW(train(model, {{"run", run}}), std::invalid_argument);
+}
+
+TEST(UserCompensator, TheFullScaleOfAValidationIsAPositiveNumber) {
+  const auto user = compensator_of("mine", {}, [](const Recording& seen) {
+    return column_values(seen, "rate");
+  });
+  for (const double wrong : {0.0, -1.0, std::nan(""), HUGE_VAL})
+    EXPECT_THROW(
+        validate(*user, {.recordings = {"absent.h5"}, .full_scale = wrong}),
+        std::invalid_argument)
+        << wrong;
+}
+
+TEST(Characteristic, TemperaturesAreLimitedInTheirNumber) {
+  EXPECT_EQ(even_temperatures(-40.0, 60.0, 0.25).size(), 401U);
+  EXPECT_EQ(even_temperatures(60.0, -40.0, -100.0),
+            (std::vector<double>{60.0, -40.0}));
+  EXPECT_EQ(even_temperatures(5.0, 5.0, 1.0), std::vector<double>{5.0});
+  const double nan = std::nan("");
+  for (const auto& [start, stop, step] :
+       std::vector<std::array<double, 3>>{{-40.0, 60.0, 1e-9},
+                                          {-40.0, 60.0, 1e-300},
+                                          {0.0, 60.0, -1.0},
+                                          {0.0, 60.0, 0.0},
+                                          {0.0, 0.0, 0.0},
+                                          {nan, 60.0, 1.0},
+                                          {0.0, HUGE_VAL, 1.0},
+                                          {0.0, 60.0, nan}})
+    EXPECT_THROW(even_temperatures(start, stop, step), std::invalid_argument)
+        << start << ' ' << stop << ' ' << step;
+  const auto device =
+      beamgyro::Device::read(kScenarios / "devices/nominal.toml");
+  EXPECT_THROW(characterise(device, {}), std::invalid_argument);
 }
 
 TEST(UserCompensator, FaultsAndExceptionsReachTheCaller) {

@@ -108,6 +108,12 @@ class Characterise(ProgramTest):
                 self.rejected("characterise", "device.toml", "-o", "x.csv",
                               f"--beam-temperature={text}", says=text)
 
+    def test_too_many_temperatures(self):
+        self.rejected("characterise", "device.toml", "-o", "x.csv",
+                      "--beam-temperature=-40:60:1e-9",
+                      says="makes 1e+11 temperatures from -40 to 60 degC; "
+                           "expected at most 1000000")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -49,6 +49,20 @@ class CommandLine(ProgramTest):
         self.rejected("run", "s.toml", "-o", "a.h5", "--seed", "many",
                       says="many")
 
+    def test_a_name_that_is_empty_is_refused(self):
+        """As a script gives it whose variable is not set."""
+        self.run_scenario("rest")
+        for words, says in [
+                (("plot", "rest.h5", "-o", ""), '--output "": is empty'),
+                (("run", "rest.toml", "-o", ""), '--output "": is empty'),
+                (("allan", "rest.h5", "--json", ""), '--json "": is empty'),
+                (("plan", "p.json", "--picture", ""),
+                 '--picture "": is empty'),
+                (("info", ""), "is empty"),
+                (("plot", "rest.h5", "", "-o", "p.png"), "is empty")]:
+            with self.subTest(words):
+                self.rejected(*words, says=says)
+
     def test_progress_and_messages_never_reach_stdout(self):
         self.write("s.toml", SCENARIO)
         answer = self.beamgyro("run", "s.toml", "-o", "a.h5")

@@ -108,7 +108,7 @@ class Sensitivity(ProgramTest):
         # Trained on one unit, it leaves the others about what they have.
         self.assertGreater(found["figures"][name]["median"], 0)
         self.rejected("sensitivity", "c.toml", "--figure", name,
-                      says="--compensator")
+                      says="expected a compensator with it")
 
     def test_correlated_tolerances_are_one_factor(self):
         self.write("c.toml", CAMPAIGN.format(
@@ -196,7 +196,7 @@ class Sensitivity(ProgramTest):
         refused("--limit", f"{PP}=0", says="--limit 0")
         refused("--limit", f"{PP}=2", "--limit", f"{PP}=3", says="already")
         refused("--limit", f"{PP}=2", "--figure", FIGURES[1],
-                says=f"--figure {PP}")
+                says=f"limit 2 of {PP}, which is not studied")
         refused("--compensator", "none.json", says="none.json")
         refused("--compensator", "c.toml", says="c.toml")
         refused("--json", "c.toml", says="c.toml")

@@ -9,7 +9,7 @@ import unittest
 import h5py
 import numpy as np
 
-from program import CUBIC, NETWORK, ProgramTest, ramp
+from program import CUBIC, NETWORK, ROOT, ProgramTest, ramp
 
 UNIT = {"centre": 0.0, "half_width": 1.0}
 
@@ -193,6 +193,19 @@ class Twice(Validate):
                 with self.subTest((other, more)):
                     self.rejected("validate", "cubic.json", "test.h5", other,
                                   *more, says=["test.h5", "same recording"])
+
+    def test_intervals_without_a_device_are_called_too_narrow(self):
+        spec = ROOT / "specs/uav.toml"
+        self.run_scenario("one", text=ramp(seed=9))
+        self.ok("run", "one.toml", "-o", "one.csv")  # which holds no device
+        for run, warned in [("one.h5", 0), ("one.csv", 1)]:
+            answer = self.beamgyro("validate", "cubic.json", run, "--spec",
+                                   spec, "--json", "v.json")
+            found = json.loads((self.dir / "v.json").read_text())["warnings"]
+            self.assertEqual(
+                sum("one.csv: no device is stated" in text
+                    for text in found), warned, found)
+            self.assertEqual("too narrow" in answer.stderr, bool(warned))
 
     def test_the_table_is_told_though_the_file_cannot_be_written(self):
         told = self.beamgyro("validate", "cubic.json", "test.h5")

@@ -11,8 +11,6 @@ import xarray as xr
 import beamgyro as bg
 from program import PROGRAM, SCENARIOS, SHIPPED_SCENARIOS
 
-pytestmark = pytest.mark.filterwarnings(
-    "ignore::beamgyro.BeamgyroWarning")
 SHORT = {
     "quasistatic": {"duration_s": 8, "output_rate_Hz": 10},
     "envelope": {"duration_s": 2, "output_rate_Hz": 10},

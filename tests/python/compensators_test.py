@@ -2,18 +2,18 @@
 # SPDX-License-Identifier: MIT
 """Compensators of Python: functions, estimators, networks."""
 
+import json
 import pickle
 import shutil
+import subprocess
 
 import numpy as np
 import pytest
 
 import beamgyro as bg
 import qualified
-from program import SCENARIO, SCENARIOS, ramp
+from program import PROGRAM, SCENARIO, SCENARIOS, ramp
 
-pytestmark = pytest.mark.filterwarnings(
-    "ignore::beamgyro.BeamgyroWarning")  # none has held-out data
 CUBIC = SCENARIOS / "models/cubic.toml"
 TWO_CYCLES = {"power.on_s": [0.0, 8000.0], "power.off_s": [6000.0]}
 
@@ -202,3 +202,22 @@ def test_a_sigma_is_above_0(sweeps, sigma):
         return signals.rate.values, np.full(signals.sizes["time"], sigma)
     with pytest.raises(ValueError, match="stating: gave a sigma of"):
         bg.compensate(stating, sweeps[0])
+
+
+def test_without_limits_the_verdict_is_that_of_the_page_of_the_command(
+        sweeps, tmp_path):
+    sweeps[1].beamgyro.save(tmp_path / "run.h5")
+    bg.train(CUBIC, sweeps[0]).save(tmp_path / "cubic.json")
+    answer = subprocess.run(
+        [PROGRAM, "validate", "cubic.json", "run.h5", "--report", "page",
+         "--json", "result.json"], cwd=tmp_path, capture_output=True,
+        text=True, check=False, timeout=100)
+    assert answer.returncode in (0, 3), answer.stderr
+    result = bg.validate(bg.Compensator(tmp_path / "cubic.json"),
+                         tmp_path / "run.h5")
+    assert str(result) == answer.stdout
+    ours = result.data
+    theirs = json.loads((tmp_path / "result.json").read_text())
+    assert ours["verdict"] == theirs["verdict"]
+    assert ours["metrics"] == theirs["metrics"]
+    assert ours["checks"] == theirs["checks"]

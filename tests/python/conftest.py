@@ -16,6 +16,19 @@ sys.path.insert(0, str(PACKAGE))
 os.environ["PYTHONPATH"] = os.pathsep.join(
     filter(None, [str(PACKAGE), os.environ.get("PYTHONPATH")]))
 
+
+def pytest_collection_modifyitems(items):
+    """Leave warnings to the tests that expect them.
+
+    A process that collects the reports of several workers would have to know
+    the class, whose package it has not.
+    """
+    for item in items:
+        if item.path.is_relative_to(pathlib.Path(__file__).parent):
+            item.add_marker(pytest.mark.filterwarnings(
+                "ignore::beamgyro.BeamgyroWarning"))
+
+
 # Soaks of twenty minutes from -30 to 40 degC, a sample a second.
 SWEEP = {
     "name": "sweep", "description": "short soaks", "fidelity": "quasistatic",

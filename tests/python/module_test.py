@@ -179,3 +179,22 @@ def test_warnings_are_those_of_the_command():
     with pytest.warns(bg.BeamgyroWarning, match="soaks") as caught:
         bg.run(SCENARIOS / "ramp.toml", set={"duration_s": 60})
     assert caught[0].filename == __file__
+
+
+def test_progress_is_told_where_work_begins_and_ends():
+    shares = []
+    bg.run(WARM_UP, set={"duration_s": 1}, progress=shares.append)
+    assert (shares[0], shares[-1]) == (0.0, 1.0)
+    shares.clear()
+    bg.run(WARM_UP, set={"duration_s": 40, "fidelity": "carrier"},
+           progress=shares.append)
+    assert shares == sorted(shares)
+    assert shares.count(1.0) == 1
+
+
+def test_failed_work_is_not_told_as_done():
+    shares = []
+    with pytest.raises(ValueError):
+        bg.validate(lambda signals: signals["absent"], WARM_UP,
+                    progress=shares.append)
+    assert 1.0 not in shares

@@ -12,7 +12,6 @@ import beamgyro as bg
 from program import PROGRAM, SCENARIOS
 
 
-pytestmark = pytest.mark.filterwarnings("ignore::beamgyro.BeamgyroWarning")
 
 
 @pytest.fixture(scope="module", name="campaign")

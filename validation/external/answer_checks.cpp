@@ -131,10 +131,6 @@ std::optional<SeenFault> later_samples_used(
   return std::nullopt;
 }
 
-double real_time_factor(const Answer& answer, const Recording& run) {
-  return answer.seconds / duration_with_last_sample(run);
-}
-
 AnswerDifference difference_of(const Answer& one, const Answer& other) {
   AnswerDifference found;
   double squares = 0.0;

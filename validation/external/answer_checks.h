@@ -21,10 +21,6 @@ std::optional<SeenFault> state_kept_over_reset(
 std::optional<SeenFault> later_samples_used(
     const TestedCompensator& compensator, const Recording& run);
 
-/// Returns the seconds that an answer took over the duration of its run. Above
-/// 1 the compensator is slower than real time.
-double real_time_factor(const Answer& answer, const Recording& run);
-
 /// The difference between the answers of two compensators.
 struct AnswerDifference {
   double largest = 0.0;     // [deg/s]

@@ -43,6 +43,7 @@ double duration_with_last_sample(const Recording& run) {
 }
 
 void add_fault_of_speed(const Recording& run, Answer& answer) {
+  if (run.time.size() < 2) return;  // a lone sample tells no duration
   const double duration = duration_with_last_sample(run);
   if (answer.seconds <= duration || has_fault(answer, AnswerFault::kTimedOut) ||
       has_fault(answer, AnswerFault::kTooSlow))

@@ -29,7 +29,8 @@ bool has_fault(const Answer& answer, AnswerFault fault);
 /// Unanswered samples do not count when `answer` has a fault already.
 void add_fault_of_values(const Recording& run, Answer& answer);
 
-/// Adds kTooSlow when the answer took longer than the run.
+/// Adds kTooSlow when the answer took longer than the run, which has two
+/// samples or more.
 void add_fault_of_speed(const Recording& run, Answer& answer);
 
 /// Returns the time from the first to the last sample, with the usual step [s].

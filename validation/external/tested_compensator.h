@@ -24,6 +24,7 @@ enum class AnswerFault {
   kKeepsState,        // another answer to the same run after a reset
   kUsesLaterSamples,  // an answer changes with a later sample
   kTooSlow,           // slower than real time
+  kOfItsOwn,          // told by a class of the user's own
 };
 
 /// A fault that was seen, in words for the user.

@@ -15,6 +15,7 @@
 #include "config/document.h"
 #include "config/units.h"
 #include "parallel/work_queue.h"
+#include "validation/external/asked_run.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -79,15 +80,16 @@ EvidenceRun evidence_run(const ReadRun& named, const Recording& read,
 // Counts tasks that are done.
 class SharedProgress {
  public:
-  SharedProgress(const ProgressOfWork& tell, std::size_t tasks)
-      : tell_(tell), tasks_(tasks) {}
+  SharedProgress(const ProgressOfWork& on_progress, std::size_t tasks)
+      : on_progress_(on_progress), tasks_(tasks) {}
   void add_one() {
     const std::size_t done = ++done_;
-    if (tell_) tell_(static_cast<double>(done) / static_cast<double>(tasks_));
+    if (on_progress_)
+      on_progress_(static_cast<double>(done) / static_cast<double>(tasks_));
   }
 
  private:
-  const ProgressOfWork& tell_;
+  const ProgressOfWork& on_progress_;
   std::size_t tasks_;
   std::atomic<std::size_t> done_ = 0;
 };
@@ -144,6 +146,10 @@ Compensator trained_on(const TrainingData& data, const ModelSpec& model) {
       .compensator;
 }
 
+std::string words_of(const ReadRun& run) {
+  return run.device.empty() ? run.name : run.name + " of device " + run.device;
+}
+
 DeviceEvidence answered_evidence(std::vector<ReadRun> read,
                                  std::vector<Recording> runs,
                                  const Answering& answering,
@@ -174,7 +180,11 @@ DeviceEvidence answered_evidence(std::vector<ReadRun> read,
     for (std::size_t b = 0; b < answering.baselines.size(); ++b)
       found.baselines[b + 1].evidence.runs[k] =
           evidence(answering.baselines[b].rate(run));
-    found.answers[k] = answering.compensator.answer(run);
+    {
+      const std::string called = words_of(named);
+      const AskedRun asked(called);
+      found.answers[k] = answering.compensator.answer(run);
+    }
     found.after.runs[k] = evidence(found.answers[k].rate,
                                    answering.tells_clamped
                                        ? std::optional(found.answers[k].clamped)

@@ -15,6 +15,7 @@
 #include "sim/scenario/simulation_input.h"
 #include "validation/external/answer_checks.h"
 #include "validation/external/file_compensator.h"
+#include "validation/metrics/rate_noise_model.h"
 #include "validation/qualification/qualification_file.h"
 #include "validation/result/judgement.h"
 #include "validation/result/population_yield.h"
@@ -63,6 +64,21 @@ std::vector<std::string> warnings_about(const Qualification& qualification,
           fmt::format("{}: {}", qualification.runs[k].name, text));
   }
   return warnings;
+}
+
+// The samples of a run do not show what all of them have in common.
+std::vector<std::string> warnings_about(const Evidence& evidence) {
+  std::vector<std::string> unstated;
+  for (const EvidenceRun& run : evidence.runs)
+    if (!stated_noise(*run.recording)) unstated.push_back(run.name);
+  if (unstated.empty()) return {};
+  return {fmt::format(
+      "{}{}: no device is stated, so the turn-on offset and the slow noise of "
+      "the unit are unknown; the intervals leave them out and are too narrow "
+      "by them",
+      unstated.front(),
+      unstated.size() == 1 ? ""
+                           : fmt::format(" and {} more", unstated.size() - 1))};
 }
 
 }  // namespace
@@ -287,6 +303,7 @@ CompletedValidation Validator::validate(std::size_t threads,
   } else {
     done.evidence = recorded_evidence(
         s.request.runs, {compensator, known, s.request.full_scale}, threads);
+    result.warnings = warnings_about(done.evidence.before);
   }
   result.provenance = s.provenance();
   result.compensator = {

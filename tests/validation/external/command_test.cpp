@@ -192,6 +192,13 @@ TEST_F(CommandCompensator, SlowerThanRealTimeIsSaid) {
 }
 
 // The start of an interpreter, on a busy machine longer than a short run.
+TEST_F(CommandCompensator, ALoneSampleIsNoSlowness) {
+  const Recording lone = tested_run(0.01);
+  ASSERT_EQ(lone.time.size(), 1U);
+  const Answer answer = program()->answer(lone);
+  EXPECT_TRUE(answer.faults.empty()) << answer.faults[0].words;
+}
+
 TEST_F(CommandCompensator, ALongStartIsNoSlowness) {
   const auto late = program("print(repr(r))", "time.sleep(1.5)");
   EXPECT_TRUE(late->answer(tested_run(1.0)).faults.empty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/file_kind.h"
+#include "api/file_kind.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -122,7 +122,7 @@ std::vector<FileKind> kinds_of_text(const fs::path& path,
   }
 }
 
-std::vector<FileKind> kinds_of(const fs::path& path) {
+std::vector<FileKind> found_kinds(const fs::path& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored))
     return fs::exists(path / kManifestName, ignored)
@@ -138,17 +138,22 @@ std::vector<FileKind> kinds_of(const fs::path& path) {
 
 }  // namespace
 
+std::vector<FileKind> kinds_of(const fs::path& path) {
+  try {
+    return found_kinds(path);
+  } catch (const std::system_error&) {
+    return {};  // whoever reads it says why it cannot
+  }
+}
+
+std::string_view kind_name(FileKind kind) { return known(kind).name; }
+
 bool is_of_kind(const fs::path& path, FileKind kind) {
   return std::ranges::count(kinds_of(path), kind) != 0;
 }
 
 void require_kind(const fs::path& path, const ExpectedKinds& expected) {
-  std::vector<FileKind> kinds;
-  try {
-    kinds = kinds_of(path);
-  } catch (const std::system_error&) {
-    return;  // whoever reads it says why it cannot
-  }
+  const std::vector<FileKind> kinds = kinds_of(path);
   const auto is_among = [&](const std::vector<FileKind>& taken) {
     return std::ranges::find_first_of(kinds, taken) != kinds.end();
   };
@@ -156,7 +161,7 @@ void require_kind(const fs::path& path, const ExpectedKinds& expected) {
     return;
   const KnownKind& found = known(kinds.front());
   std::vector<std::string_view> names;
-  for (const FileKind kind : expected.kinds) names.push_back(known(kind).name);
+  for (const FileKind kind : expected.kinds) names.push_back(kind_name(kind));
   std::string message = fmt::format("{}: is {}; expected {}", path.string(),
                                     found.name, fmt::join(names, " or "));
   if (*found.taken_by != '\0')

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace beamgyro::internal {
@@ -30,7 +31,14 @@ struct ExpectedKinds {
   std::vector<FileKind> kinds, also = {};
 };
 
-/// Returns whether the file is of that kind, as far as its first bytes tell.
+/// Returns the kinds that a file or directory may be, as far as its first bytes
+/// tell; none for one of no known kind, and for one that cannot be read.
+std::vector<FileKind> kinds_of(const std::filesystem::path& path);
+
+/// Returns "a recording", "the directory of a set", ...
+std::string_view kind_name(FileKind kind);
+
+/// Returns whether the file is of that kind.
 bool is_of_kind(const std::filesystem::path& path, FileKind kind);
 
 /// Throws std::invalid_argument when the file is of a kind that is known but

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: MIT
+"""Checks of numbers and arrays that a caller gives.
+
+What NumPy would convert with a loss, or guess, is refused.
+"""
+
+from __future__ import annotations
+
+import math
+import numbers as kinds
+from collections.abc import Sized
+from typing import Any, Optional
+
+import numpy as np
+
+from beamgyro._words import shown, wrong
+
+Array = np.ndarray[Any, Any]
+
+_LARGEST_SEED = 2 ** 64 - 1
+_LARGEST_NUMBER = 2 ** 32 - 1  # of devices, samples and the like
+_MOST_JOBS = 4096
+
+# Seconds in a unit of timedelta64, and units in a second.
+_LONG_UNITS = {"W": 604800, "D": 86400, "h": 3600, "m": 60, "s": 1}
+_SHORT_UNITS = {"ms": 10 ** 3, "us": 10 ** 6, "ns": 10 ** 9, "ps": 10 ** 12,
+                "fs": 10 ** 15, "as": 10 ** 18}
+
+
+def number(value: Any, name: str, *, above: Optional[float] = None,
+           least: Optional[float] = None) -> float:
+    """Return a finite number; neither true nor false is one."""
+    right = "a finite number" + (
+        f" above {above:g}" if above is not None
+        else f" of at least {least:g}" if least is not None else "")
+    if isinstance(value, bool) or not isinstance(value, kinds.Real):
+        raise ValueError(f"{name} {shown(value)}: is no number; expected "
+                         f"{right}")
+    try:
+        found = float(value)
+    except OverflowError:
+        found = math.inf
+    if (not math.isfinite(found) or (above is not None and not found > above)
+            or (least is not None and not found >= least)):
+        raise wrong(value, name, right)
+    return found
+
+
+def whole(value: Any, name: str, least: int = 0,
+          most: int = _LARGEST_NUMBER) -> int:
+    """Return a whole number; neither true nor 2.0 is one."""
+    if (isinstance(value, bool) or not isinstance(value, kinds.Integral)
+            or not least <= int(value) <= most):
+        raise wrong(value, name, f"a whole number from {least} to {most}")
+    return int(value)
+
+
+def jobs(value: Any) -> int:
+    """Return a number of threads; 0: one for each core."""
+    return whole(value, "jobs", 0, _MOST_JOBS)
+
+
+def ends(value: Any, name: str) -> tuple[float, float]:
+    """Return both ends of a range."""
+    try:
+        low, high = [value] if isinstance(value, str) else value
+    except (TypeError, ValueError):
+        raise wrong(value, name,
+                    "two numbers, the lower one first") from None
+    return number(low, name), number(high, name)
+
+
+def seed(value: Any) -> int:
+    """Return the seed of a random stream."""
+    return whole(value, "seed", 0, _LARGEST_SEED)
+
+
+def _given(values: Any, name: str) -> Array:
+    """Return an array with one dimension, of any numbers."""
+    if hasattr(values, "detach"):  # of torch
+        values = values.detach().cpu()
+        if str(values.dtype) == "torch.bfloat16":  # NumPy has none
+            values = values.float()
+        values = values.numpy()
+    if isinstance(values, np.ma.MaskedArray) and np.any(values.mask):
+        raise ValueError(f"{name}: has masked values; expected an array "
+                         "without, such as .filled(numpy.nan)")
+    try:
+        array = np.asarray(values)
+    except (ValueError, TypeError):  # rows of several lengths
+        array = np.empty(0, dtype=object)
+    if array.dtype.kind in "OSUV":
+        raise ValueError(f"{name}: holds {_kind(values, array)}; expected "
+                         "numbers")
+    if array.ndim != 1:
+        raise ValueError(f"{name}: has the shape {array.shape}; expected one "
+                         "dimension")
+    return array
+
+
+def _kind(values: Any, array: Array) -> str:
+    if array.dtype.kind in "SU":
+        return "texts"
+    if array.ndim == 0:
+        return f"a {type(values).__name__}"
+    return f"values of the type {array.dtype}"
+
+
+def numbers(values: Any, name: str) -> Array:
+    """Return real numbers in one dimension, in double precision."""
+    array = _given(values, name)
+    kind = array.dtype.kind
+    if kind == "c":
+        raise ValueError(f"{name}: holds complex numbers; expected real ones")
+    if kind == "b":
+        raise ValueError(f"{name}: holds true and false; expected numbers, "
+                         "such as .astype(float)")
+    if kind in "mM":
+        raise ValueError(f"{name}: holds values of the type {array.dtype}; "
+                         "expected numbers")
+    with np.errstate(over="ignore"):
+        found: Array = array.astype(np.float64)
+    if kind in "iu":
+        # A number that a double rounds to 2**63 or 2**64 is no integer of
+        # the type; such ones are beyond 2**53 anyway.
+        large = np.abs(found) > 2.0 ** 53
+        if large.any():
+            raise ValueError(
+                f"{name}: sample {int(np.argmax(large))} is "
+                f"{array[np.argmax(large)]}; expected whole numbers up to "
+                "2**53, which a double holds exactly")
+    return found
+
+
+def seconds(values: Any, name: str) -> Array:
+    """Return times in seconds, of numbers or of timedelta64."""
+    array = _given(values, name)
+    if array.dtype.kind == "M":
+        raise ValueError(
+            f"{name}: holds dates ({array.dtype}); expected seconds, such as "
+            f"({name} - {name}[0]) / numpy.timedelta64(1, 's')")
+    if array.dtype.kind != "m":
+        return numbers(array, name)
+    if np.isnat(array).any():
+        raise ValueError(f"{name}: sample {int(np.argmax(np.isnat(array)))} "
+                         "is NaT; expected a time")
+    unit, count = np.datetime_data(array.dtype)
+    counts = array.astype(np.int64)
+    if unit in _LONG_UNITS:
+        return numbers(counts, name) * (_LONG_UNITS[unit] * count)
+    if unit not in _SHORT_UNITS:
+        raise ValueError(f"{name}: holds times of the unit {unit}, whose "
+                         "length varies; expected seconds")
+    # The quotient of two integers that doubles hold is the nearest double;
+    # that of a longer time is at most one further.
+    per_second = _SHORT_UNITS[unit]
+    if counts.size and np.abs(counts).max() * float(count) < 2.0 ** 53:
+        return counts * count / float(per_second)
+    whole_s, rest = np.divmod(counts, per_second)
+    found: Array = (whole_s * float(count)
+                    + rest * float(count) / float(per_second))
+    return found
+
+
+def status(values: Any) -> Array:
+    """Return the bits of the variable `status`."""
+    found = numbers(values, "status")
+    wrong = ~((found >= 0) & (found <= 255) & (found == np.floor(found)))
+    if wrong.any():
+        at = int(np.argmax(wrong))
+        raise ValueError(f"status: sample {at} is {found[at]:g}; expected a "
+                         "whole number from 0 to 255, a bit for each state")
+    return found.astype(np.uint8)
+
+
+def not_empty(values: Sized, name: str) -> None:
+    """Refuse an empty sequence."""
+    if len(values) == 0:
+        raise ValueError(f"{name}: is empty; expected at least one")
