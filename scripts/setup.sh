@@ -12,7 +12,7 @@ build=(g++ cmake ninja-build libeigen3-dev libsundials-dev libhdf5-dev
        python3 python3-matplotlib python3-h5py)
 tests=(libgtest-dev libbenchmark-dev clang-format clang-tidy netcdf-bin
        pkg-config mypy
-       xvfb python3-tk python3-pytest python3-pytest-xdist python3-sklearn
+       xvfb python3-tk python3-pytest python3-pytest-xdist python3-sklearn python3-torch
        python3-xarray python3-h5netcdf python3-netcdf4 python3-scipy
        dpkg-dev file lintian man-db doxygen python3-breathe python3-sphinx
        python3-sphinx-rtd-theme python3-myst-parser

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import numpy as np
 
 from beamgyro import _arguments, _checks, _core, _shipped, _toml
-from beamgyro._compensation import (Compensator, Runs, compensator_of,
-                                    core_recording, model_of, named_runs)
+from beamgyro._compensation import Compensator, compensator_of
 from beamgyro._dataset import Path, recording_of
 from beamgyro._device import DeviceLike, device_of
 from beamgyro._progress import ProgressArgument, Watched
 from beamgyro._results import (AllanResult, PlanResult, SensitivityResult,
                                ValidationResult)
 from beamgyro._set import Campaign, CampaignLike, Set
+from beamgyro._training import Runs, model_of, named_runs
 from beamgyro._warnings import warn
 
 if TYPE_CHECKING:

@@ -157,3 +157,11 @@ def save_recording(dataset: xr.Dataset, path: Path) -> None:
         RuntimeError: writing failed.
     """
     recording_of(dataset, "dataset").write(_checks.path(path, "path"))
+
+
+def core_recording(run: Union[xr.Dataset, Path],
+                   name: str = "recording") -> _core.Recording:
+    """Return a recording of a dataset or a file."""
+    if isinstance(run, (str, os.PathLike)):
+        return read_recording(run, name)
+    return recording_of(run, name)

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: MIT
+"""Training of compensators, and rows for estimators and networks."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any, Union
+
+import numpy as np
+
+from beamgyro import _adapters, _arguments, _checks, _core, _toml
+from beamgyro._compensation import Compensator
+from beamgyro._dataset import Path, core_recording
+from beamgyro._progress import ProgressArgument, Watched
+from beamgyro._set import Set
+from beamgyro._warnings import warn
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Runs = Union["xr.Dataset", Path, Sequence[Union["xr.Dataset", Path]],
+             Mapping[str, "xr.Dataset"]]
+
+
+def named_runs(runs: Runs, argument: str = "runs"
+               ) -> list[tuple[str, Union[xr.Dataset, Path]]]:
+    """Return runs with their names."""
+    if isinstance(runs, (str, os.PathLike)):
+        return [(FilePath(runs).name, runs)]
+    given: Any = [runs] if hasattr(runs, "data_vars") else runs
+    if _checks.is_table(given):
+        return [(_run_name(name, argument), run)
+                for name, run in given.items()]
+    if hasattr(given, "shape") or isinstance(given, (bytes, Mapping)) or (
+            not isinstance(given, Iterable)):
+        raise _checks.wrong(given, argument, "recordings: datasets of run() "
+                            "or open_recording(), or files")
+    return [(FilePath(run).name if isinstance(run, (str, os.PathLike))
+             else f"run {number}", run)
+            for number, run in enumerate(given, start=1)]
+
+
+def _run_name(name: Any, argument: str) -> str:
+    right = "the name of a recording, a text without \"/\""
+    if "/" in _checks.text(name, argument, right) or "\0" in name or not name:
+        raise _checks.wrong(name, argument, right)
+    return str(name)
+
+
+_NamedRuns = list[tuple[str, Union["xr.Dataset", Path]]]
+
+
+def _recordings(runs: _NamedRuns) -> list[tuple[str, _core.Recording]]:
+    return [(name, core_recording(run, name)) for name, run in runs]
+
+
+def _all_files(runs: _NamedRuns) -> bool:
+    return all(isinstance(run, (str, os.PathLike)) for _, run in runs)
+
+
+def _files(runs: _NamedRuns, argument: str) -> list[str]:
+    return [_checks.file(run, argument, "a recording") for _, run in runs]
+
+
+def model_of(model: Union[Path, Mapping[str, Any]]) -> _core.Model:
+    """Return a model file, or a nested mapping with its contents."""
+    if _checks.is_table(model):
+        return _core.Model.parse(_toml.text(model), "model.toml")
+    return _core.Model.read(_checks.file(model, "model", "a model file",
+                                          _checks.MAPPING))
+
+
+def train(model: Union[Path, Mapping[str, Any]],
+          runs: Union[Runs, Set], held_out: Runs = (), *,
+          set_runs: Iterable[str] = (), devices: Iterable[int] = (),
+          seed: int = 0, cross_validation: str = "",
+          progress: ProgressArgument = False) -> Compensator:
+    """Train a compensator.
+
+    The file of the result has the bytes that ``beamgyro train`` writes for
+    the same files.
+
+    Args:
+        model: a model file, or its contents as a nested mapping.
+        runs: recordings to fit: files, datasets, a mapping of names to
+            datasets; or a set, whose training devices are fitted and whose
+            validation devices are held out.
+        held_out: recordings that a network stops early on.
+        set_runs: runs of a set to use; all without.
+        devices: devices of a set to fit; then none is held out.
+        seed: of the initial weights of a network.
+        cross_validation: "run", "cycle" or "leg": groups that are held out
+            in turn.
+        progress: True for a bar on standard error, or a function that is
+            told the share of the epochs that are done, from 0 to 1.
+
+    Raises:
+        ValueError: something is wrong in the model or the recordings, or
+            these do not suffice.
+        RuntimeError: the fit failed.
+    """
+    core = model_of(model)
+    seed = _arguments.seed(seed)
+    groups = _checks.text(cross_validation, "cross_validation")
+    kept = named_runs(held_out, "held_out")
+    with Watched(progress, "training") as function:
+        if isinstance(runs, Set):
+            if kept or groups:
+                raise ValueError(
+                    "held_out and cross_validation are for recordings; a set "
+                    "holds out its own validation devices")
+            found = _core.train_set(
+                core, runs._native, _checks.texts(set_runs, "set_runs"),
+                _checks.wholes(devices, "devices"), seed, function)
+        elif _all_files(fitted := named_runs(runs)) and _all_files(kept):
+            found = _core.train_files(
+                core, _files(fitted, "runs"), _files(kept, "held_out"), seed,
+                groups, function)
+        else:
+            found = _core.train_recordings(
+                core, _recordings(fitted), _recordings(kept), seed, groups,
+                function)
+    compensator, warnings, _ = found
+    warn(warnings)
+    return Compensator._of(compensator)
+
+
+def features(recording: Union[xr.Dataset, Path],
+             inputs: Sequence[str] = _adapters.DEFAULT_INPUTS
+             ) -> np.ndarray[Any, Any]:
+    """Compute the features of a model, a row for each sample.
+
+    Rows without power are NaN. `inputs` are named as in model files.
+
+    Raises:
+        ValueError: there is no such input, or the recording lacks one.
+    """
+    return _core.features(_features(inputs), core_recording(recording))
+
+
+def _features(inputs: Sequence[str]) -> list[str]:
+    found = _checks.texts(inputs, "inputs")
+    _arguments.not_empty(found, "inputs")
+    return found
+
+
+def training_rows(runs: Union[Runs, Set],
+                  inputs: Sequence[str] = _adapters.DEFAULT_INPUTS, *,
+                  part: str = "train", every_s: float = 0.0
+                  ) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """Return features and labels for an estimator or a network.
+
+    The label of a sample is its bias: the measured rate less the true rate,
+    which a bench knows [degree/s]. Samples without power or beyond the full
+    scale are left out.
+
+    Args:
+        runs: recordings as of `train`, or a set.
+        inputs: features, as model files name them.
+        part: of a set: "train", "validation" or "test".
+        every_s: averages over so many seconds; 0: every sample.
+
+    Returns:
+        The features (rows, inputs) and the labels (rows).
+    """
+    recordings: Iterable[_core.Recording]
+    every_s = _arguments.number(every_s, "every_s", least=0)
+    names = _features(inputs)
+    if isinstance(runs, Set):
+        recordings = runs._recordings_of(part)
+    else:
+        recordings = (one for _, one in _recordings(named_runs(runs)))
+    found = [_rows_of(one, names, every_s) for one in recordings]
+    if not found:
+        raise ValueError("no recordings to make rows of; expected at least "
+                         "one")
+    if not any(labels.size for _, labels in found):
+        raise ValueError("runs: have no sample with power and within the full "
+                         "scale; expected at least one")
+    return (np.concatenate([rows for rows, _ in found]),
+            np.concatenate([labels for _, labels in found]))
+
+
+def _rows_of(recording: _core.Recording, inputs: list[str], every_s: float
+             ) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    arrays = recording.arrays()
+    if "true_rate" not in arrays:
+        raise ValueError("true_rate: the recording has none; expected one "
+                         "from a simulation or a bench")
+    rows = _core.features(inputs, recording)
+    labels = arrays["rate"] - arrays["true_rate"]
+    good = (arrays["status"] & 3) == 0
+    rows, labels, time = rows[good], labels[good], arrays["time"][good]
+    if every_s == 0 or not time.size:
+        return rows, labels
+    block = np.floor(time / every_s)
+    starts = np.flatnonzero(np.diff(block, prepend=-np.inf))
+    counts = np.diff(np.append(starts, time.size))
+    return (np.add.reduceat(rows, starts, axis=0) / counts[:, None],
+            np.add.reduceat(labels, starts) / counts)
