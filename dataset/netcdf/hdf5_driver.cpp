@@ -28,6 +28,7 @@ struct DrivenFile {
   H5FD_t for_hdf5{};
   OpenFile* file = nullptr;
   bool is_read_only = true;
+  int failed_write = 0;  // errno of the first one
   haddr_t end_of_addresses = 0, size = 0;
 };
 
@@ -36,7 +37,9 @@ DrivenFile& driven(const H5FD_t* file) {
 }
 
 bool met_global_heap = false;
-int failed_call = 0;  // errno; QuietHdf5 keeps other threads out
+// QuietHdf5 keeps other threads out.
+int failed_call = 0;        // errno
+bool write_failed = false;  // since failed_call was taken last
 
 /// No exception may pass through the library.
 template <class Work>
@@ -50,6 +53,18 @@ herr_t guarded(const Work& work) noexcept {
     if (failed_call == 0) failed_call = ENOMEM;
   }
   return -1;
+}
+
+/// The same for work that writes. HDF5 learns of no failure, and what it writes
+/// afterwards goes nowhere: a file that HDF5 1.10 could not write stays half
+/// closed in the library, which crashes at the end of the process. The caller
+/// learns of it by check_hdf5().
+template <class Work>
+void write_guarded(DrivenFile& to, const Work& work) noexcept {
+  if (to.failed_write == 0 && guarded(work) == 0) return;
+  if (to.failed_write == 0) to.failed_write = failed_call;
+  failed_call = to.failed_write;
+  write_failed = true;
 }
 
 H5FD_t* open_driven(const char*, unsigned flags, hid_t properties, haddr_t) {
@@ -124,19 +139,19 @@ herr_t write_driven(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t place,
                     std::size_t size, const void* buffer) {
   if (is_beyond(place, size)) return -1;
   DrivenFile& to = driven(file);
-  return guarded([&] {
+  write_guarded(to, [&] {
     to.file->write_at(place, {static_cast<const std::byte*>(buffer), size});
-    to.size = std::max<haddr_t>(to.size, place + size);
   });
+  to.size = std::max<haddr_t>(to.size, place + size);
+  return 0;
 }
 
 herr_t truncate_driven(H5FD_t* file, hid_t, hbool_t) {
   DrivenFile& to = driven(file);
   if (to.size == to.end_of_addresses) return 0;
-  return guarded([&] {
-    to.file->resize(to.end_of_addresses);
-    to.size = to.end_of_addresses;
-  });
+  write_guarded(to, [&] { to.file->resize(to.end_of_addresses); });
+  to.size = to.end_of_addresses;
+  return 0;
 }
 
 hid_t driver() {
@@ -202,7 +217,12 @@ bool is_hdf5_file(OpenFile& file) {
 
 bool take_met_global_heap() { return std::exchange(met_global_heap, false); }
 
-int take_failed_system_call() { return std::exchange(failed_call, 0); }
+int take_failed_system_call() {
+  write_failed = false;
+  return std::exchange(failed_call, 0);
+}
+
+bool has_failed_write() { return write_failed; }
 
 void check_system_calls() {
   if (failed_call != 0) check_hdf5(-1, "read the file");

@@ -8,7 +8,7 @@
 namespace beamgyro::internal {
 
 void check_hdf5(herr_t status, const std::string& action) {
-  if (status >= 0) return;
+  if (status >= 0 && !has_failed_write()) return;
   const int error = take_failed_system_call();
   std::string cause;
   const auto take_first = [](unsigned n, const H5E_error2_t* entry,

@@ -18,9 +18,10 @@ struct Hdf5Error : std::runtime_error {
   int error_number;  // errno of the system call that failed; 0: none did
 };
 
-/// Throws Hdf5Error "cannot <action>: <cause>" when `status` is negative. The
-/// cause is the system call that failed, or else the innermost entry of the
-/// library's error stack.
+/// Throws Hdf5Error "cannot <action>: <cause>" when `status` is negative or a
+/// write has failed below the library, which does not learn of it. The cause is
+/// the system call that failed, or else the innermost entry of the library's
+/// error stack.
 void check_hdf5(herr_t status, const std::string& action);
 
 /// Returns a yes or no that the library answered. A negative value means that
@@ -30,6 +31,9 @@ bool is_true(htri_t answer, const std::string& question);
 /// Returns errno of the first system call that failed below the library since
 /// the last call of this function, or 0; see hdf5_driver.h.
 int take_failed_system_call();
+
+/// Returns whether a write failed since then.
+bool has_failed_write();
 
 /// Gives this thread sole use of HDF5 until the end of the scope, because the
 /// high-level part of the library has no lock of its own. HDF5 then does not
