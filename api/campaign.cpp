@@ -30,21 +30,20 @@ Campaign Campaign::read(const std::filesystem::path& file,
   return campaign_of(internal::Campaign::read(file, as_long(devices)));
 }
 
-Campaign Campaign::parse(const std::vector<CampaignFile>& files,
+Campaign Campaign::parse(const std::vector<InputFile>& files,
                          std::optional<std::uint32_t> devices) {
   if (files.empty())
     throw std::invalid_argument("no files; expected those of a campaign");
   std::vector<internal::SourceText> copies;
-  for (const CampaignFile& file : files)
-    copies.push_back({file.path, file.text});
+  for (const InputFile& file : files) copies.push_back({file.path, file.text});
   return campaign_of(internal::Campaign::of_copies(copies, as_long(devices)));
 }
 
 std::string Campaign::name() const { return state_->campaign.name(); }
 std::string Campaign::text() const { return state_->campaign.text(); }
 
-std::vector<CampaignFile> Campaign::files() const {
-  std::vector<CampaignFile> files;
+std::vector<InputFile> Campaign::files() const {
+  std::vector<InputFile> files;
   for (const internal::SourceText& source : state_->campaign.sources())
     files.push_back({source.path, source.text});
   return files;

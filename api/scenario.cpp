@@ -10,6 +10,7 @@
 #include "api/device_state.h"
 #include "api/key_overrides.h"
 #include "api/scenario_state.h"
+#include "dataset/files/text_file.h"
 #include "sim/scenario/carrier_run.h"
 
 namespace beamgyro {
@@ -25,12 +26,13 @@ void require_no_device_key(const std::vector<std::string>& overrides) {
 
 Scenario scenario_of(internal::InputText scenario, internal::InputText device,
                      std::vector<std::string> device_overrides,
-                     std::vector<std::string> overrides) {
+                     std::vector<std::string> overrides,
+                     const internal::ProfileTexts& profiles) {
   require_no_device_key(overrides);
   auto state = std::make_shared<Scenario::State>();
   state->loaded = internal::load_scenario(
-      scenario, device,
-      internal::merged_overrides(device_overrides, overrides));
+      scenario, device, internal::merged_overrides(device_overrides, overrides),
+      profiles);
   state->scenario = std::move(scenario);
   state->device = std::move(device);
   state->device_overrides = std::move(device_overrides);
@@ -54,11 +56,21 @@ Scenario Scenario::read(const std::filesystem::path& file,
   return Scenario(std::move(state));
 }
 
+Scenario Scenario::read(const std::filesystem::path& file, const Device& device,
+                        const std::vector<std::string>& overrides) {
+  return parse(internal::read_text_file(file), device, overrides,
+               file.string());
+}
+
 Scenario Scenario::parse(const std::string& text, const Device& device,
                          const std::vector<std::string>& overrides,
-                         const std::string& name) {
+                         const std::string& name,
+                         const std::vector<InputFile>& profiles) {
+  internal::ProfileTexts texts;
+  for (const InputFile& file : profiles)
+    texts.emplace(file.path.lexically_normal(), file.text);
   return scenario_of({text, name}, {device.text(), device.name()},
-                     device.overrides(), overrides);
+                     device.overrides(), overrides, texts);
 }
 
 Scenario Scenario::with(const std::vector<std::string>& overrides) const {
@@ -68,11 +80,12 @@ Scenario Scenario::with(const std::vector<std::string>& overrides) const {
     return internal::key_of_override(text) == "device";
   });
   return scenario_of(state_->scenario, state_->device, state_->device_overrides,
-                     internal::merged_overrides(all, overrides));
+                     internal::merged_overrides(all, overrides),
+                     state_->loaded.profiles);
 }
 
 Scenario Scenario::with_device(const Device& device) const {
-  return parse(text(), device, state_->overrides, name());
+  return parse(text(), device, state_->overrides, name(), profiles());
 }
 
 std::string Scenario::text() const { return state_->scenario.text; }
@@ -86,6 +99,12 @@ std::vector<std::string> Scenario::overrides() const {
 }
 std::vector<std::filesystem::path> Scenario::files() const {
   return state_->loaded.files;
+}
+std::vector<InputFile> Scenario::profiles() const {
+  std::vector<InputFile> all;
+  for (const auto& [path, text] : state_->loaded.profiles)
+    all.push_back({path, text});
+  return all;
 }
 
 std::string Scenario::title() const {

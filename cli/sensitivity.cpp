@@ -60,7 +60,7 @@ std::map<std::string, double> limits_of(const SensitivityArguments& arguments) {
   return limits;
 }
 
-SensitivityResult studied_with_progress(const SensitivityStudy& study) {
+SensitivityResult run_with_progress(const SensitivityStudy& study) {
   DeviceSampleCounts counts;
   const auto total = static_cast<double>(study.devices());
   const auto done = [&] {
@@ -70,13 +70,13 @@ SensitivityResult studied_with_progress(const SensitivityStudy& study) {
                                         total, counts.failures.load())};
   };
   const Progress progress("sampling " + study.campaign.name(), done);
-  return studied(study, counts);
+  return run_study(study, counts);
 }
 
 void require_places(const SensitivityArguments& arguments,
                     const beamgyro::Campaign& campaign) {
   std::vector<std::filesystem::path> inputs;
-  for (const CampaignFile& file : campaign.files()) inputs.push_back(file.path);
+  for (const InputFile& file : campaign.files()) inputs.push_back(file.path);
   if (!arguments.compensator.empty())
     inputs.emplace_back(arguments.compensator);
   if (!arguments.json.empty()) {
@@ -110,7 +110,7 @@ int sensitivity(const SensitivityArguments& arguments) {
   const auto campaign = beamgyro::Campaign::read(arguments.campaign);
   const SensitivityStudy study = checked_study(campaign, options_of(arguments));
   require_places(arguments, campaign);
-  const SensitivityResult result = studied_with_progress(study);
+  const SensitivityResult result = run_with_progress(study);
   print_result(result.text);
   if (!arguments.json.empty()) write_text_file(arguments.json, result.json);
   if (!arguments.pictures.empty()) {

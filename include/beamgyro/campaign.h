@@ -16,12 +16,6 @@
 
 namespace beamgyro {
 
-/// A file that a campaign is made of.
-struct CampaignFile {
-  std::filesystem::path path;
-  std::string text;  ///< byte for byte
-};
-
 /// A population of devices and the runs of each of them, read from a campaign
 /// file (docs/reference/campaign_file.md) and checked. Immutable; copies share
 /// their state, and many threads may use one at once.
@@ -38,20 +32,20 @@ class Campaign {
   /// The same from texts in memory: the campaign first, then every file that it
   /// names, in any order. No file is read. Also throws std::invalid_argument
   /// for a file that is not among them.
-  static Campaign parse(const std::vector<CampaignFile>& files,
+  static Campaign parse(const std::vector<InputFile>& files,
                         std::optional<std::uint32_t> devices = {});
 
   std::string name() const;
   std::string text() const;  ///< byte for byte as read
   /// Campaign, device, scenarios and their profiles in the order of reading.
-  std::vector<CampaignFile> files() const;
+  std::vector<InputFile> files() const;
   std::uint32_t devices() const;
   std::uint64_t seed() const;
   std::vector<std::string> runs() const;  ///< their names
 
   /// Returns the KEY=VALUE lines that make device `number` of the base device.
-  /// `number` may be larger than devices(). Throws std::runtime_error for one
-  /// that cannot be built.
+  /// Throws std::invalid_argument for a number of devices() or more, and
+  /// std::runtime_error for a device that cannot be built.
   std::vector<std::string> device_overrides(std::uint32_t number) const;
   /// Returns the device itself. Throws as device_overrides().
   Device device(std::uint32_t number) const;

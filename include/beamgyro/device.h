@@ -11,6 +11,12 @@
 
 namespace beamgyro {
 
+/// A file that was read.
+struct InputFile {
+  std::filesystem::path path;
+  std::string text;  ///< byte for byte
+};
+
 /// A gyro, read from a device file (docs/reference/device_file.md) and checked.
 /// Immutable; copies share their state, and many threads may use one at once.
 class Device {
@@ -63,9 +69,10 @@ struct Characteristic {
   std::string csv;  ///< byte for byte what `beamgyro characterise` writes
 };
 
-/// Returns start, start + step, ... [degC] up to `stop`, which belongs to them.
-/// Throws std::invalid_argument for a number that is not finite, a step that
-/// does not lead from start to stop, and more than 1,000,000 temperatures.
+/// Returns start, start + step, ... [degC] up to `stop`, and `stop` itself
+/// where a step meets it. Throws std::invalid_argument for a number that is not
+/// finite, a step that does not lead from start to stop, and more than
+/// 1,000,000 temperatures.
 std::vector<double> even_temperatures(double start, double stop, double step);
 
 /// Computes the steady state at beam temperatures [degC], in their order.

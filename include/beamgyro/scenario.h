@@ -29,15 +29,23 @@ class Scenario {
   static Scenario read(const std::filesystem::path& file,
                        const std::vector<std::string>& overrides = {});
 
+  /// The same with another device; the file that the scenario names is not
+  /// read.
+  static Scenario read(const std::filesystem::path& file, const Device& device,
+                       const std::vector<std::string>& overrides = {});
+
   /// The same for texts in memory. The file that the scenario names as its
   /// device is not read. `name` is the name of the scenario in messages;
-  /// profiles that the scenario names are relative to its folder.
+  /// profiles that the scenario names are relative to its folder. Those that
+  /// are among `profiles` are not read.
   static Scenario parse(const std::string& text, const Device& device,
                         const std::vector<std::string>& overrides = {},
-                        const std::string& name = "scenario");
+                        const std::string& name = "scenario",
+                        const std::vector<InputFile>& profiles = {});
 
   /// Returns the scenario with further keys of it or of its device replaced. A
-  /// key that was replaced before takes the new value. Throws as read().
+  /// key that was replaced before takes the new value. Profiles that were read
+  /// before are not read again. Throws as read().
   Scenario with(const std::vector<std::string>& overrides) const;
 
   /// Returns the scenario with another device, whose overrides go along; those
@@ -50,6 +58,7 @@ class Scenario {
   std::vector<std::string> overrides() const;  ///< in their order
   /// All files that were read.
   std::vector<std::filesystem::path> files() const;
+  std::vector<InputFile> profiles() const;  ///< those among them
 
   std::string title() const;
   double duration() const;       ///< [s]

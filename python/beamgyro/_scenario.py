@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, Literal, Optional, Union, overload
 
 import numpy as np
 
 from beamgyro import _arguments, _checks, _core, _toml
-from beamgyro._dataset import dataset_of
+from beamgyro._dataset import dataset_of, recording_name
 from beamgyro._device import Device, DeviceLike, Keys, Path, device_of
 from beamgyro._progress import ProgressArgument, Watched
 from beamgyro._warnings import warn
@@ -25,8 +26,9 @@ Arrays = dict[str, "np.ndarray[Any, Any]"]
 class Scenario:
     """What happens to a gyro over time, and the gyro that it happens to.
 
-    It does not change. Two scenarios are equal when their texts, devices and
-    replaced keys are; a scenario pickles as these.
+    It does not change, even where a file that it was read from does. Two
+    scenarios are equal when their texts, devices, replaced keys and profiles
+    are; a scenario pickles as these.
 
     Args:
         source: a scenario file, or its contents as a nested mapping. In a
@@ -72,7 +74,7 @@ class Scenario:
         """
         return cls._of(_core.Scenario.parse(
             _checks.text(text, "text"), device_of(device)._native,
-            _toml.overrides(set), _checks.text(name, "name")))
+            _toml.overrides(set), _checks.text(name, "name"), []))
 
     @classmethod
     def _of(cls, core: _core.Scenario) -> Scenario:
@@ -143,8 +145,9 @@ class Scenario:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scenario):
             return NotImplemented
-        return (self.text, self.overrides, self.device) == (
-            other.text, other.overrides, other.device)
+        return (self.text, self.overrides, self.device,
+                self._native.profiles) == (
+            other.text, other.overrides, other.device, other._native.profiles)
 
     def __hash__(self) -> int:
         return hash((self.text, tuple(self.overrides)))
@@ -158,13 +161,13 @@ class Scenario:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _scenario_of, (self.text, self.device, self.overrides,
-                              self.name)
+                              self.name, self._native.profiles)
 
 
-def _scenario_of(text: str, device: Device, overrides: list[str],
-                 name: str) -> Scenario:
-    return Scenario._of(
-        _core.Scenario.parse(text, device._native, overrides, name))
+def _scenario_of(text: str, device: Device, overrides: list[str], name: str,
+                 profiles: list[tuple[FilePath, str]]) -> Scenario:
+    return Scenario._of(_core.Scenario.parse(text, device._native, overrides,
+                                             name, profiles))
 
 
 def _scenario_of_keys(keys: Keys, device: Optional[DeviceLike],
@@ -179,7 +182,7 @@ def _scenario_of_keys(keys: Keys, device: Optional[DeviceLike],
     is_path = isinstance(named, (str, os.PathLike))
     written = {**keys, "device": named if is_path else unit.name}
     return _core.Scenario.parse(_toml.text(written), unit._native, overrides,
-                                "scenario")
+                                "scenario", [])
 
 
 def _simulated(source: ScenarioLike, device: Optional[DeviceLike],
@@ -188,7 +191,7 @@ def _simulated(source: ScenarioLike, device: Optional[DeviceLike],
     keys = _toml.merged(set, {}, "set")
     for name, value in (("seed", seed), ("fidelity", fidelity)):
         if name == "seed" and value is not None:
-            value = _arguments.seed(value)
+            value = _arguments.seed(value, _arguments.LARGEST_TOML_SEED)
         if value is not None:
             keys.pop(name, None)
             keys[name] = value
@@ -247,7 +250,7 @@ def run(scenario: ScenarioLike, *, device: Optional[DeviceLike] = None,
         stop_on_unlock: fail where the drive loop is not locked one second
             after a power-on or later.
         progress: True for a bar on standard error, or a function that is
-            told the share of the work that is done, from 0 to 1.
+            called with the share of the work that is done, from 0 to 1.
 
     Returns:
         The recording, with the variables and attributes of its file. No
@@ -277,7 +280,7 @@ def run_to_file(scenario: ScenarioLike, path: Path, *,
     Memory does not grow with the run. Arguments and errors as of `run`.
     """
     core = _simulated(scenario, device, set, seed, fidelity)
-    file = _checks.path(path, "path")
+    file = recording_name(path)
     with Watched(progress, "simulating") as function:
         warnings = _core.simulate_to_file(
             core, file, _checks.flag(stop_on_unlock, "stop_on_unlock"),

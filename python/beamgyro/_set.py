@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, Optional, Union
@@ -128,8 +129,9 @@ class Set(Mapping[tuple[str, int], "xr.Dataset"]):
     _native: _core.Set
 
     def __init__(self, directory: Path) -> None:
-        self._native = _core.Set.open(
-            _checks.file(directory, "set", "the directory of a set"))
+        # Absolute: it is read later, when another directory may be current.
+        self._native = _core.Set.open(os.path.abspath(
+            _checks.file(directory, "set", "the directory of a set")))
 
     @property
     def directory(self) -> FilePath:
@@ -217,8 +219,11 @@ class Set(Mapping[tuple[str, int], "xr.Dataset"]):
             raise ValueError(
                 f"{self.directory}: has no run {_checks.shown(run)}; expected "
                 f"one of {', '.join(self.runs)}")
-        dataset: xr.Dataset = _lazy.xarray().open_dataset(
-            self.directory / f"{run}.nc", engine="h5netcdf")
+        file = self.directory / f"{run}.nc"
+        if not file.is_file():
+            raise ValueError(f"{file}: no such file; expected the whole set")
+        dataset: xr.Dataset = _lazy.xarray().open_dataset(file,
+                                                          engine="h5netcdf")
         return dataset
 
     def verify(self, progress: ProgressArgument = False
@@ -305,7 +310,7 @@ def generate(campaign: CampaignLike, directory: Path, *,
         jobs: threads; 0: one for each core.
         resume: continues the set that is in the directory.
         progress: True for a bar on standard error, or a function that is
-            told the share of the work that is done, from 0 to 1.
+            called with the share of the work that is done, from 0 to 1.
 
     Raises:
         ValueError: something is wrong in the campaign, or the directory

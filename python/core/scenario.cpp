@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "dataset/files/text_file.h"
 #include "include/beamgyro/progress.h"
 #include "include/beamgyro/simulate.h"
 #include "python/core/bindings.h"
+#include "python/core/input_files.h"
 #include "python/core/long_call.h"
 #include "python/core/recording.h"
 
@@ -41,22 +41,32 @@ std::vector<std::string> simulate_into(const Scenario& scenario,
   });
 }
 
-Scenario read_with(const std::filesystem::path& file, const Device& device,
-                   const std::vector<std::string>& overrides) {
-  return Scenario::parse(internal::read_text_file(file), device, overrides,
-                         file.string());
+Scenario parse(const std::string& text, const Device& device,
+               const std::vector<std::string>& overrides,
+               const std::string& name, const PathsAndTexts& profiles) {
+  return Scenario::parse(text, device, overrides, name, input_files(profiles));
+}
+
+PathsAndTexts profiles_of(const Scenario& scenario) {
+  return paths_and_texts(scenario.profiles());
 }
 
 }  // namespace
 
 void bind_scenario(py::module_& core) {
   py::class_<Scenario>(core, "Scenario")
-      .def_static("read", &Scenario::read, py::arg("file"),
-                  py::arg("overrides"))
-      .def_static("read_with", &read_with, py::arg("file"), py::arg("device"),
-                  py::arg("overrides"))
-      .def_static("parse", &Scenario::parse, py::arg("text"), py::arg("device"),
-                  py::arg("overrides"), py::arg("name"))
+      .def_static(
+          "read",
+          py::overload_cast<const std::filesystem::path&,
+                            const std::vector<std::string>&>(&Scenario::read),
+          py::arg("file"), py::arg("overrides"))
+      .def_static(
+          "read_with",
+          py::overload_cast<const std::filesystem::path&, const Device&,
+                            const std::vector<std::string>&>(&Scenario::read),
+          py::arg("file"), py::arg("device"), py::arg("overrides"))
+      .def_static("parse", &parse, py::arg("text"), py::arg("device"),
+                  py::arg("overrides"), py::arg("name"), py::arg("profiles"))
       .def("with_", &Scenario::with, py::arg("overrides"))
       .def("with_device", &Scenario::with_device, py::arg("device"))
       .def_property_readonly("text", &Scenario::text)
@@ -64,6 +74,7 @@ void bind_scenario(py::module_& core) {
       .def_property_readonly("device", &Scenario::device)
       .def_property_readonly("overrides", &Scenario::overrides)
       .def_property_readonly("files", &Scenario::files)
+      .def_property_readonly("profiles", &profiles_of)
       .def_property_readonly("title", &Scenario::title)
       .def_property_readonly("duration", &Scenario::duration)
       .def_property_readonly("output_rate", &Scenario::output_rate)

@@ -15,6 +15,7 @@
 
 #include "include/beamgyro/campaign.h"
 #include "python/core/bindings.h"
+#include "python/core/input_files.h"
 #include "python/core/long_call.h"
 #include "python/core/recording.h"
 
@@ -71,19 +72,13 @@ py::tuple generate_set(const Campaign& campaign,
                         std::move(outcome.text));
 }
 
-Campaign parse_campaign(
-    const std::vector<std::pair<std::filesystem::path, std::string>>& files,
-    std::optional<std::uint32_t> devices) {
-  std::vector<CampaignFile> all;
-  for (const auto& [path, text] : files) all.push_back({path, text});
-  return Campaign::parse(all, devices);
+Campaign parse_campaign(const PathsAndTexts& files,
+                        std::optional<std::uint32_t> devices) {
+  return Campaign::parse(input_files(files), devices);
 }
 
-py::list files_of(const Campaign& campaign) {
-  py::list all;
-  for (const CampaignFile& file : campaign.files())
-    all.append(py::make_tuple(file.path, file.text));
-  return all;
+PathsAndTexts files_of(const Campaign& campaign) {
+  return paths_and_texts(campaign.files());
 }
 
 }  // namespace

@@ -7,7 +7,10 @@
 
 #include "config/document.h"
 #include "config/file_error.h"
+#include "dataset/files/text_file.h"
+#include "dataset/log/csv_file.h"
 #include "sim/device/device_file.h"
+#include "sim/scenario/profile_keys.h"
 #include "sim/scenario/scenario_file.h"
 
 namespace beamgyro::internal {
@@ -21,17 +24,44 @@ LoadedDevice device_of(const ConfigDocument& document, const Overrides& set) {
   return loaded;
 }
 
-Scenario scenario_of(const ConfigDocument& document) {
-  Scenario scenario = read_scenario(document);
+/// A scenario, and the profiles that it names as they were read.
+struct ReadScenario {
+  Scenario scenario;
+  ProfileTexts profiles;
+};
+
+ReadScenario scenario_of(const ConfigDocument& document,
+                         const ProfileTexts& known) {
+  ProfileTables tables;
+  for (const auto& [path, text] : known)
+    tables.emplace(path, parse_csv(text, path));
+  // An error in a profile names its place in the scenario.
+  Scenario scenario = read_scenario(document, &tables);
   document.reject_unknown_keys();
-  return scenario;
+  ProfileTexts profiles;
+  bool has_read = false;
+  for (const std::filesystem::path& file : profile_files(document)) {
+    const std::filesystem::path path = file.lexically_normal();
+    const auto before = known.find(path);
+    has_read = has_read || before == known.end();
+    const std::string& text =
+        profiles
+            .emplace(path, before == known.end() ? read_text_file(file)
+                                                 : before->second)
+            .first->second;
+    tables.try_emplace(path, parse_csv(text, path));
+  }
+  // A file may have changed since; the texts are what counts.
+  if (has_read) scenario = read_scenario(document, &tables);
+  return {std::move(scenario), std::move(profiles)};
 }
 
-LoadedScenario loaded(Scenario scenario, const ConfigDocument& document,
+LoadedScenario loaded(ReadScenario read, const ConfigDocument& document,
                       const ConfigDocument& unit, const Overrides& set) {
   LoadedDevice device = device_of(unit, set);
-  return {std::move(scenario),    device.device, document.text(),
-          std::move(device.text), set.text(),    profile_files(document)};
+  return {std::move(read.scenario), device.device, document.text(),
+          std::move(device.text),   set.text(),    profile_files(document),
+          std::move(read.profiles)};
 }
 
 }  // namespace
@@ -52,24 +82,26 @@ LoadedScenario load_scenario(const std::filesystem::path& path,
                              const std::vector<std::string>& overrides) {
   Overrides set(overrides);
   const ConfigDocument document = ConfigDocument::read(path, set);
-  const Scenario scenario = scenario_of(document);
-  if (!std::filesystem::exists(status_of(scenario.device_file)))
+  ReadScenario read = scenario_of(document, {});
+  const std::filesystem::path device = read.scenario.device_file;
+  if (!std::filesystem::exists(status_of(device)))
     document.root().fail("device",
                          fmt::format("there is no file {}; expected one, named "
                                      "relative to the scenario",
-                                     scenario.device_file.string()));
-  LoadedScenario input = loaded(
-      scenario, document, ConfigDocument::read(scenario.device_file, set), set);
-  input.files.insert(input.files.end(), {path, scenario.device_file});
+                                     device.string()));
+  LoadedScenario input =
+      loaded(std::move(read), document, ConfigDocument::read(device, set), set);
+  input.files.insert(input.files.end(), {path, device});
   return input;
 }
 
 LoadedScenario load_scenario(const InputText& scenario, const InputText& device,
-                             const std::vector<std::string>& overrides) {
+                             const std::vector<std::string>& overrides,
+                             const ProfileTexts& profiles) {
   Overrides set(overrides);
   const ConfigDocument document =
       ConfigDocument::parse(scenario.text, scenario.name, set);
-  return loaded(scenario_of(document), document,
+  return loaded(scenario_of(document, profiles), document,
                 ConfigDocument::parse(device.text, device.name, set), set);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,20 +28,26 @@ LoadedDevice load_device(const std::filesystem::path& path,
 LoadedDevice load_device(const InputText& input,
                          const std::vector<std::string>& overrides);
 
+/// Texts of profile files by their lexically normal path.
+using ProfileTexts = std::map<std::filesystem::path, std::string>;
+
 /// A scenario, its device, and the texts that a recording stores.
 struct LoadedScenario {
   Scenario scenario;
   Device device;
   std::string scenario_text, device_text, overrides_text;
   std::vector<std::filesystem::path> files;  // all that were read
+  ProfileTexts profiles;                     // those among them
 };
 /// Reads a scenario and its device. Throws std::invalid_argument for an error
 /// in either file and for an override whose key neither of them has.
 LoadedScenario load_scenario(const std::filesystem::path& path,
                              const std::vector<std::string>& overrides);
 /// The same for texts in memory. The file that the scenario names as its device
-/// is not read; `files` are the profiles.
+/// is not read, nor are files that are among `profiles`; `files` of the result
+/// are the profiles.
 LoadedScenario load_scenario(const InputText& scenario, const InputText& device,
-                             const std::vector<std::string>& overrides);
+                             const std::vector<std::string>& overrides,
+                             const ProfileTexts& profiles = {});
 
 }  // namespace beamgyro::internal
