@@ -10,9 +10,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <memory>
+#include <span>
 #include <stdexcept>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "api/checked_number.h"
@@ -252,19 +253,21 @@ ExportResult export_files(const std::vector<Compensator>& compensators,
 
 void write_exported(const std::filesystem::path& directory,
                     const std::vector<ExportedFile>& files) {
+  for (const ExportedFile& file : files)
+    if (std::filesystem::path(file.name).filename() != file.name ||
+        file.name.empty() || file.name == "." || file.name == "..")
+      throw std::invalid_argument(
+          fmt::format("'{}': expected the name of a file in the directory {}",
+                      file.name, directory.string()));
   const internal::MadeDirectories made(directory);
-  std::vector<std::filesystem::path> written;
-  try {
-    for (const auto& [called, text] : files) {
-      internal::write_text_file(directory / called, text);
-      written.push_back(directory / called);
-    }
-  } catch (...) {
-    std::error_code ignored;
-    for (const std::filesystem::path& path : written)
-      std::filesystem::remove(path, ignored);
-    throw;
+  // All are complete beside those that they replace before the first does.
+  std::vector<std::unique_ptr<internal::AtomicFile>> written;
+  for (const ExportedFile& file : files) {
+    written.push_back(
+        std::make_unique<internal::AtomicFile>(directory / file.name));
+    written.back()->file().write(std::as_bytes(std::span(file.text)));
   }
+  for (const auto& file : written) file->publish();
 }
 
 }  // namespace beamgyro

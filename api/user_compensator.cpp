@@ -114,7 +114,7 @@ class UserCompensator final : public TestedCompensator {
     }
     answer.clamped += part.clamped;
     for (const std::string& words : part.faults)
-      answer.faults.push_back({AnswerFault::kOfItsOwn, stretch.begin, words});
+      answer.faults.push_back({AnswerFault::kReported, stretch.begin, words});
     if (part.rate.size() == stretch.size() || !answer.faults.empty()) return;
     const bool too_few = part.rate.size() < stretch.size();
     answer.faults.push_back(

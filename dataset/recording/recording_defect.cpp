@@ -60,10 +60,14 @@ std::string defect_of_texts(const Recording& recording) {
       return fmt::format("{}: a NUL in units, long_name or comment",
                          column.name);
     const RecordedSignal* signal = find_recorded_signal(column.name);
-    if (signal != nullptr && !column.units.empty() &&
-        column.units != signal->units)
+    if (signal == nullptr) continue;
+    if (!column.units.empty() && column.units != signal->units)
       return fmt::format("{}: unit '{}'; expected '{}'", column.name,
                          column.units, signal->units);
+    // A truth that calls itself measured would be given to compensators.
+    if (column.role != signal->role)
+      return fmt::format("{}: role '{}'; expected '{}'", column.name,
+                         role_name(column.role), role_name(signal->role));
   }
   for (const std::string* text :
        {&recording.title, &recording.history, &recording.compensator,

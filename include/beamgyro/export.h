@@ -23,9 +23,9 @@ struct ExportOptions {
   std::optional<int> instance = {};                ///< px4, ardupilot
   std::optional<std::int64_t> device_id = {};      ///< px4
   std::optional<std::filesystem::path> rest = {};  ///< ekf: recording at rest
-  std::optional<double> ramp_K_per_min = {};    ///< ekf; 0 or more; 1 without
+  std::optional<double> ramp_K_per_min = {};    ///< ekf; 0 to 1000; 1 without
   std::optional<double> correlation_K = {};     ///< ekf; above 0; 10 without
-  std::optional<double> temperature_degC = {};  ///< ekf
+  std::optional<double> temperature_degC = {};  ///< ekf; -273.15 to 1000
 };
 
 /// A text file without its folder.
@@ -46,9 +46,10 @@ ExportResult export_files(const std::vector<Compensator>& compensators,
                           const std::string& format,
                           const ExportOptions& options = {});
 
-/// Writes all files to a directory, or none. The directory and those above it
-/// are made where they are missing. Throws std::invalid_argument where that
-/// cannot be, and std::runtime_error when writing fails.
+/// Writes files to a directory. The directory and those above it are made where
+/// they are missing. Files that are there keep their contents until all new
+/// ones are complete. Throws std::invalid_argument where that cannot be and for
+/// a name with a directory in it, and std::runtime_error when writing fails.
 void write_exported(const std::filesystem::path& directory,
                     const std::vector<ExportedFile>& files);
 

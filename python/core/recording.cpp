@@ -155,13 +155,7 @@ Column column_of(const std::string& name, const Doubles& values,
       column.units = text;
     }
     if (attribute == "long_name") column.long_name = text;
-    if (attribute == "role") {
-      column.role = role_of(text);
-      if (known != nullptr && column.role != known->role)
-        throw std::invalid_argument(
-            fmt::format("{}: role \"{}\"; expected \"{}\"", name, text,
-                        role_name(known->role)));
-    }
+    if (attribute == "role") column.role = role_of(text);
     if (attribute == "comment") column.comment = text;
   }
   return column;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -112,8 +114,8 @@ TEST_F(UntrustedRecording, AllanHasNoCoefficientsOfWhatIsBeyondNumbers) {
     expect_refused("samples a second", [&] { allan(values, wrong); });
 }
 
-/// A class of a user's that says what is wrong with it.
-class Confessing final : public RateCompensator {
+/// A class of a user's that may report a fault of its own.
+class OfAUser final : public RateCompensator {
  public:
   std::string name() const override { return "mine"; }
   std::vector<std::string> inputs() const override { return {"rate"}; }
@@ -127,8 +129,8 @@ class Confessing final : public RateCompensator {
   bool is_broken = false;
 };
 
-TEST_F(UntrustedRecording, FaultsThatAClassTellsEndTheCompensation) {
-  Confessing mine;
+TEST_F(UntrustedRecording, FaultsThatAClassReportsEndTheCompensation) {
+  OfAUser mine;
   const CompensatedRun answered = compensate(mine, run_);
   ASSERT_EQ(answered.warnings.size(), 1U);
   EXPECT_NE(answered.warnings[0].find("3 of 3000 samples were clamped"),
@@ -143,8 +145,72 @@ TEST_F(UntrustedRecording, FaultsThatAClassTellsEndTheCompensation) {
   }
 }
 
+TEST_F(UntrustedRecording, FaultsThatAClassReportsFailTheValidation) {
+  OfAUser mine;
+  const std::string path = testing::TempDir() + "fault_of_a_class.h5";
+  write_recording(run_, path);
+  const auto json = [&] {
+    ValidationOptions options;
+    options.recordings = {path};
+    return validate(mine, options).json;
+  };
+  EXPECT_EQ(json().find("the table is empty"), std::string::npos);
+  mine.is_broken = true;
+  const std::string found = json();
+  const std::size_t check = found.find("\"name\": \"answers\"");
+  ASSERT_NE(check, std::string::npos) << found;
+  const std::string answers =
+      found.substr(check, found.find('}', check) - check);
+  EXPECT_NE(answers.find("\"passed\": false"), std::string::npos) << answers;
+  EXPECT_NE(answers.find("the table is empty"), std::string::npos) << answers;
+}
+
+TEST_F(UntrustedRecording, ATruthThatCallsItselfMeasuredIsRefused) {
+  Recording cheating = run_;
+  column_named(cheating, "true_rate").role = Role::kMeasured;
+  expect_refused("true_rate: role 'measured'; expected 'truth'",
+                 [&] { compensate(OfAUser(), cheating); });
+  EXPECT_THROW(write_recording(cheating, testing::TempDir() + "cheating.h5"),
+               std::runtime_error);
+}
+
+std::string contents(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(WriteExported, KeepsWhatIsThereUntilAllFilesAreComplete) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / "write_exported";
+  std::filesystem::remove_all(folder);
+  write_exported(folder, {{"a.c", "old"}});
+  std::filesystem::create_directory(folder / "b.c");  // nothing can replace it
+  expect_refused("b.c", [&] {
+    write_exported(folder, {{"a.c", "new"}, {"b.c", "new"}});
+  });
+  EXPECT_EQ(contents(folder / "a.c"), "old");
+  std::filesystem::remove(folder / "b.c");
+  write_exported(folder, {{"a.c", "new"}, {"b.c", "new"}});
+  EXPECT_EQ(contents(folder / "a.c") + contents(folder / "b.c"), "newnew");
+  std::size_t files = 0;
+  for ([[maybe_unused]] const auto& file :
+       std::filesystem::directory_iterator(folder))
+    ++files;
+  EXPECT_EQ(files, 2U);  // no partial ones
+}
+
+TEST(WriteExported, WritesNowhereButIntoItsDirectory) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / "write_nowhere";
+  for (const char* name : {"../escaped.txt", "/tmp/absolute.txt", "", ".."})
+    expect_refused("expected the name of a file", [&] {
+      write_exported(folder, {{name, "text"}});
+    });
+  EXPECT_FALSE(std::filesystem::exists(folder));
+}
+
 TEST_F(UntrustedRecording, OptionsThatDoNotApplyAreRefused) {
-  const Confessing mine;
+  const OfAUser mine;
   const auto device =
       beamgyro::Device::read(kScenarios / "devices/nominal.toml");
   expect_refused("runs and devices", [&] {

@@ -33,7 +33,7 @@ class AlteredAnswers {
 
  private:
   static constexpr std::size_t kFaults =
-      static_cast<std::size_t>(AnswerFault::kTooSlow) + 1;
+      static_cast<std::size_t>(AnswerFault::kCount);
 
   const TestedCompensator& compensator_;
   mutable std::array<std::atomic<bool>, kFaults> seen_ = {};

@@ -164,7 +164,8 @@ CheckResult check_answers(const CheckContext& context) {
   return fault_result(
       context,
       {AnswerFault::kCrashed, AnswerFault::kTimedOut, AnswerFault::kOutOfMemory,
-       AnswerFault::kTooFew, AnswerFault::kTooMany, AnswerFault::kNotANumber},
+       AnswerFault::kTooFew, AnswerFault::kTooMany, AnswerFault::kNotANumber,
+       AnswerFault::kReported},
       "Every run is answered, one number for each sample.");
 }
 

@@ -48,7 +48,7 @@ void write_pending() noexcept {
   pending.count = 0;
 }
 
-void say(std::string_view text) noexcept {
+void write_error(std::string_view text) noexcept {
   static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
 }
 
@@ -58,7 +58,7 @@ extern "C" {
 static void report_crash(int signal) {
   const bool no_memory = errno == ENOMEM;
   write_pending();
-  if (no_memory) say(kOutOfMemory);
+  if (no_memory) write_error(kOutOfMemory);
   std::signal(signal, SIG_DFL);
   raise(signal);
 }
@@ -238,14 +238,14 @@ int host_plugin(const std::vector<std::string>& words) try {
   return 0;
 } catch (const std::bad_alloc&) {
   write_pending();
-  say(kOutOfMemory);
+  write_error(kOutOfMemory);
   return 1;
 } catch (const std::invalid_argument& error) {
-  say(error.what());
+  write_error(error.what());
   return 2;
 } catch (const std::exception& error) {
   write_pending();
-  say(error.what());
+  write_error(error.what());
   return 1;
 }
 

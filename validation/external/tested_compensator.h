@@ -24,7 +24,8 @@ enum class AnswerFault {
   kKeepsState,        // another answer to the same run after a reset
   kUsesLaterSamples,  // an answer changes with a later sample
   kTooSlow,           // slower than real time
-  kOfItsOwn,          // told by a class of the user's own
+  kReported,          // reported by a class of the user's own
+  kCount              // no fault: how many there are
 };
 
 /// A fault that was seen, in words for the user.

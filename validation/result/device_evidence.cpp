@@ -186,7 +186,7 @@ DeviceEvidence answered_evidence(std::vector<ReadRun> read,
       found.answers[k] = answering.compensator.answer(run);
     }
     found.after.runs[k] = evidence(found.answers[k].rate,
-                                   answering.tells_clamped
+                                   answering.reports_clamped
                                        ? std::optional(found.answers[k].clamped)
                                        : std::nullopt);
     if (!found.answers[k].sigma.empty())
@@ -200,7 +200,7 @@ DeviceEvidence answered_evidence(std::vector<ReadRun> read,
 DeviceEvidence device_evidence(const Qualification& qualification,
                                const QualifiedDevice& device,
                                const TestedCompensator& compensator,
-                               const TrainingData& data, bool tells_clamped,
+                               const TrainingData& data, bool reports_clamped,
                                std::size_t threads,
                                const ProgressOfWork& progress) {
   const std::vector<QualificationRun>& planned = qualification.runs;
@@ -214,7 +214,7 @@ DeviceEvidence device_evidence(const Qualification& qualification,
   return answered_evidence(
       std::move(read), std::move(runs),
       {compensator, trained_baselines(data, threads),
-       device.device.readout.full_scale / kDegree, tells_clamped},
+       device.device.readout.full_scale / kDegree, reports_clamped},
       threads, on_done);
 }
 

@@ -74,7 +74,7 @@ struct Answering {
   std::vector<BaselineMethod> baselines = {};  // beside "none"
   double full_scale = 150.0;                   // [deg/s]
   // Whether the answers count the samples outside what training saw.
-  bool tells_clamped = false;
+  bool reports_clamped = false;
 };
 
 /// Answers runs with the compensator and every baseline. `on_done`, if there is
@@ -91,7 +91,7 @@ DeviceEvidence answered_evidence(std::vector<ReadRun> read,
 DeviceEvidence device_evidence(const Qualification& qualification,
                                const QualifiedDevice& device,
                                const TestedCompensator& compensator,
-                               const TrainingData& data, bool tells_clamped,
+                               const TrainingData& data, bool reports_clamped,
                                std::size_t threads,
                                const ProgressOfWork& progress = {});
 

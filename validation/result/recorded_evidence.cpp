@@ -40,7 +40,7 @@ DeviceEvidence evidence_of(std::vector<ReadRun> read,
   Answering answering{.compensator = by.compensator,
                       .baselines = {},
                       .full_scale = full_scale.value_or(kFullScale),
-                      .tells_clamped = by.known != nullptr};
+                      .reports_clamped = by.known != nullptr};
   if (by.known != nullptr)
     answering.baselines.push_back(
         {"cubic", [known = by.known](const Recording& run) {

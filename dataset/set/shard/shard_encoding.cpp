@@ -113,14 +113,15 @@ std::size_t width_of(Storage storage) {
 
 std::string shard_head_defect(const ShardHead& head) {
   Recording names;
-  const auto add = [&](const auto& about) {
+  const auto add = [&](const auto& about, Role role = Role::kMeasured) {
     names.columns.push_back(
-        {about.name, about.units, about.long_name, Role::kMeasured, {}});
+        {about.name, about.units, about.long_name, role, {}});
   };
   for (const char* taken : {"device", "truth_time", "part", "device_status"})
     add(DeviceVariable{taken, "", ""});
   for (const DeviceVariable& parameter : head.parameters) add(parameter);
-  for (const SetVariable& variable : head.variables) add(variable);
+  for (const SetVariable& variable : head.variables)
+    add(variable, variable.role);
   for (const std::string* text :
        {&head.run, &head.fidelity, &head.program_version, &head.git_revision,
         &head.campaign_text, &head.scenario_text, &head.device_text,

@@ -191,7 +191,6 @@ TEST_F(CommandCompensator, SlowerThanRealTimeIsSaid) {
   EXPECT_EQ(only_fault(*slow, tested_run(1.0)).fault, AnswerFault::kTooSlow);
 }
 
-// The start of an interpreter, on a busy machine longer than a short run.
 TEST_F(CommandCompensator, ALoneSampleIsNoSlowness) {
   const Recording lone = tested_run(0.01);
   ASSERT_EQ(lone.time.size(), 1U);
@@ -199,6 +198,7 @@ TEST_F(CommandCompensator, ALoneSampleIsNoSlowness) {
   EXPECT_TRUE(answer.faults.empty()) << answer.faults[0].words;
 }
 
+// The start of an interpreter, on a busy machine longer than a short run.
 TEST_F(CommandCompensator, ALongStartIsNoSlowness) {
   const auto late = program("print(repr(r))", "time.sleep(1.5)");
   EXPECT_TRUE(late->answer(tested_run(1.0)).faults.empty());
