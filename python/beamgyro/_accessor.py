@@ -10,7 +10,7 @@ import xarray
 from beamgyro import _lazy
 from beamgyro._analysis import allan
 from beamgyro._compensation import compensate
-from beamgyro._dataset import Path, save_recording
+from beamgyro._dataset import Path, save_recording, warn_of_lost_units
 from beamgyro._results import AllanResult
 
 
@@ -41,6 +41,7 @@ class RecordingAccessor:
     def plot(self, **options: Any) -> Any:
         """Draw the recording, and return the figure of matplotlib."""
         _lazy.module("matplotlib")
+        warn_of_lost_units(self._dataset)
         return _lazy.module("beamgyro.plots").plot(self._dataset, **options)
 
 

@@ -87,12 +87,18 @@ def _split(answer: Any, what: str, time: np.ndarray[Any, Any]) -> _Answer:
 def _require_times(values: Any, what: str,
                    time: np.ndarray[Any, Any]) -> None:
     """Refuse an array of xarray, or a series of pandas, in another order."""
+    index = getattr(values, "index", None)
     if "time" in getattr(values, "coords", ()):
         own = values.coords["time"]
-    elif getattr(getattr(values, "index", None), "name", None) == "time":
-        own = values.index
-    else:
+    elif getattr(index, "name", None) == "time":
+        own = index
+    elif getattr(index, "is_monotonic_increasing", True):
         return
+    else:
+        raise ValueError(
+            f"the answer of {what}: is a series in the order of something "
+            "else, as its index tells; expected a rate for each sample in "
+            "the order of the signals")
     own = np.asarray(own)
     if own.shape == time.shape and not np.array_equal(own, time):
         raise ValueError(

@@ -69,7 +69,12 @@ class _Files:
 
     def _path(self, name: str) -> str:
         if self._directory is None:
-            self._directory = tempfile.TemporaryDirectory(prefix="beamgyro-")
+            try:
+                self._directory = tempfile.TemporaryDirectory(
+                    prefix="beamgyro-")
+            except OSError as error:
+                raise RuntimeError("cannot make a temporary directory: "
+                                   f"{error.strerror}") from None
         return os.path.join(self._directory.name, name)
 
     def of_run(self, name: str, run: Union[xr.Dataset, Path]) -> str:
@@ -87,7 +92,11 @@ class _Files:
     def of_text(self, name: str, text: str) -> str:
         """Return a TOML file with a text."""
         path = self._path(name if name.endswith(".toml") else f"{name}.toml")
-        FilePath(path).write_text(text, encoding="utf-8")
+        try:
+            FilePath(path).write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise RuntimeError(f"{path}: cannot write: {error.strerror}"
+                               ) from None
         return path
 
     def of_table(self, name: str, table: Union[Path, Mapping[str, Any]],
@@ -135,7 +144,7 @@ def validate(compensator: Any, runs: Optional[Runs] = None, *,
         full_scale: of recordings, the largest rate [degree/s], above 0.
         jobs: threads; 0: one for each core.
         progress: True for a bar on standard error, or a function that is
-            told the share of the work that is done, from 0 to 1.
+            called with the share of the work that is done, from 0 to 1.
 
     Returns:
         The result, which prints as a table; ``passed`` tells the verdict.
@@ -149,6 +158,13 @@ def validate(compensator: Any, runs: Optional[Runs] = None, *,
                          "of runs, set= and device=")
     if isinstance(runs, Set):
         raise _checks.wrong(runs, "runs", "recordings; a set is given as set=")
+    named = _checks.texts(set_runs, "set_runs")
+    numbered = _checks.wholes(set_devices, "set_devices")
+    if set is None:
+        _checks.refuse("for a set", set_runs=named or None,
+                       set_devices=numbered or None)
+    if device is None:
+        _checks.refuse("for a device", qualification=qualification)
     jobs = _arguments.jobs(jobs)
     if devices is not None:
         devices = _arguments.whole(devices, "devices", least=1)
@@ -165,8 +181,7 @@ def validate(compensator: Any, runs: Optional[Runs] = None, *,
         elif set is not None:
             options["set"] = (set if isinstance(set, Set)
                               else Set(set))._native
-            options["runs"] = _checks.texts(set_runs, "set_runs")
-            options["devices"] = _checks.wholes(set_devices, "set_devices")
+            options["runs"], options["devices"] = named, numbered
         else:
             assert device is not None
             options["device"] = device_of(device)._native
@@ -192,13 +207,6 @@ def _judged(compensator: Any, options: dict[str, Any],
         return _core.validate_model(model_of(compensator), options, function)
     return _core.validate(compensator_of(compensator)._native, options,
                           function)
-
-
-def _refuse(reason: str, **options: Any) -> None:
-    for name, value in options.items():
-        if value is not None:
-            raise ValueError(f"{name} {value!r}: is {reason}; expected "
-                             f"no {name}")
 
 
 def _checked_rate(data: Any, rate_Hz: float) -> float:
@@ -270,13 +278,14 @@ def allan(data: Union[xr.Dataset, Path, npt.ArrayLike], *,
         found = _core.allan_file(file, column, rate_Hz, unit, *rest)
     elif hasattr(data, "data_vars"):
         recording: Any = data
-        _refuse("for a CSV or an array; a dataset states its own",
-                rate_Hz=rate_Hz, unit=unit)
+        _checks.refuse("for a CSV or an array; a dataset states its own",
+                       rate_Hz=rate_Hz, unit=unit)
         found = _core.allan_recording(
             recording_of(recording, is_sound=False),
             "rate" if column is None else column, *rest)
     else:
-        _refuse("for a recording or a file; an array has none", column=column)
+        _checks.refuse("for a recording or a file; an array has none",
+                       column=column)
         samples = _arguments.numbers(data, "data")
         if rate_Hz is None:
             raise ValueError("rate_Hz: is missing, which an array needs; "
@@ -374,7 +383,7 @@ def sensitivity(campaign: CampaignLike, *, figures: Sequence[str] = (),
         seed: that of the campaign without.
         jobs: threads; 0: one for each core.
         progress: True for a bar on standard error, or a function that is
-            told the share of the work that is done, from 0 to 1.
+            called with the share of the work that is done, from 0 to 1.
 
     Raises:
         ValueError: something is wrong in the campaign or an argument.

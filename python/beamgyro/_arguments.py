@@ -18,6 +18,7 @@ from beamgyro._words import shown, wrong
 Array = np.ndarray[Any, Any]
 
 _LARGEST_SEED = 2 ** 64 - 1
+LARGEST_TOML_SEED = 2 ** 63 - 1  # an integer of TOML is signed
 _LARGEST_NUMBER = 2 ** 32 - 1  # of devices, samples and the like
 _MOST_JOBS = 4096
 
@@ -70,18 +71,17 @@ def ends(value: Any, name: str) -> tuple[float, float]:
     return number(low, name), number(high, name)
 
 
-def seed(value: Any) -> int:
+def seed(value: Any, most: int = _LARGEST_SEED) -> int:
     """Return the seed of a random stream."""
-    return whole(value, "seed", 0, _LARGEST_SEED)
+    return whole(value, "seed", 0, most)
 
 
 def _given(values: Any, name: str) -> Array:
     """Return an array with one dimension, of any numbers."""
     if hasattr(values, "detach"):  # of torch
-        values = values.detach().cpu()
-        if str(values.dtype) == "torch.bfloat16":  # NumPy has none
-            values = values.float()
-        values = values.numpy()
+        values = _dense(values.detach().cpu(), name)
+    if hasattr(getattr(values, "dtype", None), "numpy_dtype"):
+        values = _without_missing(values, name)
     if isinstance(values, np.ma.MaskedArray) and np.any(values.mask):
         raise ValueError(f"{name}: has masked values; expected an array "
                          "without, such as .filled(numpy.nan)")
@@ -96,6 +96,25 @@ def _given(values: Any, name: str) -> Array:
         raise ValueError(f"{name}: has the shape {array.shape}; expected one "
                          "dimension")
     return array
+
+
+def _dense(tensor: Any, name: str) -> Any:
+    """Return a tensor of torch as an array."""
+    if str(tensor.dtype) == "torch.bfloat16":  # NumPy has none
+        tensor = tensor.float()
+    try:
+        return tensor.numpy()
+    except TypeError:  # a sparse one
+        raise ValueError(f"{name}: is a tensor of the layout {tensor.layout}; "
+                         "expected a dense one") from None
+
+
+def _without_missing(values: Any, name: str) -> Any:
+    """Return a series of a nullable type of pandas as an array."""
+    if values.isna().any():
+        raise ValueError(f"{name}: has missing values; expected a number for "
+                         "each sample")
+    return values.to_numpy(dtype=values.dtype.numpy_dtype)
 
 
 def _kind(values: Any, array: Array) -> str:
@@ -165,9 +184,9 @@ def seconds(values: Any, name: str) -> Array:
 def status(values: Any) -> Array:
     """Return the bits of the variable `status`."""
     found = numbers(values, "status")
-    wrong = ~((found >= 0) & (found <= 255) & (found == np.floor(found)))
-    if wrong.any():
-        at = int(np.argmax(wrong))
+    refused = ~((found >= 0) & (found <= 255) & (found == np.floor(found)))
+    if refused.any():
+        at = int(np.argmax(refused))
         raise ValueError(f"status: sample {at} is {found[at]:g}; expected a "
                          "whole number from 0 to 255, a bit for each state")
     return found.astype(np.uint8)

@@ -19,6 +19,14 @@ Path = Union[str, "os.PathLike[str]"]
 Kind = TypeVar("Kind")
 
 
+def refuse(reason: str, **options: Any) -> None:
+    """Raise ValueError for an option that is given but does not apply."""
+    for name, value in options.items():
+        if value is not None:
+            raise ValueError(f"{name} {shown(value)}: is {reason}; expected "
+                             f"no {name}")
+
+
 def flag(value: Any, name: str) -> bool:
     """Return True or False."""
     if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):

@@ -64,12 +64,15 @@ class Compensator:
         stall_s = _arguments.number(stall_s, "stall_s", above=0)
         self._source: Optional[tuple[Any, ...]] = (
             source, inputs, arrays, name, stall_s)
+        if not isinstance(source, (Compensator, str, os.PathLike)):
+            self._native = _of_python(source, inputs, arrays, name)
+            return
+        _checks.refuse("for a function, an estimator or a network",
+                       inputs=inputs, arrays=arrays or None, name=name)
         if isinstance(source, Compensator):
             self._native, self._source = source._native, source._source
-        elif isinstance(source, (str, os.PathLike)):
-            self._native = _opened(source, stall_s)
         else:
-            self._native = _of_python(source, inputs, arrays, name)
+            self._native = _opened(source, stall_s)
 
     @classmethod
     def parse(cls, text: str,

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
@@ -63,7 +64,7 @@ def _require_units(variable: Any, name: str, expected: str) -> None:
                          f"{expected!r}")
 
 
-def _warn_of_lost_units(dataset: xr.Dataset) -> None:
+def warn_of_lost_units(dataset: xr.Dataset) -> None:
     """Warn of signals without units beside others that state theirs.
 
     Arithmetic of xarray drops the attributes of what it computes.
@@ -93,7 +94,7 @@ def recording_of(dataset: xr.Dataset, argument: str = "recording", *,
     if "time" not in dataset.variables:
         raise ValueError(f"{argument}: has no variable time; expected the "
                          "times of its samples [s]")
-    _warn_of_lost_units(dataset)
+    warn_of_lost_units(dataset)
     size = dataset.sizes["time"]
     _require_units(dataset.variables["time"], "time", "s")
     time = _arguments.seconds(dataset.variables["time"].values, "time")
@@ -146,8 +147,19 @@ def open_recording(path: Path) -> xr.Dataset:
     return dataset_of(read_recording(path, "path"))
 
 
+def recording_name(path: Path) -> str:
+    """Return the name of a recording that is written: FILE.h5 or FILE.csv."""
+    name = _checks.path(path, "path")
+    ending = FilePath(name).suffix
+    if ending not in (".h5", ".csv"):
+        raise ValueError(f"path {_checks.shown(name)}: unknown kind of file "
+                         f"{_checks.shown(ending)}; expected a name that ends "
+                         "in .h5 or .csv")
+    return name
+
+
 def save_recording(dataset: xr.Dataset, path: Path) -> None:
-    """Write a recording, as CSV where the name ends in .csv, else as HDF5.
+    """Write a recording, as HDF5 to FILE.h5 or as CSV to FILE.csv.
 
     A dataset of `run` gives the bytes that ``beamgyro run`` writes. The file
     appears under its name when it is complete.
@@ -156,7 +168,7 @@ def save_recording(dataset: xr.Dataset, path: Path) -> None:
         ValueError: the dataset is no recording, or the name cannot be written.
         RuntimeError: writing failed.
     """
-    recording_of(dataset, "dataset").write(_checks.path(path, "path"))
+    recording_of(dataset, "dataset").write(recording_name(path))
 
 
 def core_recording(run: Union[xr.Dataset, Path],

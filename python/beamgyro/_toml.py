@@ -28,8 +28,10 @@ def value(item: Any, where: str) -> str:
         item = item.tolist()
     if isinstance(item, bool):
         return "true" if item else "false"
-    if isinstance(item, (int, float)):
-        return repr(item)
+    if isinstance(item, int):
+        return repr(int(item))  # of a class of its own, too
+    if isinstance(item, float):
+        return repr(float(item))
     if isinstance(item, (str, os.PathLike)):
         return json.dumps(_checks.text(os.fspath(item), f"{where}:"),
                           ensure_ascii=False).replace(
@@ -80,6 +82,9 @@ def overrides(keys: Mapping[str, Any] | None) -> list[str]:
         for name, item in table.items():
             if not isinstance(name, str):
                 key(name)  # refuses it
+            if any(sign in name for sign in "=#\n\r"):
+                raise _checks.wrong(name, "key", "a dotted key, such as "
+                                    "\"beam.length_m\"")
             if isinstance(item, Mapping) and not prefix:
                 add(f"{name}.", item)
             else:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
@@ -94,7 +94,7 @@ def train(model: Union[Path, Mapping[str, Any]],
         cross_validation: "run", "cycle" or "leg": groups that are held out
             in turn.
         progress: True for a bar on standard error, or a function that is
-            told the share of the epochs that are done, from 0 to 1.
+            called with the share of the epochs that are done, from 0 to 1.
 
     Raises:
         ValueError: something is wrong in the model or the recordings, or
@@ -105,6 +105,11 @@ def train(model: Union[Path, Mapping[str, Any]],
     seed = _arguments.seed(seed)
     groups = _checks.text(cross_validation, "cross_validation")
     kept = named_runs(held_out, "held_out")
+    named = _checks.texts(set_runs, "set_runs")
+    numbered = _checks.wholes(devices, "devices")
+    if not isinstance(runs, Set):
+        _checks.refuse("for a set", set_runs=named or None,
+                       devices=numbered or None)
     with Watched(progress, "training") as function:
         if isinstance(runs, Set):
             if kept or groups:
@@ -112,8 +117,7 @@ def train(model: Union[Path, Mapping[str, Any]],
                     "held_out and cross_validation are for recordings; a set "
                     "holds out its own validation devices")
             found = _core.train_set(
-                core, runs._native, _checks.texts(set_runs, "set_runs"),
-                _checks.wholes(devices, "devices"), seed, function)
+                core, runs._native, named, numbered, seed, function)
         elif _all_files(fitted := named_runs(runs)) and _all_files(kept):
             found = _core.train_files(
                 core, _files(fitted, "runs"), _files(kept, "held_out"), seed,
@@ -148,7 +152,7 @@ def _features(inputs: Sequence[str]) -> list[str]:
 
 def training_rows(runs: Union[Runs, Set],
                   inputs: Sequence[str] = _adapters.DEFAULT_INPUTS, *,
-                  part: str = "train", every_s: float = 0.0
+                  part: Optional[str] = None, every_s: float = 0.0
                   ) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
     """Return features and labels for an estimator or a network.
 
@@ -159,7 +163,7 @@ def training_rows(runs: Union[Runs, Set],
     Args:
         runs: recordings as of `train`, or a set.
         inputs: features, as model files name them.
-        part: of a set: "train", "validation" or "test".
+        part: of a set: "train", "validation" or "test"; "train" without.
         every_s: averages over so many seconds; 0: every sample.
 
     Returns:
@@ -169,8 +173,9 @@ def training_rows(runs: Union[Runs, Set],
     every_s = _arguments.number(every_s, "every_s", least=0)
     names = _features(inputs)
     if isinstance(runs, Set):
-        recordings = runs._recordings_of(part)
+        recordings = runs._recordings_of("train" if part is None else part)
     else:
+        _checks.refuse("for a set", part=part)
         recordings = (one for _, one in _recordings(named_runs(runs)))
     found = [_rows_of(one, names, every_s) for one in recordings]
     if not found:

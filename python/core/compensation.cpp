@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +21,7 @@
 #include "include/beamgyro/compensator.h"
 #include "include/beamgyro/set.h"
 #include "include/beamgyro/train.h"
+#include "python/core/asked.h"
 #include "python/core/bindings.h"
 #include "python/core/long_call.h"
 #include "python/core/recording.h"
@@ -28,6 +33,9 @@ namespace {
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using SharedCompensator = std::shared_ptr<RateCompensator>;
 
+/// Compensators of Python that may ask each other, one within the other.
+constexpr std::size_t kMostNested = 16;
+
 std::vector<double> values_of(const py::object& given) {
   const auto values = given.cast<Doubles>();
   return {values.data(), values.data() + values.size()};
@@ -35,7 +43,8 @@ std::vector<double> values_of(const py::object& given) {
 
 /// A Python function that takes a Recording with the measured signals of a
 /// powered stretch and the name of its run, and returns (rates, sigmas or
-/// None).
+/// None). It is called by one thread at a time: Python's own objects, such as a
+/// network that is switched to answering, are not made for more.
 class FunctionCompensator final : public RateCompensator {
  public:
   FunctionCompensator(std::string name, std::vector<std::string> inputs,
@@ -48,6 +57,9 @@ class FunctionCompensator final : public RateCompensator {
   std::vector<std::string> inputs() const override { return inputs_; }
 
   CompensatedRate answer(const Recording& recording) const override {
+    require_other_callers();
+    const Asked asked(this);
+    const std::lock_guard lock(one_at_a_time_);  // before the GIL, not within
     const py::gil_scoped_acquire acquired;
     const auto answers = (*function_)(std::make_shared<Recording>(recording),
                                       internal::AskedRun::name())
@@ -59,9 +71,19 @@ class FunctionCompensator final : public RateCompensator {
   }
 
  private:
+  // Throws std::invalid_argument where it is asked by its own answer.
+  void require_other_callers() const {
+    const Asked::Compensators& waiting = Asked::all();
+    if (std::ranges::find(waiting, this) != waiting.end() ||
+        waiting.size() >= kMostNested)
+      throw std::invalid_argument(
+          fmt::format("{}: its answer asks for its own answer", name_));
+  }
+
   std::string name_;
   std::vector<std::string> inputs_;
   std::shared_ptr<py::object> function_;
+  mutable std::mutex one_at_a_time_;
 };
 
 SharedCompensator function_compensator(const std::string& name,

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <exception>
-#include <regex>
+#include <new>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "python/core/bindings.h"
@@ -14,24 +17,20 @@ namespace beamgyro::python {
 namespace {
 
 namespace py = pybind11;
-using namespace std::string_literals;
 
-/// Options of the program and what stands for them in Python, in the words of
-/// messages.
+/// An option of the program and what stands for it in Python.
 struct OptionName {
-  const char *option, *argument;
+  std::string_view option, argument;
 };
 constexpr std::array kOptionNames{
     OptionName{"axis", "axes"},
     OptionName{"chamber", "chamber_degC"},
-    OptionName{"compensator", "compensator"},
     OptionName{"correlation-K", "correlation_K"},
     OptionName{"cv", "cross_validation"},
     OptionName{"dataset", "column"},
     OptionName{"device", "device"},
     OptionName{"device-id", "device_id"},
     OptionName{"devices", "devices"},
-    OptionName{"figure", "figures"},
     OptionName{"fit-cubic", "fit_cubic"},
     OptionName{"force", "force"},
     OptionName{"from", "from_s"},
@@ -39,8 +38,6 @@ constexpr std::array kOptionNames{
     OptionName{"hold", "hold_min"},
     OptionName{"hours", "hours"},
     OptionName{"instance", "instance"},
-    OptionName{"jobs", "jobs"},
-    OptionName{"limit", "limits"},
     OptionName{"ramp-K-per-min", "ramp_K_per_min"},
     OptionName{"range", "range_degC"},
     OptionName{"rate-Hz", "rate_Hz"},
@@ -53,26 +50,64 @@ constexpr std::array kOptionNames{
     OptionName{"to", "to_s"},
     OptionName{"unit", "unit"}};
 
+/// What stands before an option in the library's own words. An option after
+/// anything else is part of a name or a command of the user's.
+constexpr std::array<std::string_view, 13> kBeforeOptions{
+    "; ",  "expected ", "expected no ", "pass ",   "below ",
+    "or ", "and ",      "such as ",     "one of ", "narrower ",
+    "by ", "earlier ",  "which "};
+
+/// Returns the option that `text` begins with, or nullptr.
+const OptionName* option_at(std::string_view text) {
+  if (!text.starts_with("--")) return nullptr;
+  const std::string_view name = text.substr(
+      2, std::min(text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                         "abcdefghijklmnopqrstuvwxyz-"),
+                  text.size()) -
+             2);
+  const auto* const found =
+      std::ranges::find(kOptionNames, name, &OptionName::option);
+  return found == kOptionNames.end() ? nullptr : found;
+}
+
+/// Whether a value comes after an option: a number or a word of capitals.
+bool begins_value(std::string_view text) {
+  if (!text.starts_with(' ')) return false;
+  text.remove_prefix(text.starts_with(" -") ? 2 : 1);
+  return !text.empty() && ((text.front() >= '0' && text.front() <= '9') ||
+                           (text.front() >= 'A' && text.front() <= 'Z'));
+}
+
 /// Returns a message of the library with the arguments of Python in place of
 /// the options of the program that it names: jobs=3 for --jobs 3.
 std::string in_words_of_python(const std::string& message) {
-  static const std::regex option(
-      "(^|[^\\w-])--([A-Za-z][A-Za-z-]*)( (?=-?[0-9A-Z]))?");
   std::string words;
-  auto rest = message.cbegin();
-  for (std::sregex_iterator it(message.begin(), message.end(), option), end;
-       it != end; ++it) {
-    words.append(rest, (*it)[1].second);
-    rest = (*it)[1].second;
-    for (const OptionName& name : kOptionNames) {
-      if ((*it)[2].str() != name.option) continue;
-      const bool has_value = (*it)[3].matched && name.option != "set"s;
-      words += name.argument;
-      if (has_value) words += '=';
-      rest = has_value ? (*it)[3].second : (*it)[2].second;
+  bool may_begin = true;  // an option, here
+  for (std::size_t k = 0; k < message.size();) {
+    may_begin = may_begin || std::ranges::any_of(
+                                 kBeforeOptions, [&](std::string_view before) {
+                                   return words.ends_with(before);
+                                 });
+    const OptionName* const option =
+        may_begin ? option_at(std::string_view(message).substr(k)) : nullptr;
+    may_begin = false;
+    if (option == nullptr) {
+      words += message[k++];
+      continue;
     }
+    words += option->argument;
+    k += 2 + option->option.size();
+    if (option->option == "set" ||
+        !begins_value(std::string_view(message).substr(k)))
+      continue;
+    const std::size_t end = std::min(message.find(' ', k + 1), message.size());
+    words += '=' + message.substr(k + 1, end - k - 1);
+    k = end;
+    if (message.compare(k, 3, " --") != 0) continue;
+    words += message[k++];  // --from 3 --to 2
+    may_begin = true;
   }
-  return words.append(rest, message.cend());
+  return words;
 }
 
 /// Raises a Python exception. Bytes that are no UTF-8, such as those of a file
@@ -90,6 +125,10 @@ void translate(std::exception_ptr thrown) {
     if (thrown) std::rethrow_exception(std::move(thrown));
   } catch (const py::builtin_exception&) {
     throw;  // of pybind11, as are errors of Python
+  } catch (const std::bad_alloc&) {
+    raise(PyExc_MemoryError,
+          "there is not enough memory for this; run_to_file() needs none that "
+          "grows with the run");
   } catch (const std::logic_error& error) {
     raise(PyExc_ValueError, error.what());
   } catch (const std::runtime_error& error) {

@@ -6,14 +6,17 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <exception>
 #include <future>
 #include <memory>
+#include <stdexcept>
 #include <thread>
 #include <type_traits>
 #include <utility>
 
 #include "include/beamgyro/progress.h"
+#include "python/core/asked.h"
 
 namespace beamgyro::python {
 
@@ -26,27 +29,49 @@ constexpr std::chrono::milliseconds kSignalPeriod{50};
 /// itself.
 constexpr std::chrono::milliseconds kPatience{100};
 
-/// Counts the threads that long_call() left, until they end.
-class LeftWork {
+/// Counts long_call()s and their threads, until they end.
+class RunningWork {
  public:
-  LeftWork() { ++count(); }
-  ~LeftWork() { --count(); }
-  LeftWork(const LeftWork&) = delete;
-  LeftWork& operator=(const LeftWork&) = delete;
+  RunningWork() { ++count(); }
+  ~RunningWork() { --count(); }
+  RunningWork(const RunningWork&) = delete;
+  RunningWork& operator=(const RunningWork&) = delete;
 
-  /// Waits for all of them, but no longer than `most`.
-  static void wait(std::chrono::milliseconds most) {
-    const auto end = std::chrono::steady_clock::now() + most;
-    while (count() > 0 && std::chrono::steady_clock::now() < end)
-      std::this_thread::sleep_for(std::chrono::milliseconds{5});
-  }
+  /// Asks all of them to end, now and in future.
+  static void stop() { stopped() = true; }
+  static bool is_stopped() { return stopped(); }
+  static bool is_any() { return count() > 0; }
 
  private:
   static std::atomic<int>& count() {
     static std::atomic<int> number{0};
     return number;
   }
+  static std::atomic<bool>& stopped() {
+    static std::atomic<bool> flag{false};
+    return flag;
+  }
 };
+
+/// Ends what still runs when Python does, which destroys what threads of ours
+/// use. Waits for work that cannot be stopped, such as a function of the user;
+/// a signal during that time (Ctrl-C) ends the process with status 130.
+inline void end_running_work() {
+  RunningWork::stop();
+  while (RunningWork::is_any()) {
+    {
+      const py::gil_scoped_release released;
+      std::this_thread::sleep_for(std::chrono::milliseconds{5});
+    }
+    if (PyErr_CheckSignals() == 0) continue;
+    PyErr_Clear();
+    try {
+      py::module_::import("sys").attr("stdout").attr("flush")();
+    } catch (const py::error_already_set&) {  // nobody reads it any more
+    }
+    std::_Exit(130);
+  }
+}
 
 /// How far work is, seen by the thread that waits for it.
 struct SharedProgress {
@@ -93,13 +118,16 @@ class ReportedProgress {
 template <class Work>
 auto long_call(const py::object& on_progress, Work work) {
   using Result = std::invoke_result_t<Work, const Progress&>;
+  const RunningWork here;
+  if (RunningWork::is_stopped())
+    throw std::runtime_error("Python is ending; no work begins any more");
   ReportedProgress reported(on_progress);
   const auto state = std::make_shared<SharedProgress>();
   std::packaged_task<Result()> task(
       [state, work = std::move(work)]() mutable -> Result {
         const Progress progress = [&state](double done) {
           state->share = done;
-          return !state->is_stopped;
+          return !state->is_stopped && !RunningWork::is_stopped();
         };
         return work(progress);
       });
@@ -107,12 +135,13 @@ auto long_call(const py::object& on_progress, Work work) {
   std::exception_ptr raised;
   {
     const py::gil_scoped_release released;
-    auto left = std::make_unique<LeftWork>();
-    std::thread thread(
-        [left = std::move(left), own = std::move(task)]() mutable {
-          own();
-          own = {};  // before it counts as ended
-        });
+    auto running = std::make_unique<RunningWork>();
+    std::thread thread([running = std::move(running), own = std::move(task),
+                        asked = Asked::all()]() mutable {
+      Asked::inherit(std::move(asked));
+      own();
+      own = {};  // before it counts as ended
+    });
     while (!raised &&
            result.wait_for(kSignalPeriod) != std::future_status::ready) {
       const py::gil_scoped_acquire acquired;

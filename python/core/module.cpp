@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <pybind11/pybind11.h>
 
-#include <chrono>
-
 #include "include/beamgyro/version.h"
 #include "python/core/bindings.h"
 #include "python/core/long_call.h"
@@ -21,11 +19,7 @@ PYBIND11_MODULE(_core, core) {
   python::bind_compensation(core);
   python::bind_analysis(core);
   python::bind_plan(core);
-  // Work that was interrupted must not outlive the interpreter.
-  core.def("wait_for_left_work", [] {
-    const pybind11::gil_scoped_release released;
-    python::LeftWork::wait(std::chrono::seconds{5});
-  });
+  core.def("end_running_work", &python::end_running_work);
   pybind11::module_::import("atexit").attr("register")(
-      core.attr("wait_for_left_work"));
+      core.attr("end_running_work"));
 }

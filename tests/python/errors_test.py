@@ -198,6 +198,32 @@ ARGUMENTS = [
     (lambda g: bg.plan(g.cubic, NOMINAL), "0 goals", "soaks=N"),
     (lambda g: bg.allan(g.run, from_s=5, to_s=1), "from_s=5 to_s=1", "below"),
     (lambda g: bg.export(g.cubic, "c", device_id=3), "device_id", "px4"),
+    (lambda g: bg.run(WARM_UP, seed=2 ** 63), "seed 9223372036854775808",
+     "to 9223372036854775807"),
+    (lambda g: bg.run(WARM_UP, set={"duration_s": 5, "seed = 7 #": 5}),
+     "key 'seed = 7 #'", "dotted"),
+    *[(lambda g, name=name: bg.save_recording(g.run, name),
+       f"path '{name}'", ".h5 or .csv")
+      for name in ("a.CSV", "a.txt", "a", ".csv")],
+    (lambda g: bg.run_to_file(WARM_UP, "a.txt"), "path 'a.txt'",
+     ".h5 or .csv"),
+    # Options that do not apply
+    (lambda g: bg.validate(g.cubic, g.sweep, set_devices=[1]),
+     "set_devices [1]", "for a set"),
+    (lambda g: bg.validate(g.cubic, g.sweep, set_runs=["warm_up"]),
+     "set_runs ['warm_up']", "for a set"),
+    (lambda g: bg.validate(g.cubic, g.sweep, qualification="absent.toml"),
+     "qualification 'absent.toml'", "for a device"),
+    (lambda g: bg.train(CUBIC, g.sweep, devices=[3]), "devices [3]",
+     "for a set"),
+    (lambda g: bg.train(CUBIC, g.sweep, set_runs=["x"]), "set_runs ['x']",
+     "for a set"),
+    (lambda g: bg.training_rows(g.sweep, part="test"), "part 'test'",
+     "for a set"),
+    (lambda g: bg.Compensator(g.cubic, name="mine"), "name 'mine'",
+     "for a function"),
+    (lambda g: bg.Compensator("cubic.json", inputs=["rate"]),
+     "inputs ['rate']", "for a function"),
     (lambda g: bg.generate(SMALL, "set", progress=False), "set:", "resume"),
     (lambda g: bg.validate(CUBIC, g.sweep), "cubic.toml", "device"),
     (lambda g: bg.run(WARM_UP, set={"duration_s": -1}), "set duration_s=-1",
@@ -387,3 +413,18 @@ def test_what_has_no_picture_is_named(call, words, given):
     pytest.importorskip("matplotlib")
     with pytest.raises(ValueError, match=words):
         call(given)
+
+
+@pytest.mark.parametrize("name", [
+    "my run --limit 3.h5", "run --rate-Hz 5.h5", "cold --force.h5",
+    "--" + "a" * 200])
+def test_names_of_the_user_are_repeated_as_they_are(name):
+    with pytest.raises(ValueError) as raised:
+        bg.open_recording(name)
+    assert name in str(raised.value)
+
+
+def test_a_long_word_in_a_message_is_no_harm(given):
+    command = "cmd:sh -c 'echo --" + "a" * 60000 + "'"
+    with pytest.raises(RuntimeError, match="--aaa"):
+        bg.compensate(command, given.run)

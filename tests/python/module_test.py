@@ -192,9 +192,10 @@ def test_progress_is_told_where_work_begins_and_ends():
     assert shares.count(1.0) == 1
 
 
-def test_failed_work_is_not_told_as_done():
+def test_failed_work_is_not_reported_as_done():
+    run = bg.run(WARM_UP, set={"duration_s": 60})
     shares = []
-    with pytest.raises(ValueError):
-        bg.validate(lambda signals: signals["absent"], WARM_UP,
+    with pytest.raises(KeyError, match="absent"):
+        bg.validate(lambda signals: signals["absent"], run,
                     progress=shares.append)
-    assert 1.0 not in shares
+    assert shares and 1.0 not in shares

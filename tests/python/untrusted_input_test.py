@@ -75,7 +75,7 @@ BAD = {
         'rate: units "rad/s"; expected "degree/s"'),
     "truth as measured": (lambda run: run.assign(
         true_rate=run.true_rate.assign_attrs(role="measured")),
-        'true_rate: role "measured"; expected "truth"'),
+        "true_rate: role 'measured'; expected 'truth'"),
     "milliseconds": (lambda run: run.assign_coords(
         time=("time", run.time.values * 1000, {"units": "ms"})),
         "time: units 'ms'; expected 's'"),

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: MIT
 """Functions, estimators and networks of users that answer oddly."""
 
+import time
+
 import numpy as np
 import pytest
 
 import beamgyro as bg
 from program import SCENARIOS
-
 
 
 @pytest.fixture(scope="module", name="run")
@@ -25,6 +26,8 @@ def compensated(function, run, **options):
 @pytest.mark.parametrize("answer", [
     lambda rate: rate.values.tolist(),
     lambda rate: rate.to_series(),
+    lambda rate: rate.to_series().reset_index().rate,
+    lambda rate: rate.to_series().astype("Float64"),
     lambda rate: rate.values[:, None],
     lambda rate: np.repeat(rate.values, 2)[::2],
     lambda rate: np.broadcast_to(rate.values, (1, rate.size))[0],
@@ -58,6 +61,9 @@ def test_whole_numbers_are_rates(run):
     (lambda rate: (rate, 1.0), "one dimension"),
     (lambda rate: rate[::-1], "times"),
     (lambda rate: rate.to_series()[::-1], "times"),
+    (lambda rate: rate.to_series().reset_index().rate[::-1], "order of"),
+    (lambda rate: rate.to_series().astype("Float64").mask(rate.values > 0),
+     "missing"),
 ])
 def test_what_is_no_rate_of_each_sample_is_refused(run, answer, words):
     def odd(signals):
@@ -146,6 +152,9 @@ def test_a_tensor_that_requires_a_gradient_is_an_answer(run):
     found = compensated(lambda signals: torch.tensor(
         signals.rate.values, requires_grad=True), run)
     np.testing.assert_array_equal(found, run.rate)
+    with pytest.raises(ValueError, match="torch.sparse"):
+        bg.compensate(lambda signals: torch.zeros(
+            signals.rate.size).to_sparse(), run)
 
 
 @pytest.mark.parametrize("options, words", [
@@ -215,3 +224,53 @@ def test_an_estimator_names_its_features_in_a_sequence():
         bg.Compensator(Named())
     with pytest.raises(ValueError, match="inputs: is empty"):
         bg.Compensator(Named(), inputs=[])
+
+
+def test_a_function_is_called_by_one_thread_at_a_time(run):
+    inside, most = [], []
+
+    def slow(signals):
+        inside.append(1)
+        most.append(len(inside))
+        time.sleep(0.01)
+        inside.pop()
+        return signals.rate
+
+    bg.validate(slow, run, jobs=4)
+    assert len(most) > 4
+    assert max(most) == 1
+
+
+def test_threads_change_nothing_of_a_network(run):
+    torch = pytest.importorskip("torch")
+    torch.manual_seed(1)
+    network = torch.nn.Sequential(
+        torch.nn.Linear(1, 4), torch.nn.Dropout(0.5), torch.nn.Linear(4, 1))
+    network.train()  # as training leaves it
+    first, second = (bg.validate(network, run, jobs=jobs).to_json()
+                     for jobs in (1, 4))
+    assert first == second
+    assert all(module.training for module in network.modules())
+
+
+def test_a_compensator_may_not_ask_for_its_own_answer(run):
+    def again(signals):
+        return bg.compensate(itself, run).compensated_rate.values
+
+    itself = bg.Compensator(again)
+    with pytest.raises(ValueError, match="again: its answer asks for its own"):
+        bg.compensate(itself, run)
+
+    def anew(signals):
+        return bg.compensate(anew, run).compensated_rate.values
+
+    with pytest.raises(ValueError, match="anew: its answer asks for its own"):
+        bg.compensate(anew, run)
+
+
+def test_compensators_may_ask_each_other(run):
+    half = bg.Compensator(lambda signals: 0.5 * signals.rate)
+    found = compensated(
+        lambda signals: bg.compensate(half, run).compensated_rate.sel(
+            time=signals.time), run)
+    np.testing.assert_array_equal(found, 0.5 * run.rate)

@@ -32,12 +32,17 @@ Path = Union[str, "os.PathLike[str]"]
 def plot(files: Path | Sequence[Path] | Mapping[Any, Any],
          compare: bool = False) -> Figure:
     """The picture of a file or of the directory of a set; with `compare` of
-    several files of one kind over each other. A recording may also be an
+    several files of one kind over each other. Recordings may also be
     xarray.Dataset. Raises PlotError, a ValueError, for a file that has no
     picture."""
+    if not isinstance(compare, bool):
+        raise PlotError(f"compare {compare!r}: expected True or False")
     if isinstance(files, Mapping):
         return plot_recording(files)
-    paths = [_path_of(file) for file in _several(files)]
+    given = _several(files)
+    if compare and given and all(isinstance(one, Mapping) for one in given):
+        return plot_recording(*given)
+    paths = [_path_of(file) for file in given]
     if not paths:
         raise PlotError("no file to plot; expected one or more")
     kinds = [kind_of(path) for path in paths]

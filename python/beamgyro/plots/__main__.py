@@ -83,7 +83,6 @@ def main() -> None:
     parser.add_argument("--format", choices=["png", "svg"])
     parser.add_argument("--compare", action="store_true")
     parser.add_argument("--each", type=pathlib.Path)
-    parser.add_argument("--dpi", type=float)
     arguments = parser.parse_args()
     if arguments.output or arguments.each:  # whatever MPLBACKEND says
         os.environ["MPLBACKEND"] = "agg"
@@ -113,7 +112,7 @@ def draw(plots: Any, arguments: argparse.Namespace) -> None:
         plots.save_each(arguments.files[0], arguments.each)
     elif arguments.output:
         figure = plots.plot(arguments.files, arguments.compare)
-        plots.save(figure, arguments.output, arguments.format, arguments.dpi)
+        plots.save(figure, arguments.output, arguments.format)
     else:
         require_window()
         groups = [arguments.files] if arguments.compare \

@@ -80,6 +80,8 @@ def kind_of(path: str | os.PathLike[str]) -> str:
         raise PlotError(f"{path}: a directory without manifest.jsonl; "
                         "expected that of a whole set")
     try:
+        if path.exists() and not path.is_file():  # a pipe would be waited for
+            raise PlotError(f"{path}: is no file; expected {EXPECTED}")
         with open(path, "rb") as file:
             head = file.read(65536)
     except OSError as error:

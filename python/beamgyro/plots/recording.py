@@ -137,12 +137,15 @@ def _read_h5(path: pathlib.Path) -> dict[str, Any]:
 
 def _read_csv(path: pathlib.Path) -> dict[str, Any]:
     with open(path, newline="", encoding="utf-8-sig") as file:
-        header = next(csv.reader(file))
-        names, units = zip(*(_column(head) for head in header))
-        wanted = [k for k, key in enumerate(names)
-                  if key in ("time", "status", *DRAWN)]
         try:
+            header = next(csv.reader(file))
+            names, units = zip(*(_column(head) for head in header))
+            wanted = [k for k, key in enumerate(names)
+                      if key in ("time", "status", *DRAWN)]
             table = np.loadtxt(file, delimiter=",", usecols=wanted, ndmin=2)
+        except UnicodeDecodeError:
+            raise PlotError(f"{path}: holds bytes that are not UTF-8; "
+                            "expected a text file") from None
         except ValueError as error:
             raise PlotError(f"{path}: {error}; expected numbers") from None
     data: dict[str, Any] = {}
@@ -348,14 +351,20 @@ def _time_axis(rows: Sequence[Axes], runs: Sequence[Run], unit: str,
 
 def _compared(runs: Sequence[Run]) -> list[str]:
     """The panels that all of them have."""
-    if all("compensated_rate" in run for run in runs):
+    def all_have(key: str) -> bool:
+        return all(key in run for run in runs)
+
+    panels = []
+    if all_have("compensated_rate"):
         panels = ["left"]
-    elif any(run.turns for run in runs):
-        panels = ["rate", "error"]
-    else:
-        panels = ["rate"]
-    if all("temperature" in run for run in runs):
+    elif all_have("rate"):
+        panels = ["rate"] + ["error"] * any(run.turns for run in runs)
+    if all_have("temperature"):
         panels.append("temperature")
+    if not panels:
+        raise PlotError(f"{', '.join(run.name for run in runs)}: have neither "
+                        "compensated_rate, rate nor temperature in common; "
+                        "expected recordings to compare")
     return panels
 
 
