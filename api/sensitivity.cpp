@@ -131,8 +131,8 @@ SensitivityStudy checked_study(const beamgyro::Campaign& campaign,
   return {campaign, std::move(sample), std::move(limits), options.linear};
 }
 
-SensitivityResult studied(const SensitivityStudy& study,
-                          DeviceSampleCounts& counts) {
+SensitivityResult run_study(const SensitivityStudy& study,
+                            DeviceSampleCounts& counts) {
   const DeviceSampleOptions& asked = study.sample;
   const DeviceSample sample =
       sample_devices(study.campaign.state().campaign, asked, counts);
@@ -169,7 +169,7 @@ SensitivityResult sensitivity(const Campaign& campaign,
       internal::report(options.progress,
                        static_cast<double>(counts.devices.load()) / total);
     };
-  return internal::studied(study, counts);
+  return internal::run_study(study, counts);
 }
 
 }  // namespace beamgyro

@@ -31,7 +31,7 @@ SensitivityStudy checked_study(const beamgyro::Campaign& campaign,
                                const SensitivityOptions& options);
 
 /// sensitivity() with counts that other threads may read.
-SensitivityResult studied(const SensitivityStudy& study,
-                          DeviceSampleCounts& counts);
+SensitivityResult run_study(const SensitivityStudy& study,
+                            DeviceSampleCounts& counts);
 
 }  // namespace beamgyro::internal

@@ -93,17 +93,17 @@ def automatic(unit):
             train(unit, names, model, name)
         best = min(rms(unit, "constant", test), rms(unit, "cubic", test))
         for model in models:
-            told = train(unit, names, SCENARIOS / f"models/{model}.toml",
-                         model)
+            training = train(unit, names, SCENARIOS / f"models/{model}.toml",
+                             model)
             chosen = rms(unit, model, test)
             figures[f"{case}_{model}_of_best"] = chosen / best
             figures[f"{case}_{model}_lost_deg_per_s"] = chosen - best
-            figures[f"{case}_{model}_method"] = told["method"]
+            figures[f"{case}_{model}_method"] = training["method"]
     for case, (runs, _) in ZEROED.items():
         names = [without_bias(unit, name) for name, *_ in unit.few(runs)]
-        told = train(unit, names, SCENARIOS / "models/auto.toml", "zeroed")
+        training = train(unit, names, SCENARIOS / "models/auto.toml", "zeroed")
         claims = not any("no improvement to claim" in warning
-                         for warning in told["warnings"])
-        figures[f"zeroed_{case}_method"] = told["method"] + (
+                         for warning in training["warnings"])
+        figures[f"zeroed_{case}_method"] = training["method"] + (
             ", claims an improvement" if claims else "")
     return figures

@@ -227,7 +227,7 @@ class Faults:
         require(codes.count(0) == 1, f"exit codes {codes}")
         self.require_same(folder)
         held = sum("in use by" in error for _, error in answers)
-        return {"starts": count, "winners": 1, "told_who_holds_it": held}
+        return {"starts": count, "winners": 1, "named_who_holds_it": held}
 
 
 def main():

@@ -20,11 +20,11 @@ bool is_wrong_name(const std::error_code& error) {
 void throw_file_error(const std::filesystem::path& path,
                       std::string_view action, const std::error_code& error,
                       std::string_view expected) {
-  const bool tells_more = !expected.empty() && is_wrong_name(error);
+  const bool names_expected = !expected.empty() && is_wrong_name(error);
   const std::string what =
       fmt::format("{}: {}: {}{}{}", path.string(), action, error.message(),
-                  tells_more ? "; expected " : "",
-                  tells_more ? expected : std::string_view());
+                  names_expected ? "; expected " : "",
+                  names_expected ? expected : std::string_view());
   if (is_wrong_name(error)) throw std::invalid_argument(what);
   throw FileError(what, error);
 }

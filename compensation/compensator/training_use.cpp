@@ -89,10 +89,10 @@ bool was_used_in_training(const Provenance& provenance,
         return !file_sha256.empty() && file.sha256 == file_sha256;
       }))
     return true;
-  const auto tells_measured = [](const SourceFile& file) {
+  const auto states_measured = [](const SourceFile& file) {
     return !file.measured_sha256.empty();
   };
-  if (!any_file(provenance, tells_measured)) return false;
+  if (!any_file(provenance, states_measured)) return false;
   const std::string measured = measured_sha256(recording);
   return any_file(provenance,
                   [&](const SourceFile& file) {

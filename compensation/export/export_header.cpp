@@ -70,7 +70,7 @@ std::string macros(const std::string& name, const FirmwareModel& model,
       c_literal(static_cast<float>(difference)),
       c_literal(*std::ranges::min_element(kComparedPeriods)),
       c_literal(*std::ranges::max_element(kComparedPeriods)));
-  if (model.tells_sigma())
+  if (model.states_sigma())
     text += fmt::format(
         "/* The same of {0}_sigma. */\n#define {0}_SIGMA_DIFFERENCE {1}\n\n",
         name, c_literal(static_cast<float>(sigma_difference)));
@@ -103,7 +103,7 @@ std::string structures(const std::string& name, const FirmwareModel& model,
         parts.plays);
   if (parts.follows_temperature())
     text += "  int started;        /* they have their first temperature */\n";
-  if (model.tells_sigma())
+  if (model.states_sigma())
     text +=
         "  float sigma; /* of the last rate [deg/s] */\n"
         "  float sigma_period, sigma_filter[5];\n"
@@ -180,7 +180,7 @@ std::string header_text(const Compensator& compensator, const std::string& name,
          "{\n#endif\n\n" +
          macros(name, model, found.difference, found.sigma_difference) +
          structures(name, model, parts) + functions(name) +
-         (model.tells_sigma() ? sigma_function(name) : "") +
+         (model.states_sigma() ? sigma_function(name) : "") +
          "#ifdef __cplusplus\n}\n#endif\n\n#endif\n";
 }
 

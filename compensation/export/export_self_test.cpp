@@ -56,7 +56,7 @@ std::vector<float> golden_answers(FirmwareModel& model,
                                             (1.0f / 16777216.0f));
     }
     answers.push_back(model.step(sample));
-    if (model.tells_sigma()) answers.push_back(model.sigma());
+    if (model.states_sigma()) answers.push_back(model.sigma());
   }
   return answers;
 }
@@ -166,12 +166,12 @@ int main(void) {{
 }}
 )",
       name, kGoldenSamples, kGoldenStep, kGoldenSamples / kGoldenStep,
-      golden_text(answers, model.tells_sigma() ? 2 : 1),
+      golden_text(answers, model.states_sigma() ? 2 : 1),
       c_literal(kGoldenPeriods[0]), c_literal(kGoldenPeriods[1]),
       c_literal(kGoldenPeriods[2]), c_literal(kGoldenPeriods[3]),
       kGoldenSamples / 4, fill_text(model, ranges), crc32(answers),
-      model.tells_sigma() ? golden_sigma_text(answers) : "",
-      model.tells_sigma() ? sigma_check_text(name) : "");
+      model.states_sigma() ? golden_sigma_text(answers) : "",
+      model.states_sigma() ? sigma_check_text(name) : "");
 }
 
 }  // namespace beamgyro::internal

@@ -130,7 +130,7 @@ FirmwareModel::FirmwareModel(const Compensator& c)
       function_(c.bias.function),
       uses_inputs_(reads_inputs(c.bias)),
       corrects_scale_factor_(c.scale_factor.has_value()),
-      tells_sigma_(c.sigma.has_value()),
+      states_sigma_(c.sigma.has_value()),
       drive_frequency_(drive_frequency_of(c)),
       arrays_(arrays_of(c)),
       state_(std::make_unique<State>()) {}
@@ -161,7 +161,7 @@ void FirmwareModel::start(float period) {
   for (std::size_t i = 0; i < inputs_.size(); ++i)
     if (constants[i] > 0.0f)
       runtime::start_lowpass(state_->filters[i].data(), period, constants[i]);
-  if (tells_sigma_)
+  if (states_sigma_)
     runtime::start_lowpass(state_->sigma_filter.data(), period,
                            arrays_.values("sigma_terms")[3]);
 }
@@ -200,7 +200,7 @@ float FirmwareModel::step(const FirmwareSample& sample) {
   const std::vector<float>& centres = arrays_.values("centres_of_inputs");
   const std::vector<float>& gains = arrays_.values("gains_of_inputs");
   const std::vector<float>& constants = arrays_.values("time_constants");
-  if (tells_sigma_) state_->sigma = next_sigma(sample.value[1]);
+  if (states_sigma_) state_->sigma = next_sigma(sample.value[1]);
   const std::uint32_t samples = state_->samples;
   if (state_->samples < 0xffffffffu) ++state_->samples;
   float T = sample.value[1];

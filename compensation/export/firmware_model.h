@@ -52,7 +52,7 @@ class FirmwareModel {
   /// Returns the 1-sigma [deg/s] of the bias of the rate that step() returned
   /// last, NaN after a temperature that is not finite. 0 without a sigma.
   float sigma() const;
-  bool tells_sigma() const { return tells_sigma_; }
+  bool states_sigma() const { return states_sigma_; }
 
   const FirmwareArrays& arrays() const { return arrays_; }
   bool reads(std::size_t signal) const;  // index of kFirmwareSignals
@@ -74,7 +74,7 @@ class FirmwareModel {
   BiasFunction function_;
   bool uses_inputs_;
   bool corrects_scale_factor_;
-  bool tells_sigma_;
+  bool states_sigma_;
   int drive_frequency_;  // [Hz]
   FirmwareArrays arrays_;
   std::unique_ptr<State> state_;

@@ -279,14 +279,14 @@ AdaptedBias adapted_bias(const Population& population,
   const MatrixXd roots = R.transpose().triangularView<Eigen::Lower>().solve(
       bias_modes.transpose());
   const ArrayXd variance = roots.colwise().squaredNorm().transpose().array();
-  const ArrayXd untold = R.triangularView<Eigen::Upper>()
-                             .solve(roots)
-                             .colwise()
-                             .squaredNorm()
-                             .transpose()
-                             .array();
+  const ArrayXd unexplained = R.triangularView<Eigen::Upper>()
+                                  .solve(roots)
+                                  .colwise()
+                                  .squaredNorm()
+                                  .transpose()
+                                  .array();
   return {(population.mean.head(grid) + bias_modes * c).array(),
-          variance.sqrt(), (variance - untold).max(0.0).sqrt()};
+          variance.sqrt(), (variance - unexplained).max(0.0).sqrt()};
 }
 
 CubicSpline bias_curve(const Population& population, const ArrayXd& values) {

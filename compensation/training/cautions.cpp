@@ -79,14 +79,14 @@ std::string extrapolation_caution(const FittedCase& fitted) {
       outside, held_out.size(), range.lowest, range.highest);
 }
 
-bool tells_directions_apart(const std::vector<Input>& inputs) {
+bool separates_directions(const std::vector<Input>& inputs) {
   return std::any_of(inputs.begin(), inputs.end(), [](const Input& input) {
     return input.kind != InputKind::kColumn || input.column != "temperature";
   });
 }
 
 std::string hysteresis_caution(const FittedCase& fitted) {
-  if (tells_directions_apart(fitted.inputs)) return "";
+  if (separates_directions(fitted.inputs)) return "";
   const ArrayXd residual =
       fitted.rows.bias - fitted.model.predict(fitted.rows.inputs);
   const auto found = hysteresis(fitted.rows, residual);

@@ -60,7 +60,8 @@ struct AllanResult {
 /// Computes the deviations of a column of a recording. Samples without power
 /// and gaps are left out. Throws std::invalid_argument for a column that is not
 /// there, an unknown kind, an empty window, a series that is too short, times
-/// that do not increase and times that are not even, and Cancelled.
+/// that do not increase or are not even, a sample rate beyond 1e-9 to 1e9 Hz
+/// and a value beyond +-1e12, and Cancelled.
 AllanResult allan(const Recording& recording,
                   const std::string& column = "rate",
                   const AllanOptions& options = {});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// How long work tells how far it is, and how it is stopped.
+/// Progress and cancellation of long calls.
 #pragma once
 
 #include <functional>
@@ -8,8 +8,8 @@
 
 namespace beamgyro {
 
-/// Is told the share of the work that is done, 0 .. 1, and returns whether to
-/// go on. It is called from any thread, but never by two at once. An empty
+/// Takes the share of the work that is done, 0 .. 1, and returns whether to go
+/// on. It is called from any thread, but never by two at once. An empty
 /// function asks for nothing. An exception that it throws ends the work, too,
 /// and reaches the caller.
 using Progress = std::function<bool(double share)>;

@@ -29,7 +29,9 @@ enum StatusBit : std::uint8_t {
 /// A variable of a recording.
 struct Column {
   std::string name;  ///< as in files: output, rate, temperature, true_rate, ...
-  std::string units;  ///< as in files: V, degree/s, degC, Hz
+  /// As in files: V, degree/s, degC, Hz. Of a variable that beamgyro knows, the
+  /// unit of docs/reference/recording.md or empty.
+  std::string units;
   std::string long_name;
   Role role = Role::kMeasured;
   std::vector<double> values;  ///< one per time; NaN = measured while unpowered
@@ -80,7 +82,8 @@ Recording read_recording(const std::filesystem::path& path);
 /// layout of netCDF-4. The file appears under its name when it is complete. The
 /// same recording gives the same bytes. Throws std::invalid_argument for a name
 /// that cannot be written, and std::runtime_error for a recording with a defect
-/// (times that do not increase, columns of another length, a NaN while powered)
+/// (times that do not increase, columns of another length, a NaN while powered,
+/// a value beyond +-1e12, another unit or role than the table of variables has)
 /// and when writing fails.
 void write_recording(const Recording& recording,
                      const std::filesystem::path& path);

@@ -54,7 +54,7 @@ struct TrainingOptions {
   std::uint64_t seed = 0;  ///< of the initial weights
   /// Groups that are held out in turn: "run", "cycle", "leg"; empty: none.
   std::string cross_validation = {};
-  /// Is told of each epoch of a network, and returns whether to go on. It is
+  /// Takes each epoch of a network, and returns whether to go on. It is
   /// called from any thread, but never by two at once.
   std::function<bool(const TrainingProgress&)> progress = {};
 };
@@ -94,7 +94,8 @@ TrainedCompensator train(
     const std::vector<std::filesystem::path>& held_out = {},
     const TrainingOptions& options = {});
 
-/// The same for recordings in memory. In the provenance the checksums of what
+/// The same for recordings in memory; one that write_recording() would refuse
+/// throws std::invalid_argument. In the provenance the checksums of what
 /// was measured stand in place of those of files.
 TrainedCompensator train(const Model& model,
                          const std::vector<NamedRecording>& recordings,

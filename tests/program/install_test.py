@@ -14,10 +14,11 @@ from program import PROGRAM, ROOT
 BUILD = PROGRAM.parent
 # Where to type what a page shows.
 STATED = """\
-Type everything in the source tree after `scripts/build.sh release`.
-With the [Debian packages](../install.md#debian-packages), type it in an empty
-folder, first `cp -r /usr/share/beamgyro/* .`, and type `beamgyro` in place of
-`build/release/beamgyro`.
+- From the sources: type everything in the source tree, after
+  `scripts/build.sh release`.
+- With the [Debian packages](../install.md#debian-packages): make an empty
+  folder, type `cp -r /usr/share/beamgyro/* .` in it, and then `beamgyro` in
+  place of `build/release/beamgyro`.
 """
 
 
@@ -123,7 +124,7 @@ class Install(unittest.TestCase):
             r"^```sh\n(.*?)^```", (ROOT / "docs/tutorials/"
                                    "1_first_drift_curve.md").read_text(),
             re.MULTILINE | re.DOTALL))
-        copy = re.search(r"`(cp .*)`,", STATED)[1].replace(
+        copy = re.search(r"`(cp .*?)`", STATED)[1].replace(
             "/usr/share", f"'{self.prefix}/share'")
         folder = self.dir / "empty"
         folder.mkdir()

@@ -377,6 +377,13 @@ class Refusals(PlotTest):
                      says=["table.csv", "rest.h5", "one kind"])
         self.refused("rest.h5", "allan.json", "--compare", "-o", "p.png",
                      says="one kind")
+        (self.dir / "cold.csv").write_text("time [s],temperature [degC],status\n"
+                                           "0,20,0\n1,21,0\n")
+        (self.dir / "rate.csv").write_text("time [s],rate [deg/s],status\n"
+                                           "0,20,0\n1,21,0\n")
+        self.refused("cold.csv", "rate.csv", "--compare", "-o", "p.png",
+                     says=["cold.csv", "rate.csv", "in common"])
+        self.ok("plot", "cold.csv", "rest.h5", "--compare", "-o", "p.png")
         self.refused("rest.h5", "rest.h5", "-o", "p.png", says="--compare")
         self.refused("rest.h5", "--compare", "-o", "p.png", says="--compare")
 

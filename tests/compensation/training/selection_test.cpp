@@ -53,7 +53,7 @@ Selected select_by_folds(const std::vector<Candidate>& candidates,
 }
 
 // The line of the report that starts with `name`.
-std::string told(const Selected& selected, const std::string& name) {
+std::string explanation(const Selected& selected, const std::string& name) {
   const auto& lines = selected.fit.choices;
   const auto line = std::find_if(
       lines.begin(), lines.end(),
@@ -79,12 +79,12 @@ TEST(Selection, OneLegTakesCurvesUpToTheCubicAndSaysWhy) {
                       rows_of({kUp}, curved));
   EXPECT_EQ(selected.candidate.name, "cubic");
   for (const std::string name : {"spline", "bp(3)"})
-    EXPECT_TRUE(says(told(selected, name),
+    EXPECT_TRUE(says(explanation(selected, name),
                      "passed over, the recordings are "
                      "one leg of temperature"))
-        << told(selected, name);
-  EXPECT_TRUE(says(told(selected, "cubic"), "over 5 unseen segments"));
-  EXPECT_TRUE(told(selected, "kept cubic").starts_with("kept cubic"));
+        << explanation(selected, name);
+  EXPECT_TRUE(says(explanation(selected, "cubic"), "over 5 unseen segments"));
+  EXPECT_TRUE(explanation(selected, "kept cubic").starts_with("kept cubic"));
 }
 
 TEST(Selection, OneLegIsAConstantWhenOnlyNoiseMoves) {
@@ -94,7 +94,7 @@ TEST(Selection, OneLegIsAConstantWhenOnlyNoiseMoves) {
         return 1.0 + 0.01 * noise[static_cast<std::size_t>(k)];
       }));
   EXPECT_EQ(selected.candidate.name, "constant");
-  EXPECT_TRUE(says(told(selected, "cubic"), "no more than slow noise"));
+  EXPECT_TRUE(says(explanation(selected, "cubic"), "no more than slow noise"));
 }
 
 // A straight line is in the cubic too; segments excuse no simplicity.
@@ -115,9 +115,9 @@ TEST(Selection, PassesOverWhatTheRowsDoNotDetermine) {
       [](double T, int) { return T; });
   const Selected selected = select_by_folds({kConstant, kLinear, kCubic}, rows);
   EXPECT_EQ(selected.candidate.name, "linear");
-  EXPECT_TRUE(
-      says(told(selected, "cubic"), "passed over, without run 1: temperature"))
-      << told(selected, "cubic");
+  EXPECT_TRUE(says(explanation(selected, "cubic"),
+                   "passed over, without run 1: temperature"))
+      << explanation(selected, "cubic");
 }
 
 // Slopes of three legs, T from -1 to 1: what two of them leave of the third,
@@ -169,9 +169,9 @@ TEST(Selection, AveragesWithAConstantByWhatLegsAgreeOn) {
       selected.fit.model.predict(Eigen::ArrayXd{{-40.0, 50.0}});
   EXPECT_NEAR(ends(1) - ends(0), 2.0 * 0.65 * selected.weight, 1e-9);
   EXPECT_NEAR(ends.mean(), 0.0, 1e-9);
-  EXPECT_TRUE(
-      says(told(selected, "linear"), "averaged with a constant, weight 0.44"))
-      << told(selected, "linear");
+  EXPECT_TRUE(says(explanation(selected, "linear"),
+                   "averaged with a constant, weight 0.44"))
+      << explanation(selected, "linear");
   EXPECT_FALSE(
       objection_to_claim(selected.errors, selected.constant_errors).empty());
 }
@@ -210,8 +210,8 @@ TEST(Selection, AGainThatIsOfNoUseKeepsTheConstant) {
   };
   const Selected small = choice(0.65);
   EXPECT_EQ(small.candidate.name, "constant");
-  EXPECT_TRUE(says(told(small, "kept"), "less than 10 %"))
-      << told(small, "kept");
+  EXPECT_TRUE(says(explanation(small, "kept"), "less than 10 %"))
+      << explanation(small, "kept");
   EXPECT_EQ(choice(1.0).candidate.name, "linear");
 }
 
@@ -219,16 +219,17 @@ TEST(Selection, TwoLegsAreTooFewForANetwork) {
   const Selected selected = select_by_folds(
       {kConstant, kCubic, kSpline, kNetwork}, rows_of({kUp, kDown}, curved));
   EXPECT_EQ(selected.candidate.name, "spline");
-  EXPECT_TRUE(says(told(selected, "bp(3)"),
+  EXPECT_TRUE(says(explanation(selected, "bp(3)"),
                    "passed over, 3 legs or more judge a network"))
-      << told(selected, "bp(3)");
+      << explanation(selected, "bp(3)");
 }
 
 TEST(Selection, ThreeRunsAreEnoughForANetwork) {
   const Selected selected = select_by_folds({kConstant, kLinear, kNetwork},
                                             rows_of(runs_up(3), curved));
   EXPECT_EQ(selected.candidate.name, "bp(3)");
-  EXPECT_TRUE(says(told(selected, "kept"), "kept bp(3): the lowest residual"));
+  EXPECT_TRUE(
+      says(explanation(selected, "kept"), "kept bp(3): the lowest residual"));
   EXPECT_LT(rms_of(*selected.errors), 0.2 * rms_of(*selected.constant_errors));
 }
 
@@ -262,10 +263,10 @@ TEST(Selection, TimeSincePowerOnNeedsPowerOnsAtSeveralTemperatures) {
   };
   const Selected same = choice({-40.0, -39.0, -35.0});
   EXPECT_EQ(same.candidate.name, "linear");
-  EXPECT_TRUE(says(told(same, "slopes"),
+  EXPECT_TRUE(says(explanation(same, "slopes"),
                    "power-ons at 3 temperatures 10 K apart; the recordings "
                    "have 1"))
-      << told(same, "slopes");
+      << explanation(same, "slopes");
   const Selected several = choice({-40.0, -30.0, -20.0});
   EXPECT_EQ(several.candidate.name, "slopes");
 }
@@ -276,7 +277,7 @@ TEST(Selection, WithoutGroupsHeldOutRowsJudge) {
   const Selected selected =
       select({kConstant, kLinear, kSpline}, rows, {}, held_out);
   EXPECT_EQ(selected.candidate.name, "spline");
-  EXPECT_TRUE(says(told(selected, "spline"), "unseen segments"));
+  EXPECT_TRUE(says(explanation(selected, "spline"), "unseen segments"));
   // Equal groups or not, the means are over about the same rows.
   EXPECT_NEAR(rms_of(*selected.errors),
               rms_residual(selected.fit.model, held_out),
