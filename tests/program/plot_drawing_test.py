@@ -114,6 +114,15 @@ class Recordings(ProgramTest):
                - left.get_window_extent().x1)
         self.assertGreater(gap, 10 * figure.dpi / 72)  # a letter's height
 
+    def test_few_devices_of_a_set_are_drawn_one_by_one(self):
+        for devices, lines, bands in (("1", 1, 0), ("6", 7, 0), ("20", 3, 2)):
+            with self.subTest(devices):
+                self.ok("generate", SCENARIOS / "campaigns/small.toml",
+                        "--devices", devices, "-o", devices)
+                left = plots.plot(self.dir / devices).axes[0]
+                self.assertEqual(len(left.lines), lines)
+                self.assertEqual(len(left.collections), bands)
+
     def test_a_set_of_devices_and_nothing_are_refused(self):
         with self.assertRaisesRegex(plots.PlotError, "isel"):
             plots.plot_recording({"time": np.arange(3.0),

@@ -88,6 +88,13 @@ def _curve(axes: Axes, points: Sequence[Mapping[str, Any]], k: int,
         axes.fill_between(tau, *ends, color=color, alpha=0.2, lw=0)
 
 
+# Of the name of a line: the share of the line, the side, the distance [pt].
+_PLACES: dict[str, tuple[float, dict[str, Any], tuple[float, float]]] = {
+    "falls": (0.88, {"ha": "right", "va": "top"}, (-3, -1)),
+    "level": (0.0, {"ha": "left", "va": "bottom"}, (6, 4)),
+    "rises": (0.12, {"ha": "left", "va": "top"}, (3, -1))}
+
+
 def _terms(axes: Axes, data: Mapping[str, Any], kind: str) -> None:
     """The asymptotes of the fitted terms where the picture shows them."""
     tau = np.geomspace(data[kind][0]["tau_s"], data[kind][-1]["tau_s"], 200)
@@ -100,14 +107,16 @@ def _terms(axes: Axes, data: Mapping[str, Any], kind: str) -> None:
         seen = (line > low) & (line < high)
         axes.plot(tau[seen], line[seen], ":", color=style.WORDS, lw=1.2,
                   zorder=1.5)
-        if seen.any():  # named at its low end, where no curve is
-            falls = symbol in "QN"
-            axes.annotate(DRAWN.get(symbol, symbol),
-                          (tau[seen][-1 if falls else 0],
-                           line[seen][-1 if falls else 0]),
-                          xytext=(-6 if falls else 6, 6),
-                          ha="center" if falls else "left",
-                          textcoords="offset points", color=style.WORDS)
+        if not seen.any():
+            continue
+        # Named below the line near its low end, where no curve is.
+        place, align, offset = _PLACES[
+            "falls" if symbol in "QN" else "rises" if symbol in "KR"
+            else "level"]
+        at = round(place * (np.count_nonzero(seen) - 1))
+        axes.annotate(DRAWN.get(symbol, symbol),
+                      (tau[seen][at], line[seen][at]), xytext=offset,
+                      textcoords="offset points", color=style.WORDS, **align)
 
 
 def draw(figure: Figure, results: Sequence[Mapping[str, Any]]) -> None:

@@ -19,6 +19,7 @@ from .units import time_unit
 
 Values = npt.NDArray[np.float64]
 MOST_DEVICES = 200  # that are read, evenly over the set
+FEWEST_FOR_SHARES = 20  # devices; fewer are drawn one by one
 MOST_RUNS = 3
 LONGEST_NAME = 60  # of a run [letters]
 BINS = 300
@@ -210,13 +211,19 @@ def _spread(axes: Axes, run: SetRun) -> None:
     with np.errstate(all="ignore"):
         low, q5, q25, q50, q75, q95, high = np.nanpercentile(
             rates, [0, 5, 25, 50, 75, 95, 100], axis=0)
-    axes.plot(time, low, color=style.GREY, lw=0.8)
-    axes.plot(time, high, color=style.GREY, lw=0.8, label="all")
-    axes.fill_between(time, q5, q95, color=style.AFTER, alpha=0.2, lw=0,
-                      label="90 of 100")
-    axes.fill_between(time, q25, q75, color=style.AFTER, alpha=0.35, lw=0,
-                      label="half")
-    axes.plot(time, q50, color=style.AFTER, label="median device")
+    if len(rates) < FEWEST_FOR_SHARES:
+        for number, rate in enumerate(rates):
+            axes.plot(time, rate, color=style.GREY, lw=0.8,
+                      label="each device" if number == 0 else None)
+    else:
+        axes.plot(time, low, color=style.GREY, lw=0.8)
+        axes.plot(time, high, color=style.GREY, lw=0.8, label="all")
+        axes.fill_between(time, q5, q95, color=style.AFTER, alpha=0.2, lw=0,
+                          label="90 of 100")
+        axes.fill_between(time, q25, q75, color=style.AFTER, alpha=0.35,
+                          lw=0, label="half")
+    if len(rates) > 1:
+        axes.plot(time, q50, color=style.AFTER, label="median device")
     axes.set(xlabel=f"time [{unit}]", ylabel="drift [°/s]")
     if time[-1] > time[0]:
         axes.set_xlim(time[0], time[-1])
