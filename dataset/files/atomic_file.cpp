@@ -89,6 +89,9 @@ void require_followable(const fs::path& link) {
 /// The file to replace: `path`, or what it links to.
 fs::path checked_target(const fs::path& path) {
   if (path.empty()) throw std::invalid_argument("an output file has no name");
+  if (path.native().find('\0') != fs::path::string_type::npos)
+    throw std::invalid_argument(fmt::format(
+        "{}: the name of an output file holds a NUL", path.c_str()));
   std::error_code ignored;
   const bool is_link = fs::is_symlink(fs::symlink_status(path, ignored));
   if (is_link) require_followable(path);

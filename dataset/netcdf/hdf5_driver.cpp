@@ -84,6 +84,10 @@ H5FD_t* open_driven(const char*, unsigned flags, hid_t properties, haddr_t) {
 }
 
 herr_t close_driven(H5FD_t* file) {
+  if (const int error = driven(file).failed_write; error != 0) {
+    failed_call = error;
+    write_failed = true;
+  }
   delete &driven(file);
   return 0;
 }

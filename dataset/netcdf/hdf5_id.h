@@ -44,9 +44,9 @@ bool has_failed_write();
 class QuietHdf5 {
  public:
   QuietHdf5() {
+    take_failed_system_call();  // of whoever closed a file that failed
     check_hdf5(H5PLget_loading_state(&plugins_), "start HDF5");
     check_hdf5(H5PLset_loading_state(0), "start HDF5");
-    take_failed_system_call();
     H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }
@@ -71,6 +71,7 @@ class H5Id {
  public:
   H5Id(hid_t id, herr_t (*release)(hid_t), const std::string& action)
       : id_(id), release_(release) {
+    if (id_ >= 0 && has_failed_write()) release_(std::exchange(id_, -1));
     check_hdf5(id < 0 ? -1 : 0, action);
   }
   ~H5Id() {

@@ -85,7 +85,7 @@ void require_same(const fs::path& directory, const ManifestHead& met,
       directory.string(), met.campaign, met.devices,
       met.devices == head.devices
           ? ""
-          : fmt::format(", here {}: --devices sets them", head.devices)));
+          : fmt::format(", here {}; --devices sets them", head.devices)));
 }
 
 bool holds_files_of_a_set(const fs::path& directory) {

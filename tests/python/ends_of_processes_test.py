@@ -67,16 +67,32 @@ def test_a_file_that_cannot_be_written_leaves_a_process_that_ends(tmp_path,
     status, output, errors = ended(tmp_path, f"""
 import beamgyro as bg, os, resource, signal, sys
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+bg.run_to_file(sys.argv[1], "good.h5", set={{"duration_s": 2}})
 resource.setrlimit(resource.RLIMIT_FSIZE, ({size}, {size}))
 for name in ("run.h5", "run.csv"):
     try:
         bg.run_to_file(sys.argv[1], name)
     except RuntimeError as error:
         print(error)
+    bg.open_recording("good.h5")  # other files are not concerned
 print(os.listdir("."))
 """)
     lines = output.splitlines()
     assert status == 0, errors
-    assert len(lines) == 3 and lines[-1] == "[]"
+    assert len(lines) == 3 and lines[-1] == "['good.h5']"
     for line in lines[:-1]:
         assert line.startswith("run.") and line.endswith("File too large")
+
+
+def test_a_child_ends_while_its_parent_works(tmp_path):
+    status, output, errors = ended(tmp_path, """
+import beamgyro as bg, os, sys, threading, time
+threading.Thread(target=lambda: bg.run(sys.argv[1], fidelity="carrier"),
+                 daemon=True).start()
+time.sleep(0.5)
+child = os.fork()
+if child == 0:
+    sys.exit(7)
+print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+""")
+    assert (status, output) == (0, "7\n"), errors
