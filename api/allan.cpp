@@ -344,7 +344,8 @@ AllanResult result_of(const AllanQuestion& asked, AllanSignal signal) {
     add_coefficients(found, result);
   }
   json["warnings"] = signal.warnings;
-  result.json = json.dump(2) + "\n";
+  result.json =
+      json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   result.warnings = std::move(signal.warnings);
   result.warnings.insert(result.warnings.end(), signal.file_warnings.begin(),
                          signal.file_warnings.end());

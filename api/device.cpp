@@ -87,6 +87,9 @@ std::vector<double> even_temperatures(double start, double stop, double step) {
   std::vector<double> grid;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
     grid.push_back(start + static_cast<double>(i) * step);
+  // A last step may pass `stop` by a rounding.
+  grid.back() =
+      step > 0.0 ? std::min(grid.back(), stop) : std::max(grid.back(), stop);
   return grid;
 }
 

@@ -11,9 +11,11 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "api/checked_number.h"
@@ -22,6 +24,7 @@
 #include "compensation/export/export_ekf.h"
 #include "compensation/export/export_parameters.h"
 #include "compensation/firmware/c_text.h"
+#include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/made_directories.h"
 #include "dataset/files/sha256.h"
@@ -251,21 +254,37 @@ ExportResult export_files(const std::vector<Compensator>& compensators,
   return result;
 }
 
+// Files that are open at once; a process has places for 64.
+constexpr std::size_t kMostFiles = 16;
+
 void write_exported(const std::filesystem::path& directory,
                     const std::vector<ExportedFile>& files) {
-  for (const ExportedFile& file : files)
+  if (files.size() > kMostFiles)
+    throw std::invalid_argument(
+        fmt::format("{} files; expected at most {}", files.size(), kMostFiles));
+  std::set<std::string_view> names;
+  for (const ExportedFile& file : files) {
     if (std::filesystem::path(file.name).filename() != file.name ||
         file.name.empty() || file.name == "." || file.name == "..")
       throw std::invalid_argument(
           fmt::format("'{}': expected the name of a file in the directory {}",
                       file.name, directory.string()));
+    if (!names.insert(file.name).second)
+      throw std::invalid_argument(fmt::format(
+          "{}: the name of two files; expected one each", file.name));
+  }
   const internal::MadeDirectories made(directory);
   // All are complete beside those that they replace before the first does.
   std::vector<std::unique_ptr<internal::AtomicFile>> written;
   for (const ExportedFile& file : files) {
     written.push_back(
         std::make_unique<internal::AtomicFile>(directory / file.name));
-    written.back()->file().write(std::as_bytes(std::span(file.text)));
+    try {
+      written.back()->file().write(std::as_bytes(std::span(file.text)));
+    } catch (const std::system_error& error) {
+      internal::throw_file_error(directory / file.name, "cannot write",
+                                 error.code());
+    }
   }
   for (const auto& file : written) file->publish();
 }

@@ -241,7 +241,9 @@ SoakPlanResult PlanStudy::result(
       found.chosen.temperatures, found.time, found.rule,
       s.options.device_name.empty() ? s.device.name() : s.options.device_name);
   result.text = plan_text(found);
-  result.json = plan_json(found).dump(2) + "\n";
+  result.json = plan_json(found).dump(
+                    2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                "\n";
   return result;
 }
 

@@ -150,7 +150,10 @@ SensitivityResult run_study(const SensitivityStudy& study,
     result.text += '\n' + sensitivity_table(found.back());
     result.figures.push_back(figure_of(found.back()));
   }
-  result.json = to_json(sample, head, found).dump(2) + "\n";
+  result.json =
+      to_json(sample, head, found)
+          .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+      "\n";
   return result;
 }
 

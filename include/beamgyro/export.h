@@ -46,10 +46,12 @@ ExportResult export_files(const std::vector<Compensator>& compensators,
                           const std::string& format,
                           const ExportOptions& options = {});
 
-/// Writes files to a directory. The directory and those above it are made where
-/// they are missing. Files that are there keep their contents until all new
-/// ones are complete. Throws std::invalid_argument where that cannot be and for
-/// a name with a directory in it, and std::runtime_error when writing fails.
+/// Writes up to 16 files to a directory. The directory and those above it are
+/// made where they are missing. Files that are there keep their contents until
+/// all new ones are complete; a failure while these are renamed can leave some
+/// new and some old. Throws std::invalid_argument for a name that cannot be
+/// written, has a directory in it or is that of two files, and
+/// std::runtime_error when writing fails.
 void write_exported(const std::filesystem::path& directory,
                     const std::vector<ExportedFile>& files);
 

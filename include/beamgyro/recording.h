@@ -30,7 +30,8 @@ enum StatusBit : std::uint8_t {
 struct Column {
   std::string name;  ///< as in files: output, rate, temperature, true_rate, ...
   /// As in files: V, degree/s, degC, Hz. Of a variable that beamgyro knows, the
-  /// unit of docs/reference/recording.md or empty.
+  /// unit of docs/reference/recording.md; calls take none for that one, but a
+  /// file without it cannot be read.
   std::string units;
   std::string long_name;
   Role role = Role::kMeasured;

@@ -84,6 +84,8 @@ TEST(Characteristic, TemperaturesAreLimitedInTheirNumber) {
   EXPECT_EQ(even_temperatures(60.0, -40.0, -100.0),
             (std::vector<double>{60.0, -40.0}));
   EXPECT_EQ(even_temperatures(5.0, 5.0, 1.0), std::vector<double>{5.0});
+  EXPECT_EQ(even_temperatures(-99.6, 150.0, 0.1).back(), 150.0);
+  EXPECT_EQ(even_temperatures(0.3, 0.0, -0.1).back(), 0.0);
   const double nan = std::nan("");
   for (const auto& [start, stop, step] :
        std::vector<std::array<double, 3>>{{-40.0, 60.0, 1e-9},

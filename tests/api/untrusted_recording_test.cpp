@@ -202,6 +202,15 @@ TEST(WriteExported, KeepsWhatIsThereUntilAllFilesAreComplete) {
 TEST(WriteExported, WritesNowhereButIntoItsDirectory) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / "write_nowhere";
+  expect_refused("a.c: the name of two files", [&] {
+    write_exported(folder, {{"a.c", "one"}, {"a.c", "other"}});
+  });
+  expect_refused("17 files; expected at most 16", [&] {
+    write_exported(folder, std::vector<ExportedFile>(17, {"a.c", ""}));
+  });
+  expect_refused("NUL", [&] {
+    write_exported(folder, {{std::string("a.c\0.h", 6), "text"}});
+  });
   for (const char* name : {"../escaped.txt", "/tmp/absolute.txt", "", ".."})
     expect_refused("expected the name of a file", [&] {
       write_exported(folder, {{name, "text"}});

@@ -203,7 +203,8 @@ std::string bundle_text(const Validator& validator,
                   {"request", request_json(validator.request(), names)},
                   {"inputs", hashes_of(copies)},
                   {"outputs", hashes_of(outputs)}};
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+         "\n";
 }
 
 }  // namespace
