@@ -60,6 +60,7 @@ class UserCompensator final : public TestedCompensator {
   explicit UserCompensator(const RateCompensator& user) : user_(user) {}
 
   std::vector<std::string> inputs() const override { return user_.inputs(); }
+  bool is_timed() const override { return false; }
 
   std::vector<Answer> answers(
       const std::vector<const Recording*>& runs) const override {
@@ -137,6 +138,7 @@ class BorrowedCompensator final : public TestedCompensator {
       const std::vector<const Recording*>& runs) const override {
     return opened_.answers(runs);
   }
+  bool is_timed() const override { return opened_.is_timed(); }
 
  private:
   const TestedCompensator& opened_;

@@ -59,8 +59,9 @@ nlohmann::ordered_json json_of(const CompletedValidation& validation) {
 
 ValidationTexts texts_of(const CompletedValidation& validation) {
   const nlohmann::ordered_json json = json_of(validation);
-  return {json.dump(2) + "\n", verdict_report(validation.result),
-          page_of(json)};
+  return {
+      json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n",
+      verdict_report(validation.result), page_of(json)};
 }
 
 }  // namespace internal

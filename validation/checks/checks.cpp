@@ -68,7 +68,7 @@ constexpr std::array kChecks{
               "longest time with the same answer while the output changes [s]"},
              check_output_stuck,
              Stage::kConduct},
-    CheckRow{{"real_time", ""}, check_real_time, Stage::kFaults}};
+    CheckRow{{"real_time", "", true}, check_real_time, Stage::kFaults}};
 
 constexpr const char* kTooFewAnswers =
     "Too many answers are missing: see the checks \"answers\" and \"finite\".";

@@ -59,7 +59,8 @@ struct CheckDefinition {
   std::string_view name;
   std::string_view figure;  // what CheckResult::value is, with its unit
   // Whether a compensator passes as a whole without this check having been
-  // tested: one that names no training cannot be held against it.
+  // tested: one that names no training cannot be held against it, and a
+  // function of a program shares its processor with others.
   bool may_be_untested = false;
 };
 

@@ -76,6 +76,10 @@ class TestedCompensator {
   virtual std::vector<Answer> answers(
       const std::vector<const Recording*>& runs) const = 0;
 
+  /// Whether the seconds of its answers are its own, and not those of waiting
+  /// for another thread that asks it.
+  virtual bool is_timed() const { return true; }
+
   /// Returns its answers to one run.
   Answer answer(const Recording& run) const;
 };
