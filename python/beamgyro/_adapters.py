@@ -92,18 +92,27 @@ def _require_times(values: Any, what: str,
         own = values.coords["time"]
     elif getattr(index, "name", None) == "time":
         own = index
-    elif getattr(index, "is_monotonic_increasing", True):
-        return
     else:
-        raise ValueError(
-            f"the answer of {what}: is a series in the order of something "
-            "else, as its index tells; expected a rate for each sample in "
-            "the order of the signals")
+        _require_no_other_order(index, what)
+        return
     own = np.asarray(own)
     if own.shape == time.shape and not np.array_equal(own, time):
         raise ValueError(
             f"the answer of {what}: has other times than the signals; "
             "expected a rate for each sample in the order of these")
+
+
+def _require_no_other_order(index: Any, what: str) -> None:
+    """Refuse the index of a series that was sorted by something else."""
+    if not hasattr(index, "dtype") or index.dtype.kind not in "iu":
+        return
+    places, order = np.asarray(index), np.arange(len(index))
+    if not np.array_equal(places, order) and np.array_equal(
+            np.sort(places), order):
+        raise ValueError(
+            f"the answer of {what}: is a series with the index "
+            f"{', '.join(map(str, places[:3]))}, ...; expected a rate for each "
+            "sample in the order of the signals: 0, 1, ...")
 
 
 @contextlib.contextmanager

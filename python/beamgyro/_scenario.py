@@ -165,7 +165,7 @@ class Scenario:
 
 
 def _scenario_of(text: str, device: Device, overrides: list[str], name: str,
-                 profiles: list[tuple[FilePath, str]]) -> Scenario:
+                 profiles: list[tuple[FilePath, bytes]]) -> Scenario:
     return Scenario._of(_core.Scenario.parse(text, device._native, overrides,
                                              name, profiles))
 

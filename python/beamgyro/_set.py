@@ -102,7 +102,7 @@ class Campaign:
         return _campaign_of, (self._native.files, self.devices)
 
 
-def _campaign_of(files: list[tuple[FilePath, str]],
+def _campaign_of(files: list[tuple[FilePath, bytes]],
                  devices: int) -> Campaign:
     campaign = Campaign.__new__(Campaign)
     campaign._native = _core.Campaign.parse(files, devices)

@@ -74,10 +74,14 @@ class FunctionCompensator final : public RateCompensator {
   // Throws std::invalid_argument where it is asked by its own answer.
   void require_other_callers() const {
     const Asked::Compensators& waiting = Asked::all();
-    if (std::ranges::find(waiting, this) != waiting.end() ||
-        waiting.size() >= kMostNested)
+    if (std::ranges::find(waiting, this) != waiting.end())
       throw std::invalid_argument(
           fmt::format("{}: its answer asks for its own answer", name_));
+    if (waiting.size() >= kMostNested)
+      throw std::invalid_argument(
+          fmt::format("{}: {} compensators wait for each other's answers; "
+                      "expected fewer, none of which asks for its own",
+                      name_, waiting.size()));
   }
 
   std::string name_;

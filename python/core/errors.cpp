@@ -52,10 +52,10 @@ constexpr std::array kOptionNames{
 
 /// What stands before an option in the library's own words. An option after
 /// anything else is part of a name or a command of the user's.
-constexpr std::array<std::string_view, 13> kBeforeOptions{
-    "; ",  "expected ", "expected no ", "pass ",   "below ",
-    "or ", "and ",      "such as ",     "one of ", "narrower ",
-    "by ", "earlier ",  "which "};
+constexpr std::array<std::string_view, 14> kBeforeOptions{
+    "; ",  "expected ", "expected no ", "pass ",    "below ",
+    "or ", "and ",      "such as ",     "one of ",  "narrower ",
+    "by ", "earlier ",  "which ",       "generate "};
 
 /// Returns the option that `text` begins with, or nullptr.
 const OptionName* option_at(std::string_view text) {
@@ -126,9 +126,7 @@ void translate(std::exception_ptr thrown) {
   } catch (const py::builtin_exception&) {
     throw;  // of pybind11, as are errors of Python
   } catch (const std::bad_alloc&) {
-    raise(PyExc_MemoryError,
-          "there is not enough memory for this; run_to_file() needs none that "
-          "grows with the run");
+    raise(PyExc_MemoryError, "there is not enough memory for this call");
   } catch (const std::logic_error& error) {
     raise(PyExc_ValueError, error.what());
   } catch (const std::runtime_error& error) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <pybind11/pybind11.h>
+
 #include <filesystem>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -10,9 +11,10 @@
 
 namespace beamgyro::python {
 
-/// Files as Python has them: tuples of path and text.
+/// Files as Python has them: tuples of path and bytes. A profile may be in
+/// another encoding than UTF-8.
 using PathsAndTexts =
-    std::vector<std::pair<std::filesystem::path, std::string>>;
+    std::vector<std::pair<std::filesystem::path, pybind11::bytes>>;
 
 inline std::vector<InputFile> input_files(const PathsAndTexts& files) {
   std::vector<InputFile> all;
@@ -22,7 +24,8 @@ inline std::vector<InputFile> input_files(const PathsAndTexts& files) {
 
 inline PathsAndTexts paths_and_texts(const std::vector<InputFile>& files) {
   PathsAndTexts all;
-  for (const InputFile& file : files) all.emplace_back(file.path, file.text);
+  for (const InputFile& file : files)
+    all.emplace_back(file.path, pybind11::bytes(file.text));
   return all;
 }
 

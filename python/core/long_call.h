@@ -2,6 +2,7 @@
 #pragma once
 
 #include <pybind11/pybind11.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -40,9 +41,13 @@ class RunningWork {
   /// Asks all of them to end, now and in future.
   static void stop() { stopped() = true; }
   static bool is_stopped() { return stopped(); }
-  static bool is_any() { return count() > 0; }
+  /// Whether there is any in this process. A child has the count of its parent
+  /// and none of its threads.
+  static bool is_any() { return count() > 0 && getpid() == kProcess; }
 
  private:
+  inline static const pid_t kProcess = getpid();
+
   static std::atomic<int>& count() {
     static std::atomic<int> number{0};
     return number;

@@ -63,6 +63,14 @@ def test_a_scenario_keeps_the_profiles_that_it_read(scenario, change,
         assert first_temperature(made, seed=3) == -20
 
 
+def test_a_profile_may_be_in_another_encoding(scenario, tmp_path):
+    path = tmp_path / "cold/profile.csv"
+    path.write_bytes(b"time_s,temperature_degC,\xb0\n0,-20,1\n100,-20,1\n")
+    read = bg.Scenario.parse(scenario.text, scenario.device)
+    assert read != scenario
+    assert pickle.loads(pickle.dumps(read)) == read
+
+
 def test_scenarios_with_other_profiles_are_not_equal(scenario, tmp_path):
     text, device = scenario.text, scenario.device
     cold = bg.Scenario.parse(text, device)

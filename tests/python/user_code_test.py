@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Functions, estimators and networks of users that answer oddly."""
 
+import threading
 import time
 
 import numpy as np
@@ -27,6 +28,8 @@ def compensated(function, run, **options):
     lambda rate: rate.values.tolist(),
     lambda rate: rate.to_series(),
     lambda rate: rate.to_series().reset_index().rate,
+    lambda rate: rate.to_series().set_axis(range(rate.size, 0, -1)),
+    lambda rate: rate.to_series().set_axis(2 * list(range(rate.size // 2))),
     lambda rate: rate.to_series().astype("Float64"),
     lambda rate: rate.values[:, None],
     lambda rate: np.repeat(rate.values, 2)[::2],
@@ -61,7 +64,7 @@ def test_whole_numbers_are_rates(run):
     (lambda rate: (rate, 1.0), "one dimension"),
     (lambda rate: rate[::-1], "times"),
     (lambda rate: rate.to_series()[::-1], "times"),
-    (lambda rate: rate.to_series().reset_index().rate[::-1], "order of"),
+    (lambda rate: rate.to_series().reset_index().rate[::-1], "the index"),
     (lambda rate: rate.to_series().astype("Float64").mask(rate.values > 0),
      "missing"),
 ])
@@ -226,18 +229,25 @@ def test_an_estimator_names_its_features_in_a_sequence():
         bg.Compensator(Named(), inputs=[])
 
 
+def several(run):
+    """Runs that differ, which several threads answer at once."""
+    return {f"run {k}": run.assign(rate=run.rate + k).assign_attrs(seed=k)
+            for k in range(4)}
+
+
 def test_a_function_is_called_by_one_thread_at_a_time(run):
-    inside, most = [], []
+    inside, most, threads = [], [], set()
 
     def slow(signals):
         inside.append(1)
         most.append(len(inside))
+        threads.add(threading.get_ident())
         time.sleep(0.01)
         inside.pop()
         return signals.rate
 
-    bg.validate(slow, run, jobs=4)
-    assert len(most) > 4
+    bg.validate(slow, several(run), jobs=4)
+    assert len(threads) > 1
     assert max(most) == 1
 
 
@@ -247,7 +257,7 @@ def test_threads_change_nothing_of_a_network(run):
     network = torch.nn.Sequential(
         torch.nn.Linear(1, 4), torch.nn.Dropout(0.5), torch.nn.Linear(4, 1))
     network.train()  # as training leaves it
-    first, second = (bg.validate(network, run, jobs=jobs).to_json()
+    first, second = (bg.validate(network, several(run), jobs=jobs).to_json()
                      for jobs in (1, 4))
     assert first == second
     assert all(module.training for module in network.modules())
@@ -264,7 +274,7 @@ def test_a_compensator_may_not_ask_for_its_own_answer(run):
     def anew(signals):
         return bg.compensate(anew, run).compensated_rate.values
 
-    with pytest.raises(ValueError, match="anew: its answer asks for its own"):
+    with pytest.raises(ValueError, match="anew: 16 compensators wait"):
         bg.compensate(anew, run)
 
 
