@@ -85,6 +85,8 @@ class Attributes(ProgramTest):
         said = subprocess.run(
             ["octave-cli", "--no-gui", "--eval", script], cwd=self.dir,
             capture_output=True, text=True, check=False)
+        if "netcdf is not installed" in said.stderr:
+            self.skipTest("no octave-netcdf here")
         self.assertEqual(said.returncode, 0, said.stderr)
         title, units, value = said.stdout.splitlines()[-3:]
         self.assertEqual((title, units),
