@@ -87,15 +87,11 @@ def _split(answer: Any, what: str, time: np.ndarray[Any, Any]) -> _Answer:
 def _require_times(values: Any, what: str,
                    time: np.ndarray[Any, Any]) -> None:
     """Refuse an array of xarray, or a series of pandas, in another order."""
-    index = getattr(values, "index", None)
-    if "time" in getattr(values, "coords", ()):
-        own = values.coords["time"]
-    elif getattr(index, "name", None) == "time":
-        own = index
-    else:
-        _require_no_other_order(index, what)
+    stated = _arguments.stated_times(values)
+    if stated is None:
+        _require_no_other_order(getattr(values, "index", None), what)
         return
-    own = np.asarray(own)
+    own = np.asarray(stated)
     if own.shape == time.shape and not np.array_equal(own, time):
         raise ValueError(
             f"the answer of {what}: has other times than the signals; "

@@ -211,13 +211,8 @@ def _judged(compensator: Any, options: dict[str, Any],
 
 def _checked_rate(data: Any, rate_Hz: float) -> float:
     """Return the rate of samples, whose times an array may state, too."""
-    if "time" in getattr(data, "coords", ()):
-        times = data.coords["time"]
-    elif getattr(getattr(data, "index", None), "name", None) == "time":
-        times = data.index  # of pandas
-    else:
-        return rate_Hz
-    if data.size < 2:
+    times = _arguments.stated_times(data)
+    if times is None or data.size < 2:
         return rate_Hz
     steps = np.diff(_arguments.seconds(times, "time"))
     if not np.allclose(steps * rate_Hz, 1.0, atol=0.5) or abs(

@@ -192,6 +192,17 @@ def status(values: Any) -> Array:
     return found.astype(np.uint8)
 
 
+def stated_times(values: Any) -> Any:
+    """Return the times of an array of xarray or a series of pandas.
+
+    None where it states none.
+    """
+    if "time" in getattr(values, "coords", ()):
+        return values.coords["time"]
+    index = getattr(values, "index", None)
+    return index if getattr(index, "name", None) == "time" else None
+
+
 def not_empty(values: Sized, name: str) -> None:
     """Refuse an empty sequence."""
     if len(values) == 0:
