@@ -16,6 +16,7 @@
 #include "compensation/scoring/allan_deviation.h"
 #include "compensation/scoring/noise_coefficients.h"
 #include "config/range.h"
+#include "dataset/files/json_text.h"
 #include "dataset/files/text_file.h"
 #include "dataset/log/csv_file.h"
 #include "dataset/log/recording_csv.h"
@@ -344,8 +345,7 @@ AllanResult result_of(const AllanQuestion& asked, AllanSignal signal) {
     add_coefficients(found, result);
   }
   json["warnings"] = signal.warnings;
-  result.json =
-      json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  result.json = json_text(json);
   result.warnings = std::move(signal.warnings);
   result.warnings.insert(result.warnings.end(), signal.file_warnings.begin(),
                          signal.file_warnings.end());

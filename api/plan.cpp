@@ -14,6 +14,7 @@
 #include "api/device_state.h"
 #include "api/soak_plan.h"
 #include "config/units.h"
+#include "dataset/files/json_text.h"
 #include "planning/chamber_view.h"
 #include "planning/planner.h"
 #include "planning/schedule_file.h"
@@ -241,9 +242,7 @@ SoakPlanResult PlanStudy::result(
       found.chosen.temperatures, found.time, found.rule,
       s.options.device_name.empty() ? s.device.name() : s.options.device_name);
   result.text = plan_text(found);
-  result.json = plan_json(found).dump(
-                    2, ' ', false, nlohmann::json::error_handler_t::replace) +
-                "\n";
+  result.json = json_text(plan_json(found));
   return result;
 }
 

@@ -14,6 +14,7 @@
 #include "api/compensator_state.h"
 #include "api/reported_progress.h"
 #include "api/sensitivity_study.h"
+#include "dataset/files/json_text.h"
 #include "report/sensitivity_report.h"
 #include "sensitivity/figures/figure_of_merit.h"
 #include "sensitivity/study/factor.h"
@@ -150,10 +151,7 @@ SensitivityResult run_study(const SensitivityStudy& study,
     result.text += '\n' + sensitivity_table(found.back());
     result.figures.push_back(figure_of(found.back()));
   }
-  result.json =
-      to_json(sample, head, found)
-          .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-      "\n";
+  result.json = json_text(to_json(sample, head, found));
   return result;
 }
 

@@ -19,6 +19,7 @@
 #include "api/validation_texts.h"
 #include "compensation/rows/recorded_runs.h"
 #include "config/range.h"
+#include "dataset/files/json_text.h"
 #include "parallel/work_queue.h"
 #include "report/verdict_report.h"
 #include "validation/page/figures.h"
@@ -59,9 +60,7 @@ nlohmann::ordered_json json_of(const CompletedValidation& validation) {
 
 ValidationTexts texts_of(const CompletedValidation& validation) {
   const nlohmann::ordered_json json = json_of(validation);
-  return {
-      json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n",
-      verdict_report(validation.result), page_of(json)};
+  return {json_text(json), verdict_report(validation.result), page_of(json)};
 }
 
 }  // namespace internal

@@ -23,6 +23,7 @@
 #include "compensation/rows/set_runs.h"
 #include "compensation/scoring/set_scores.h"
 #include "dataset/files/atomic_file.h"
+#include "dataset/files/json_text.h"
 #include "dataset/files/sha256.h"
 #include "parallel/work_queue.h"
 #include "report/validation_report.h"
@@ -69,14 +70,12 @@ int validate_on_set(const ValidateArguments& arguments,
   if (!arguments.json.empty())
     files.emplace_back([&] {
       write_text_file(arguments.json,
-                      nlohmann::ordered_json{
+                      json_text(nlohmann::ordered_json{
                           {"verdict", passed ? "pass" : "fail"},
                           {"set", source.set->name},
                           {"manifest_sha256", source.set->manifest_sha256},
                           {"warnings", warnings},
-                          {"devices", to_json(scores)}}
-                              .dump(2) +
-                          "\n");
+                          {"devices", to_json(scores)}}));
     });
   return deliver(device_table(scores), files, passed ? 0 : kNotPassed);
 }
@@ -119,7 +118,7 @@ int validate_on_runs(const ValidateArguments& arguments) {
   if (!arguments.json.empty()) {
     nlohmann::ordered_json all = to_json(validation);
     add_metrics_on_runs(arguments, compensator, all);
-    json = all.dump(2) + "\n";
+    json = json_text(all);
   }
   progress.reset();
   for (const std::string& warning : validation.warnings) print_warning(warning);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/units.h"
+#include "dataset/files/json_text.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -209,7 +210,7 @@ Json parameter_json(const FilterParameter& p) {
   return json;
 }
 
-std::string json_text(const EkfExport& given) {
+std::string parameter_document(const EkfExport& given) {
   const auto source = [](const EkfSource& of) {
     return Json{{"name", of.name}, {"sha256", of.sha256}};
   };
@@ -232,8 +233,7 @@ std::string json_text(const EkfExport& given) {
   json["parameters"] = Json::array();
   for (const FilterParameter& p : filter_parameters(given))
     json["parameters"].push_back(parameter_json(p));
-  // A file name need not be UTF-8.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace
@@ -248,7 +248,7 @@ std::vector<FilterParameter> filter_parameters(const EkfExport& given) {
 
 std::vector<std::pair<std::string, std::string>> ekf_texts(
     const EkfExport& given) {
-  return {{given.name + "_ekf.json", json_text(given)},
+  return {{given.name + "_ekf.json", parameter_document(given)},
           {given.name + "_ekf2.params", px4_text(given)},
           {given.name + "_ekf3.parm", ardupilot_text(given)},
           {given.name + "_imu.yaml", kalibr_text(given)},

@@ -15,6 +15,7 @@
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/directory.h"
+#include "dataset/files/json_text.h"
 #include "dataset/files/made_directories.h"
 #include "dataset/files/publish.h"
 #include "dataset/files/set_files.h"
@@ -203,8 +204,7 @@ std::string bundle_text(const Validator& validator,
                   {"request", request_json(validator.request(), names)},
                   {"inputs", hashes_of(copies)},
                   {"outputs", hashes_of(outputs)}};
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-         "\n";
+  return json_text(json);
 }
 
 }  // namespace
