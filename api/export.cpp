@@ -12,10 +12,8 @@
 #include <limits>
 #include <memory>
 #include <set>
-#include <span>
 #include <stdexcept>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "api/checked_number.h"
@@ -24,7 +22,6 @@
 #include "compensation/export/export_ekf.h"
 #include "compensation/export/export_parameters.h"
 #include "compensation/firmware/c_text.h"
-#include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/made_directories.h"
 #include "dataset/files/sha256.h"
@@ -277,14 +274,9 @@ void write_exported(const std::filesystem::path& directory,
   // All are complete beside those that they replace before the first does.
   std::vector<std::unique_ptr<internal::AtomicFile>> written;
   for (const ExportedFile& file : files) {
-    written.push_back(
-        std::make_unique<internal::AtomicFile>(directory / file.name));
-    try {
-      written.back()->file().write(std::as_bytes(std::span(file.text)));
-    } catch (const std::system_error& error) {
-      internal::throw_file_error(directory / file.name, "cannot write",
-                                 error.code());
-    }
+    const std::filesystem::path path = directory / file.name;
+    written.push_back(std::make_unique<internal::AtomicFile>(path));
+    internal::write_partial_file(*written.back(), path, file.text);
   }
   for (const auto& file : written) file->publish();
 }

@@ -275,13 +275,18 @@ void AtomicFile::publish() try {
 
 void require_writable(const fs::path& path) { const AtomicFile probe(path); }
 
-void write_text_file(const fs::path& path, std::string_view text) {
-  AtomicFile target(path);
+void write_partial_file(AtomicFile& file, const fs::path& path,
+                        std::string_view text) {
   try {
-    target.file().write(std::as_bytes(std::span(text)));
+    file.file().write(std::as_bytes(std::span(text)));
   } catch (const std::system_error& error) {
     fail_writing(path, error.code());
   }
+}
+
+void write_text_file(const fs::path& path, std::string_view text) {
+  AtomicFile target(path);
+  write_partial_file(target, path, text);
   target.publish();
 }
 

@@ -67,6 +67,11 @@ class AtomicFile {
 /// Throws what writing to `path` would throw at its start. Leaves no file.
 void require_writable(const std::filesystem::path& path);
 
+/// Writes `text` to a file that is not published yet, called `path` in
+/// messages. Throws FileError.
+void write_partial_file(AtomicFile& file, const std::filesystem::path& path,
+                        std::string_view text);
+
 /// Writes `text` to `path`, completely or not at all. Throws as AtomicFile, and
 /// FileError when writing fails.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
