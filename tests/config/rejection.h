@@ -8,12 +8,13 @@
 
 namespace beamgyro::internal {
 
-/// The message with which `work` rejects its input.
-template <class Work>
+/// Returns the message of the `Error` that `work` throws. The test fails if
+/// nothing is thrown.
+template <class Error = std::invalid_argument, class Work>
 std::string rejection(const Work& work) {
   try {
     work();
-  } catch (const std::invalid_argument& error) {
+  } catch (const Error& error) {
     return error.what();
   }
   ADD_FAILURE() << "nothing was rejected";

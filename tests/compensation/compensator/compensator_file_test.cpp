@@ -9,9 +9,9 @@
 #include <filesystem>
 
 #include "dataset/files/atomic_file.h"
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/sample_compensators.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::compensator_file_test {
 namespace {
@@ -24,7 +24,7 @@ std::vector<std::uint64_t> bits(const std::vector<double>& values) {
 }
 
 std::string error_of(const std::string& text) {
-  return message_of([&] { parse_compensator(text, "mine.json"); });
+  return rejection([&] { parse_compensator(text, "mine.json"); });
 }
 
 Recording with_loop_signals(Recording recording) {
@@ -75,7 +75,7 @@ TEST(CompensatorFile, IsWrittenAndReadThroughAFile) {
   EXPECT_EQ(compensator_text(read_compensator(file)),
             compensator_text(network_compensator()));
   std::filesystem::remove(file);
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               read_compensator(file);
             }).find("compensator_file_test.json"),
             std::string::npos);

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/sample_compensators.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::compensator_test {
 namespace {
@@ -56,7 +56,7 @@ TEST(Compensator, ClampsTheTemperatureAndCountsTheSamples) {
 TEST(Compensator, MissingInputIsNamed) {
   Recording recording = RecordedRun{}.recording();
   recording.columns.erase(recording.columns.begin() + 2);
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               compensated_rate(linear_compensator(), recording);
             }).find("input \"temperature\" needs the measured column"),
             std::string::npos);
@@ -116,7 +116,7 @@ TEST(Compensator, ScaleFactorAtNoFiniteTemperatureIsAnError) {
     Recording recording = RecordedRun{}.recording();
     std::ranges::find(recording.columns, "temperature", &Column::name)
         ->values[7] = bad;
-    EXPECT_NE(message_of([&] {
+    EXPECT_NE(rejection([&] {
                 compensated_rate(c, recording);
               }).find("at t = 3.5 s though the gyro is powered"),
               std::string::npos);

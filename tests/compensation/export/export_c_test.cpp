@@ -10,8 +10,8 @@
 #include "compensation/export/firmware_difference.h"
 #include "compensation/export/firmware_model.h"
 #include "compensation/firmware/c_text.h"
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/sample_compensators.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::export_c_test {
 namespace {
@@ -91,7 +91,7 @@ TEST(ExportedC, DifferencesBeyondTheLimitAreRefusedOrCarriedInTheCode) {
   Compensator c = network_compensator();
   auto& network = std::get<BpNetwork>(c.bias.function);
   network.set_weights(100.0 * network.weights());
-  const std::string refusal = message_of([&] { export_c(c, "g"); });
+  const std::string refusal = rejection([&] { export_c(c, "g"); });
   EXPECT_TRUE(holds(refusal,
                     "from those of compensate, and 0.0001 deg/s is "
                     "the most"))
@@ -107,7 +107,7 @@ TEST(ExportedC, CompensatorsThatCancelTheRateAreRefusedOrWarnedOfInTheCode) {
   Compensator c = spline_compensator();
   c.inputs.push_back(parse_input("rate"));
   c.bias = {{{5.0, 45.0}, {0.0, 5.0}}, {}, Polynomial{{0.3, -0.2}, {4.9}}};
-  const std::string refusal = message_of([&] { export_c(c, "g"); });
+  const std::string refusal = rejection([&] { export_c(c, "g"); });
   EXPECT_TRUE(holds(refusal,
                     "it cancels the rate: of a small rate it lets "
                     "0.0200 through"))
@@ -172,7 +172,7 @@ TEST(ExportedC, WhatAFileSaysOfItsMethodStaysInTheComment) {
 TEST(ExportedC, ParameterBeyondSinglePrecisionIsRefused) {
   Compensator c = spline_compensator();
   c.bias.bias_scale.centre = 1e300;
-  EXPECT_TRUE(holds(message_of([&] { export_c(c, "g"); }),
+  EXPECT_TRUE(holds(rejection([&] { export_c(c, "g"); }),
                     "does not fit single precision"));
 }
 

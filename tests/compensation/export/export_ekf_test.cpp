@@ -10,9 +10,9 @@
 #include <string>
 
 #include "random/random_stream.h"
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/sample_compensators.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::export_ekf_test {
 namespace {
@@ -193,16 +193,16 @@ TEST(RestNoise, FindsTheWhiteNoiseAndBoundsTheWalk) {
 
 TEST(RestNoise, RefusesWhatIsNoRest) {
   const Compensator c = spline_compensator();
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               rest_noise(c, noisy_rest(3.0));
             }).find("samples show too little"),
             std::string::npos);
   const Recording turning = RecordedRun{.true_rate = [](double t) {
                               return t > 300.0 ? 1.0 : 0.0;
                             }}.recording();
-  EXPECT_EQ(message_of([&] { rest_noise(c, turning); }),
+  EXPECT_EQ(rejection([&] { rest_noise(c, turning); }),
             "true_rate: from 0 to 1 deg/s; expected a recording at rest");
-  EXPECT_EQ(message_of([&] { rest_noise(c, RecordedRun{}.recording()); }),
+  EXPECT_EQ(rejection([&] { rest_noise(c, RecordedRun{}.recording()); }),
             "1200 samples show too little for noise coefficients; expected a "
             "longer recording at rest, with noise");
 }

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/sample_compensators.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::firmware_difference_test {
 namespace {
@@ -66,14 +66,14 @@ TEST(FirmwareDifference, FiltersAreMetOnTheRampsOfTraining) {
 }
 
 TEST(FirmwareDifference, SignalsWhoseRangeTheFileDoesNotTellAreRefused) {
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               firmware_difference(of_input("drive_frequency", {}, 1.0));
             }).find("the range of drive_frequency in training"),
             std::string::npos);
 }
 
 TEST(FirmwareDifference, AnswersThatAreNotFiniteInSingleAreRefused) {
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               Compensator c = of_input("temperature", {5.0, 45.0}, 3e38);
               c.bias.bias_scale.half_width = 3e38;
               firmware_difference(c);

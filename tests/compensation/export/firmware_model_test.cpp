@@ -12,9 +12,9 @@
 
 #include "compensation/firmware/runtime.h"
 #include "compensation/inputs/features.h"
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/sample_compensators.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::firmware_model_test {
 namespace {
@@ -311,7 +311,7 @@ TEST(FirmwareModel, ReadsTheSignalsOfItsInputsOnly) {
 TEST(FirmwareModel, ParameterBeyondSinglePrecisionIsNamed) {
   Compensator c = of_input("temperature");
   c.bias.function = Polynomial{{0.0, 1e39}};
-  EXPECT_EQ(message_of([&] { const FirmwareModel model(c); }),
+  EXPECT_EQ(rejection([&] { const FirmwareModel model(c); }),
             "the parameter 1e+39 does not fit single precision");
 }
 

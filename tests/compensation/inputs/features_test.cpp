@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::features_test {
 namespace {
@@ -141,7 +141,7 @@ TEST(Features, TemperatureIsClampedBeforeItIsFiltered) {
 TEST(Features, MissingColumnIsNamedTogetherWithThoseThereAre) {
   const Recording recording = RecordedRun{}.recording();
   const std::string message =
-      message_of([&] { features_of(inputs({"drive_frequency"}), recording); });
+      rejection([&] { features_of(inputs({"drive_frequency"}), recording); });
   EXPECT_NE(message.find("drive_frequency"), std::string::npos) << message;
   EXPECT_NE(message.find("output, rate, temperature"), std::string::npos)
       << message;
@@ -160,7 +160,7 @@ TEST(Features, NoFiniteNumberAtAPoweredSampleIsAnErrorNotAGap) {
   for (const double bad : {kNan, HUGE_VAL, -HUGE_VAL}) {
     Recording recording = RecordedRun{}.recording();
     recording.columns[2].values[7] = bad;
-    const std::string message = message_of([&] {
+    const std::string message = rejection([&] {
       features_of(inputs({"temperature_lowpass(9)"}), recording,
                   {.lowest = -40.0, .highest = 50.0});
     });

@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "tests/compensation/message_of.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::input_test {
 namespace {
@@ -46,11 +46,11 @@ TEST(Input, TruthIsNoInput) {
 }
 
 TEST(Input, WrongNameIsAnsweredWithTheNearestOne) {
-  EXPECT_NE(message_of([] {
+  EXPECT_NE(rejection([] {
               parse_input("temprature");
             }).find("did you mean \"temperature\"?"),
             std::string::npos);
-  EXPECT_NE(message_of([] {
+  EXPECT_NE(rejection([] {
               parse_input("since_power(3)");
             }).find("did you mean \"since_power_on\"?"),
             std::string::npos);
@@ -62,7 +62,7 @@ TEST(Input, PlayNeedsOnePositiveHalfWidthInKelvin) {
   for (const char* name :
        {"temperature_play", "temperature_play(0)", "temperature_play(-2)",
         "temperature_play(inf)", "temperature_play(2", "temperature_play(2 K)"})
-    EXPECT_NE(message_of([&] {
+    EXPECT_NE(rejection([&] {
                 parse_input(name);
               }).find("one positive half-width in K, as temperature_play(2)"),
               std::string::npos)
@@ -76,7 +76,7 @@ TEST(Input, FilterNeedsOnePositiveTimeConstant) {
         "since_power_on(inf)", "temperature_lowpass(100", "since_power_on(1,2)",
         "temperature_lowpass(100)x", "temperature_rate",
         "temperature_rate(-1)"})
-    EXPECT_NE(message_of([&] {
+    EXPECT_NE(rejection([&] {
                 parse_input(name);
               }).find("one positive time constant in s"),
               std::string::npos)

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/rows_of.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::population_test {
 namespace {
@@ -198,7 +198,7 @@ TEST(Population, EqualDevicesLeaveNothingOpen) {
 
 TEST(Population, RefusesWhatTellsNothingOfDevices) {
   const auto message = [](const TrainingRows& rows) {
-    return message_of([&] { fit_population(kWithQuadrature, rows, 5.0); });
+    return rejection([&] { fit_population(kWithQuadrature, rows, 5.0); });
   };
   EXPECT_NE(message(rows_at({kDevices[0]}, grid_temperatures()))
                 .find("two devices or more"),
@@ -209,7 +209,7 @@ TEST(Population, RefusesWhatTellsNothingOfDevices) {
   EXPECT_NE(message(rows_at(kDevices, {-40.0, 0.0, 50.0}))
                 .find("device 1 of 5: cubic spline: 3 knots"),
             std::string::npos);
-  EXPECT_NE(message_of([] {
+  EXPECT_NE(rejection([] {
               adapted_bias(one_mode(false), kWithQuadrature,
                            rows_at({kDevices[0]}, {20.0}), {});
             }).find("does not know the input \"quadrature\""),

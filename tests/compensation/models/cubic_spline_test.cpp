@@ -7,7 +7,7 @@
 
 #include "compensation/methods/bias_model.h"
 #include "tests/compensation/bias_curve.h"
-#include "tests/compensation/message_of.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::cubic_spline_test {
 namespace {
@@ -117,18 +117,18 @@ TEST(CubicSpline, FitsARampOfNoisyPointsBelowTheirNoise) {
 
 TEST(CubicSpline, RejectsKnotsTheDataCannotDetermine) {
   const ArrayXd T = grid(0.0, 10.0, 5.0);
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               fit_cubic_spline(T, T, T, SplineEnd::kNatural);
             }).find("3 knots from the data, at least 4"),
             std::string::npos);
   const ArrayXd knots = grid(0.0, 30.0, 5.0);
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               fit_cubic_spline(T, T, knots, SplineEnd::kNatural);
             }).find("determine the values at only 3 of the 7 knots"),
             std::string::npos);
   ArrayXd backwards(4);
   backwards << 0.0, 10.0, 5.0, 20.0;
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               fit_cubic_spline(T, T, backwards, SplineEnd::kNatural);
             }).find("knots must increase"),
             std::string::npos);

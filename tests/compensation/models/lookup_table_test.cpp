@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "tests/compensation/bias_curve.h"
-#include "tests/compensation/message_of.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::lookup_table_test {
 namespace {
@@ -77,7 +77,7 @@ TEST(LookupTable, ErrorOfAParabolaFallsWithTheSquareOfTheWidth) {
 
 TEST(LookupTable, NeedsPointsAndAWidth) {
   const ArrayXd T = numbers({1.0, 2.0});
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               fit_lookup_table(T, T, 0.0);
             }).find("2 points in bins of 0 K"),
             std::string::npos);

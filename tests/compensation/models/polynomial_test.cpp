@@ -7,7 +7,7 @@
 
 #include "compensation/methods/bias_model.h"
 #include "tests/compensation/bias_curve.h"
-#include "tests/compensation/message_of.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::polynomial_test {
 namespace {
@@ -52,7 +52,7 @@ TEST(Polynomial, ResidualIsOrthogonalToThePowers) {
 TEST(Polynomial, TooFewTemperaturesAreRejected) {
   Eigen::ArrayXd x(5);
   x << -1.0, -1.0, 0.5, 0.5, 1.0;
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               fit_polynomial(x, x, 3);
             }).find("determine only 3 of its 4 coefficients"),
             std::string::npos);
@@ -109,7 +109,7 @@ TEST(Polynomial, NormalEquationsLoseDigitsWhereTheRangeLiesFarFrom25) {
   EXPECT_LT(loss(beyond, 3), 1e-11);
   EXPECT_GT(loss(beyond, 7), 1e-9);
   EXPECT_LT(by_qr(beyond, 7), 1e-13);
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               loss(beyond, 12);
             }).find("cannot be solved in double precision"),
             std::string::npos);
@@ -144,7 +144,7 @@ TEST(BiasModel, CoefficientsAboutAReferenceAreInKelvins) {
   BiasModel sloped = model;
   sloped.input_scales.push_back({});
   sloped.function = Polynomial{{1.0, 2.0}, {3.0}};
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               coefficients_about(sloped, 25.0);
             }).find("this polynomial has 1 more inputs"),
             std::string::npos);
@@ -152,12 +152,12 @@ TEST(BiasModel, CoefficientsAboutAReferenceAreInKelvins) {
 
 TEST(BiasModel, EquationOneBelongsToAPolynomialOnly) {
   const BiasModel network{{Scale{}}, {}, BpNetwork({1, 2, 1})};
-  EXPECT_NE(message_of([&] { equation_one(network); }).find("of kind bp"),
+  EXPECT_NE(rejection([&] { equation_one(network); }).find("of kind bp"),
             std::string::npos);
 }
 
 TEST(BiasModel, ConstantInputCannotBeScaled) {
-  EXPECT_NE(message_of([] {
+  EXPECT_NE(rejection([] {
               scale_to_unit(Eigen::ArrayXd::Constant(4, 25.0), "input output");
             }).find("input output is 25 in all 4 training rows"),
             std::string::npos);

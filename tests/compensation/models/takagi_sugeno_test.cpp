@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/compensation/bias_curve.h"
-#include "tests/compensation/message_of.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::takagi_sugeno_test {
 namespace {
@@ -91,7 +91,7 @@ TEST(TakagiSugeno, FarFromAllRulesTheNearestAnswers) {
 
 TEST(TakagiSugeno, NeedsTwoRulesAndARow) {
   const ArrayXd x = grid(-1.0, 1.0, 0.5);
-  EXPECT_NE(message_of([&] { fit_takagi_sugeno(x, x, 1); }).find("1 rules"),
+  EXPECT_NE(rejection([&] { fit_takagi_sugeno(x, x, 1); }).find("1 rules"),
             std::string::npos);
   EXPECT_THROW(fit_takagi_sugeno(ArrayXd(), ArrayXd(), 4),
                std::invalid_argument);

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/compensation/bias_curve.h"
-#include "tests/compensation/message_of.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::thermistor_network_test {
 namespace {
@@ -86,12 +86,12 @@ TEST(ThermistorNetwork, AConstantAsksForNoGain) {
 
 TEST(ThermistorNetwork, NeedsThreePointsOfSeveralTemperatures) {
   const ArrayXd two = grid(0.0, 5.0, 5.0);
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               fit_thermistor_network(two, two, 3950.0);
             }).find("2 rows over 5 K"),
             std::string::npos);
   const ArrayXd same = ArrayXd::Constant(9, 25.0);
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               fit_thermistor_network(same, same, 3950.0);
             }).find("9 rows over 0 K"),
             std::string::npos);

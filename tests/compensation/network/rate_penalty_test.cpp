@@ -11,8 +11,8 @@
 #include "compensation/scoring/validation.h"
 #include "compensation/training/train.h"
 #include "tests/compensation/bias_curve.h"
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::rate_penalty_test {
 namespace {
@@ -104,7 +104,7 @@ TEST(RatePenalty, NoneIsZeroAndNeedsNoDirection) {
   RatePenalty none(network, some_rows(9), TrainOptions{});
   EXPECT_FALSE(none.active());
   EXPECT_EQ(none.value(network.weights()), 0.0);
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               RatePenalty(network, some_rows(9), options(1.0, {0.0, 0.0}));
             }).find("an input that changes with it"),
             std::string::npos);

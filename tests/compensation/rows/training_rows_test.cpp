@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::training_rows_test {
 namespace {
@@ -98,7 +98,7 @@ TEST(TrainingRows, HaveTheTemperatureThatTheSensorWouldSettleTo) {
 TEST(TrainingRows, BadRunsAreNamedWithWhatIsWrong) {
   const Recording good = drifting_run().recording();
   const auto message = [](const Recording& recording) {
-    return message_of([&] { training_rows(one(recording), kTemperature, {}); });
+    return rejection([&] { training_rows(one(recording), kTemperature, {}); });
   };
   Recording no_truth = good;
   no_truth.columns.pop_back();
@@ -119,7 +119,7 @@ TEST(TrainingRows, BadRunsAreNamedWithWhatIsWrong) {
 TEST(TrainingRows, NoSteadyRowIsAnError) {
   RowOptions options;
   options.steady_K_per_min = 0.1;
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               training_rows(one(drifting_run().recording()), kTemperature,
                             options);
             }).find("no row whose temperature changes by 0.1 K/min or less"),

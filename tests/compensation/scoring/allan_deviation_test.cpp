@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/scoring/noise_samples.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::allan_deviation_test {
 namespace {
@@ -90,7 +90,7 @@ TEST(AllanDeviation, OfAThousandRatesHasTheDigitsOfNistSp1065) {
 }
 
 TEST(AllanDeviation, OfAnUnknownKindNamesTheKnownOnes) {
-  EXPECT_NE(message_of([] {
+  EXPECT_NE(rejection([] {
               deviation_kind("tdev");
             }).find("\"tdev\": not known; expected adev, oadev, mdev"),
             std::string::npos);

@@ -10,8 +10,8 @@
 #include <stdexcept>
 
 #include "compensation/scoring/allan_deviation.h"
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::even_series_test {
 namespace {
@@ -89,7 +89,7 @@ TEST(EvenSeries, TakesAWindowOfTime) {
   EXPECT_EQ(series.last, 50.0);
   EXPECT_EQ(series.samples, 9U + 11U);
   EXPECT_EQ(series.left_out, 80U);
-  const std::string empty = message_of(
+  const std::string empty = rejection(
       [] { even_series(two_cycles(), "rate", {.from = 31.0, .to = 39.0}); });
   EXPECT_NE(empty.find("from 31 to 39 s"), std::string::npos) << empty;
   EXPECT_THROW(even_series(two_cycles(), "speed"), std::invalid_argument);

@@ -7,8 +7,8 @@
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/training/train.h"
 #include "dataset/files/atomic_file.h"
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::adapted_model_test {
 namespace {
@@ -138,7 +138,7 @@ TEST_F(AdaptedModel, OneSoakWithAChannelTellsMoreThanWithout) {
 
 TEST_F(AdaptedModel, RefusesWhatIsNoPopulation) {
   const auto message = [&](const std::string& text) {
-    return message_of([&] { model(text); });
+    return rejection([&] { model(text); });
   };
   const auto says = [&](const std::string& text, const std::string& what) {
     EXPECT_NE(message(text).find(what), std::string::npos) << message(text);
@@ -164,7 +164,7 @@ TEST_F(AdaptedModel, RefusesADamagedPopulation) {
   std::string text = compensator_text(population());
   const auto at = text.find("\"modes\"");
   text.insert(text.find('[', text.find('[', at) + 1) + 1, "1.0, ");
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               parse_compensator(text, "c.json");
             }).find("c.json: population.modes[0]: 39 numbers, must be 38"),
             std::string::npos);

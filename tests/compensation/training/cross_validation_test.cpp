@@ -7,8 +7,8 @@
 
 #include "compensation/methods/fit.h"
 #include "tests/compensation/bias_curve.h"
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/rows_of.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::cross_validation_test {
 namespace {
@@ -116,7 +116,7 @@ TEST(CrossValidate, TellsWhatWasHeldOutWhenAFoldCannotBeFitted) {
       rows_of({{0, 0, 20.0, 30.0, 4}, {1, 1, 20.0, 20.0, 4}},
               [](double T, int) { return T; });
   const RowGroups groups = group_rows(rows, Grouping::kRun);
-  const std::string message = message_of([&] {
+  const std::string message = rejection([&] {
     cross_validate(PolynomialSpec{1}, kTemperature, rows, groups, 1);
   });
   EXPECT_TRUE(message.starts_with("without run 1: temperature is between"))
@@ -126,7 +126,7 @@ TEST(CrossValidate, TellsWhatWasHeldOutWhenAFoldCannotBeFitted) {
 TEST(CrossValidate, NeedsTwoGroups) {
   const TrainingRows rows =
       rows_of(sweeps(1, 40), [](double T, int) { return T; });
-  const std::string message = message_of([&] {
+  const std::string message = rejection([&] {
     cross_validate(ConstantSpec{}, kTemperature, rows,
                    group_rows(rows, Grouping::kCycle), 1);
   });

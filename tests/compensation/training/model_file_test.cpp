@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "compensation/methods/fit.h"
-#include "tests/compensation/message_of.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::model_file_test {
 namespace {
@@ -17,7 +17,7 @@ ModelSpec parse(const std::string& text) {
 }
 
 std::string error_of(const std::string& text) {
-  return message_of([&] { parse(text); });
+  return rejection([&] { parse(text); });
 }
 
 TEST(ModelFile, PolynomialHasDegreeThreeUnlessItSaysOtherwise) {

@@ -10,8 +10,8 @@
 #include "compensation/compensator/compensator.h"
 #include "compensation/scoring/validation.h"
 #include "compensation/training/train.h"
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::scale_factor_table_test {
 namespace {
@@ -96,7 +96,7 @@ TEST(ScaleFactorTable, RecordingsAtRestAddNothing) {
   RecordedRun still = rate_tables();
   still.true_rate = [](double) { return 4.0; };
   const Recording rest = still.recording(), turning = rate_tables().recording();
-  EXPECT_NE(message_of([&] { table_of({rest}, 10.0); })
+  EXPECT_NE(rejection([&] { table_of({rest}, 10.0); })
                 .find("varies by 5 deg/s at a steady temperature; none of the "
                       "1 does"),
             std::string::npos);

@@ -8,8 +8,8 @@
 
 #include "compensation/training/cautions.h"
 #include "tests/compensation/bias_curve.h"
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/rows_of.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::selection_test {
 namespace {
@@ -296,12 +296,12 @@ TEST(Selection, OfOneCandidateTellsItsErrorsOnUnseenGroups) {
 }
 
 TEST(Selection, RefusesWhenNoCandidateIsLeft) {
-  const std::string one_leg = message_of([] {
+  const std::string one_leg = rejection([] {
     select_by_folds({kSpline, kNetwork}, rows_of({kUp}, curved));
   });
   EXPECT_TRUE(says(one_leg, "no candidate can be judged: spline: passed over"))
       << one_leg;
-  const std::string narrow = message_of([] {
+  const std::string narrow = rejection([] {
     std::vector<Leg> legs = runs_up(3);
     for (Leg& leg : legs) leg.from = leg.to = 20.0;
     const TrainingRows rows = rows_of(legs, curved);

@@ -9,8 +9,8 @@
 #include "compensation/export/export_c.h"
 #include "compensation/export/export_parameters.h"
 #include "tests/compensation/bias_curve.h"
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::train_test {
 namespace {
@@ -205,7 +205,7 @@ TEST(Train, RefusesWhatCannotBeTrainedOn) {
   const ModelSpec network = network_spec({"temperature"}, 6);
   const auto message = [](const ModelSpec& spec, const auto& training,
                           const auto& held_out) {
-    return message_of([&] { train(spec, training, held_out, 1); });
+    return rejection([&] { train(spec, training, held_out, 1); });
   };
   EXPECT_NE(message(network, kSoaks, std::vector<TrainingRun>{})
                 .find("pass --held-out"),

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "compensation/compensator/compensator.h"
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/sample_compensators.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::bias_sigma_test {
 namespace {
@@ -104,7 +104,7 @@ TEST(BiasSigma, StreamGivesTheSameBitsSampleBySample) {
 TEST(BiasSigma, RefusesATemperatureThatIsNotFinite) {
   BiasSigmaStream stream(every_term());
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(message_of([&] {
+  EXPECT_NE(rejection([&] {
               stream.step(3.0, 0, nan);
             }).find("temperature is nan at t = 3 s"),
             std::string::npos);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "random/random_stream.h"
-#include "tests/compensation/message_of.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::sigma_calibration_test {
 namespace {
@@ -111,7 +111,7 @@ TEST(MeanSquareAmplitude, MakesTheMeanOfNormalisedSquaresOne) {
 TEST(MeanSquareAmplitude, NeedsARow) {
   const ResidualRows rows = soaked({1.0});
   const RowMask none = RowMask::Constant(1, false);
-  EXPECT_EQ(message_of([&] {
+  EXPECT_EQ(rejection([&] {
               mean_square_amplitude(rows, none, rows.residual, rows.residual);
             }),
             "no rows to calibrate a sigma on");

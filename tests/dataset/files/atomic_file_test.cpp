@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "dataset/files/text_file.h"
-#include "tests/dataset/rejection.h"
+#include "tests/config/rejection.h"
 #include "tests/dataset/system_calls.h"
 
 namespace beamgyro::internal::atomic_file_test {

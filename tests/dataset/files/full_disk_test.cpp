@@ -14,7 +14,7 @@
 #include "dataset/files/text_file.h"
 #include "dataset/netcdf/hdf5_exit.h"
 #include "dataset/netcdf/recording_file.h"
-#include "tests/dataset/rejection.h"
+#include "tests/config/rejection.h"
 #include "tests/dataset/sample_recording.h"
 
 namespace beamgyro::internal::full_disk_test {

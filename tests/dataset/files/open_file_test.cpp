@@ -13,7 +13,7 @@
 #include "config/document.h"
 #include "config/file_error.h"
 #include "dataset/files/text_file.h"
-#include "tests/dataset/rejection.h"
+#include "tests/config/rejection.h"
 #include "tests/dataset/system_calls.h"
 
 namespace beamgyro::internal::open_file_test {

@@ -11,7 +11,7 @@
 #include <limits>
 
 #include "dataset/netcdf/recording_file.h"
-#include "tests/dataset/rejection.h"
+#include "tests/config/rejection.h"
 #include "tests/dataset/sample_recording.h"
 
 namespace beamgyro::internal::csv_file_test {

@@ -2,8 +2,8 @@
 // What the import advises when a log is not as its map says.
 #include <gtest/gtest.h>
 
+#include "tests/config/rejection.h"
 #include "tests/dataset/log/imported_log.h"
-#include "tests/dataset/rejection.h"
 
 namespace beamgyro::internal::log_advice_test {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/dataset/rejection.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::log_date_test {
 namespace {

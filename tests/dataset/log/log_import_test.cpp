@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "tests/config/rejection.h"
 #include "tests/dataset/log/imported_log.h"
-#include "tests/dataset/rejection.h"
 
 namespace beamgyro::internal::log_import_test {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <functional>
 
+#include "tests/config/rejection.h"
 #include "tests/dataset/log/imported_log.h"
-#include "tests/dataset/rejection.h"
 
 namespace beamgyro::internal::log_kinds_test {
 namespace {

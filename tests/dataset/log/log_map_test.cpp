@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/dataset/rejection.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::log_map_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "dataset/log/log_report.h"
-#include "tests/dataset/rejection.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::log_outliers_test {
 namespace {

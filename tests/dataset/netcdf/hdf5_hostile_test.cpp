@@ -15,7 +15,7 @@
 #include "dataset/netcdf/hdf5_id.h"
 #include "dataset/netcdf/recording_file.h"
 #include "dataset/netcdf/recording_reader.h"
-#include "tests/dataset/rejection.h"
+#include "tests/config/rejection.h"
 #include "tests/dataset/sample_recording.h"
 
 namespace beamgyro::internal::hdf5_hostile_test {
@@ -296,12 +296,23 @@ TEST_F(HostileHdf5, ValuesThatInflateToMoreThanAFileMayAskForAreNotRead) {
     const std::vector<double> zeros(std::size_t{1} << 20);
     const hsize_t count = zeros.size();
     const hid_t memory = H5Screate_simple(1, &count, nullptr);
-    for (hsize_t start = 0; start < kLong; start += count) {
-      H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count,
-                          nullptr);
-      H5Dwrite(time, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT,
-               zeros.data());
-    }
+    hsize_t start = 0;
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count,
+                        nullptr);
+    H5Dwrite(time, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, zeros.data());
+    // All other chunks are copies of what the first was deflated to.
+    hsize_t deflated = 0;
+    H5Dflush(time);
+    ASSERT_GE(H5Dget_chunk_storage_size(time, &start, &deflated), 0);
+    std::vector<std::byte> chunk(deflated);
+    std::uint32_t skipped_filters = 0;
+    ASSERT_GE(H5Dread_chunk(time, H5P_DEFAULT, &start, &skipped_filters,
+                            chunk.data()),
+              0);
+    for (start = count; start < kLong; start += count)
+      ASSERT_GE(H5Dwrite_chunk(time, H5P_DEFAULT, skipped_filters, &start,
+                               deflated, chunk.data()),
+                0);
     H5Dclose(time);
     H5Sclose(memory);
     H5Sclose(space);

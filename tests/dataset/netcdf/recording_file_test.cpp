@@ -16,7 +16,7 @@
 
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/text_file.h"
-#include "tests/dataset/rejection.h"
+#include "tests/config/rejection.h"
 #include "tests/dataset/sample_recording.h"
 
 namespace beamgyro::internal::recording_file_test {

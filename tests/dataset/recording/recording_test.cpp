@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "tests/dataset/rejection.h"
+#include "tests/config/rejection.h"
 #include "tests/dataset/sample_recording.h"
 
 namespace beamgyro::internal::recording_test {

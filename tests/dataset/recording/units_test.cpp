@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "tests/dataset/rejection.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::units_test {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/text_file.h"
+#include "tests/dataset/overwrite.h"
 #include "tests/dataset/set/sample_set.h"
 #include "tests/dataset/set/set_directory.h"
 
@@ -33,9 +34,9 @@ class CheckSet : public SetDirectory {
            (found[0].index ? ' ' + std::to_string(*found[0].index) : "");
   }
   void flip(const fs::path& file, std::size_t byte, int bit) const {
-    std::string text = read_text_file(file);
-    text[byte] = static_cast<char>(text[byte] ^ (1 << bit));
-    write_text_file(file, text);
+    const char flipped =
+        static_cast<char>(read_text_file(file)[byte] ^ (1 << bit));
+    overwrite(file, byte, {&flipped, 1});
   }
 
   Manifest manifest;

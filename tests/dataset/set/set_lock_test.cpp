@@ -20,7 +20,7 @@
 
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/text_file.h"
-#include "tests/dataset/rejection.h"
+#include "tests/config/rejection.h"
 #include "tests/dataset/set/set_directory.h"
 
 namespace beamgyro::internal::set_lock_test {

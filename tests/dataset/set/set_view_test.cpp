@@ -5,7 +5,7 @@
 
 #include "dataset/files/text_file.h"
 #include "dataset/set/shard/shard_reader.h"
-#include "tests/dataset/rejection.h"
+#include "tests/config/rejection.h"
 #include "tests/dataset/set/sample_set.h"
 #include "tests/dataset/set/set_directory.h"
 

@@ -6,7 +6,7 @@
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/sha256.h"
 #include "dataset/files/text_file.h"
-#include "tests/dataset/rejection.h"
+#include "tests/config/rejection.h"
 #include "tests/dataset/set/set_directory.h"
 
 namespace beamgyro::internal::source_copies_test {

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "tests/compensation/message_of.h"
 #include "tests/compensation/sample_compensators.h"
+#include "tests/config/rejection.h"
 #include "tests/validation/external/tested_run.h"
 #include "validation/external/answer_checks.h"
 #include "validation/external/answering.h"
@@ -240,7 +240,7 @@ TEST_F(CommandCompensator, StateInAFileIsFound) {
 }
 
 TEST_F(CommandCompensator, AnEmptyCommandIsRefused) {
-  EXPECT_NE(message_of([] { command(" "); }).find("no command"),
+  EXPECT_NE(rejection([] { command(" "); }).find("no command"),
             std::string::npos);
 }
 

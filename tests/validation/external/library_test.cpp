@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "tests/compensation/message_of.h"
+#include "tests/config/rejection.h"
 #include "tests/validation/external/tested_run.h"
 #include "validation/external/answer_checks.h"
 #include "validation/external/answering.h"
@@ -144,7 +144,7 @@ TEST(LibraryCompensator, ALaterRunIsNotAskedAfterACrash) {
 
 TEST(LibraryCompensator, WhatIsNoPluginIsRefused) {
   const auto refusal = [](const std::string& name) {
-    return message_of([&] { faulty_plugin(name); });
+    return rejection([&] { faulty_plugin(name); });
   };
   EXPECT_NE(refusal("OTHER_VERSION").find("version 77"), std::string::npos);
   EXPECT_NE(refusal("LACKS_A_FUNCTION").find("beamgyro_plugin_step"),
@@ -160,7 +160,7 @@ TEST(LibraryCompensator, WhatIsNoPluginIsRefused) {
 TEST(LibraryCompensator, ASignalThatTheRunLacksIsNamed) {
   const auto library = faulty_plugin("WANTS_MORE");
   const Recording run = tested_run();
-  EXPECT_NE(message_of([&] { library->answer(run); }).find("magnetic_field"),
+  EXPECT_NE(rejection([&] { library->answer(run); }).find("magnetic_field"),
             std::string::npos);
 }
 

@@ -11,7 +11,7 @@
 #include "dataset/netcdf/recording_file.h"
 #include "dataset/set/shard/shard_builder.h"
 #include "dataset/set/shard/shard_reader.h"
-#include "tests/dataset/rejection.h"
+#include "tests/config/rejection.h"
 #include "tests/dataset/set/sample_set.h"
 #include "tests/dataset/set/set_directory.h"
 
