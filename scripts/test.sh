@@ -4,11 +4,6 @@
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 
-# Tests that count how often an interval holds the truth over hundreds of draws.
-# The sanitizers, ten times slower, see nothing new in the second draw: what is
-# drawn has tests of its own.
-many_draws='^MetricCoverage|IntervalsThatHoldTheTruth|^Decision.*(Risk|Enlarges)'
-
 passed=0 failed=0 skipped=0
 failures=()
 started=$SECONDS
@@ -110,13 +105,13 @@ scripts/setup.sh test || { broken set-up "set-up failed"; exit 1; }
 
 formatting
 if build_release; then
-  unit_tests release
+  unit_tests release --label-exclude deep
   program_tests
 else
   broken "build (release)" "no build without warnings: see build/release.log"
 fi
 if scripts/build.sh asan; then
-  unit_tests asan --exclude-regex "$many_draws"
+  unit_tests asan --label-exclude 'many_draws|deep'
 else
   broken "build (asan)" "no build: see build/asan.log"
 fi

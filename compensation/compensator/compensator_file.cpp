@@ -13,7 +13,6 @@
 #include "compensation/compensator/bias_model_json.h"
 #include "compensation/methods/population_json.h"
 #include "compensation/uncertainty/bias_sigma_json.h"
-#include "dataset/files/atomic_file.h"
 #include "dataset/files/json_node.h"
 #include "dataset/files/text_file.h"
 
@@ -307,11 +306,6 @@ Compensator parse_compensator(const std::string& text,
                               const std::string& name) {
   const Json json = parse_json(text, name);
   return read_root(JsonNode(json, name));
-}
-
-void write_compensator(const Compensator& compensator,
-                       const std::filesystem::path& file) {
-  write_text_file(file, compensator_text(compensator));
 }
 
 Compensator read_compensator(const std::filesystem::path& file) {

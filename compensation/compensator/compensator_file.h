@@ -22,11 +22,6 @@ std::string compensator_text(const Compensator& compensator);
 /// - the version, for a newer format.
 Compensator parse_compensator(const std::string& text, const std::string& name);
 
-/// Writes a compensator file. Throws as compensator_text() and
-/// write_text_file().
-void write_compensator(const Compensator& compensator,
-                       const std::filesystem::path& file);
-
 /// Reads a compensator file. Throws as read_text_file() and
 /// parse_compensator().
 Compensator read_compensator(const std::filesystem::path& file);

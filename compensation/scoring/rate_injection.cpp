@@ -244,18 +244,4 @@ std::optional<ReplayedBlock> WorstBlocks::worse() const {
   return is_worse(*small, *large) ? small : large;
 }
 
-std::optional<double> injected_scale_factor(const RateEstimator& estimator,
-                                            const Recording& recording,
-                                            double full_scale) {
-  const auto blocks =
-      replay(estimator, recording, estimator(recording), full_scale);
-  WorstBlocks worst;
-  for (const ReplayedBlock& block :
-       blocks.value_or(std::vector<ReplayedBlock>())) {
-    worst.add(block);
-  }
-  const auto worse = worst.worse();
-  return worse ? std::optional(worse->retained) : std::nullopt;
-}
-
 }  // namespace beamgyro::internal

@@ -81,10 +81,4 @@ struct WorstBlocks {
   std::optional<ReplayedBlock> worse() const;  // of the two
 };
 
-/// Returns the scale factor retained in the worst block of a replay, or nothing
-/// where replay() returns nothing or no block.
-std::optional<double> injected_scale_factor(const RateEstimator& estimator,
-                                            const Recording& recording,
-                                            double full_scale = kFullScale);
-
 }  // namespace beamgyro::internal

@@ -48,9 +48,12 @@ TEST(ResidualForecast, OfDevicesAgreesWithTheProcessWhereItIsGaussian) {
   many.coefficients.resize(0, 0);
   ASSERT_EQ(forecast_basis(many), ForecastBasis::kGaussian);
   const ResidualForecast process = forecast_residual(model_of(many), soaks);
-  // Of 800 devices the quantiles scatter by 3 to 6 % (1 sigma).
+  // A quantile q of probability p scatters by sqrt(p (1 - p)/n)/(q f(q)), most
+  // for the size of a single normal number: by 4.1 % at the median and 3.4 % at
+  // 95 % of 800 devices, 1.9 and 1.5 % of the 4000 draws of the process. Two
+  // standard deviations and a half of the two together are 11 and 9 %.
   EXPECT_NEAR(devices.median / process.median, 1.0, 0.1);
-  EXPECT_NEAR(devices.p95 / process.p95, 1.0, 0.2);
+  EXPECT_NEAR(devices.p95 / process.p95, 1.0, 0.09);
 }
 
 TEST(ResidualForecast, OfDevicesKnowsTailsThatTheProcessDoesNot) {

@@ -304,7 +304,7 @@ TEST(AutopilotCubic, OtherInputsAndAScaleFactorAreRefused) {
   EXPECT_NE(refusal(c).find("it corrects the scale factor"), std::string::npos);
 }
 
-TEST(AutopilotCubic, FitCubicIsTheBaselineWhereTheCompensatorIsNone) {
+TEST(AutopilotCubic, FitCubicExportsTheBaselineOfACompensatorThatIsNoCubic) {
   const Compensator spline = spline_compensator();
   const BiasModel cubic = autopilot_cubic(spline, true);
   const Compensator own = of_bias(polynomial({0.3, -1.2}));

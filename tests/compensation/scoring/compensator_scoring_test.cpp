@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "compensation/scoring/rate_injection.h"
 #include "compensation/scoring/validation.h"
 #include "compensation/training/train.h"
+#include "tests/compensation/injected_scale_factor.h"
 #include "tests/compensation/recorded_run.h"
 
 namespace beamgyro::internal::compensator_scoring_test {

@@ -313,7 +313,9 @@ void expect_coverage(Find coefficient, double truth, Make rates) {
   EXPECT_LE(uncertainties, 4.0 * squares);
 }
 
-TEST(NoiseCoefficients, HaveIntervalsThatHoldTheTruth) {
+// ManyDrawsOfMetrics counts the same of records with the noise of the
+// simulator.
+TEST(DeepNoiseCoefficients, HaveIntervalsThatHoldTheTruth) {
   {
     SCOPED_TRACE("quantisation");
     expect_coverage(&NoiseCoefficients::angle_quantisation, 0.5,

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tests/compensation/injected_scale_factor.h"
 #include "tests/compensation/recorded_run.h"
 
 namespace beamgyro::internal::rate_injection_test {

@@ -5,10 +5,10 @@
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "random/random_stream.h"
 #include "tests/compensation/recorded_run.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::score_test {
 namespace {
@@ -29,12 +29,7 @@ AnsweredRun answered(const Recording& run, double share_removed) {
 }
 
 std::string message_of(const AnsweredRun& run) {
-  try {
-    score_run(run);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return rejection([&] { score_run(run); });
 }
 
 TEST(Score, ShowsTheDriftThereWasAndWhatIsLeft) {

@@ -59,7 +59,8 @@ class AdaptedModel : public testing::Test {
     folder_ = std::filesystem::path(testing::TempDir()) /
               testing::UnitTest::GetInstance()->current_test_info()->name();
     std::filesystem::create_directories(folder_);
-    write_compensator(population(), folder_ / "population.json");
+    write_text_file(folder_ / "population.json",
+                    compensator_text(population()));
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
@@ -156,7 +157,7 @@ TEST_F(AdaptedModel, RefusesWhatIsNoPopulation) {
       "takes what a soak shows");
   Compensator plain = population();
   plain.population.reset();
-  write_compensator(plain, folder_ / "population.json");
+  write_text_file(folder_ / "population.json", compensator_text(plain));
   says(kAdapted, "is a compensator without a population");
 }
 

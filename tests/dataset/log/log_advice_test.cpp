@@ -151,7 +151,7 @@ unit = "degC"
   EXPECT_EQ(read.recording.time, (Readings{0, 1}));
 }
 
-TEST(LogAdvice, MinutesAndHours) {
+TEST(LogTime, MinutesAndHoursBecomeSeconds) {
   const auto times = [](const std::string& unit) {
     return imported("[time]\ncolumn = \"t\"\nunit = \"" + unit + "\"\n" +
                         kGyroAndTemperature,

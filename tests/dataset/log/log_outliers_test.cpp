@@ -92,7 +92,7 @@ TEST(LogReport, SamplingInClosedForm) {
   EXPECT_DOUBLE_EQ(sampling.longest_gap, 97.0);
 }
 
-TEST(LogReport, RangeOfAColumn) {
+TEST(LogReport, RangeOfAColumnLeavesOutWhatIsNoNumber) {
   Recording recording;
   recording.columns = {
       {"rate", "degree/s", "", Role::kMeasured, {std::nan(""), -2, 3, 2.75}}};

@@ -128,7 +128,7 @@ Estimate measured(double truth, RandomStream& random) {
   return {mean, Interval{mean - half, mean + half}};
 }
 
-TEST(Decision, OverAThousandDevicesWrongAcceptsStayBelowTheRisk) {
+TEST(ManyDrawsOfDecisions, OverAThousandDevicesWrongAcceptsStayBelowTheRisk) {
   RandomStream random(1, 0, 0, RandomPurpose{1000});
   int wrong = 0, accepted = 0;
   for (int device = 0; device < 1000; ++device) {
@@ -144,7 +144,7 @@ TEST(Decision, OverAThousandDevicesWrongAcceptsStayBelowTheRisk) {
 
 // The same with a metric and its own interval: devices whose bias is drawn, at
 // rest under white noise of 0.1 deg/s a sample.
-TEST(Decision, WrongAcceptsStayBelowTheRiskWithARealMetric) {
+TEST(ManyDrawsOfDecisions, WrongAcceptsStayBelowTheRiskWithARealMetric) {
   const Metric& bias = *find_metric("bias_deg_per_s");
   const Limit limit{.metric = "bias_deg_per_s", .most = 0.1, .absolute = true};
   RandomStream random(3, 0, 0, RandomPurpose{1000});
@@ -224,15 +224,15 @@ const std::vector<ResidualCase> kResiduals = {
     {"residual_pp_deg_per_s", up_and_down, 1.0},
     {"residual_pp_deg_per_s", once, 1.0}};
 
-/// How many of a thousand devices pass. All are beyond the limit, by up to
-/// `most_beyond` of it.
-int wrong_accepts(const ResidualCase& residual, double limit_in_sigma,
-                  double most_beyond, double risk) {
+/// How many devices pass. All are beyond the limit, by up to `most_beyond` of
+/// it.
+int wrong_accepts(int devices, const ResidualCase& residual,
+                  double limit_in_sigma, double most_beyond, double risk) {
   const Minutes minutes;
   const double limit = limit_in_sigma * kMinuteNoise;
   RandomStream random(4, 0, 0, RandomPurpose{1000});
   int wrong = 0;
-  for (int device = 0; device < 1000; ++device) {
+  for (int device = 0; device < devices; ++device) {
     const double chance = 0.5 * std::erfc(random.normal() / std::sqrt(2.0));
     const double truth = limit * (1.0 + most_beyond * chance);
     const auto found = minutes.measured(
@@ -245,26 +245,46 @@ int wrong_accepts(const ResidualCase& residual, double limit_in_sigma,
   return wrong;
 }
 
-// Residuals as large as the noise or four times as large, beyond the limit by
-// up to a fifth.
-TEST(Decision, WrongAcceptsStayBelowTheRiskWithResidualsNearTheNoise) {
+/// Expects at most the share kFalseAcceptRisk in each of ten cases, and in all
+/// of them: residuals as large as the noise or four times as large, beyond the
+/// limit by up to a fifth. With a probability of 0.99 this finds that
+/// - 5.7 % of the devices of one case or 3.3 % of all pass, of 250 devices;
+/// - 3.9 % of the devices of one case or 2.9 % of all pass, of 1000 devices.
+void expect_wrong_accepts_below_risk(int devices) {
+  int all = 0, cases = 0;
   for (const ResidualCase& residual : kResiduals)
-    for (const double limit : {1.0, 4.0})
-      EXPECT_LE(wrong_accepts(residual, limit, 0.2, kFalseAcceptRisk), 25)
+    for (const double limit : {1.0, 4.0}) {
+      const int wrong =
+          wrong_accepts(devices, residual, limit, 0.2, kFalseAcceptRisk);
+      EXPECT_LE(wrong, kFalseAcceptRisk * devices)
           << residual.metric << ", limit of " << limit << " sigma";
+      all += wrong;
+      ++cases;
+    }
+  EXPECT_LE(all, kFalseAcceptRisk * devices * cases);
+}
+
+TEST(ManyDrawsOfDecisions,
+     WrongAcceptsStayBelowTheRiskWithResidualsNearTheNoise) {
+  expect_wrong_accepts_below_risk(250);
+}
+
+TEST(DeepDecisions, WrongAcceptsStayBelowTheRiskWithResidualsNearTheNoise) {
+  expect_wrong_accepts_below_risk(1000);
 }
 
 // At the limit itself one of 1000 is expected; nine or more have a probability
 // of 1e-6.
-TEST(Decision, ASmallRiskHoldsForAFigureThatNoiseEnlarges) {
+TEST(ManyDrawsOfDecisions, ASmallRiskHoldsForAFigureThatNoiseEnlarges) {
   for (const ResidualCase& residual : {kResiduals[0], kResiduals[1]})
-    EXPECT_LE(wrong_accepts(residual, 2.0, 0.0, 0.001), 8) << residual.metric;
+    EXPECT_LE(wrong_accepts(1000, residual, 2.0, 0.0, 0.001), 8)
+        << residual.metric;
 }
 
 // The worst case: every device is as little beyond the limit as can be. Then
 // the share is the risk itself, 25 of 1000; 99.9 % of the binomial distribution
 // lies within 25 +- 3.3 sqrt(1000 0.025 0.975) = 25 +- 16.
-TEST(Decision, DevicesAtTheLimitPassAsOftenAsTheRiskSays) {
+TEST(ManyDrawsOfDecisions, DevicesAtTheLimitPassAsOftenAsTheRiskSays) {
   RandomStream random(2, 0, 0, RandomPurpose{1000});
   int passed = 0;
   for (int device = 0; device < 1000; ++device)
