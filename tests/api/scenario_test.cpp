@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "include/beamgyro/simulate.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::scenario_api_test {
 namespace {
@@ -18,15 +19,6 @@ const std::filesystem::path kScenarios = BEAMGYRO_SCENARIOS;
 
 beamgyro::Scenario ten_minutes(const std::vector<std::string>& overrides = {}) {
   return beamgyro::Scenario::read(kScenarios / "ten_minutes.toml", overrides);
-}
-
-std::string refusal_of(const auto& work) {
-  try {
-    work();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "not refused";
 }
 
 TEST(PublicScenario, TextsInMemoryGiveTheRunOfTheFiles) {
@@ -59,15 +51,15 @@ TEST(PublicScenario, ADeviceBringsItsOverrides) {
 
 TEST(PublicScenario, ErrorsNameFileLineAndKey) {
   const auto device = ten_minutes().device();
-  EXPECT_EQ(refusal_of([&] {
+  EXPECT_EQ(rejection([&] {
               beamgyro::Scenario::parse("name = \"x\"\nspeed = 1\n", device, {},
                                         "mine.toml");
             }).substr(0, 10),
             "mine.toml:");
   const std::string unknown =
-      refusal_of([&] { ten_minutes().with({"beam.lenght_m=0.04"}); });
+      rejection([&] { ten_minutes().with({"beam.lenght_m=0.04"}); });
   EXPECT_NE(unknown.find("beam.length_m"), std::string::npos) << unknown;
-  EXPECT_NE(refusal_of([&] {
+  EXPECT_NE(rejection([&] {
               ten_minutes().with({"device=\"other.toml\""});
             }).find("expected it as a Device"),
             std::string::npos);

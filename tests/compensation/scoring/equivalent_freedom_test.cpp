@@ -114,7 +114,7 @@ void expect_coverage(Make make, const char* what) {
   }
 }
 
-TEST(EquivalentFreedom, IntervalsHoldTheDeviationIn95OfAHundredRecords) {
+TEST(ManyDrawsOfDeviations, IntervalsHoldTheDeviationIn95OfAHundredRecords) {
   expect_coverage(&NoiseSamples::quantisation, "quantisation");
   expect_coverage(&NoiseSamples::white, "white");
   expect_coverage(&NoiseSamples::flicker, "flicker");

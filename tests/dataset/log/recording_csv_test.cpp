@@ -4,19 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <stdexcept>
 #include <string>
+
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::recording_csv_test {
 namespace {
 
 std::string message_for(const std::string& text) {
-  try {
-    parse_recording_csv(text, "run.csv");
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "accepted";
+  return rejection([&] { parse_recording_csv(text, "run.csv"); });
 }
 
 TEST(RecordingCsv, KnownColumnsGetTheirUnitsAndRoles) {
