@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: MIT
 # After a small change: builds the tests of the rooms that changed since the
 # last commit, or of those named, and runs them: check.sh [ROOM]...
-# Rooms: config, random, parallel, dataset, set, numerics, thermal, signal,
-# device, dynamics, scenario, campaign, compensation, validation, report.
+# Rooms: config, linear_algebra, random, parallel, dataset, set, numerics,
+# thermal, signal, device, dynamics, scenario, campaign, compensation,
+# validation, report.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -12,7 +13,7 @@ if [ ${#rooms[@]} -eq 0 ]; then
   mapfile -t rooms < <(git status --porcelain | cut -c4- | sed -n -E \
     -e 's,^.* -> ,,' -e 's,^tests/,,' -e 's,^dataset/set/.*,set,p' \
     -e 's,^sim/([a-z]+)/.*,\1,p' \
-    -e 's,^(config|random|parallel|dataset|compensation|validation|report)/.*,\1,p' |
+    -e 's,^(config|linear_algebra|random|parallel|dataset|compensation|validation|report)/.*,\1,p' |
     sort -u)
 fi
 [ ${#rooms[@]} -gt 0 ] || { echo "check: no room changed" >&2; exit 0; }

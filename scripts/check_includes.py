@@ -26,7 +26,7 @@ VALIDATION = [f"validation/{room}" for room in
 SENSITIVITY = [f"sensitivity/{room}" for room in
                ("indices", "figures", "study")]
 
-BASE = ["config", "random", "parallel", "include"]
+BASE = ["config", "linear_algebra", "random", "parallel", "include"]
 
 
 def in_order(rooms, below):
@@ -37,7 +37,8 @@ ALL = [*BASE, *DATASET, *SIM, *COMPENSATION]
 
 # What each room may include besides itself.
 MAY_INCLUDE = {
-    "config": set(), "random": set(), "parallel": set(), "include": set(),
+    "config": set(), "linear_algebra": set(), "random": set(),
+    "parallel": set(), "include": set(),
     **in_order(DATASET, ["config", "include"]),
     **in_order(SIM, [*BASE, *DATASET]),
     **in_order(COMPENSATION, [*BASE, *DATASET]),
@@ -65,7 +66,7 @@ MAY_INCLUDE["dataset/log"] -= {"dataset/netcdf"}
 MAY_INCLUDE["dataset/set/shard"] -= {"dataset/log"}
 MAY_INCLUDE["sim/signal"] -= {"sim/thermal"}
 MAY_INCLUDE["sim/memory"] -= {"sim/signal"}
-MAY_INCLUDE["sim/numerics"] = set()
+MAY_INCLUDE["sim/numerics"] = {"linear_algebra"}
 MAY_INCLUDE["compensation/firmware"] -= {"compensation/inputs"}
 MAY_INCLUDE["compensation/models"] -= {"compensation/inputs"}
 MAY_INCLUDE["compensation/network"] -= {"compensation/inputs",

@@ -5,12 +5,12 @@
 #include <nvector/nvector_serial.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "linear_algebra/linear_systems.h"
 #include "sim/numerics/simulation_failure.h"
 
 namespace beamgyro::internal {
@@ -88,13 +88,8 @@ SUNMatrix dense_matrix(Eigen::Index size, SUNContext context) {
   return matrix;
 }
 
-struct DenseSolver {
-  Eigen::PartialPivLU<Eigen::MatrixXd> lu;
-  Eigen::VectorXd permuted;
-};
-
-DenseSolver& dense_solver(SUNLinearSolver solver) {
-  return *static_cast<DenseSolver*>(solver->content);
+LuFactors& lu_factors(SUNLinearSolver solver) {
+  return *static_cast<LuFactors*>(solver->content);
 }
 
 SUNLinearSolver_Type solver_type(SUNLinearSolver) {
@@ -102,23 +97,17 @@ SUNLinearSolver_Type solver_type(SUNLinearSolver) {
 }
 
 int factorise(SUNLinearSolver solver, SUNMatrix matrix) {
-  auto& lu = dense_solver(solver).lu;
-  lu.compute(view(matrix));
-  const bool singular = (lu.matrixLU().diagonal().array() == 0).any();
-  return singular ? SUNLS_LUFACT_FAIL : SUNLS_SUCCESS;
+  return lu_factors(solver).factorise(view(matrix)) ? SUNLS_SUCCESS
+                                                    : SUNLS_LUFACT_FAIL;
 }
 
 int solve(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, double) {
-  auto& [lu, permuted] = dense_solver(solver);
-  permuted.noalias() = lu.permutationP() * view(b);
-  lu.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(permuted);
-  lu.matrixLU().triangularView<Eigen::Upper>().solveInPlace(permuted);
-  view(x) = permuted;
+  view(x) = lu_factors(solver).solve(view(b));
   return SUNLS_SUCCESS;
 }
 
 int free_solver(SUNLinearSolver solver) {
-  delete static_cast<DenseSolver*>(solver->content);
+  delete static_cast<LuFactors*>(solver->content);
   solver->content = nullptr;
   SUNLinSolFreeEmpty(solver);
   return SUNLS_SUCCESS;
@@ -193,8 +182,7 @@ OwnedSolver make_dense_solver(Eigen::Index size, SUNContext context) {
   solver->ops->setup = factorise;
   solver->ops->solve = solve;
   solver->ops->free = free_solver;
-  solver->content = new DenseSolver{Eigen::PartialPivLU<Eigen::MatrixXd>(size),
-                                    Eigen::VectorXd(size)};
+  solver->content = new LuFactors(size);
   return solver;
 }
 
