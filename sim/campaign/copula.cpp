@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "sim/campaign/copula.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <stdexcept>
 
+#include "linear_algebra/cholesky.h"
 #include "random/random_stream.h"
 #include "sim/campaign/distribution.h"
 
@@ -17,13 +17,13 @@ Eigen::MatrixXd correlation_factor(const Eigen::MatrixXd& correlation) {
         "not symmetric with ones on the diagonal; expected a correlation "
         "matrix");
   }
-  const Eigen::LLT<Eigen::MatrixXd> factor(correlation);
-  if (factor.info() != Eigen::Success ||
-      (factor.matrixLLT().diagonal().array() < 1e-6).any()) {
+  const Cholesky factor(correlation);
+  if (!factor.is_positive_definite() ||
+      (factor.lower().diagonal().array() < 1e-6).any()) {
     throw std::invalid_argument(
         "not positive definite; no numbers are correlated so");
   }
-  return factor.matrixL();
+  return factor.lower();
 }
 
 void correlate(const CorrelatedGroup& group, std::span<double> numbers) {

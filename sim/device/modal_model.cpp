@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <string>
@@ -123,7 +122,8 @@ Matrix2cd stiffness_of(const Device& device, const ProjectedBeam& beam,
   K += Complex(0, K0 * device.air_inverse_Q) * Matrix2cd::Identity();
 
   const Matrix2d loss = K.imag();
-  if (!(loss(0, 0) > 0 && loss.determinant() > 0)) {
+  const double determinant = loss(0, 0) * loss(1, 1) - loss(1, 0) * loss(0, 1);
+  if (!(loss(0, 0) > 0 && determinant > 0)) {
     throw SimulationFailure(fmt::format(
         "complex stiffness at {:.2f} degC{}: its loss part is not positive "
         "definite; {} creates energy",

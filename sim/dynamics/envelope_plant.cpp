@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "sim/dynamics/envelope_plant.h"
 
-#include <Eigen/LU>
 #include <complex>
 
+#include "linear_algebra/linear_systems.h"
 #include "sim/dynamics/complex_form.h"
 
 namespace beamgyro::internal {
@@ -19,7 +19,7 @@ EnvelopePlant::EnvelopePlant(const Matrix2d& stiffness,
     : omega_(omega), velocity_(velocity) {
   Matrix2cd P = velocity.cast<std::complex<double>>();
   P.diagonal().array() += 2.0 * kI * omega;
-  r_ = P.inverse();
+  r_ = inverse_of(P);
   s_.real() = stiffness;
   s_.imag() = omega * velocity;
   s_.diagonal().array() -= omega * omega;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "sim/dynamics/loop_noise.h"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 
+#include "linear_algebra/linear_systems.h"
 #include "sim/dynamics/complex_form.h"
 #include "sim/dynamics/mechanical_noise.h"
 
@@ -127,7 +127,7 @@ Eigen::Vector2d drive_noise(const LoopElectronics& loops,
   A(kAgcIntegral, kAgcIntegral) =
       limited ? -1 : system.A(kAgcIntegral, kAgcIntegral);
   if (limited) channels.row(1).setZero();
-  return (channels * A.partialPivLu().solve(system.B)).rowwise().norm();
+  return (channels * solve_system(A, system.B)).rowwise().norm();
 }
 
 Eigen::Vector2d drive_noise_rms(const LoopElectronics& loops,

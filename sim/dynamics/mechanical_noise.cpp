@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 
+#include "linear_algebra/eigenvalues.h"
+#include "linear_algebra/linear_systems.h"
 #include "sim/dynamics/complex_form.h"
 
 namespace beamgyro::internal {
@@ -30,8 +30,8 @@ void require_positive(double value, const char* what, const char* unit) {
 // Symmetric square root of a one-sided force density [N/sqrt(Hz)].
 Matrix2d force_root(const Matrix2d& density) {
   constexpr double kRounding = 1e-12;
-  const Eigen::SelfAdjointEigenSolver<Matrix2d> solver(density);
-  Eigen::Vector2d value = solver.eigenvalues();
+  const SymmetricEigen eigen = symmetric_eigen(density);
+  Eigen::Vector2d value = eigen.values;
   if (!(value(1) >= 0 && value(0) >= -kRounding * value(1))) {
     throw std::invalid_argument(fmt::format(
         "force noise density [[{}, {}], [{}, {}]] N2/Hz has a negative "
@@ -39,8 +39,8 @@ Matrix2d force_root(const Matrix2d& density) {
         density(0, 0), density(0, 1), density(1, 0), density(1, 1)));
   }
   value = value.cwiseMax(0).cwiseSqrt();
-  return solver.eigenvectors() * value.asDiagonal() *
-         solver.eigenvectors().transpose();
+  const Matrix2d vectors = eigen.vectors;
+  return vectors * value.asDiagonal() * vectors.transpose();
 }
 
 Matrix2cd complex_form(const Matrix4d& real) {
@@ -79,7 +79,8 @@ class LoopedResponse {
         feedthrough_(gyro.device.readout.feedthrough),
         rebalance_(gyro.loop.mode == ReadoutMode::kForceRebalance),
         amplitude_locked_(s.amplitude_locked),
-        compliance_(dynamic_stiffness(modal, s.drive_frequency, {}).inverse()) {
+        compliance_(
+            inverse_of(dynamic_stiffness(modal, s.drive_frequency, {}))) {
     const Matrix2cd slope = kI * modal.damping - 2 * s.drive_frequency *
                                                      modal.mass *
                                                      Matrix2cd::Identity();
@@ -87,11 +88,9 @@ class LoopedResponse {
     answer_[1] = held(-(slope * s.amplitude), 0.0);
     answer_[2] = held(modal.coupling[kDamping], 0.0);
     answer_[3] = held(kI * modal.coupling[kDamping], 0.0);
-    Matrix4d conditions;
     for (int j = 0; j < 4; ++j) {
-      conditions.col(j) = errors(answer_[static_cast<std::size_t>(j)], j);
+      conditions_.col(j) = errors(answer_[static_cast<std::size_t>(j)], j);
     }
-    conditions_ = conditions.partialPivLu();
   }
 
   // Change of the signal of StaticSolution by a force on the modes and by
@@ -101,7 +100,7 @@ class LoopedResponse {
     Held open = held(force, 0.0);
     open.feedback += feedback_charge / feedback_;
     open.readout += readout_charge;
-    const Vector4d x = -conditions_.solve(errors(open, kDisturbance));
+    const Vector4d x = -solve_system(conditions_, errors(open, kDisturbance));
     if (rebalance_) return {x(2), x(3)};
     return open.readout + answer_[0].readout * x(0) + answer_[1].readout * x(1);
   }
@@ -134,7 +133,7 @@ class LoopedResponse {
   bool rebalance_, amplitude_locked_;
   Matrix2cd compliance_;  // S^-1 [m/N]
   std::array<Held, 4> answer_;
-  Eigen::PartialPivLU<Matrix4d> conditions_;
+  Matrix4d conditions_;  // errors() of each unknown
 };
 
 }  // namespace
@@ -163,9 +162,9 @@ BrownianInput brownian_input(const Matrix2d& force_density, double mass,
   const Matrix2cd slow = complex_form(A);
   const Matrix2cd P =
       velocity + 2.0 * kI * drive_frequency * Matrix2cd::Identity();
-  const Matrix2cd input =
-      (P + 2.0 * slow).inverse() * (force_root(force_density) / mass);
-  const Matrix2cd direct = -(P + slow).inverse() * input;
+  const Matrix2cd input = inverse_of(Matrix2cd(P + 2.0 * slow)) *
+                          (force_root(force_density) / mass);
+  const Matrix2cd direct = -inverse_of(Matrix2cd(P + slow)) * input;
   return {real_form(input), real_form(direct)};
 }
 

@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "linear_algebra/eigenvalues.h"
 #include "sim/dynamics/complex_form.h"
 #include "sim/numerics/simulation_failure.h"
 
@@ -209,7 +209,7 @@ std::vector<Lock> stable_locks(const Problem& problem, double omega,
         -c[static_cast<std::size_t>(k)] / c[static_cast<std::size_t>(degree)];
     if (k > 0) companion(k, k - 1) = 1;
   }
-  for (const Complex& root : companion.eigenvalues()) {
+  for (const Complex& root : eigenvalues_of(companion)) {
     const double square =
         omega * (omega + 2 * half_width * root.real());  // [1/s2]
     if (!(square > 0)) continue;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "sim/scenario/rate_profile.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
+
+#include "linear_algebra/cholesky.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -68,7 +69,7 @@ PiecewiseLinear realised(const RandomRate& random, double duration,
   step << 1, 0, w * h, 1;
   step *= std::exp(-w * h);
   const Eigen::Matrix2d root =
-      (P - step * P * step.transpose()).llt().matrixL();
+      Cholesky(P - step * P * step.transpose()).lower();
 
   RandomStream stream(seed, device, run, purpose);
   const auto draw = [&] {
@@ -77,7 +78,7 @@ PiecewiseLinear realised(const RandomRate& random, double duration,
     n(1) = stream.normal();
     return n;
   };
-  Eigen::Vector2d x = P.llt().matrixL() * draw();
+  Eigen::Vector2d x = Eigen::Matrix2d(Cholesky(P).lower()) * draw();
   const auto count = static_cast<std::size_t>(std::ceil(duration / h)) + 1;
   std::vector<double> time(count), value(count);
   for (std::size_t k = 0; k < count; ++k) {

@@ -3,13 +3,13 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <stdexcept>
 
+#include "linear_algebra/eigenvalues.h"
+#include "linear_algebra/least_squares.h"
 #include "sim/numerics/simulation_failure.h"
 
 namespace beamgyro::internal {
@@ -83,10 +83,8 @@ Balanced balanced(const NoiseSystem& system) {
 // each row of W by itself, and no square is ever formed.
 MatrixXd lower_root(const MatrixXd& W) {
   const Index n = W.rows(), rank = std::min(n, W.cols());
-  const Eigen::HouseholderQR<MatrixXd> qr(W.transpose());
   MatrixXd L = MatrixXd::Zero(n, n);
-  L.leftCols(rank) =
-      qr.matrixQR().topRows(rank).triangularView<Eigen::Upper>().transpose();
+  L.leftCols(rank) = upper_factor(W.transpose()).transpose();
   for (Index k = 0; k < rank; ++k)
     if (L(k, k) < 0.0) L.col(k) = -L.col(k);
   return L;
@@ -190,7 +188,7 @@ MatrixXd stationary_root(const NoiseSystem& system) {
   constexpr int kMaxDoublings = 100;
   check(system);
   const Balanced b = balanced(system);
-  const double slowest = b.A.eigenvalues().real().maxCoeff();
+  const double slowest = eigenvalues_of(b.A).real().maxCoeff();
   if (!(slowest < 0.0))
     throw std::invalid_argument(
         fmt::format("noise system has no stationary state: an eigenvalue of A "

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "sim/thermal/thermal_network.h"
 
-#include <Eigen/LU>
 #include <cmath>
 
+#include "linear_algebra/linear_systems.h"
 #include "sim/numerics/simulation_failure.h"
 
 namespace beamgyro::internal {
@@ -102,9 +102,8 @@ NodeVector ThermalNetwork::steady_state(
   NodeVector temperature = NodeVector::Constant(surroundings.ambient + 1.0);
   for (int i = 0; i < kMaxIterations; ++i) {
     const NodeVector step =
-        heating_rate_jacobian(temperature, surroundings)
-            .partialPivLu()
-            .solve(heating_rate(temperature, power, surroundings));
+        solve_system(heating_rate_jacobian(temperature, surroundings),
+                     heating_rate(temperature, power, surroundings));
     temperature -= step;
     if (step.cwiseAbs().maxCoeff() < kSmallestStep) return temperature;
   }
