@@ -3,12 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+
+#include "linear_algebra/eigenvalues.h"
+#include "linear_algebra/least_squares.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -118,14 +119,13 @@ void set_modes(Population& p, const MatrixXd& X) {
   const Index grid = p.grid();
   const VectorXd unit = spreads(X, grid);
   const MatrixXd scaled = unit.cwiseInverse().asDiagonal() * X;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scaled *
-                                                      scaled.transpose());
-  const VectorXd& variance = eigen.eigenvalues();  // increasing
+  const auto [variance, directions] =
+      symmetric_eigen(scaled * scaled.transpose());
   const double least = kLeastVariance * variance.maxCoeff();
   Index kept = 0;
   while (kept < variance.size() && variance(variance.size() - 1 - kept) > least)
     ++kept;
-  const MatrixXd vectors = eigen.eigenvectors().rightCols(kept);
+  const MatrixXd vectors = directions.rightCols(kept);
   p.modes = unit.asDiagonal() * vectors *
             variance.tail(kept).cwiseSqrt().asDiagonal();
   p.coefficients = coefficients_of(scaled, vectors, variance.tail(kept));
@@ -269,13 +269,10 @@ AdaptedBias adapted_bias(const Population& population,
             ArrayXd::Zero(population.grid()), ArrayXd::Zero(population.grid())};
   const Equations all =
       all_equations(population, inputs, points_of(rows), noise);
-  const Index modes = population.modes.cols(), grid = population.grid();
+  const Index grid = population.grid();
   // A = R^T R of the QR decomposition: its squares are never formed.
-  const Eigen::HouseholderQR<MatrixXd> qr(all.H);
-  const VectorXd c = qr.solve(all.y);
+  const auto [c, R] = full_rank_solution(all.H, all.y);
   const MatrixXd bias_modes = population.modes.topRows(grid);
-  const MatrixXd R =
-      qr.matrixQR().topRows(modes).triangularView<Eigen::Upper>();
   const MatrixXd roots = R.transpose().triangularView<Eigen::Lower>().solve(
       bias_modes.transpose());
   const ArrayXd variance = roots.colwise().squaredNorm().transpose().array();

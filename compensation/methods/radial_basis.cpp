@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "compensation/methods/fit.h"
 #include "compensation/methods/input_scales.h"
 #include "compensation/models/parameter_json.h"
+#include "linear_algebra/least_squares.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -101,8 +101,7 @@ RadialBasis fit_radial_basis(const Eigen::Ref<const Eigen::ArrayXXd>& x,
       .setConstant(std::sqrt(ridge * static_cast<double>(x.rows())));
   Eigen::VectorXd target = Eigen::VectorXd::Zero(system.rows());
   target.head(y.size()) = y.matrix();
-  const Eigen::VectorXd solution =
-      system.completeOrthogonalDecomposition().solve(target);
+  const Eigen::VectorXd solution = least_norm_solution(system, target);
   fitted.plane = solution.head(planes);
   fitted.weights = solution.tail(bells);
   return fitted;

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -13,6 +11,8 @@
 #include "compensation/firmware/runtime.h"
 #include "compensation/models/array_view.h"
 #include "compensation/models/parameter_json.h"
+#include "linear_algebra/least_squares.h"
+#include "linear_algebra/linear_systems.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -57,7 +57,7 @@ MatrixXd second_derivative_operator(const ArrayXd& knots, SplineEnd end) {
     left.block(0, 0, 1, 3) << -h(1), h(0) + h(1), -h(0);
     left.block(n - 1, n - 3, 1, 3) << -h(n - 2), h(n - 3) + h(n - 2), -h(n - 3);
   }
-  return left.partialPivLu().solve(right);
+  return solve_system(left, right);
 }
 
 void check_knots(const ArrayXd& knots) {
@@ -99,13 +99,12 @@ CubicSpline fit_cubic_spline(const Eigen::Ref<const ArrayXd>& x,
     design(i, p.k + 1) += p.b;
     design.row(i) += p.c * S.row(p.k) + p.d * S.row(p.k + 1);
   }
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(design);
-  if (qr.rank() < knots.size())
+  const auto [values, rank] = least_squares(design, y.matrix());
+  if (rank < knots.size())
     throw std::invalid_argument(
         fmt::format("cubic spline: the {} rows determine the values at only "
                     "{} of the {} knots; a larger knot_spacing_K is needed",
-                    x.size(), qr.rank(), knots.size()));
-  const Eigen::VectorXd values = qr.solve(y.matrix());
+                    x.size(), rank, knots.size()));
   return {knots, values.array(), (S * values).array()};
 }
 

@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <stdexcept>
 
 #include "compensation/firmware/runtime.h"
 #include "compensation/models/parameter_json.h"
+#include "linear_algebra/cholesky.h"
+#include "linear_algebra/least_squares.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -53,23 +53,24 @@ ArrayXd Polynomial::predict(const Eigen::Ref<const ArrayXXd>& x) const {
 Polynomial fit_polynomial(const Eigen::Ref<const ArrayXXd>& x,
                           const Eigen::Ref<const ArrayXd>& y, int degree) {
   const Eigen::MatrixXd columns = terms(x, degree);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
-  if (qr.rank() < columns.cols())
-    fail_degree(degree, x.rows(), qr.rank(), columns.cols());
-  return polynomial_of(qr.solve(y.matrix()), degree);
+  const auto [solution, rank] = least_squares(columns, y.matrix());
+  if (rank < columns.cols())
+    fail_degree(degree, x.rows(), rank, columns.cols());
+  return polynomial_of(solution, degree);
 }
 
 Polynomial fit_polynomial_by_normal_equations(
     const Eigen::Ref<const ArrayXXd>& x, const Eigen::Ref<const ArrayXd>& y,
     int degree) {
   const Eigen::MatrixXd columns = terms(x, degree);
-  const Eigen::LLT<Eigen::MatrixXd> normal(columns.transpose() * columns);
-  if (normal.info() != Eigen::Success)
+  const Cholesky normal(columns.transpose() * columns);
+  if (!normal.is_positive_definite())
     throw std::invalid_argument(fmt::format(
         "polynomial of degree {}: the normal equations of {} rows cannot be "
         "solved in double precision; normalised = true needs none",
         degree, x.rows()));
-  return polynomial_of(normal.solve(columns.transpose() * y.matrix()), degree);
+  return polynomial_of(
+      normal.solve(Eigen::VectorXd(columns.transpose() * y.matrix())), degree);
 }
 
 std::vector<double> shifted(std::vector<double> coefficients, double origin) {

@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <cmath>
 #include <stdexcept>
 
 #include "compensation/firmware/runtime.h"
 #include "compensation/models/parameter_json.h"
+#include "linear_algebra/least_squares.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -66,9 +66,7 @@ TakagiSugeno fit_takagi_sugeno(const Eigen::Ref<const ArrayXXd>& x,
     for (Index j = 0; j < x.cols(); ++j)
       terms.col(i * each + j + 1) = (w.col(i) * x.col(j)).matrix();
   }
-  const Eigen::VectorXd a =
-      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(terms).solve(
-          y.matrix());
+  const Eigen::VectorXd a = least_norm_solution(terms, y.matrix());
   model.consequents = a.reshaped(each, rules).transpose();
   return model;
 }

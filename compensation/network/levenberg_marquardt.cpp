@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "compensation/network/levenberg_marquardt.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "compensation/network/batch_network.h"
 #include "compensation/network/rate_penalty.h"
+#include "linear_algebra/cholesky.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -104,7 +104,7 @@ TrainSummary train_levenberg_marquardt(const ScaledRows& rows,
     ++summary.epochs;
     MatrixXd damped = matrix;
     damped.diagonal().array() += mu.value;
-    const Eigen::LLT<MatrixXd> solver(damped.selfadjointView<Eigen::Lower>());
+    const Cholesky solver(damped);
     const VectorXd v = -solver.solve(gradient);
     if (v.norm() <= options.min_step * (w.norm() + options.min_step)) {
       stop = StopReason::kStepSmall;

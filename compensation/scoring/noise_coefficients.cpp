@@ -3,7 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,6 +14,9 @@
 
 #include "compensation/scoring/difference_covariance.h"
 #include "config/range.h"
+#include "linear_algebra/eigenvalues.h"
+#include "linear_algebra/least_squares.h"
+#include "linear_algebra/linear_systems.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -58,9 +60,9 @@ struct Curve {
 /// Sums of deviations that do not depend on each other, by chance.
 struct Independent {
   explicit Independent(const Eigen::MatrixXd& chance) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(chance);
-    sums = parts.eigenvectors().transpose();
-    chances = parts.eigenvalues().array().max(kLeastChance);
+    const SymmetricEigen parts = symmetric_eigen(chance);
+    sums = parts.vectors.transpose();
+    chances = parts.values.array().max(kLeastChance);
   }
   Eigen::MatrixXd sums;  // a row each
   ArrayXd chances;       // their variances
@@ -110,9 +112,9 @@ std::optional<TermFit> fit_terms(const Curve& curve,
     const Eigen::MatrixXd weight = weights(independent, fit.misfit, model);
     const Eigen::MatrixXd weighted = weight * terms;
     const Eigen::VectorXd scale = weighted.colwise().norm().transpose();
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> scaled(
-        weighted * scale.cwiseInverse().asDiagonal());
-    found = scaled.solve(weight * curve.variance.matrix()).cwiseQuotient(scale);
+    found = least_squares(weighted * scale.cwiseInverse().asDiagonal(),
+                          weight * curve.variance.matrix())
+                .x.cwiseQuotient(scale);
     const ArrayXd next = (terms * found).array();
     if (!(next > 0.0).all()) {
       if (round > 3) return std::nullopt;
@@ -285,8 +287,8 @@ ArrayXd variances_of(const Curve& curve, const TermFit& fit) {
   const Eigen::VectorXd scale = weighted.colwise().norm().transpose();
   const Eigen::MatrixXd scaled = weighted * scale.cwiseInverse().asDiagonal();
   ArrayXd all = ArrayXd::Zero(kTerms);
-  all(terms) = (scaled.transpose() * scaled).inverse().diagonal().array() /
-               scale.array().square();
+  const Eigen::MatrixXd normal = scaled.transpose() * scaled;
+  all(terms) = inverse_of(normal).diagonal().array() / scale.array().square();
   return all;
 }
 
