@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "planning/residual_forecast.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -9,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "linear_algebra/cholesky.h"
 #include "planning/random_purposes.h"
 #include "random/random_stream.h"
 
@@ -47,7 +47,7 @@ ResidualForecast quantiles_of(std::vector<double> rms) {
 
 MatrixXd inverse_with_identity(MatrixXd B) {
   B.diagonal().array() += 1.0;
-  return B.llt().solve(MatrixXd::Identity(B.rows(), B.cols()));
+  return Cholesky(B).inverse();
 }
 
 // What soaks are taken for, and what they show.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "planning/soak_design.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
 
+#include "linear_algebra/cholesky.h"
 #include "planning/chamber_time.h"
 
 namespace beamgyro::internal {
@@ -30,7 +30,7 @@ MatrixXd SoakDesign::covariance(const std::vector<double>& soaks) const {
   const MatrixXd H = model_.equations(with_start_row(soaks, limits_.start_row));
   MatrixXd A = H.transpose() * H;
   A.diagonal().array() += 1.0;
-  return A.llt().solve(MatrixXd::Identity(A.rows(), A.cols()));
+  return Cholesky(A).inverse();
 }
 
 double SoakDesign::mean_variance(const std::vector<double>& soaks) const {
@@ -58,7 +58,7 @@ std::vector<double> SoakDesign::reductions(const MatrixXd& P) const {
     S.diagonal().array() += 1.0;
     const MatrixXd V =
         U.middleCols(k, rows).transpose() * WU.middleCols(k, rows);
-    found.push_back(S.llt().solve(V).trace());
+    found.push_back(Cholesky(S).solve(V).trace());
   }
   return found;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "planning/training_noise.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "linear_algebra/eigenvalues.h"
+#include "linear_algebra/linear_systems.h"
 
 namespace beamgyro::internal {
 
@@ -18,17 +18,14 @@ MatrixXd truth_root(const Population& population) {
     MatrixXd walk = MatrixXd::Zero(size, steps);
     for (Index step = 0; step < steps; ++step)
       walk.col(step).segment(step + 1, steps - step).setOnes();
-    const MatrixXd shown = modes.partialPivLu().solve(walk);
+    const MatrixXd shown = solve_system(modes, walk);
     V = shown * shown.transpose();
-    V /= Eigen::SelfAdjointEigenSolver<MatrixXd>(V, Eigen::EigenvaluesOnly)
-             .eigenvalues()
-             .maxCoeff();
+    V /= symmetric_eigen(V).values.maxCoeff();
   }
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> left(
-      MatrixXd::Identity(V.rows(), V.cols()) - V);
-  return left.eigenvectors() *
-         left.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-         left.eigenvectors().transpose();
+  const SymmetricEigen left =
+      symmetric_eigen(MatrixXd::Identity(V.rows(), V.cols()) - V);
+  return left.vectors * left.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+         left.vectors.transpose();
 }
 
 }  // namespace beamgyro::internal

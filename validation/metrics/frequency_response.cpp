@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "validation/metrics/frequency_response.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/scale_factor.h"
+#include "linear_algebra/least_squares.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -63,8 +63,7 @@ SineFit fit_sine(std::span<const double> time, std::span<const double> signal,
     terms.row(k) << 1.0, t, std::cos(omega * t), std::sin(omega * t);
   }
   const Eigen::Map<const Eigen::VectorXd> values(signal.data(), rows);
-  const Eigen::VectorXd found =
-      terms.colPivHouseholderQr().solve(Eigen::VectorXd(values));
+  const Eigen::VectorXd found = least_squares(terms, values).x;
   return {{found(2), -found(3)}, values - terms * found};
 }
 

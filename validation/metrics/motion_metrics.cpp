@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "compensation/scoring/scale_factor.h"
+#include "linear_algebra/least_squares.h"
 #include "validation/metrics/evaluations.h"
 #include "validation/metrics/noisy_means.h"
 
@@ -34,7 +34,7 @@ std::vector<double> weights_of(const Terms& terms, Eigen::Index term) {
   // Terms that are zero throughout, or equal, are dropped by the pivoting.
   const Eigen::VectorXd column = terms.searched.col(term);
   const Eigen::VectorXd left =
-      column - others * others.completeOrthogonalDecomposition().solve(column);
+      column - others * least_norm_solution(others, column);
   const double squares = left.squaredNorm();
   if (!(squares > kLeastSquareSum * column.squaredNorm())) return {};
   std::vector<double> weights(static_cast<std::size_t>(rows));
