@@ -9,9 +9,6 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 packages=$(realpath "${1:-$root/build/packages}")
 place=$(realpath -m "${2:-$root/build/debian12}")
 bare=$place/bare system=$place/system
-# That of this machine.
-mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' |
-  awk '!/security/ && !found++')
 
 fail() {
   echo "try_packages: $*" >&2
@@ -19,16 +16,9 @@ fail() {
 }
 
 [ "$(id -u)" -eq 0 ] || fail "needs root, for chroot"
-command -v debootstrap >/dev/null || fail "apt-get install debootstrap"
 ls "$packages"/*.deb >/dev/null || fail "no packages in $packages"
 
-if [ ! -e "$bare/etc/debian_version" ]; then
-  mkdir -p "$place"
-  rm -rf "$bare.new"
-  debootstrap --variant=minbase bookworm "$bare.new" "$mirror" \
-    >"$place/debootstrap.log" 2>&1 || fail "see $place/debootstrap.log"
-  mv "$bare.new" "$bare"
-fi
+"$root/scripts/bare_debian.sh" "$place"
 rm -rf "$system"
 cp -a "$bare" "$system"
 cp /etc/resolv.conf "$system/etc/resolv.conf"
