@@ -2,19 +2,27 @@
 # SPDX-License-Identifier: MIT
 # After a small change: builds the tests of the rooms that changed since the
 # last commit, or of those named, and runs them: check.sh [ROOM]...
-# Rooms: config, linear_algebra, random, parallel, dataset, set, numerics,
-# thermal, signal, device, dynamics, scenario, campaign, compensation,
-# validation, report.
+# A ROOM is a folder of tests/ with a CMakeLists.txt: config, dataset, set,
+# thermal, compensation, ...
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+# room_of FILE: the nearest folder above it whose mirror in tests/ has tests.
+room_of() {
+  local folder=${1#tests/}
+  while [[ $folder == */* ]]; do
+    folder=${folder%/*}
+    if [ -e "tests/$folder/CMakeLists.txt" ]; then
+      basename "$folder"
+      return
+    fi
+  done
+}
+
 rooms=("$@")
 if [ ${#rooms[@]} -eq 0 ]; then
-  mapfile -t rooms < <(git status --porcelain | cut -c4- | sed -n -E \
-    -e 's,^.* -> ,,' -e 's,^tests/,,' -e 's,^dataset/set/.*,set,p' \
-    -e 's,^sim/([a-z]+)/.*,\1,p' \
-    -e 's,^(config|linear_algebra|random|parallel|dataset|compensation|validation|report)/.*,\1,p' |
-    sort -u)
+  mapfile -t rooms < <(git status --porcelain -uall | cut -c4- |
+    sed 's,^.* -> ,,' | while read -r file; do room_of "$file"; done | sort -u)
 fi
 [ ${#rooms[@]} -gt 0 ] || { echo "check: no room changed" >&2; exit 0; }
 
