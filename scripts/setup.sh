@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Installs the Debian packages that are missing: setup.sh demo|test
+# Installs the Debian packages that are missing: setup.sh demo|test|sanitize
 # Asks apt only when something is missing, so it works offline afterwards.
 set -euo pipefail
 
@@ -17,11 +17,17 @@ tests=(libgtest-dev libbenchmark-dev clang-format clang-tidy netcdf-bin
        dpkg-dev file lintian man-db doxygen python3-breathe python3-sphinx
        python3-sphinx-rtd-theme python3-myst-parser
        python3-ipykernel python3-nbclient python3-nbformat)
+# What scripts/sanitize.sh has beyond the tests: clang's sanitizers, a browser,
+# Slurm, Octave, an emulated Cortex-M4, a bare Debian and an image in it.
+deep=(clang libclang-rt-14-dev chromium slurm-wlm munge octave octave-netcdf
+      gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
+      debootstrap buildah)
 
 case "${1:-}" in
   demo) wanted=("${build[@]}") ;;
   test) wanted=("${build[@]}" "${tests[@]}") ;;
-  *) echo "usage: $0 demo|test" >&2; exit 2 ;;
+  sanitize) wanted=("${build[@]}" "${tests[@]}" "${deep[@]}") ;;
+  *) echo "usage: $0 demo|test|sanitize" >&2; exit 2 ;;
 esac
 
 fail() {
