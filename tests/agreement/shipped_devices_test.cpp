@@ -2,7 +2,6 @@
 // Every shipped device runs, and shows what its file says it teaches.
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "sim/dynamics/gyro.h"
 #include "sim/scenario/simulation.h"
+#include "tests/linear_algebra/reference_algebra.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
@@ -48,9 +48,7 @@ double cubic_residual(const std::vector<double>& curve) {
     terms.row(i) << 1, x, x * x, x * x * x;
   }
   const Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(curve.data(), n);
-  const Eigen::VectorXd left =
-      y -
-      terms * (terms.transpose() * terms).ldlt().solve(terms.transpose() * y);
+  const Eigen::VectorXd left = y - terms * reference::least_squares(terms, y);
   return left.norm() / std::sqrt(static_cast<double>(n));
 }
 

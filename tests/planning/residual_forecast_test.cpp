@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "planning/soak_design.h"
 #include "planning/soak_noise.h"
 #include "planning/training_noise.h"
+#include "tests/linear_algebra/reference_algebra.h"
 #include "tests/planning/small_population.h"
 
 namespace beamgyro::internal::residual_forecast_test {
@@ -142,7 +142,7 @@ Eigen::MatrixXd smooth_covariance(Eigen::Index grid, double step) {
 
 TEST(TruthRoot, TakesOffTheWalkAndNoMore) {
   Population p = small_population(40);
-  p.modes = smooth_covariance(p.grid(), 0.5).llt().matrixL();
+  p.modes = reference::cholesky_root(smooth_covariance(p.grid(), 0.5));
   const Eigen::MatrixXd R = truth_root(p);
   const Eigen::MatrixXd found = p.modes * R * R * p.modes.transpose();
   // Steps of 0.5 deg/s add up to a variance of 10. What the curves have in all

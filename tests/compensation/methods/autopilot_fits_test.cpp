@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,6 +11,7 @@
 #include "random/random_stream.h"
 #include "tests/compensation/recorded_run.h"
 #include "tests/config/rejection.h"
+#include "tests/linear_algebra/reference_algebra.h"
 
 namespace beamgyro::internal::autopilot_fits_test {
 namespace {
@@ -149,7 +150,7 @@ TEST(FitAsPx4, EqualsLeastSquaresOverTheBinsOfTheFilteredSamples) {
     A.row(row) << 1.0, x, x * x, x * x * x;
     b(row++) = mean;
   }
-  const Eigen::VectorXd c = A.householderQr().solve(b);
+  const Eigen::VectorXd c = reference::least_squares(A, b);
   const BiasModel model = fit_as_px4(rows);
   EXPECT_EQ(model.input_scales[0].centre, 0.5 * (low + high));
   for (int n = 0; n < 4; ++n)
@@ -226,7 +227,7 @@ TEST(FitAsArduPilot, EqualsLeastSquaresOverTheRisesOfHalfAKelvin) {
     A.row(k) << 1.0, x, x * x, x * x * x;
     b(k) = mean;
   }
-  const Eigen::VectorXd c = A.householderQr().solve(b);
+  const Eigen::VectorXd c = reference::least_squares(A, b);
   const BiasModel model = fit_as_ardupilot(rows, 30);
   for (int n = 0; n < 4; ++n)
     EXPECT_NEAR(

@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
+#include <Eigen/Core>
+#include <cmath>
 
 #include "compensation/methods/bias_model.h"
 #include "tests/compensation/bias_curve.h"
 #include "tests/config/rejection.h"
+#include "tests/linear_algebra/reference_algebra.h"
 
 namespace beamgyro::internal::polynomial_test {
 namespace {
@@ -82,9 +84,9 @@ TEST(Polynomial, FurtherInputsAddStraightLines) {
 double condition_of(const Eigen::ArrayXd& x, int degree) {
   Eigen::MatrixXd powers(x.size(), degree + 1);
   for (int n = 0; n <= degree; ++n) powers.col(n) = x.pow(n).matrix();
-  const Eigen::VectorXd s =
-      Eigen::JacobiSVD<Eigen::MatrixXd>(powers).singularValues();
-  return s(0) / s(degree);
+  const Eigen::VectorXd squares =
+      reference::symmetric_modes(powers.transpose() * powers).values;
+  return std::sqrt(squares(degree) / squares(0));
 }
 
 // Cholesky does not mind the scale of the powers. It minds their likeness,

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+
+#include "tests/linear_algebra/reference_algebra.h"
 
 namespace beamgyro::internal::rate_departure_test {
 namespace {
@@ -51,7 +53,9 @@ Eigen::VectorXd dense_without_drift(const Samples& s) {
   terms.col(pieces + 1) = s.temperature / s.temperature.cwiseAbs().maxCoeff();
   Eigen::MatrixXd normal = terms.transpose() * terms;
   normal.diagonal().array() += kDriftDamping * static_cast<double>(n);
-  return s.rate - terms * normal.llt().solve(terms.transpose() * s.rate);
+  const Eigen::VectorXd heights =
+      reference::solution(normal, terms.transpose() * s.rate);
+  return s.rate - terms * heights;
 }
 
 TEST(RateDeparture, WithoutDriftIsTheDampedLeastSquaresOfItsDefinition) {

@@ -3,14 +3,14 @@
 // and small steps against linear models.
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <functional>
 #include <numbers>
-#include <unsupported/Eigen/MatrixFunctions>
 
+#include "tests/linear_algebra/reference_algebra.h"
 #include "tests/sim/dynamics/carrier_unit.h"
 
 namespace beamgyro::internal::carrier_loops_test {
@@ -168,8 +168,8 @@ StepResponse linear_loop(double P, double I, double gain, double tau,
       0, wf, -wf, 0,                     //
       0, 0, wf, -wf;
   const Vector4d b(1, gain * P, 0, 0);
-  const Vector4d rest = -A.inverse() * b;
-  const Matrix4d sample = (A * kSample).exp();
+  const Vector4d rest = -reference::solution(A, b);
+  const Matrix4d sample = reference::exponential(A * kSample);
   Vector4d x = -rest;
   return judged([&](int) {
     x = sample * x;

@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -16,6 +15,7 @@
 #include "sim/dynamics/loop_noise.h"
 #include "sim/scenario/random_purposes.h"
 #include "sim/signal/linear_noise.h"
+#include "tests/linear_algebra/reference_algebra.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/signal/allan_deviation.h"
 
@@ -56,6 +56,7 @@ struct Modes {
     return brownian_input(density.force, modal.mass, velocity, A,
                           solution.drive_frequency);
   }
+  Matrix2d compliance() const { return reference::inverse(modal.stiffness); }
   NoiseSystem envelope() const { return {A, brownian().input}; }
 };
 
@@ -89,10 +90,11 @@ TEST(BrownianInput, OfOneModeIsTheNoiseOfItsEnvelopeEquation) {
 TEST(BrownianInput, HasTheStaticResponseAtLowFrequencies) {
   const Modes modes;
   const BrownianInput b = modes.brownian();
-  const Matrix4d low = b.direct - modes.A.inverse() * b.input;
+  const Matrix4d low =
+      b.direct - Matrix4d(reference::solution(modes.A, b.input));
   const Matrix2cd S =
       dynamic_stiffness(modes.modal, modes.solution.drive_frequency, {});
-  const Matrix4d compliance = real_form(S.inverse());
+  const Matrix4d compliance = real_form(reference::inverse(S));
   // Both through their product, free of the root taken of the density.
   const Matrix4d covariance = low * low.transpose();
   const Matrix4d expected = compliance *
@@ -110,12 +112,12 @@ TEST(Verification, V33CarrierWithThermalForceHasTheEnergyOfBothModes) {
   A.bottomLeftCorner(2, 2) = -modes.modal.stiffness / m;
   A.bottomRightCorner(2, 2) = -modes.velocity;
   // Intensity is half the one-sided density.
-  B.bottomRows(2) = (modes.density.force / 2).llt().matrixL();
+  B.bottomRows(2) = reference::cholesky_root(modes.density.force / 2);
   B /= m;
   const MatrixXd root = stationary_root({A, B});
   const MatrixXd Sigma = root * root.transpose();
   const double kT = kBoltzmann * kT0;
-  const Matrix2d position = kT * modes.modal.stiffness.inverse();
+  const Matrix2d position = kT * modes.compliance();
   EXPECT_LT((Sigma.topLeftCorner(2, 2) - position).norm(),
             1e-8 * position.norm());
   EXPECT_LT(
@@ -128,8 +130,8 @@ TEST(Verification, V33EnvelopeCovarianceIsTwiceTheTemperatureOverTheStiffness) {
   for (const double T : {235.0, kT0, 330.0}) {
     const Modes modes(T);
     const MatrixXd root = stationary_root(modes.envelope());
-    const Matrix4d expected = real_form(
-        (kBoltzmann * T * modes.modal.stiffness.inverse()).cast<Complex>());
+    const Matrix4d expected =
+        real_form((kBoltzmann * T * modes.compliance()).cast<Complex>());
     EXPECT_LT((root * root.transpose() - expected).norm(),
               5e-4 * expected.norm())
         << T;
@@ -229,7 +231,7 @@ TEST(LowFrequencyNoise, WeighsNoiseWithTheSignalOfADriveAtItsLimit) {
 // `first` .. of the noise of the loops.
 double low_frequency(const NoiseSystem& system, Index first, Index count) {
   const MatrixXd gain =
-      system.A.partialPivLu().solve(system.B.middleCols(first, count));
+      reference::solution(system.A, system.B.middleCols(first, count));
   return std::sqrt(2) * gain.row(kOutput2).norm();
 }
 

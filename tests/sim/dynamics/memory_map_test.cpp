@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -125,7 +125,8 @@ TEST(V58Memory, LossesStayPositiveOverAllHistories) {
                                {glass, hysteresis, decades})
                   .damping;
           EXPECT_GT(damping(0, 0), 0);
-          EXPECT_GT(damping.determinant(), 0);
+          EXPECT_GT(damping(0, 0) * damping(1, 1),
+                    damping(0, 1) * damping(1, 0));
         }
       }
     }

@@ -3,16 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
 
 #include "sim/scenario/random_purposes.h"
+#include "tests/linear_algebra/reference_algebra.h"
 
 namespace beamgyro::internal::linear_noise_test {
 namespace {
@@ -54,7 +53,7 @@ struct StiffSystem {
   VectorXd decay{{0.1, 0.7, 5.0, 37.0, 300.0, 2000.0}};
   VectorXd drive{{1.0, 0.5, -2.0, 3.0, 1.5, -4.0}};
   MatrixXd mix =
-      MatrixXd(normal_matrix(6, 6, 3).householderQr().householderQ());
+      reference::symmetric_modes(square(normal_matrix(6, 6, 3))).vectors;
   NoiseSystem system = {mix * MatrixXd((-decay).asDiagonal()) * mix.transpose(),
                         mix* drive};
 
@@ -76,7 +75,7 @@ SampledNoise van_loan(const NoiseSystem& system, double h) {
   block.topLeftCorner(n, n) = -system.A * h;
   block.topRightCorner(n, n) = square(system.B) * h;
   block.bottomRightCorner(n, n) = system.A.transpose() * h;
-  const MatrixXd e = block.exp();
+  const MatrixXd e = reference::exponential(block);
   const MatrixXd Phi = e.bottomRightCorner(n, n).transpose();
   return {Phi, Phi * e.topRightCorner(n, n)};  // the covariance for the root
 }

@@ -3,11 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <cmath>
 #include <vector>
 
 #include "sim/thermal/thermal_run.h"
+#include "tests/linear_algebra/reference_algebra.h"
 
 namespace beamgyro::internal::thermal_verification_test {
 namespace {
@@ -101,7 +102,7 @@ TEST(Verification, V38LinearNetworkLagsARampByConductanceAndCapacity) {
   const double end = 25000;      // [s], 29 of the longest time constants
   NodeVector C;
   C << 1.46, 0.08, 1.8, 42, 6, 0.25;
-  const NodeVector lag = grounded_conductance().lu().solve(C * rate);
+  const NodeVector lag = reference::solution(grounded_conductance(), C * rate);
   const PiecewiseLinear ramp({0, end}, {200, 200 + rate * end});
   const std::vector<double> times = {end - 100, end};
   const ThermalHistory history =
