@@ -112,9 +112,10 @@ class ExportC(ExportTest):
         reference = re.search("#define net_DRIVE_FREQUENCY (\\d+)", header)
         less = {"drive_frequency": float(reference[1]) if reference else 0}
         off = recording["status"][()] & 1
+        values = {name: np.float32(recording[name][()] - less.get(name, 0))
+                  for name in columns}
         rows = [f"{k == 0 or off[k - 1]:d} " + " ".join(
-                    f"{np.float32(recording[name][k] - less.get(name, 0)):.9g}"
-                    for name in columns)
+                    f"{values[name][k]:.9g}" for name in columns)
                 for k in np.flatnonzero(off == 0)]
         answer = self.run_binary(folder / "driver", given="\n".join(rows))
         return np.loadtxt(answer.splitlines())

@@ -19,6 +19,8 @@ import tempfile
 import threading
 import unittest
 
+import pytest
+
 from faults import FaultTest
 from program import PROGRAM
 from sets import CAMPAIGN, SCENARIO
@@ -146,7 +148,7 @@ class Command:
             name for name in names if files.get(name) != self.after.get(name))
 
 
-class Faults(FaultTest):
+class Struck(FaultTest):
     def setUp(self):
         super().setUp()
         self.write("ramp.toml", SCENARIO.format(
@@ -175,6 +177,8 @@ class Faults(FaultTest):
         if arguments:
             self.ok("train", "run.h5", "--model", "mean.toml", *arguments)
 
+
+class OneFile(Struck):
     def test_run(self):
         self.strike("run", "ramp.toml", "-o", "run.h5", fewest_calls=20)
 
@@ -193,14 +197,9 @@ class Faults(FaultTest):
         self.strike("compensate", "mean.json", "run.h5", "-o", "out.h5",
                     fewest_calls=20)
 
-    def test_generate(self):
-        self.write("rest.toml", SCENARIO.format(
-            name="rest", ambient="constant_degC = 25"))
-        self.write("campaign.toml",
-                   CAMPAIGN.replace("devices = 7", "devices = 3"))
-        generate = ["generate", "campaign.toml", "-o", "set", "--jobs", 1]
-        self.strike(*generate, again=[*generate, "--resume"], fewest_calls=100)
 
+@pytest.mark.early
+class Validation(Struck):
     def test_validate(self):
         self.recorded("-o", "mean.json")
         self.ok("run", "ramp.toml", "--seed", 99, "-o", "other.h5")
@@ -210,11 +209,21 @@ class Faults(FaultTest):
                     status=3, once="deep/bundle/bundle.json",
                     fewest_calls=100)
 
+
+@pytest.mark.early
+class Sets(Struck):
+    def setUp(self):
+        super().setUp()
+        one_run, _, _ = CAMPAIGN.partition("[[run]]\nname = \"ramp\"")
+        self.write("campaign.toml", one_run.replace("rest", "ramp").replace(
+            "devices = 7\ndevices_per_file = 2",
+            "devices = 2\ndevices_per_file = 1"))
+
+    def test_generate(self):
+        generate = ["generate", "campaign.toml", "-o", "set", "--jobs", 1]
+        self.strike(*generate, again=[*generate, "--resume"], fewest_calls=100)
+
     def test_verify(self):
-        self.write("rest.toml", SCENARIO.format(
-            name="rest", ambient="constant_degC = 25"))
-        self.write("campaign.toml",
-                   CAMPAIGN.replace("devices = 7", "devices = 3"))
         self.ok("generate", "campaign.toml", "-o", "set")
         self.strike("verify", "set", fewest_calls=30)
 
