@@ -76,7 +76,7 @@ class Command:
         return subprocess.run(
             [str(PROGRAM), *map(str, self.again)], cwd=place, text=True,
             stdin=subprocess.DEVNULL, capture_output=True, check=False,
-            timeout=60)
+            timeout=600)
 
     def chosen(self):
         """Number, name and kind of file of the calls to strike."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tests/faults/fault_shim.c as tests use it: one file-system call fails."""
+"""The libraries of tests/faults/ that change what the program meets."""
 
 import os
 import pathlib
@@ -9,15 +9,29 @@ import tempfile
 from program import PROGRAM, ROOT, ProgramTest
 
 
-class FaultTest(ProgramTest):
+class ShimTest(ProgramTest):
+    """A test that loads the library SHIM before the program."""
+
+    SHIM = None
+
     @classmethod
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
-        cls.shim = pathlib.Path(folder.name) / "fault_shim.so"
+        cls.shim = pathlib.Path(folder.name) / f"{cls.SHIM}.so"
         subprocess.run(["cc", "-std=c11", "-O1", "-shared", "-fPIC",
-                        ROOT / "tests/faults/fault_shim.c", "-o", cls.shim,
+                        ROOT / f"tests/faults/{cls.SHIM}.c", "-o", cls.shim,
                         "-ldl"], check=True)
+
+    def shimmed(self, **variables):
+        """The environment of a program with the library."""
+        return os.environ | {"LD_PRELOAD": str(self.shim), **variables}
+
+
+class FaultTest(ShimTest):
+    """One file-system call fails."""
+
+    SHIM = "fault_shim"
 
     def faulty(self, place, arguments, **plan):
         """The answer of a command in a folder, all of whose calls on files
@@ -25,9 +39,8 @@ class FaultTest(ProgramTest):
         return subprocess.run(
             [str(PROGRAM), *map(str, arguments)], cwd=place, text=True,
             stdin=subprocess.DEVNULL, capture_output=True, check=False,
-            timeout=60, env=os.environ | {
-                "LD_PRELOAD": str(self.shim), "FAULT_PREFIX": str(place),
-                **plan})
+            timeout=600,
+            env=self.shimmed(FAULT_PREFIX=str(place), **plan))
 
     def calls(self, place, arguments, status=0):
         """Number, name and file of the calls of a command in peace, where it

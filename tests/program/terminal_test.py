@@ -15,7 +15,8 @@ import termios
 import time
 import unittest
 
-from program import NETWORK, PROGRAM, SCENARIO, ProgramTest, ramp
+from faults import ShimTest
+from program import CUBIC, NETWORK, PROGRAM, SCENARIO, ramp
 from sets import CAMPAIGN
 from sets import SCENARIO as REST
 
@@ -26,23 +27,31 @@ PATIENT = NETWORK.replace("[2]", "[12]").replace("restarts = 1",
              "\ngoal_deg_per_s = 0").replace("levenberg_marquardt",
                                              "incremental")
 CLOCK = r"\d+:\d\d:\d\d"
+PATIENCE = 300  # [s], after which something hangs
+
+
+def seconds_of(text):
+    """The first time in a text."""
+    hours, minutes, seconds = re.search(CLOCK, text)[0].split(":")
+    return 3600 * int(hours) + 60 * int(minutes) + int(seconds)
 
 
 class Screen:
     """A terminal with a process in the foreground, and what it shows."""
 
-    def __init__(self, command, folder, columns=80):
+    def __init__(self, command, folder, environment, columns=80):
         self.sent = b""
         self.process, self.main = pty.fork()
         if self.process == 0:
             os.chdir(folder)
             fcntl.ioctl(0, termios.TIOCSWINSZ,
                         struct.pack("HHHH", 24, columns, 0, 0))
-            os.execv(command[0], command)
+            os.execve(command[0], command, environment)
 
-    def read_for(self, seconds, until=None):
-        """Reads until something is shown, all is over or the time is up."""
-        end = time.monotonic() + seconds
+    def read(self, until=None):
+        """Reads until something is shown, all is over or it hangs; whether the
+        former was."""
+        end = time.monotonic() + PATIENCE
         while (left := end - time.monotonic()) > 0:
             if until and re.search(until, self.sent.decode()):
                 return True
@@ -63,7 +72,7 @@ class Screen:
     def end(self):
         """Wait status of the process. Nobody may wait for one that cannot
         write to a full terminal."""
-        self.read_for(300)
+        self.read()
         status = os.waitpid(self.process, 0)[1]
         os.close(self.main)
         return status
@@ -97,9 +106,29 @@ class Screen:
         return lines
 
 
-class Terminal(ProgramTest):
+class Timed(ShimTest):
+    """A test whose program takes SPEED seconds for one of processor time."""
+
+    SHIM = "clock_shim"
+    SPEED = 20
+
+    def timed(self):
+        return self.shimmed(CLOCK_SPEED=str(self.SPEED))
+
+    def write_campaign(self, devices):
+        for name, ambient in [("rest", "constant_degC = 25"),
+                              ("ramp", "points = [[0, 0], [60, 10]]")]:
+            self.write(f"{name}.toml", REST.format(name=name, ambient=ambient))
+        self.write("campaign.toml",
+                   CAMPAIGN.replace("devices = 7", f"devices = {devices}"))
+
+
+class Terminal(Timed):
     def screen(self, *words, columns=80):
-        screen = Screen([str(PROGRAM), *map(str, words)], self.dir, columns)
+        return self.show([str(PROGRAM), *map(str, words)], columns)
+
+    def show(self, command, columns=80):
+        screen = Screen(command, self.dir, self.timed(), columns)
         self.addCleanup(self.end, screen)
         return screen
 
@@ -114,8 +143,8 @@ class Terminal(ProgramTest):
 class Line(Terminal):
     def watched(self, screen, frames=6):
         """Frames of the line, after which exactly one line stands there."""
-        self.assertTrue(screen.read_for(
-            60, rf"(\r\x1b\[K[^\r]+){{{frames},}}\r"), screen.sent)
+        self.assertTrue(screen.read(
+            rf"(\r\x1b\[K[^\r]+){{{frames},}}\r"), screen.sent)
         self.assertEqual(len(screen.lines()), 1, screen.lines())
         return screen.frames()
 
@@ -134,27 +163,27 @@ class Line(Terminal):
                 self.end(screen)
 
     def test_the_line_is_gone_at_the_end(self):
-        self.write("s.toml", LONG.replace("200000", "60000"))
+        self.write("s.toml", LONG.replace("200000", "3000"))
         screen = self.screen("run", "s.toml", "-o", "a.h5")
-        screen.read_for(300)
+        screen.read()
         self.assertEqual(screen.end(), 0)
         self.assertEqual(screen.lines(), [""])
 
     def test_the_time_left_converges(self):
-        self.write("s.toml", LONG.replace("200000", "150000"))
+        self.write("s.toml", LONG.replace("200000", "7500"))
         screen = self.screen("run", "s.toml", "-o", "a.h5")
-        screen.read_for(300)
+        screen.read()
         self.assertEqual(screen.end(), 0)
         ends = []
         for frame in screen.frames():
             if match := re.search(rf"({CLOCK}), ({CLOCK}) left", frame):
-                spent, left = (sum(int(part) * unit for part, unit in zip(
-                    text.split(":"), [3600, 60, 1])) for text in match.groups())
+                spent, left = map(seconds_of, match.groups())
                 ends.append((spent, spent + left))
         last = ends[-1][0]
         self.assertGreater(len(ends), 5)
-        # In the last third the speed of the half before it is known. Another
-        # process may halve it; the estimate may be off by that much of the rest.
+        # In the last third the speed of the half before it is known. Where
+        # processors are shared it may halve; the estimate may be off by that
+        # much of the rest.
         for spent, end in ends:
             if spent > 2 * last / 3:
                 self.assertLess(abs(end - last), 2 + last / 3)
@@ -173,18 +202,14 @@ class Line(Terminal):
                 screen = self.screen("train", "run.h5", "--model", "m.toml",
                                      "--held-out", "held_out.h5", "-o",
                                      "c.json")
-                self.assertTrue(screen.read_for(
-                    20, rf"training c.json, {CLOCK}, restart [123]/3, epoch "
+                self.assertTrue(screen.read(
+                    rf"training c.json, {CLOCK}, restart [123]/3, epoch "
                     r"\d+/1000000, rms [\d.e-]+ deg/s"), screen.sent)
                 self.assertEqual(len(screen.lines()), 1)
                 self.end(screen)
 
     def test_a_set_shows_one_line(self):
-        self.write("rest.toml", REST.format(name="rest",
-                                            ambient="constant_degC = 25"))
-        self.write("ramp.toml", REST.format(
-            name="ramp", ambient="points = [[0, 0], [60, 10]]"))
-        self.write("campaign.toml", CAMPAIGN.replace("= 7", "= 40000"))
+        self.write_campaign(40000)
         screen = self.screen("generate", "campaign.toml", "-o", "set")
         for frame in self.watched(screen):
             self.assertLess(len(frame), 80)
@@ -195,9 +220,9 @@ class Interrupt(Terminal):
     def test_the_prompt_has_its_own_line_below_what_is_kept(self):
         self.write("s.toml", LONG)
         screen = self.screen("run", "s.toml", "-o", "a.h5")
-        self.assertTrue(screen.read_for(20, CLOCK))
+        self.assertTrue(screen.read(CLOCK))
         screen.type(b"\x03")
-        screen.read_for(20)
+        screen.read()
         status = screen.end()
         self.assertTrue(os.WIFSIGNALED(status))
         self.assertEqual(os.WTERMSIG(status), signal.SIGINT)
@@ -211,22 +236,18 @@ class Interrupt(Terminal):
         self.write("s.toml", LONG)
         loop = f"for i in 1 2 3; do {PROGRAM} run s.toml -o $i.h5; " \
                "echo went on; done; echo to the end"
-        screen = Screen(["/bin/bash", "-c", loop], self.dir)
-        self.addCleanup(self.end, screen)
-        self.assertTrue(screen.read_for(20, CLOCK))
+        screen = self.show(["/bin/bash", "-c", loop])
+        self.assertTrue(screen.read(CLOCK))
         screen.type(b"\x03")
-        screen.read_for(20)
+        screen.read()
         screen.end()
         self.assertNotIn("went on", screen.sent.decode())
         self.assertNotIn("to the end", screen.sent.decode())
 
     def test_a_set_says_how_to_go_on_and_does(self):
-        for name in ["rest", "ramp"]:
-            self.write(f"{name}.toml", REST.format(
-                name=name, ambient="constant_degC = 25"))
-        self.write("campaign.toml", CAMPAIGN)
+        self.write_campaign(7)
         command = [str(PROGRAM), "generate", "campaign.toml", "-o", "a set",
-                   "--devices", "1000"]
+                   "--devices", "300"]
         process = subprocess.Popen(command, cwd=self.dir, text=True,
                                    stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE)
@@ -234,7 +255,7 @@ class Interrupt(Terminal):
             self.assertIsNone(process.poll())
             time.sleep(0.01)
         process.send_signal(signal.SIGTERM)
-        said = process.communicate(timeout=30)[1]
+        said = process.communicate(timeout=PATIENCE)[1]
         self.assertEqual(process.returncode, -signal.SIGTERM)
         self.assertIn("interrupted; a set keeps its finished files; go on with: ",
                       said)
@@ -256,12 +277,12 @@ class Interrupt(Terminal):
             self.assertIsNone(process.poll())
             time.sleep(0.01)
         process.send_signal(signal.SIGINT)
-        self.assertEqual(process.communicate(timeout=30), (b"", b""))
+        self.assertEqual(process.communicate(timeout=PATIENCE), (b"", b""))
         self.assertEqual(process.returncode, -signal.SIGINT)
 
     def test_a_signal_that_was_ignored_stays_so(self):
         """nohup ignores SIGHUP, a script SIGINT in its background."""
-        self.write("s.toml", LONG.replace("200000", "20000"))
+        self.write("s.toml", LONG.replace("200000", "8000"))
         for number in signal.SIGHUP, signal.SIGINT:
             process = subprocess.Popen(
                 [str(PROGRAM), "run", "s.toml", "-o", f"{number}.h5"],
@@ -271,36 +292,32 @@ class Interrupt(Terminal):
                 self.assertIsNone(process.poll())
                 time.sleep(0.01)
             process.send_signal(number)
-            self.assertEqual(process.wait(120), 0)
+            self.assertEqual(process.wait(PATIENCE), 0)
 
 
-class Pipe(ProgramTest):
-    """Waits a minute for all commands together, while they are stopped."""
+class Pipe(Timed):
+    SPEED = 6000  # a minute is 10 ms
 
-    def start(self, *words):
-        process = subprocess.Popen([str(PROGRAM), *map(str, words)],
-                                   cwd=self.dir, text=True,
-                                   stdin=subprocess.DEVNULL,
-                                   stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE)
-        status = f"/proc/{process.pid}/status"
-        while True:  # until the thread of the progress waits
-            self.assertIsNone(process.poll(), f"{words}: too short")
-            with open(status, encoding="utf-8") as file:
-                if int(re.search(r"Threads:\s+(\d+)", file.read())[1]) > 1:
+    def notes(self, *words):
+        """The first two lines of progress."""
+        lines = []
+        with subprocess.Popen(
+                [str(PROGRAM), *map(str, words)], cwd=self.dir, text=True,
+                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE, env=self.timed()) as process:
+            for line in process.stderr:
+                if re.search(f", {CLOCK}", line):
+                    lines.append(line)
+                if len(lines) == 2:
                     break
-        process.send_signal(signal.SIGSTOP)
-        self.addCleanup(process.stderr.close)
-        self.addCleanup(process.wait)
-        self.addCleanup(process.kill)
-        return process
+            process.kill()
+        return lines
 
     def test_every_long_command_writes_a_line_a_minute(self):
         self.write("s.toml", LONG)
         self.run_scenario("run", text=ramp(seconds=20000, rate_Hz=20))
         self.run_scenario("held_out", text=ramp(seed=9))
-        self.write("cubic.toml", 'kind = "polynomial"\n'
-                   'inputs = ["temperature"]\n[polynomial]\ndegree = 3\n')
+        self.write("cubic.toml", CUBIC)
         self.ok("train", "held_out.h5", "--model", "cubic.toml", "-o",
                 "cubic.json")
         self.write("m.toml", PATIENT)
@@ -308,31 +325,26 @@ class Pipe(ProgramTest):
                    'column = "w"\nunit = "deg/s"\n[temperature]\ncolumn = "T"\n'
                    'unit = "degC"\n')
         self.write("log.csv", "t,w,T\n" + "".join(
-            f"{k},1.5,25\n" for k in range(600000)))
-        for name in ["rest", "ramp"]:
-            self.write(f"{name}.toml", REST.format(
-                name=name, ambient="constant_degC = 25"))
-        self.write("campaign.toml", CAMPAIGN.replace("= 7", "= 4000"))
-        commands = [
-            ["run", "s.toml", "-o", "a.h5"],
-            ["characterise", "device.toml", "-o", "c.csv",
-             "--beam-temperature", "-40:60:0.001"],
-            ["train", "run.h5", "--model", "m.toml", "--held-out",
-             "held_out.h5", "-o", "c.json"],
-            ["validate", "cubic.json", "run.h5"],
-            ["compensate", "cubic.json", "run.h5", "-o", "o.h5"],
-            ["allan", "run.h5"],
-            ["import", "log.csv", "--map", "map.toml", "-o", "log.h5"],
-            ["generate", "campaign.toml", "-o", "set"]]
-        processes = [self.start(*command) for command in commands]
-        time.sleep(60.5)
-        for command, process in zip(commands, processes):
+            f"{k},1.5,25\n" for k in range(200000)))
+        self.write_campaign(4000)
+        for command in [
+                ["run", "s.toml", "-o", "a.h5"],
+                ["characterise", "device.toml", "-o", "c.csv",
+                 "--beam-temperature", "-40:60:0.001"],
+                ["train", "run.h5", "--model", "m.toml", "--held-out",
+                 "held_out.h5", "-o", "c.json"],
+                ["validate", "cubic.json", "run.h5"],
+                ["compensate", "cubic.json", "run.h5", "-o", "o.h5"],
+                ["allan", "run.h5"],
+                ["import", "log.csv", "--map", "map.toml", "-o", "log.h5"],
+                ["generate", "campaign.toml", "-o", "set"]]:
             with self.subTest(command[0]):
-                process.send_signal(signal.SIGCONT)
-                line = process.stderr.readline()
-                self.assertRegex(line, rf", {CLOCK}")
-                self.assertNotIn("\r", line)
-                process.kill()
+                lines = self.notes(*command)
+                self.assertEqual(len(lines), 2, "too short")
+                times = [seconds_of(line) for line in lines]
+                self.assertGreaterEqual(times[0], 60)
+                self.assertGreaterEqual(times[1], times[0] + 60)
+                self.assertNotIn("\r", "".join(lines))
 
 
 if __name__ == "__main__":
