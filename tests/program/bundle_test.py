@@ -285,7 +285,7 @@ class Places(Qualified):
                 [str(PROGRAM), "validate", "cubic.toml", "--device",
                  "device.toml", "--qualification", "q.toml", "--json",
                  "v.json"], cwd=self.dir, stdin=subprocess.DEVNULL,
-                stdout=full, stderr=subprocess.PIPE, check=False, timeout=60)
+                stdout=full, stderr=subprocess.PIPE, check=False, timeout=300)
         self.assertEqual(answer.returncode, 1)
         self.assertIn(b"standard output", answer.stderr)
         json.loads((self.dir / "v.json").read_text())
@@ -348,7 +348,7 @@ class Places(Qualified):
                 time.sleep(2)
                 self.assertIsNone(process.poll())
                 process.send_signal(number)
-                self.assertEqual(process.wait(20), -number)
+                self.assertEqual(process.wait(300), -number)
             for name in "rfb":
                 self.assertFalse((self.dir / name).exists(), name)
 

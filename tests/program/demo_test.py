@@ -6,8 +6,9 @@ import pathlib
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
+
+import pytest
 
 from program import PROGRAM, ROOT
 
@@ -15,18 +16,17 @@ METHODS = {"cubic", "spline", "bp", "output_and_temperature", "recommended"}
 LIFELIKE = METHODS | {"recommended_with_play"}
 
 
+@pytest.mark.early
 class Demo(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory(prefix="a demo ")
         cls.addClassCleanup(folder.cleanup)
         cls.out = pathlib.Path(folder.name)
-        start = time.monotonic()
         cls.answer = subprocess.run(
             [sys.executable, ROOT / "scripts/demo.py", "--program", PROGRAM,
              "--out", cls.out], cwd=cls.out, capture_output=True, text=True,
             check=False)
-        cls.seconds = time.monotonic() - start
         if cls.answer.returncode != 0:
             raise AssertionError(cls.answer.stderr)
         table = json.loads((cls.out / "table.json").read_text())
@@ -36,9 +36,6 @@ class Demo(unittest.TestCase):
         rows = table["rows"]
         cls.quiet = {row["method"]: row for row in rows if not row["noise"]}
         cls.noisy = {row["method"]: row for row in rows if row["noise"]}
-
-    def test_takes_less_than_two_minutes(self):
-        self.assertLess(self.seconds, 120)
 
     def test_compensators_table_and_pictures_are_there(self):
         self.assertEqual({path.stem for path in self.out.glob("*.json")},

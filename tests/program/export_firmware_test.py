@@ -6,6 +6,8 @@ import shutil
 import subprocess
 import unittest
 
+import pytest
+
 from exported import MODELS, WARNINGS, ExportTest
 from program import ROOT
 
@@ -28,6 +30,7 @@ def missing():
     return "" if "/" in specs else "newlib for arm-none-eabi missing"
 
 
+@pytest.mark.deep  # export_test.py compiles the same code for this processor
 @unittest.skipIf(missing(), missing())
 class ExportFirmware(ExportTest):
     def emulate(self, folder, *options):

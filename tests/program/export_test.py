@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """`export --format c` of the shipped program, and bad input of every format."""
 
+import itertools
 import math
 import platform
 import re
@@ -10,6 +11,7 @@ import unittest
 
 import h5py
 import numpy as np
+import pytest
 
 from exported import EVENTFUL, MODELS, WARNINGS, ExportTest
 from pages import page, rows, section
@@ -41,22 +43,20 @@ COLUMNS = {"rate": "rate_deg_per_s", "temperature": "temperature_degC",
            "drive_voltage": "drive_voltage_V"}
 
 
+@pytest.mark.early
 class ExportC(ExportTest):
     def test_every_kind_answers_to_the_last_bit_without_a_warning(self):
-        compilers = [(compiler, more) for compiler in ["cc", "clang"]
-                     for more in [[], ["-x", "c++"]]]
+        languages = [["-std=c99", "-O2"], ["-x", "c++", "-O0"]]
+        plain = [option for option in WARNINGS if option != "-std=c99"]
         for kind in MODELS:
             folder = self.export(kind)
             self.assertEqual({path.name for path in folder.iterdir()},
                              {"net.h", "net.c", "net_selftest.c",
                               "net_plugin.c"})
-            for compiler, more in compilers:
-                if shutil.which(compiler) is None:
-                    continue
-                options = WARNINGS if not more else [
-                    w for w in WARNINGS if w != "-std=c99"]
-                with self.subTest(f"{kind}: {compiler} {more}"):
-                    self.compile(folder, *options, "-O2", *more, *SELF_TEST,
+            for compiler, language in itertools.product(
+                    filter(shutil.which, ["cc", "clang"]), languages):
+                with self.subTest(f"{kind}: {compiler} {language}"):
+                    self.compile(folder, *plain, *language, *SELF_TEST,
                                  compiler=compiler)
                     self.assertEqual(
                         self.run_binary(folder / "selftest"),

@@ -67,6 +67,7 @@ def run_guide(guide, folder):
     return answer.stdout.split(f"{MARK}\n")[:-1]
 
 
+@pytest.mark.early
 @pytest.mark.parametrize("guide", PAGES, ids=lambda guide: guide.stem)
 def test_a_guide_prints_what_it_says(guide, tmp_path):
     project(tmp_path)

@@ -10,6 +10,8 @@ import subprocess
 import tempfile
 import unittest
 
+import pytest
+
 from program import PROGRAM, ROOT
 
 BUILD = PROGRAM.parent
@@ -116,6 +118,16 @@ class Call(unittest.TestCase):
 class PublicHeaders(Call):
     PREFIX = "headers_"
 
+    def test_all_compile_together_in_either_order(self):
+        for headers in [HEADERS, HEADERS[::-1]]:
+            included = [word for header in headers
+                        if header.name != "plugin.h"
+                        for word in ["-include", header]]
+            self.call("g++", "-std=c++20", "-Wall", "-Wextra", "-Wpedantic",
+                      "-Werror", "-fsyntax-only", f"-I{ROOT}/include",
+                      *included, "-x", "c++", "/dev/null")
+
+    @pytest.mark.deep
     def test_each_compiles_alone_and_names_the_standard_library_only(self):
         system = re.compile(r"^/usr/(include|lib)/")
         for header in HEADERS:
@@ -209,6 +221,7 @@ class Library(Call):
         stated = self.call(self.prefix / "bin/beamgyro", "--version").stdout
         self.assertIn(f"beamgyro {version.stdout.strip()} (", stated)
 
+    @pytest.mark.deep
     def test_a_user_may_have_eigen_with_other_instructions(self):
         # Templates of Eigen, compiled for vectors of 32 bytes by the user, are
         # not those that the library calls.

@@ -11,6 +11,8 @@ import sys
 import tempfile
 import unittest
 
+import pytest
+
 from program import PROGRAM, ROOT
 
 sys.path.insert(0, str(ROOT / "packaging"))
@@ -34,6 +36,7 @@ def commands():
     return re.findall(r"^  ([a-z]+)  ", said(PROGRAM, "--help"), re.MULTILINE)
 
 
+@pytest.mark.deep  # files are installed by install_test.py
 @unittest.skipUnless((BUILD / "CPackConfig.cmake").exists(),
                      "the program does not stand in its build")
 class Packages(unittest.TestCase):

@@ -4,9 +4,9 @@
 import json
 import pathlib
 import re
+import resource
 import shutil
 import tempfile
-import time
 import tomllib
 import unittest
 
@@ -182,9 +182,11 @@ class Plan(ProgramTest):
         self.assertEqual(mine[0], plan["even"])
 
     def test_it_takes_less_than_a_second_and_the_same_bytes(self):
-        began = time.monotonic()
+        def taken():
+            return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        began = taken()
         first = self.ok("plan", "population.json", "--soaks", "3")
-        self.assertLess(time.monotonic() - began, 10)  # of a busy machine
+        self.assertLess(taken() - began, 10)  # of a slow machine
         self.assertEqual(self.ok("plan", "population.json", "--soaks", "3"),
                          first)
 

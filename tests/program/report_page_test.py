@@ -7,6 +7,8 @@ import shutil
 import tempfile
 import unittest
 
+import pytest
+
 from browser import CHROMIUM, browser
 from program import ROOT, SCENARIOS, ProgramTest
 
@@ -29,6 +31,7 @@ drawn.filter(({chart}) => {
 """
 
 
+@pytest.mark.deep  # ReportFile writes the page
 @unittest.skipIf(CHROMIUM is None,
                  "needs a browser: apt-get install chromium")
 class ReportPage(unittest.TestCase):

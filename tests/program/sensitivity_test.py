@@ -173,7 +173,7 @@ class Sensitivity(ProgramTest):
              "--json", "s.json"], cwd=self.dir, stderr=subprocess.PIPE)
         time.sleep(1)
         work.send_signal(signal.SIGINT)
-        work.communicate(timeout=60)
+        work.communicate(timeout=300)
         self.assertEqual(work.returncode, -signal.SIGINT)
         self.assertEqual(list(self.dir.glob("s.json*")), [])
 

@@ -9,11 +9,14 @@ import subprocess
 import tempfile
 import unittest
 
+import pytest
+
 from program import PROGRAM, ROOT
 
 BUILD = PROGRAM.parent
 
 
+@pytest.mark.deep  # pages and links are read by tests/scripts/docs_test.py
 @unittest.skipUnless((BUILD / "python/beamgyro/__init__.py").exists(),
                      "the program does not stand in its build")
 class Site(unittest.TestCase):

@@ -12,6 +12,8 @@ import tempfile
 import time
 import unittest
 
+import pytest
+
 from program import PROGRAM, ROOT, SCENARIOS
 
 SCRIPT = ROOT / "scripts/slurm_generate.sh"
@@ -61,6 +63,7 @@ def free_port():
         return listener.getsockname()[1]
 
 
+@pytest.mark.deep  # tasks of a set are made by generate_test.py
 @unittest.skipIf(why_not(), why_not())
 class Slurm(unittest.TestCase):
     @classmethod

@@ -211,7 +211,7 @@ def test_without_limits_the_verdict_is_that_of_the_page_of_the_command(
     answer = subprocess.run(
         [PROGRAM, "validate", "cubic.json", "run.h5", "--report", "page",
          "--json", "result.json"], cwd=tmp_path, capture_output=True,
-        text=True, check=False, timeout=100)
+        text=True, check=False, timeout=300)
     assert answer.returncode in (0, 3), answer.stderr
     result = bg.validate(bg.Compensator(tmp_path / "cubic.json"),
                          tmp_path / "run.h5")

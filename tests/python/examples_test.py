@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """The examples run, and their types and those of the package hold."""
 
+import ast
 import importlib.util
 import os
 import pathlib
@@ -76,6 +77,7 @@ def test_notebook_in_a_kernel(tmp_path):
     assert shown[-1]["text/plain"] in ("'fail'", "'undecided'")
 
 
+@pytest.mark.deep
 def test_types_of_the_examples(tmp_path):
     """mypy --strict, and what the stub says of the compiled part."""
     pytest.importorskip("mypy")
@@ -99,6 +101,35 @@ beamgyro\\._scenario\\.Fidelity
 """
 
 
+def declared(body):
+    """Names of the stub's definitions and the bodies of its classes."""
+    names = {}
+    for node in body:
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
+            names[node.name] = getattr(node, "body", [])
+        elif isinstance(node, ast.AnnAssign):
+            names[node.target.id] = []
+        elif isinstance(node, ast.Assign):
+            names |= {target.id: [] for target in node.targets}
+    return names
+
+
+def public(names):
+    return {name for name in names if not name.startswith("_")}
+
+
+def test_the_stub_of_the_compiled_part_has_its_names():
+    from beamgyro import _core
+    stub = declared(ast.parse(
+        (PACKAGE / "beamgyro/_core.pyi").read_text()).body)
+    assert public(vars(_core)) == public(stub)
+    for name in public(stub):
+        thing = getattr(_core, name)
+        if isinstance(thing, type):
+            assert public(vars(thing)) == public(declared(stub[name])), name
+
+
+@pytest.mark.deep
 def test_stubs_are_those_of_the_package(tmp_path):
     for module in ("mypy", "xarray", "matplotlib", "h5py"):
         pytest.importorskip(module)
