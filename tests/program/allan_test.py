@@ -158,6 +158,12 @@ class Allan(ProgramTest):
         self.rejected("allan", "run.h5", "--unit", "V",
                       says="states its unit, deg/s")
 
+    def test_a_constant_has_a_curve_and_no_coefficients(self):
+        self.write("s.csv", "5\n" * 500)
+        text = self.ok("allan", "s.csv", "--rate-Hz", 10, "--json", "a.json")
+        self.assertIn("oadev deg/s", text)
+        self.assertNotIn("random walk", text)
+
 
 class Kinds(ProgramTest):
     def white(self):

@@ -3,6 +3,7 @@
 
 import os
 import pathlib
+import re
 import resource
 import shutil
 import signal
@@ -66,6 +67,9 @@ class ProgramTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.dir = pathlib.Path(folder.name)
+        self.take_device()
+
+    def take_device(self):
         shutil.copy(SCENARIOS / "devices/nominal.toml", self.dir / "device.toml")
 
     def write(self, name, text):
@@ -121,8 +125,11 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(answer.stdout, "")
         self.assertEqual(len(answer.stderr.strip().splitlines()), 1,
                          answer.stderr)
-        for part in [says] if isinstance(says, str) else says:
-            self.assertIn(part, answer.stderr)
+        for part in [says] if isinstance(says, (str, re.Pattern)) else says:
+            if isinstance(part, str):
+                self.assertIn(part, answer.stderr)
+            else:
+                self.assertRegex(answer.stderr, part)
         self.assertEqual(self.files(), before)
         return answer.stderr
 

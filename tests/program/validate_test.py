@@ -227,7 +227,8 @@ class InSample(Validate):
         (score,) = said["runs"]
         self.assertEqual(any("in-sample" in text for text in said["warnings"]),
                          score["in_sample"])
-        self.assertEqual("in-sample" in answer.stderr, score["in_sample"])
+        self.assertEqual("used in training: these scores are in-sample"
+                         in answer.stderr, score["in_sample"])
         return score["in_sample"]
 
     def test_a_training_run_is_known_by_what_was_measured(self):
