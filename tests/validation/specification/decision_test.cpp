@@ -248,8 +248,8 @@ int wrong_accepts(int devices, const ResidualCase& residual,
 /// Expects at most the share kFalseAcceptRisk in each of ten cases, and in all
 /// of them: residuals as large as the noise or four times as large, beyond the
 /// limit by up to a fifth. With a probability of 0.99 this finds that
-/// - 5.7 % of the devices of one case or 3.3 % of all pass, of 250 devices;
-/// - 3.9 % of the devices of one case or 2.9 % of all pass, of 1000 devices.
+/// - 5.8 % of the devices of one case or 3.4 % of all pass, of 250 devices;
+/// - 4.0 % of the devices of one case or 2.9 % of all pass, of 1000 devices.
 void expect_wrong_accepts_below_risk(int devices) {
   int all = 0, cases = 0;
   for (const ResidualCase& residual : kResiduals)
@@ -273,12 +273,24 @@ TEST(DeepDecisions, WrongAcceptsStayBelowTheRiskWithResidualsNearTheNoise) {
   expect_wrong_accepts_below_risk(1000);
 }
 
-// At the limit itself one of 1000 is expected; nine or more have a probability
-// of 1e-6.
-TEST(ManyDrawsOfDecisions, ASmallRiskHoldsForAFigureThatNoiseEnlarges) {
+/// Expects at most `most` of devices at the limit itself, of which one in 1000
+/// may pass.
+void expect_a_small_risk_holds(int devices, int most) {
   for (const ResidualCase& residual : {kResiduals[0], kResiduals[1]})
-    EXPECT_LE(wrong_accepts(1000, residual, 2.0, 0.0, 0.001), 8)
+    EXPECT_LE(wrong_accepts(devices, residual, 2.0, 0.0, 0.001), most)
         << residual.metric;
+}
+
+// Seven or more of 500 have a probability of 1e-6; 2.9 % that pass are found
+// with a probability of 0.99.
+TEST(ManyDrawsOfDecisions, ASmallRiskHoldsForAFigureThatNoiseEnlarges) {
+  expect_a_small_risk_holds(500, 6);
+}
+
+// Nine or more of 1000 have a probability of 1e-6; 1.8 % that pass are found
+// with a probability of 0.99.
+TEST(DeepDecisions, ASmallRiskHoldsForAFigureThatNoiseEnlarges) {
+  expect_a_small_risk_holds(1000, 8);
 }
 
 // The worst case: every device is as little beyond the limit as can be. Then
