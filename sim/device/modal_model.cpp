@@ -159,13 +159,6 @@ Vector2d patch_position(const Device& device, Patch patch) {
   }
 }
 
-Matrix2cd complex_stiffness(const Device& device, const ProjectedBeam& beam,
-                            double T) {
-  return stiffness_of(device, beam,
-                      patch_materials(device, T, beam.timoshenko_frequency, {}),
-                      T, {});
-}
-
 Vector2cd patch_coupling(const Device& device, const ProjectedBeam& beam,
                          Patch patch, double T) {
   return coupling_of(device, beam,

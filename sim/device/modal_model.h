@@ -24,12 +24,6 @@ struct ModalParameters {
 /// Centre of patch p in the cross section, r_p [m].
 Eigen::Vector2d patch_position(const Device& device, Patch patch);
 
-/// K*(T) [N/m], the complex stiffness matrix of (1.3) without the trim term.
-/// Throws SimulationFailure when its loss part is not positive definite, which
-/// no passive material can do.
-Eigen::Matrix2cd complex_stiffness(const Device& device,
-                                   const ProjectedBeam& beam, double T);
-
 /// Theta_p(T) [N/V], complex transducer coupling (1.1).
 Eigen::Vector2cd patch_coupling(const Device& device, const ProjectedBeam& beam,
                                 Patch patch, double T);
@@ -41,6 +35,8 @@ double patch_capacitance(const PatchParameters& patches, double T);
 /// `memory` acts on the materials by the effects that the device has: the glass
 /// of the bond (12.2), hysteresis of K*_xy and of the mount's axis (12.4), age
 /// (12.5). Without it the result is that of the unit at its trim.
+/// Throws SimulationFailure when the loss part of K* is not positive definite,
+/// which no passive material can do.
 ModalParameters modal_parameters(const Device& device,
                                  const ProjectedBeam& beam, double T,
                                  double stiffness_trim,
