@@ -20,7 +20,8 @@ LIBRARIES = ["dataset/set/", "dataset/", "sim/numerics/", "sim/thermal/",
              "sim/signal/", "sim/memory/", "sim/device/", "sim/dynamics/",
              "sim/scenario/", "sim/campaign/", "compensation/", "config/",
              "linear_algebra/", "random/", "parallel/", "validation/",
-             "planning/", "sensitivity/", "report/", "api/", "cli/"]
+             "planning/", "sensitivity/", "report/", "api/", "cli/",
+             "python/"]
 
 # A library sees no header of these.
 UNSEEN = {"planning/": ["validation/", "report/", "api/", "cli/"],
@@ -66,6 +67,9 @@ def library_of(path):
 
 
 def sees(library, header):
+    if library == "python/" or header.startswith("python/"):
+        # The package of Python has a namespace of its own.
+        return header.startswith(library)
     if header.startswith(library):
         return not any(header.startswith(unseen) for unseen in
                        UNSEEN.get(library, []) if len(unseen) > len(library))

@@ -36,7 +36,7 @@ using SharedCompensator = std::shared_ptr<RateCompensator>;
 /// Compensators of Python that may ask each other, one within the other.
 constexpr std::size_t kMostNested = 16;
 
-std::vector<double> values_of(const py::object& given) {
+std::vector<double> answered_values(const py::object& given) {
   const auto values = given.cast<Doubles>();
   return {values.data(), values.data() + values.size()};
 }
@@ -65,8 +65,8 @@ class FunctionCompensator final : public RateCompensator {
                                       internal::AskedRun::name())
                              .cast<py::tuple>();
     CompensatedRate compensated;
-    compensated.rate = values_of(answers[0]);
-    if (!answers[1].is_none()) compensated.sigma = values_of(answers[1]);
+    compensated.rate = answered_values(answers[0]);
+    if (!answers[1].is_none()) compensated.sigma = answered_values(answers[1]);
     return compensated;
   }
 
@@ -138,9 +138,9 @@ std::vector<NamedRecording> named(const NamedRecordings& recordings) {
 }
 
 /// Training tells its epochs, of all restarts together.
-TrainingOptions options_of(std::uint64_t seed,
-                           const std::string& cross_validation,
-                           const Progress& progress) {
+TrainingOptions training_options(std::uint64_t seed,
+                                 const std::string& cross_validation,
+                                 const Progress& progress) {
   const auto on_epoch = [progress](const TrainingProgress& now) {
     const double epochs = static_cast<double>(now.max_epochs);
     const double done = static_cast<double>(now.restart) +
@@ -164,7 +164,7 @@ py::tuple train_files(const Model& model,
                       const py::object& on_progress) {
   return trained(long_call(on_progress, [=](const Progress& progress) {
     return train(model, files, held_out,
-                 options_of(seed, cross_validation, progress));
+                 training_options(seed, cross_validation, progress));
   }));
 }
 
@@ -174,7 +174,7 @@ py::tuple train_recordings(const Model& model, const NamedRecordings& runs,
                            const py::object& on_progress) {
   return trained(long_call(on_progress, [=](const Progress& progress) {
     return train(model, named(runs), named(held_out),
-                 options_of(seed, cross_validation, progress));
+                 training_options(seed, cross_validation, progress));
   }));
 }
 
@@ -184,7 +184,7 @@ py::tuple train_set(const Model& model, const Set& set,
                     std::uint64_t seed, const py::object& on_progress) {
   return trained(long_call(on_progress, [=](const Progress& progress) {
     return train(model, set, {.runs = runs, .devices = devices},
-                 options_of(seed, "", progress));
+                 training_options(seed, "", progress));
   }));
 }
 

@@ -169,7 +169,7 @@ void require_length(const Recording& recording, const std::string& name,
                     length, recording.time.size()));
 }
 
-SharedRecording recording_of(const Doubles& time, const Bytes& status) {
+SharedRecording new_recording(const Doubles& time, const Bytes& status) {
   auto recording = std::make_shared<Recording>();
   recording->time = values_of(time);
   recording->status = {status.data(), status.data() + status.size()};
@@ -218,7 +218,7 @@ py::tuple with_warnings(Recording&& recording,
 void bind_recording(py::module_& core) {
   core.def("unit_of", &unit_of, py::arg("name"));
   py::class_<Recording, SharedRecording> recording(core, "Recording");
-  recording.def(py::init(&recording_of), py::arg("time"), py::arg("status"))
+  recording.def(py::init(&new_recording), py::arg("time"), py::arg("status"))
       .def("add", &add_column, py::arg("name"), py::arg("values"),
            py::arg("attributes"))
       .def("require_sound", &require_sound)

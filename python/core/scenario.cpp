@@ -19,14 +19,15 @@
 namespace beamgyro::python {
 namespace {
 
-SimulationOptions options_of(bool stop_on_unlock, const Progress& progress) {
+SimulationOptions simulation_options(bool stop_on_unlock,
+                                     const Progress& progress) {
   return {.stop_on_unlock = stop_on_unlock, .progress = progress};
 }
 
 py::tuple simulate_scenario(const Scenario& scenario, bool stop_on_unlock,
                             const py::object& on_progress) {
   SimulatedRun run = long_call(on_progress, [=](const Progress& progress) {
-    return simulate(scenario, options_of(stop_on_unlock, progress));
+    return simulate(scenario, simulation_options(stop_on_unlock, progress));
   });
   return with_warnings(std::move(run.recording), run.warnings);
 }
@@ -37,7 +38,7 @@ std::vector<std::string> simulate_into(const Scenario& scenario,
                                        const py::object& on_progress) {
   return long_call(on_progress, [=](const Progress& progress) {
     return simulate_to_file(scenario, path,
-                            options_of(stop_on_unlock, progress));
+                            simulation_options(stop_on_unlock, progress));
   });
 }
 

@@ -50,6 +50,19 @@ class CheckNames(unittest.TestCase):
         self.assertEqual(answer.stdout, "Answered: a type in compensation/a/"
                          "a.h, validation/b/b.h\n")
 
+    def test_sources_of_python_meet_each_other_only(self):
+        text = local("int options_of(int x) {\n  return x;\n}\n")
+        header = "int options_of(int x);\n"
+        answer = self.check({"python/core/a.cpp": text,
+                             "api/a.h": header, "api/b.h": header})
+        self.assertEqual((answer.returncode, answer.stdout), (0, ""))
+        answer = self.check({"python/core/a.cpp": text,
+                             "python/core/b.cpp": text})
+        self.assertIn("options_of: local to python/core/a.cpp, "
+                      "python/core/b.cpp\n", answer.stdout)
+        answer = self.check({"api/a.cpp": text, "python/core/a.h": header})
+        self.assertEqual((answer.returncode, answer.stdout), (0, ""))
+
     def test_names_that_cannot_meet(self):
         text = local("struct Points {};\n")
         answer = self.check({
