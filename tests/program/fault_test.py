@@ -42,12 +42,17 @@ def files_in(folder):
 
 
 def state_of(folder):
-    """All that a command finds in a folder, for comparison. The names of files
-    in progress are drawn."""
+    """All that a command finds in a folder, for comparison, without the numbers
+    of processes: in names of files in progress and in locks of the dead."""
+    def content(path):
+        if not path.is_file():
+            return b""
+        found = path.read_bytes()
+        return re.sub(rb"\d+", b"0", found) if path.suffix == ".lock" else found
+
     return tuple(sorted(
         (PARTIAL.sub(".partial", str(path.relative_to(folder))),
-         path.stat().st_mode, path.read_bytes() if path.is_file() else b"")
-        for path in folder.rglob("*")))
+         path.stat().st_mode, content(path)) for path in folder.rglob("*")))
 
 
 class Command:

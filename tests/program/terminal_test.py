@@ -165,28 +165,25 @@ class Line(Terminal):
     def test_the_line_is_gone_at_the_end(self):
         self.write("s.toml", LONG.replace("200000", "3000"))
         screen = self.screen("run", "s.toml", "-o", "a.h5")
-        screen.read()
         self.assertEqual(screen.end(), 0)
         self.assertEqual(screen.lines(), [""])
 
     def test_the_time_left_converges(self):
+        self.SPEED = 200
         self.write("s.toml", LONG.replace("200000", "7500"))
         screen = self.screen("run", "s.toml", "-o", "a.h5")
-        screen.read()
         self.assertEqual(screen.end(), 0)
-        ends = []
-        for frame in screen.frames():
-            if match := re.search(rf"({CLOCK}), ({CLOCK}) left", frame):
-                spent, left = map(seconds_of, match.groups())
-                ends.append((spent, spent + left))
-        last = ends[-1][0]
-        self.assertGreater(len(ends), 5)
-        # In the last third the speed of the half before it is known. Where
-        # processors are shared it may halve; the estimate may be off by that
-        # much of the rest.
-        for spent, end in ends:
-            if spent > 2 * last / 3:
-                self.assertLess(abs(end - last), 2 + last / 3)
+        found = [re.search(rf"(\d+) %, ({CLOCK}), ({CLOCK}) left", frame)
+                 for frame in screen.frames()]
+        told = [(int(match[1]), seconds_of(match[2]), seconds_of(match[3]))
+                for match in found if match]
+        # All is simulated then; what is left is to write it.
+        end = next(spent for share, spent, _ in told if share == 100)
+        late = [spent + left for _, spent, left in told
+                if end / 2 < spent < end]
+        self.assertGreater(len(late), 5)
+        for estimate in late:
+            self.assertLess(abs(estimate - end), 2 + end / 6)
 
     def test_training_shows_restart_epoch_and_error(self):
         self.run_scenario("run", text=ramp())
