@@ -337,7 +337,9 @@ class Places(Qualified):
                     self.assertNotIn("filesystem error", told)
 
     def test_what_fails_or_is_interrupted_leaves_no_directory(self):
-        self.write("hang.py", "import time; time.sleep(60)")
+        self.write("hang.py", "import pathlib, time\n"
+                   "pathlib.Path('begun').touch()\ntime.sleep(600)\n")
+        begun = self.dir / "begun"
         for number in signal.SIGINT, signal.SIGTERM:
             with subprocess.Popen(
                     [str(PROGRAM), "validate", "cmd:/usr/bin/python3 hang.py",
@@ -345,10 +347,12 @@ class Places(Qualified):
                      "--report", "r", "--figures", "f", "--bundle", "b"],
                     cwd=self.dir, stdout=subprocess.DEVNULL,
                     stderr=subprocess.DEVNULL) as process:
-                time.sleep(2)
-                self.assertIsNone(process.poll())
+                while not begun.exists():
+                    self.assertIsNone(process.poll())
+                    time.sleep(0.01)
                 process.send_signal(number)
                 self.assertEqual(process.wait(300), -number)
+            begun.unlink()
             for name in "rfb":
                 self.assertFalse((self.dir / name).exists(), name)
 
