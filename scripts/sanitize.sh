@@ -7,9 +7,8 @@
 #             with the assertions of Eigen and of the standard library everywhere
 #   threads   what the program does on several threads, thread sanitizer
 #   tidy      clang-tidy on every source
-#   deep      the tests marked `deep`: a fault at every system call, packages,
-#             installation, the site of the pages, a browser, Slurm, Octave, an
-#             emulated Cortex-M4
+#   deep      the tests marked `deep`: installation, packages, the site of the
+#             pages, a browser, Slurm, Octave, an emulated Cortex-M4, more draws
 #   packages  the Debian packages in a bare Debian 12: installed, run, removed
 #   image     the container image on that Debian, built and run
 #

@@ -9,6 +9,7 @@ import unittest
 
 import h5py
 import numpy as np
+import pytest
 import xarray
 
 from program import CUBIC, ProgramTest, ramp
@@ -75,6 +76,7 @@ class Attributes(ProgramTest):
                     if isinstance(kind, h5py.h5t.TypeStringID):
                         self.assertFalse(kind.is_variable_str(), name)
 
+    @pytest.mark.deep  # the texts are checked above, the values by h5py
     @unittest.skipUnless(shutil.which("octave-cli"), "octave is not installed")
     def test_octave_reads_texts_and_values(self):
         script = """

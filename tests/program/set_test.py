@@ -13,6 +13,7 @@ import unittest
 import h5py
 import netCDF4
 import numpy as np
+import pytest
 import xarray as xr
 
 from program import PROGRAM, SCENARIOS
@@ -186,6 +187,7 @@ class SetTest(unittest.TestCase):
                               header)
                 self.assertNotIn("phony_dim", header)
 
+    @pytest.mark.deep  # ncdump and h5py read the same files
     def test_octave_reads_files_and_views(self):
         octave = shutil.which("octave-cli")
         if not octave:
