@@ -12,6 +12,7 @@ import unittest
 
 import h5py
 import numpy as np
+import pytest
 
 from export_firmware_test import CORE, EMULATOR, LINK, missing
 from exported import MODELS, ExportTest
@@ -327,6 +328,7 @@ class Firmware(ExportTest):
             / np.sqrt(np.mean(difference ** 2)), 1, delta=1e-9)
         self.assertGreater(difference.max(), 0)
 
+    @pytest.mark.deep  # a library and a command answer above
     @unittest.skipIf(missing(), missing())
     def test_the_image_of_a_cortex_m4_answers_as_the_library(self):
         folder = self.export("cubic")
