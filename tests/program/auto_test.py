@@ -267,22 +267,5 @@ class CrossValidation(Auto):
                              (by, count))
             self.assertRegex(report, f"rms cross-validated over {count} {by}s")
 
-    def test_says_of_what_there_are_too_few(self):
-        way = self.recordings(up=points(24, -40, 50))
-        for by in ["run", "cycle", "leg"]:
-            self.rejected("train", *way, "--model", "network.toml", "--cv", by,
-                          "-o", "n.json",
-                          says=f"needs two {by}s or more; the recordings "
-                               "have 1")
-        self.rejected("train", *way, "--model", AUTO, "--cv", "run", "-o",
-                      "n.json", says="needs two runs or more")
-        self.rejected("train", *way, "--model", "network.toml", "--cv",
-                      "sample", "-o", "n.json", says="--cv")
-
-    def test_a_network_needs_it_or_held_out_runs(self):
-        self.rejected("train", *self.runs, "--model", "network.toml", "-o",
-                      "n.json", says=["--held-out", "--cv run|cycle|leg"])
-
-
 if __name__ == "__main__":
     unittest.main()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Recordings, models and compensators that are refused."""
+"""Recordings, models, compensators and campaigns that are refused."""
 
+import shutil
 import unittest
 
 import h5py
@@ -8,11 +9,11 @@ import h5py
 from bench_log import BENCH, bench_rows, table
 from program import CUBIC, NETWORK, SCENARIO, SCENARIOS, ramp
 from rejections import Rejections, row
-from sets import CAMPAIGN
-from sets import SCENARIO as REST
+from sets import CAMPAIGN, Set
 
-TRAIN = "train run.h5 --model m.toml --held-out run.h5 -o o.json"
+TRAIN = "train run.h5 --model m.toml --held-out other_run.h5 -o o.json"
 BLIND = "blind.h5", "'true_rate'"
+BIG = ["rate", "temperature", "output"]
 LESS = "quadrature", "less.h5"
 
 
@@ -39,6 +40,16 @@ class Data(Rejections):
         model("[2]", "[0]", "hidden", NETWORK),
         model("levenberg_marquardt", "magic", "magic", NETWORK),
         row("train run.h5 --model bp.toml -o o.json", "--held-out", "--cv run|cycle|leg"),
+        *[row(f"train run.h5 --model bp.toml --cv {by} -o o.json",
+              f"needs two {by}s or more; the recordings have 1")
+          for by in ["run", "cycle", "leg"]],
+        *[row(f"train run.h5 --model {name}.toml --cv run -o o.json", "needs two runs or more")
+          for name in ["auto", "cubic"]],
+        *[row(TRAIN, "1 rows", "100000 s", "rows.seconds", name=text[:20],
+              files={"m.toml": text + "[rows]\nseconds = 100000\n"})
+          for text in [CUBIC, NETWORK]],
+        row(TRAIN, "hidden = [1000]", "3001 weights", "250 training rows", name="large",
+            files={"m.toml": NETWORK.replace("[2]", "[1000]") + "[rows]\nseconds = 16\n"}),
         # Recordings without what is needed of them
         row("train less.h5 --model two.toml --held-out other_run.h5 -o o.json", *LESS),
         row("compensate bp.json less.h5 -o o.h5", *LESS),
@@ -47,15 +58,41 @@ class Data(Rejections):
         row("validate c.json blind.h5", *BLIND),
         row("train log.h5 --held-out other_log.h5 --model output.toml -o o.json",
             "log.h5", "output"),
+        *[row(words.replace("FILE", f"big_{name}.h5"), f"big_{name}.h5",
+              f"{name}: sample 50 is 1e+300")
+          for name in BIG for words in [
+              "train FILE --model cubic.toml -o o.json", "compensate c.json FILE -o o.h5",
+              "validate c.json FILE", "allan FILE", "info FILE"]],
         # Compensators
         *[row(f"{words} {name} run.h5{rest}", name)
           for name in ["half.json", "empty.json", "other.json", "kind.json"]
           for words, rest in [("compensate", " -o o.h5"), ("validate", "")]],
         row("compensate c.json run.h5 -o nowhere/o.h5", "nowhere"),
+        # Names that do not say what is written
+        *[row(f"{words} -o x.{name}", f"-o x.{name}", ending) for words, name, ending in [
+            ("run run.toml", "json", ".h5 or .csv"), ("characterise device.toml", "h5", ".csv"),
+            ("train run.h5 --model cubic.toml", "h5", ".json"),
+            ("compensate c.json run.h5", "json", ".h5 or .csv"),
+            ("export c.json --format c", "c", "directory"),
+            ("generate campaign.toml", "h5", "directory")]],
         # Series
         row("allan run.h5 --dataset rte", "rte", "rate"),
         *[row("allan s.csv --rate-Hz 10", "s.csv", files={"s.csv": text}, name=text)
           for text in ["", "rate\n", "1\nx\n3\n", "1\nnan\n3\n"]],
+        row("allan s.csv", "s.csv:4", "increase", name="a time that stands still",
+            files={"s.csv": "time,rate\n0,1\n1,2\n1,3\n"}),
+        *[row("allan s.csv", f"s.csv:1: time: the unit '{unit}' is not known; expected s, ms, "
+              "us, ns, min, h", name=unit,
+              files={"s.csv": f"time [{unit}],rate [deg/h]\n0,1\n1,2\n2,1\n"})
+          for unit in ["furlong", "deg/s"]],
+        row("allan run.h5 --from 300 --to 100", "--from 300 --to 100"),
+        row("allan run.h5 --from 1e6", "from 1e+06"),
+        row("allan run.h5 --unit V", "states its unit, deg/s"),
+        *[row(f"allan run.h5 {option} {word}", option, "not known; expected",
+              f'did you mean "{meant}"?')
+          for option, word, meant in [("--kind", "oadv", "oadev"),
+                                      ("--kind", "adev,mdv", "mdev"),
+                                      ("--taus", "octaves", "octave")]],
     ]
 
     def prepare(self):
@@ -77,6 +114,11 @@ class Data(Rejections):
         self.write("less.h5", whole)
         with h5py.File(self.dir / "less.h5", "a") as file:
             del file["quadrature"]
+        for name in BIG:
+            self.write(f"big_{name}.h5", whole)
+            with h5py.File(self.dir / f"big_{name}.h5", "a") as file:
+                file[name][50] = 1e300
+        shutil.copy(SCENARIOS / "models/auto.toml", self.dir)
         self.run_scenario("other_run", text=ramp(seed=9))
         self.ok("train", "run.h5", "--model", "two.toml", "--held-out", "other_run.h5",
                 "-o", "bp.json")
@@ -94,6 +136,31 @@ class Data(Rejections):
     def test_a_recording_without_a_true_rate_is_compensated(self):
         self.ok("compensate", "c.json", "blind.h5", "-o", "out.h5")
         self.ok("allan", "blind.h5")
+
+
+class Sets(Rejections, Set):
+    table = [
+        *[row(f"generate campaign.toml -o set {words}", says) for words, says in [
+            ("--shard 0/3", "--shard"), ("--shard 4/3", "--shard"), ("--shard 1", "--shard"),
+            ("--shard 1/3x", "--shard"), ("--devices 0", "devices"), ("--jobs 0", "jobs"),
+            ("--devices many", "devices")]],
+        *[row(f"generate campaign.toml -o {name}", says) for name, says in [
+            ("file", "file"), ("no/where/set", "no/where"), ("/proc/set", "/proc")]],
+        *[row("generate campaign.toml -o set", "campaign.toml:21:", says, name=text,
+              files={"campaign.toml": f"{CAMPAIGN}\n[output]\n{text}\n"})
+          for text, says in [('variables = ["outputs"]', "outputs"),
+                             ("truth_rate_Hz = 0.7", "truth_rate_Hz")]],
+        row("generate campaign.toml -o set", "campaign.toml:4:", "4000000000 files",
+            name="4000000000 devices", files={
+                "campaign.toml": CAMPAIGN.replace("devices = 7", "devices = 4000000000")}),
+        *[row(f"{command} {name}", name) for command in ["verify", "info"]
+          for name in ["empty", "nowhere"]],
+    ]
+
+    def prepare(self):
+        super().prepare()
+        (self.dir / "empty").mkdir()
+        self.write("file", "x")
 
 
 KINDS = {"device.toml": ("a device file", "beamgyro characterise"),
@@ -125,7 +192,7 @@ TAKES = [("run FILE -o o.h5", "scenario.toml"),
          ("verify FILE", "set")]
 
 
-class Kinds(Rejections):
+class Kinds(Rejections, Set):
     """Files of another kind, which are named with the command that takes them."""
     table = [row(words.replace("FILE", file), f"{file}: is ", *says)
              for words, taken in TAKES for file, says in KINDS.items()
@@ -133,14 +200,10 @@ class Kinds(Rejections):
 
     def prepare(self):
         super().prepare()
-        for name, text in [("scenario", SCENARIO), ("model", CUBIC), ("campaign", CAMPAIGN),
-                           ("map", (SCENARIOS / "maps/example.toml").read_text()),
-                           *[(name, REST.format(name=name, ambient="constant_degC = 25"))
-                             for name in ("rest", "ramp")]]:
-            self.write(f"{name}.toml", text)
+        self.write("scenario.toml", SCENARIO)
+        shutil.copy(SCENARIOS / "maps/example.toml", self.dir / "map.toml")
         self.ok("run", "scenario.toml", "-o", "run.csv")
-        self.run_scenario("run", text=ramp())
-        self.ok("train", "run.h5", "--model", "model.toml", "-o", "c.json")
+        self.cubic_of_a_ramp("run")
         self.ok("generate", "campaign.toml", "-o", "set", "--devices", 2)
         self.ok("characterise", "device.toml", "-o", "table.csv",
                 "--beam-temperature", "0:1:1")

@@ -2,15 +2,13 @@
 """The demo end to end, and the figures the project promises from it."""
 
 import json
-import pathlib
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import pytest
 
-from program import PROGRAM, ROOT
+from program import PROGRAM, ROOT, class_folder
 
 METHODS = {"cubic", "spline", "bp", "output_and_temperature", "recommended"}
 LIFELIKE = METHODS | {"recommended_with_play"}
@@ -20,9 +18,7 @@ LIFELIKE = METHODS | {"recommended_with_play"}
 class Demo(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="a demo ")
-        cls.addClassCleanup(folder.cleanup)
-        cls.out = pathlib.Path(folder.name)
+        cls.out = class_folder(cls, "a demo ")
         cls.answer = subprocess.run(
             [sys.executable, ROOT / "scripts/demo.py", "--program", PROGRAM,
              "--out", cls.out], cwd=cls.out, capture_output=True, text=True,

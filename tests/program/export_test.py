@@ -15,6 +15,7 @@ import pytest
 
 from exported import EVENTFUL, MODELS, WARNINGS, ExportTest
 from pages import page, rows, section
+from rejections import Rejections, row
 
 SELF_TEST = ["net.c", "net_selftest.c", "-o", "selftest"]  # no -lm
 
@@ -251,69 +252,50 @@ int main(void) {
             self.run_binary(self.dir / name / "t")
 
 
-class BadExport(ExportTest):
-    def refused(self, *arguments, says):
-        self.rejected("export", *arguments, says=says)
-        self.assertFalse((self.dir / "out").exists())
+class BadExport(Rejections, ExportTest):
+    table = [
+        *[row(f"export {words} -o out", *says) for words, *says in [
+            *[(f"{name} --format c", name) for name in ["gone.json", "broken.json",
+                                                         "other.json"]],
+            ("cubic.json --format rust", "rust"),
+            ("cubic.json", "--format"),
+            ("cubic.json --format px4 --axis w", "w"),
+            *[(f"cubic.json --format {form} --instance {number}", "cubic.json",
+               f"instance {number}")
+              for form, number in [("px4", 4), ("ardupilot", 0), ("ardupilot", 4)]],
+            (f"cubic.json --format px4 --device-id {2 ** 31}", "--device-id"),
+            # Each compensator has an axis of its own.
+            ("cubic.json cubic.json --format px4", "--axis", "0 axes for 2"),
+            ("cubic.json cubic.json --format px4 --axis x", "1 axes for 2"),
+            ("cubic.json cubic.json --format px4 --axis y,y", "y twice"),
+            ("cubic.json --format px4 --axis x,y", "2 axes for 1"),
+            ("cubic.json cubic.json --format c", "several compensators"),
+            # Options of another format
+            *[(f"cubic.json --format {form} {option} {value}", option, form)
+              for form, option, value in [
+                  ("c", "--axis", "x"), ("c", "--instance", 1), ("c", "--device-id", 1),
+                  ("c", "--fit-cubic", ""), ("ardupilot", "--device-id", 1),
+                  ("px4", "--force", "")]],
+            ("cold.json --format ardupilot", "cold.json", "-70 to 80 degC")]],
+        row("export cubic.json --format c", "--output"),
+        # What is in the way
+        row("export cubic.json --format c -o file", "file"),
+        row("export cubic.json --format c -o file/below", "file"),
+        row("export cubic.json --format c -o folder --name net", "net.c"),
+        row("export gyro.parm --format ardupilot -o .", "is read by this command"),
+    ]
 
-    def test_bad_input_leaves_nothing(self):
-        cubic = self.train("cubic")
-        (self.dir / "broken.json").write_text("{")
-        self.write("other.json", '{"filetype": "other"}')
-        to = ["-o", "out"]
-        self.refused("gone.json", "--format", "c", *to, says="gone.json")
-        self.refused("broken.json", "--format", "c", *to, says="broken.json")
-        self.refused("other.json", "--format", "c", *to, says="other.json")
-        self.refused(cubic, "--format", "rust", *to, says="rust")
-        self.refused(cubic, *to, says="--format")
-        self.refused(cubic, "--format", "c", says="--output")
-        self.refused(cubic, "--format", "px4", *to, "--axis", "w", says="w")
-        for form, instance in [("px4", 4), ("ardupilot", 0), ("ardupilot", 4)]:
-            self.refused(cubic, "--format", form, *to, "--instance", instance,
-                         says=[cubic, f"instance {instance}"])
-        self.refused(cubic, "--format", "px4", *to, "--device-id", 2 ** 31,
-                     says="--device-id")
-
-    def test_each_compensator_has_an_axis_of_its_own(self):
-        cubic = self.train("cubic")
-        to = ["--format", "px4", "-o", "out"]
-        self.refused(cubic, cubic, *to, says=["--axis", "0 axes for 2"])
-        self.refused(cubic, cubic, *to, "--axis", "x", says="1 axes for 2")
-        self.refused(cubic, cubic, *to, "--axis", "y,y", says="y twice")
-        self.refused(cubic, *to, "--axis", "x,y", says="2 axes for 1")
-        self.refused(cubic, cubic, "--format", "c", "-o", "out",
-                     says="several compensators")
-
-    def test_options_of_another_format_are_refused(self):
-        cubic = self.train("cubic")
-        for form, option in [("c", ["--axis", "x"]), ("c", ["--instance", 1]),
-                             ("c", ["--device-id", 1]), ("c", ["--fit-cubic"]),
-                             ("ardupilot", ["--device-id", 1]),
-                             ("px4", ["--force"])]:
-            self.refused(cubic, "--format", form, "-o", "out", *option,
-                         says=[option[0], form])
-
-    def test_what_is_in_the_way_is_named(self):
-        cubic = self.train("cubic")
-        self.write("file", "x")
-        self.refused(cubic, "--format", "c", "-o", "file", says="file")
-        self.refused(cubic, "--format", "c", "-o", "file/below", says="file")
-        (self.dir / "folder/net.c").mkdir(parents=True)
-        self.refused(cubic, "--format", "c", "-o", "folder", "--name", "net",
-                     says="net.c")
-
-    def test_the_compensator_is_not_written_over(self):
-        (self.dir / self.train("cubic")).rename(self.dir / "gyro.parm")
-        self.refused("gyro.parm", "--format", "ardupilot", "-o", ".",
-                     says="is read by this command")
-
-    def test_a_range_ardupilot_does_not_take(self):
+    def prepare(self):
+        super().prepare()
         text = (self.dir / self.train("cubic")).read_text()
         start = text.index("[", text.index('"temperature_range_degC"'))
         end = text.index("]", start)
-        self.write("cold.json", text[:start] + "[-71.0, 60.0" + text[end:])
-        self.refused("cold.json", "--format", "ardupilot", "-o", "out",
-                     says=["cold.json", "-70 to 80 degC"])
+        for name, content in [
+                ("broken.json", "{"), ("other.json", '{"filetype": "other"}'),
+                ("file", "x"), ("gyro.parm", text),
+                ("cold.json", text[:start] + "[-71.0, 60.0" + text[end:])]:
+            self.write(name, content)
+        (self.dir / "folder/net.c").mkdir(parents=True)
 
 
 class ExportPage(ExportTest):

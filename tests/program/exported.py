@@ -63,8 +63,8 @@ sine.frequency_Hz = 0.002
 
 
 class ExportTest(ProgramTest):
-    def setUp(self):
-        super().setUp()
+    def prepare(self):
+        super().prepare()
         self.run_scenario("train", text=EVENTFUL)
         self.run_scenario("held_out", "--seed", 4, text=EVENTFUL)
 

@@ -170,30 +170,5 @@ class Csv(ProgramTest):
         np.testing.assert_allclose(one["coefficients"], other["coefficients"],
                                    rtol=1e-9)
 
-    def test_a_csv_that_is_no_recording_is_named_as_such(self):
-        self.write("log.csv", "t,w\n0,1\n")
-        self.rejected("train", "log.csv", "--model", "m.toml", "-o", "c.json",
-                      says=["log.csv:1", "no column 'time'", "import"])
-
-
-class Endings(ProgramTest):
-    def test_a_name_must_say_what_is_written(self):
-        self.run_scenario("run", text=ramp())
-        self.write("m.toml", CUBIC)
-        self.ok("train", "run.h5", "--model", "m.toml", "-o", "c.json")
-        for arguments, ending in [
-                (["run", "run.toml", "-o", "x.json"], ".h5 or .csv"),
-                (["characterise", "device.toml", "-o", "x.h5"], ".csv"),
-                (["train", "run.h5", "--model", "m.toml", "-o", "x.h5"],
-                 ".json"),
-                (["compensate", "c.json", "run.h5", "-o", "x.json"],
-                 ".h5 or .csv"),
-                (["export", "c.json", "--format", "c", "-o", "x.c"],
-                 "directory"),
-                (["generate", "campaign.toml", "-o", "x.h5"], "directory")]:
-            with self.subTest(arguments[0]):
-                self.rejected(*arguments, says=["-o x.", ending])
-
-
 if __name__ == "__main__":
     unittest.main()

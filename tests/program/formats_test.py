@@ -10,7 +10,7 @@ import unittest
 import h5py
 
 from pages import page, rows, section
-from program import CUBIC, ROOT, ProgramTest, ramp
+from program import CUBIC, ROOT, ProgramTest, commands, ramp
 
 def keys(table, prefix=""):
     """Dotted keys of a TOML table."""
@@ -77,15 +77,12 @@ def shipped(pattern):
 
 
 class Formats(ProgramTest):
-    def commands(self):
-        return re.findall(r"^  (\w+)  ", self.ok("--help"), re.MULTILINE)
-
     def test_every_command_has_a_section(self):
         sections = re.findall(r"^## (\w+)$", page("commands"), re.MULTILINE)
-        self.assertEqual(sorted(sections), sorted(self.commands()))
+        self.assertEqual(sorted(sections), sorted(commands()))
 
     def test_every_option_of_every_command_is_on_the_page(self):
-        for command in self.commands():
+        for command in commands():
             text = section(page("commands"), command)
             described = set(re.findall(r"^- `(--[A-Za-z-]+)", text,
                                        re.MULTILINE))
@@ -269,9 +266,7 @@ class Formats(ProgramTest):
         self.assertIn("join", two)
 
     def test_the_recording_holds_what_the_page_lists(self):
-        self.run_scenario("run", text=ramp())
-        self.write("m.toml", CUBIC)
-        self.ok("train", "run.h5", "--model", "m.toml", "-o", "c.json")
+        self.cubic_of_a_ramp("run")
         self.ok("compensate", "c.json", "run.h5", "-o", "out.h5")
         documented = rows(page("recording").split("\n## ")[0])
         with h5py.File(self.dir / "out.h5") as file:

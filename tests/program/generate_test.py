@@ -317,47 +317,7 @@ class Generate(Set):
                          r"\d+ of 80000 runs, 0 failed")
 
 
-class BadInput(Set):
-    def test_wrong_arguments_are_refused(self):
-        refused = [
-            (["--shard", "0/3"], "--shard"), (["--shard", "4/3"], "--shard"),
-            (["--shard", "1"], "--shard"), (["--shard", "1/3x"], "--shard"),
-            (["--devices", "0"], "devices"), (["--jobs", "0"], "jobs"),
-            (["--devices", "many"], "devices")]
-        for arguments, says in refused:
-            with self.subTest(arguments):
-                self.rejected("generate", "campaign.toml", "-o", "set",
-                              *arguments, says=says)
-
-    def test_places_that_cannot_hold_a_set_are_refused(self):
-        self.write("file", "x")
-        self.rejected("generate", "campaign.toml", "-o", "file", says="file")
-        self.rejected("generate", "campaign.toml", "-o", "no/where/set",
-                      says="no/where")
-        self.rejected("generate", "campaign.toml", "-o", "/proc/set",
-                      says="/proc")
-
-    def test_unknown_variables_and_rates_are_refused(self):
-        for text, says in [
-                ('variables = ["outputs"]', "outputs"),
-                ("truth_rate_Hz = 0.7", "truth_rate_Hz")]:
-            with self.subTest(text):
-                self.write("campaign.toml", CAMPAIGN + f"\n[output]\n{text}\n")
-                self.rejected("generate", "campaign.toml", "-o", "set",
-                              says=["campaign.toml:21:", says])
-
-    def test_more_files_than_can_be_numbered_are_refused(self):
-        self.write("campaign.toml", CAMPAIGN.replace("devices = 7",
-                                                     "devices = 4000000000"))
-        self.rejected("generate", "campaign.toml", "-o", "set",
-                      says=["campaign.toml:4:", "4000000000 files"])
-
-    def test_verify_and_info_refuse_what_is_no_set(self):
-        (self.dir / "empty").mkdir()
-        for command in ["verify", "info"]:
-            self.rejected(command, "empty", says="empty")
-            self.rejected(command, "nowhere", says="nowhere")
-
+class ReadOnly(Set):
     def test_a_read_only_file_system_is_named(self):
         if os.geteuid() != 0:
             self.skipTest("mounting needs root")

@@ -5,7 +5,7 @@ import re
 import shlex
 import unittest
 
-from program import ROOT, ProgramTest
+from program import ROOT, ProgramTest, commands
 
 WIDTH = 80
 
@@ -24,19 +24,16 @@ def entries(text):
 
 
 class Help(ProgramTest):
-    def commands(self):
-        return re.findall(r"^  (\w+)  ", self.ok("--help"), re.MULTILINE)
-
     def texts(self):
         yield "", self.ok("--help")
-        for command in self.commands():
+        for command in commands():
             yield command, self.ok(command, "--help")
 
     def test_every_command_is_named_and_has_a_help_of_its_own(self):
         self.assertEqual(self.ok("--help"), self.ok("-h"))
         self.assertLessEqual(
             {"characterise", "run", "import", "generate", "train", "compensate",
-             "export", "validate", "allan", "info", "verify"}, {*self.commands()})
+             "export", "validate", "allan", "info", "verify"}, {*commands()})
         for command, text in self.texts():
             with self.subTest(command):
                 self.assertIn(command, text)
@@ -54,20 +51,20 @@ class Help(ProgramTest):
 
     def test_help_as_a_word_is_the_same(self):
         self.assertEqual(self.ok("help"), self.ok("--help"))
-        for command in self.commands():
+        for command in commands():
             with self.subTest(command):
                 self.assertEqual(self.ok("help", command),
                                  self.ok(command, "-h"))
 
     def test_every_option_states_a_default_or_is_required(self):
-        for command in self.commands():
+        for command in commands():
             for left, right in entries(self.ok(command, "--help")):
                 if re.match(r"(-\w, )?--[\w-]+ \S", left):  # takes a value
                     with self.subTest(f"{command} {left}"):
                         self.assertRegex(right, r"Default: .+\.$|Required\.$")
 
     def test_options_stand_in_groups(self):
-        for command in self.commands():
+        for command in commands():
             with self.subTest(command):
                 groups = re.findall(r"^(\S.*):$", self.ok(command, "--help"),
                                     re.MULTILINE)
@@ -85,7 +82,7 @@ class Help(ProgramTest):
                          (self.dir / "stated.csv").read_bytes())
 
     def test_every_command_has_an_example_that_its_options_allow(self):
-        for command in self.commands():
+        for command in commands():
             text = self.ok(command, "--help").split("Examples:\n")[1]
             examples = re.findall(r"^  (beamgyro .*)$",
                                   text.replace("\\\n      ", ""), re.MULTILINE)

@@ -50,6 +50,11 @@ class HostileSet(Set):
                 text += line(record)
             path.write_bytes(text)
 
+    def forge_anew(self, change):
+        shutil.rmtree(self.set)
+        self.generate("set")
+        self.forge(change)
+
     def outside(self):
         return {path: path.read_bytes() for path in self.dir.rglob("*")
                 if path.is_file() and self.set not in path.parents}
@@ -61,8 +66,7 @@ class HostileSet(Set):
         self.assertEqual(self.outside(), before)
         self.assertEqual(answer.returncode, status,
                          answer.stdout + answer.stderr)
-        for part in [says] if isinstance(says, str) else says:
-            self.assertIn(part, answer.stdout + answer.stderr)
+        self.assertSays(answer.stdout + answer.stderr, says)
 
     def link(self, name, target, is_directory=False):
         path = self.set / name
@@ -92,9 +96,7 @@ class HostileSet(Set):
         for run in ["../victim/data", str(self.dir / "victim/data"),
                     "a/../../victim/data"]:
             with self.subTest(run):
-                shutil.rmtree(self.set)
-                self.generate("set")
-                self.forge(lambda head: head["runs"].__setitem__(0, run))
+                self.forge_anew(lambda head: head["runs"].__setitem__(0, run))
                 self.harmless("verify", "set", says="line 1 is damaged")
                 self.harmless("verify", "set", "--repair",
                               says="the manifest has lost")
@@ -104,9 +106,7 @@ class HostileSet(Set):
         for name in ["../victim/data", "source/../../victim/data",
                      str(self.dir / "victim/data")]:
             with self.subTest(name):
-                shutil.rmtree(self.set)
-                self.generate("set")
-                self.forge(lambda head: head["sources"][-1].update(file=name))
+                self.forge_anew(lambda head: head["sources"][-1].update(file=name))
                 self.harmless("verify", "set", "--repair",
                               says="the manifest has lost")
                 self.harmless("info", "set", "--device", 1, status=2,
@@ -124,9 +124,7 @@ class HostileSet(Set):
 
         for change in [other_names, other_division, other_seed]:
             with self.subTest(change.__name__):
-                shutil.rmtree(self.set)
-                self.generate("set")
-                self.forge(change)
+                self.forge_anew(change)
                 (self.set / "ramp_00001.h5").unlink()
                 before = sorted(os.listdir(self.set))
                 self.harmless("verify", "set", "--repair",

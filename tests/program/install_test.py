@@ -6,10 +6,9 @@ import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
 
-from program import PROGRAM, ROOT
+from program import PROGRAM, ROOT, class_folder, said
 
 BUILD = PROGRAM.parent
 # Where to type what a page shows.
@@ -27,19 +26,13 @@ STATED = """\
 class Install(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="a prefix ")
-        cls.addClassCleanup(folder.cleanup)
-        cls.dir = pathlib.Path(folder.name)
+        cls.dir = class_folder(cls, "a prefix ")
         cls.prefix = cls.dir / "usr"
         cls.call("cmake", "--install", BUILD, "--prefix", cls.prefix)
 
     @classmethod
     def call(cls, *command):
-        answer = subprocess.run([str(part) for part in command], cwd=cls.dir,
-                                capture_output=True, text=True, check=False)
-        if answer.returncode != 0:
-            raise AssertionError(answer.stdout + answer.stderr)
-        return answer.stdout
+        return said(*command, cwd=cls.dir)
 
     def scenario(self, name):
         return self.prefix / "share/beamgyro/scenarios" / name

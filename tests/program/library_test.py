@@ -7,12 +7,11 @@ import pathlib
 import re
 import shutil
 import subprocess
-import tempfile
 import unittest
 
 import pytest
 
-from program import PROGRAM, ROOT
+from program import PROGRAM, ROOT, class_folder
 
 BUILD = PROGRAM.parent
 SCENARIOS = ROOT / "scenarios"
@@ -101,9 +100,7 @@ class Call(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix=cls.PREFIX)
-        cls.addClassCleanup(folder.cleanup)
-        cls.dir = pathlib.Path(folder.name)
+        cls.dir = class_folder(cls, cls.PREFIX)
 
     @classmethod
     def call(cls, *command, cwd=None, allowed=(0,)):

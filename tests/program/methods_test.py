@@ -188,10 +188,6 @@ class Methods(ProgramTest):
         found = found["training"]["cross_validation"]
         self.assertEqual((found["by"], found["groups"]), ("run", 3))
         self.assertLess(found["rms_deg_per_s"], found["constant_rms_deg_per_s"])
-        self.rejected("train", "a.h5", "--model", "m.toml", "--cv", "run", "-o",
-                      "d.json", says="two runs or more")
-        self.rejected("train", "a.h5", "--model", "m.toml", "--cv", "week",
-                      "-o", "d.json", says="--cv")
 
 
 if __name__ == "__main__":

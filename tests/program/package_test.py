@@ -8,12 +8,11 @@ import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import pytest
 
-from program import PROGRAM, ROOT
+from program import PROGRAM, ROOT, class_folder, commands, said
 
 sys.path.insert(0, str(ROOT / "packaging"))
 # pylint: disable-next=wrong-import-position
@@ -22,29 +21,13 @@ from help_pages import read_help  # noqa: E402
 BUILD = PROGRAM.parent
 
 
-def said(*command, **options):
-    """What a command prints; a failure shows all of it."""
-    answer = subprocess.run([str(part) for part in command], text=True,
-                            capture_output=True, check=False, **options)
-    if answer.returncode != 0:
-        raise AssertionError(answer.stdout + answer.stderr)
-    return answer.stdout
-
-
-def commands():
-    """Names of all commands."""
-    return re.findall(r"^  ([a-z]+)  ", said(PROGRAM, "--help"), re.MULTILINE)
-
-
 @pytest.mark.deep  # files are installed by install_test.py
 @unittest.skipUnless((BUILD / "CPackConfig.cmake").exists(),
                      "the program does not stand in its build")
 class Packages(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="packages ")
-        cls.addClassCleanup(folder.cleanup)
-        cls.dir = pathlib.Path(folder.name)
+        cls.dir = class_folder(cls, "packages ")
         said(ROOT / "scripts/package.sh", BUILD, cls.dir / "debs")
         cls.debs = {path.name.split("_")[0]: path
                     for path in sorted((cls.dir / "debs").glob("*.deb"))}

@@ -2,11 +2,9 @@
 """`plan`: from a population to the soaks of a new device."""
 
 import json
-import pathlib
 import re
 import resource
 import shutil
-import tempfile
 import tomllib
 import unittest
 
@@ -14,16 +12,14 @@ import h5py
 import numpy as np
 
 from plan_test_population import population_of
-from program import SCENARIOS, ProgramTest
+from program import SCENARIOS, ProgramTest, class_folder
 
 
 class Plan(ProgramTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        folder = tempfile.TemporaryDirectory(prefix="a population ")
-        cls.addClassCleanup(folder.cleanup)
-        cls.population = population_of(pathlib.Path(folder.name))
+        cls.population = population_of(class_folder(cls, "a population "))
 
     def setUp(self):
         super().setUp()

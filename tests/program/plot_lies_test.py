@@ -11,7 +11,7 @@ import unittest
 import h5py
 import numpy as np
 
-from program import CUBIC, ROOT, ProgramTest, ramp
+from program import ROOT, ProgramTest, ramp
 
 sys.path.insert(0, str(ROOT / "python/beamgyro"))
 import plots  # noqa: E402  (where it is comes first)
@@ -46,10 +46,8 @@ def changed(document, place, value):
 class Lies(ProgramTest):
     def setUp(self):
         super().setUp()
-        self.write("model.toml", CUBIC)
-        self.run_scenario("train", text=ramp())
+        self.cubic_of_a_ramp("train")
         self.run_scenario("check", text=ramp(seed=5))
-        self.ok("train", "train.h5", "--model", "model.toml", "-o", "c.json")
 
     def result(self, kind):
         """A document of that kind, as a command writes it."""

@@ -60,16 +60,36 @@ max_epochs = 30
 """
 
 
+def class_folder(case, prefix=""):
+    """A directory that is there while the tests of a class run."""
+    return pathlib.Path(case.enterClassContext(
+        tempfile.TemporaryDirectory(prefix=prefix)))
+
+
+def said(*command, **options):
+    """What a command prints that must succeed; a failure shows all of it."""
+    answer = subprocess.run([str(part) for part in command], text=True,
+                            capture_output=True, check=False, **options)
+    if answer.returncode != 0:
+        raise AssertionError(answer.stdout + answer.stderr)
+    return answer.stdout
+
+
+def commands():
+    """Names of all commands."""
+    return re.findall(r"^  ([a-z]+)  ", said(PROGRAM, "--help"), re.MULTILINE)
+
+
 class ProgramTest(unittest.TestCase):
     """A test in a directory of its own that holds the nominal device."""
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.dir = pathlib.Path(folder.name)
-        self.take_device()
+        self.dir = pathlib.Path(
+            self.enterContext(tempfile.TemporaryDirectory()))
+        self.prepare()
 
-    def take_device(self):
+    def prepare(self):
+        """Fills the directory."""
         shutil.copy(SCENARIOS / "devices/nominal.toml", self.dir / "device.toml")
 
     def write(self, name, text):
@@ -115,22 +135,26 @@ class ProgramTest(unittest.TestCase):
         return {path.relative_to(self.dir): path.read_bytes()
                 for path in self.dir.rglob("*") if path.is_file()}
 
+    def assertSays(self, text, parts):
+        """The text holds each part, of which some may be patterns."""
+        for part in [parts] if isinstance(parts, (str, re.Pattern)) else parts:
+            if isinstance(part, str):
+                self.assertIn(part, text)
+            else:
+                self.assertRegex(text, part)
+
     def rejected(self, *arguments, says=(), status=2):
         """The one message of a command refused with an exit status, after which
-        every file is as it was and no other has come."""
-        before = self.files()
+        every file is as it was and no other file or directory has come."""
+        before = self.files(), {*self.dir.rglob("*")}
         answer = self.beamgyro(*arguments)
         self.assertEqual(answer.returncode, status,
                          f"{arguments}: {answer.stderr}{answer.stdout}")
         self.assertEqual(answer.stdout, "")
         self.assertEqual(len(answer.stderr.strip().splitlines()), 1,
                          answer.stderr)
-        for part in [says] if isinstance(says, (str, re.Pattern)) else says:
-            if isinstance(part, str):
-                self.assertIn(part, answer.stderr)
-            else:
-                self.assertRegex(answer.stderr, part)
-        self.assertEqual(self.files(), before)
+        self.assertSays(answer.stderr, says)
+        self.assertEqual((self.files(), {*self.dir.rglob("*")}), before)
         return answer.stderr
 
     def run_scenario(self, name, *arguments, text=SCENARIO):
@@ -138,6 +162,12 @@ class ProgramTest(unittest.TestCase):
         scenario = self.write(f"{name}.toml", text)
         self.ok("run", scenario, "-o", f"{name}.h5", *arguments)
         return self.dir / f"{name}.h5"
+
+    def cubic_of_a_ramp(self, name):
+        """Recording NAME.h5 of a ramp, and a cubic trained on it in c.json."""
+        self.run_scenario(name, text=ramp())
+        self.ok("train", f"{name}.h5", "--model",
+                self.write("model.toml", CUBIC), "-o", "c.json")
 
 
 def ramp(seconds=4000, low=-30, high=40, rate_Hz=1, seed=3):

@@ -2,11 +2,9 @@
 """Tables of commands that are refused: a test for each row, one folder for all."""
 
 import dataclasses
-import pathlib
 import shlex
-import tempfile
 
-from program import ProgramTest
+from program import ProgramTest, class_folder
 
 
 @dataclasses.dataclass(frozen=True)
@@ -26,7 +24,8 @@ def row(words, *says, files=None, status=2, name=""):
 
 
 class Rejections(ProgramTest):
-    """The rows of `table`, tried in one folder that each leaves as it was."""
+    """The rows of `table`, tried in one folder that prepare() fills and that each
+    leaves as it was."""
     table = ()
 
     def __init_subclass__(cls, **options):
@@ -38,17 +37,11 @@ class Rejections(ProgramTest):
 
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.dir = pathlib.Path(folder.name)
+        cls.dir = class_folder(cls)
         cls().prepare()
 
     def setUp(self):
         pass  # The folder is that of the class.
-
-    def prepare(self):
-        """Fills the folder."""
-        self.take_device()
 
     def refuse(self, one):
         replaced = {name: (self.dir / name).read_bytes() for name in one.files

@@ -2,15 +2,13 @@
 """The page that `validate --report` writes, opened in headless Chromium."""
 
 import json
-import pathlib
 import shutil
-import tempfile
 import unittest
 
 import pytest
 
 from browser import CHROMIUM, browser
-from program import ROOT, SCENARIOS, ProgramTest
+from program import ROOT, SCENARIOS, ProgramTest, class_folder
 
 WIDTHS = [1280, 390]  # [px], of a desktop and of a phone
 NAME = "<img src=x onerror=alert(1)><!--.toml"  # what a file may be called
@@ -37,9 +35,7 @@ drawn.filter(({chart}) => {
 class ReportPage(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="a report ")
-        cls.addClassCleanup(folder.cleanup)
-        cls.dir = pathlib.Path(folder.name)
+        cls.dir = class_folder(cls, "a report ")
         shutil.copy(SCENARIOS / "models/cubic.toml", cls.dir / NAME)
         test = ProgramTest()
         test.dir = cls.dir

@@ -4,10 +4,8 @@
 
 import hashlib
 import json
-import pathlib
 import shutil
 import subprocess
-import tempfile
 import unittest
 
 import h5py
@@ -16,7 +14,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from program import PROGRAM, SCENARIOS
+from program import PROGRAM, SCENARIOS, class_folder
 
 ENGINES = ("h5netcdf", "netcdf4")
 FIXED = ("device", "time", "truth_time", "part", "device_status", "status")
@@ -29,9 +27,7 @@ def text(value):
 class SetTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory(prefix="beamgyro set ")
-        cls.addClassCleanup(holder.cleanup)
-        cls.set = pathlib.Path(holder.name) / "a set"
+        cls.set = class_folder(cls, "beamgyro set ") / "a set"
         subprocess.run([PROGRAM, "generate",
                         SCENARIOS / "campaigns/small.toml", "-o", cls.set],
                        check=True, stdin=subprocess.DEVNULL,

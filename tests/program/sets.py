@@ -43,8 +43,8 @@ seed = 1
 
 
 class Set(ProgramTest):
-    def setUp(self):
-        super().setUp()
+    def prepare(self):
+        super().prepare()
         self.write("rest.toml", SCENARIO.format(name="rest",
                                                 ambient="constant_degC = 25"))
         self.write("ramp.toml", SCENARIO.format(

@@ -3,15 +3,12 @@
 """The site of the documentation, of the build that the program comes from."""
 
 import html
-import pathlib
 import re
-import subprocess
-import tempfile
 import unittest
 
 import pytest
 
-from program import PROGRAM, ROOT
+from program import PROGRAM, ROOT, class_folder, said
 
 BUILD = PROGRAM.parent
 
@@ -22,13 +19,8 @@ BUILD = PROGRAM.parent
 class Site(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="site ")
-        cls.addClassCleanup(folder.cleanup)
-        cls.dir = pathlib.Path(folder.name)
-        answer = subprocess.run([ROOT / "scripts/docs.sh", BUILD, cls.dir],
-                                capture_output=True, text=True, check=False)
-        if answer.returncode != 0:
-            raise AssertionError(answer.stdout + answer.stderr)
+        cls.dir = class_folder(cls, "site ")
+        said(ROOT / "scripts/docs.sh", BUILD, cls.dir)
         cls.site = cls.dir / "html"
 
     def words(self, page):

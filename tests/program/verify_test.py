@@ -2,19 +2,17 @@
 """verify and info on sets, and what sets survive."""
 
 import os
-import pathlib
 import re
 import signal
 import socket
 import subprocess
-import tempfile
 import time
 import unittest
 
 import h5py
 import numpy as np
 
-from program import PROGRAM
+from program import PROGRAM, class_folder
 from sets import CAMPAIGN, Set, set_faults
 
 
@@ -220,9 +218,7 @@ class Faults(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.faults = set_faults.Faults(PROGRAM, pathlib.Path(folder.name))
+        cls.faults = set_faults.Faults(PROGRAM, class_folder(cls))
 
     def test_twenty_kills_leave_the_bytes_of_an_uninterrupted_run(self):
         self.assertEqual(self.faults.kills(20)["kills"], 20)
