@@ -123,7 +123,6 @@ TEST_F(CommandCompensator, ACrashIsReportedWithItsLastWords) {
 }
 
 TEST_F(CommandCompensator, AHangIsStoppedWithAllItsProcesses) {
-  const Stopwatch watch;
   const SeenFault hang = only_fault(
       *program("print(r, flush=True); k == 700 and time.sleep(1000)"));
   EXPECT_EQ(hang.fault, AnswerFault::kTimedOut);
@@ -132,7 +131,6 @@ TEST_F(CommandCompensator, AHangIsStoppedWithAllItsProcesses) {
   EXPECT_EQ(fault_of(*program("print(r)", "",
                               "sys.stdout.close(); time.sleep(1000)")),
             AnswerFault::kTimedOut);
-  EXPECT_LT(watch.seconds(), 8.0 * test_limits().stall);
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
   EXPECT_EQ(errno, ECHILD);
 }

@@ -89,7 +89,7 @@ double beamgyro_plugin_step(void *instance, double time,
   (void)time;
   if (FAULT == KEEPS_STATE) rate -= state->kept;
   state->kept += 1e-6 * signals[0];
-  if (FAULT == IS_SLOW) usleep(20000);
+  if (FAULT == IS_SLOW) usleep(12000);
   if (FAULT == PRINTS) printf("sample %ld\n", state->samples);
   if (FAULT == LEAKS)
     for (volatile char *leak = malloc(1 << 20);; leak = malloc(1 << 20))
