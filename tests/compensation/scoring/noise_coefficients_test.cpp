@@ -313,9 +313,7 @@ void expect_coverage(Find coefficient, double truth, Make rates) {
   EXPECT_LE(uncertainties, 4.0 * squares);
 }
 
-// ManyDrawsOfMetrics counts the same of records with the noise of the
-// simulator.
-TEST(DeepNoiseCoefficients, HaveIntervalsThatHoldTheTruth) {
+TEST(ManyDrawsOfCoefficients, HaveIntervalsThatHoldTheTruth) {
   {
     SCOPED_TRACE("quantisation");
     expect_coverage(&NoiseCoefficients::angle_quantisation, 0.5,

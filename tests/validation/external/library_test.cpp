@@ -86,10 +86,13 @@ TEST(LibraryCompensator, AnExitInTheMiddleIsNoEnd) {
 }
 
 TEST(LibraryCompensator, AHangIsStopped) {
+  const Stopwatch watch;
   const SeenFault hang = only_fault(*faulty_plugin("HANGS"));
   EXPECT_EQ(hang.fault, AnswerFault::kTimedOut);
   EXPECT_LE(hang.sample, kFaultySample);
   EXPECT_GT(hang.sample + 64, kFaultySample);  // answers of one batch
+  // A guard against a limit that does not hold; a busy machine stays far below.
+  EXPECT_LT(watch.seconds(), 60.0 * test_limits().stall);
 }
 
 TEST(LibraryCompensator, TooMuchMemoryIsRefused) {

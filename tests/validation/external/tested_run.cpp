@@ -24,7 +24,7 @@ ProcessLimits test_limits() {
   ProcessLimits limits;
   limits.program = BEAMGYRO_PLUGIN_HOST;
   limits.stall = 2.0;
-#ifdef __SANITIZE_ADDRESS__
+#ifdef BEAMGYRO_SANITIZED
   limits.memory = 0;
 #endif
   return limits;

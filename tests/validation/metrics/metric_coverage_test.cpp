@@ -306,7 +306,7 @@ TEST(ManyDrawsOfMetrics, CoverTheNoiseCoefficients) {
 }
 
 TEST(ManyDrawsOfMetrics, CoverTheRateRamp) {
-  const double ramp = 4e-4;  // [deg/s2]
+  const double ramp = 2e-4;  // [deg/s2]
   expect_coverage(
       {{"rate_ramp_deg_per_h_per_h", ramp * 3600 * 3600}},
       [ramp](std::uint64_t seed) {
