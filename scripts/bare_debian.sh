@@ -14,10 +14,12 @@ fail() {
 [ "$(id -u)" -eq 0 ] || fail "needs root, for debootstrap"
 command -v debootstrap >/dev/null || fail "apt-get install debootstrap"
 # That of this machine.
-mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' |
-  awk '!/security/ && !found++')
+mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' \
+  'Origin: Debian' 'Codename: bookworm' | sort -u | sed -n 1p)
+[ -n "$mirror" ] || fail "apt names no mirror of Debian"
 mkdir -p "$place"
 rm -rf "$place/bare.new"
 debootstrap --variant=minbase bookworm "$place/bare.new" "$mirror" \
   >"$place/debootstrap.log" 2>&1 || fail "see $place/debootstrap.log"
+rm -rf "$place/bare"
 mv "$place/bare.new" "$place/bare"

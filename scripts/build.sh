@@ -25,5 +25,9 @@ if [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] && command -v ccache >/dev/null; th
   export CMAKE_CXX_COMPILER_LAUNCHER=ccache
 fi
 cmake --preset "$preset" "$@" >"$log" 2>&1 || fail configuring
+# With another compiler CMake drops the cache, and with it what the preset says.
+if grep -q 'require your cache to be deleted' "$log"; then
+  cmake --fresh --preset "$preset" "$@" >"$log" 2>&1 || fail configuring
+fi
 cmake --build --preset "$preset" --parallel "$(nproc)" >>"$log" 2>&1 ||
   fail building

@@ -21,10 +21,11 @@ room_of() {
 
 rooms=("$@")
 if [ ${#rooms[@]} -eq 0 ]; then
-  mapfile -t rooms < <(git status --porcelain -uall | cut -c4- |
-    sed 's,^.* -> ,,' | while read -r file; do room_of "$file"; done | sort -u)
+  changed=$(git status --porcelain -uall)
+  mapfile -t rooms < <(cut -c4- <<<"$changed" | sed 's,^.* -> ,,' |
+    while read -r file; do room_of "$file"; done | sort -u)
 fi
-[ ${#rooms[@]} -gt 0 ] || { echo "check: no room changed" >&2; exit 0; }
+[ ${#rooms[@]} -gt 0 ] || { echo "check: no room with unit tests changed" >&2; exit 0; }
 
 mkdir -p build
 [ -e build/dev/build.ninja ] || cmake --preset dev >build/dev.log
@@ -32,6 +33,6 @@ cmake --build --preset dev --target "${rooms[@]/%/_test}" >build/dev.log ||
   { tail -n 40 build/dev.log >&2; exit 1; }
 for room in "${rooms[@]}"; do
   folder=$(find build/dev/tests -name CMakeFiles -prune -o -type d -name "$room" -print | head -n 1)
-  ctest --test-dir "$folder" -j "$(nproc)" --timeout 300 --output-on-failure |
+  ctest --test-dir "$folder" -j "$(nproc)" --timeout 300 --no-tests=error --output-on-failure |
     grep -v -E '^ +Start|Passed +[0-9.]+ sec|^$'
 done

@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # SPDX-License-Identifier: MIT
 # What test.sh and sanitize.sh share, for `source`: steps, their outcomes, the
 # total. Shows how long each step took.
@@ -20,41 +21,51 @@ broken() {
   tally "$1" 0 1 0
 }
 
-# tally_report NAME FILE: tallies a JUnit report.
+# tally_report NAME FILE STATUS: tallies a JUnit report of a run that ended with
+# a status. One that was interrupted has a report, too, without a failure.
 tally_report() {
   local counts
   counts=$(/usr/bin/python3 scripts/count_tests.py "$2") ||
     { broken "$1" "$1: no report"; return; }
   # shellcheck disable=SC2086  # three numbers
   tally "$1" $counts
+  if [ "$3" -ne 0 ] && [[ $counts == *" 0 "* ]]; then
+    broken "$1" "$1: ended with status $3, and no test failed"
+  fi
 }
 
 # unit_tests NAME PRESET [OPTION]...: an OPTION is given to ctest.
 unit_tests() {
-  local preset=$2 report=$PWD/build/$2/junit.xml
+  local preset=$2 report=$PWD/build/$2/junit.xml status=0
   rm -f "$report"
   ctest --test-dir build/"$preset" -j "$(nproc)" --timeout 300 "${@:3}" \
     --output-on-failure --output-junit "$report" \
-    >build/"$preset"/ctest.log 2>&1 ||
+    >build/"$preset"/ctest.log 2>&1 || {
+    status=$?
     grep -v -E '^ +Start|Passed +[0-9.]+ sec' build/"$preset"/ctest.log >&2
-  tally_report "$1" "$report"
+  }
+  tally_report "$1" "$report" $status
 }
 
 # program_tests NAME PRESET [OPTION]...: tests that drive the program of a
 # build; an OPTION is given to pytest.
 program_tests() {
-  local report=build/$2/program_tests.xml
+  local report=build/$2/program_tests.xml status=0
   rm -f "$report"
   BEAMGYRO=$PWD/build/$2/beamgyro \
-    /usr/bin/python3 -m pytest --junit-xml="$report" "${@:3}" >&2
-  tally_report "$1" "$report"
+    /usr/bin/python3 -m pytest --junit-xml="$report" "${@:3}" >&2 || status=$?
+  tally_report "$1" "$report" $status
 }
 
-# The program that ships, and its unit tests from the same objects. A warning of
-# the compiler is a failure.
+# build_release [OPTION]...: the program that ships, and its unit tests from the
+# same objects. A warning of the compiler is a failure, also the next time: what
+# was built with it goes.
 build_release() {
-  scripts/build.sh release -DBEAMGYRO_TESTS=ON || return
-  ! grep 'warning:' build/release.log >&2
+  scripts/build.sh release -DBEAMGYRO_TESTS=ON "$@" || return
+  if grep 'warning:' build/release.log >&2; then
+    cmake --build --preset release --target clean >/dev/null
+    return 1
+  fi
 }
 
 # choose_parts KNOWN... -- NAMED...: sets `parts` to those named, or to all.

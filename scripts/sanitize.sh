@@ -7,8 +7,9 @@
 #             with the assertions of Eigen and of the standard library everywhere
 #   threads   what the program does on several threads, thread sanitizer
 #   tidy      clang-tidy on every source
-#   deep      the tests marked `deep`: installation, packages, the site of the
-#             pages, a browser, Slurm, Octave, an emulated Cortex-M4, more draws
+#   deep      the benchmarks, compiled; the tests marked `deep`: packages, the site
+#             of the pages, a browser, Slurm, Octave, an emulated Cortex-M4, more
+#             draws
 #   packages  the Debian packages in a bare Debian 12: installed, run, removed
 #   image     the container image on that Debian, built and run
 #
@@ -18,8 +19,10 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 # shellcheck source=scripts/ledger.sh
 source scripts/ledger.sh
 choose_parts address threads tidy deep packages image -- "$@"
+named=$#
 
 # script NAME COMMAND...: a step that is one script, whose last line is shown.
+# Returns whether it succeeded.
 script() {
   local name=$1 log=build/$1.log
   shift
@@ -29,6 +32,7 @@ script() {
   else
     tail -n 20 "$log" >&2
     broken "$name" "$name: see $log"
+    return 1
   fi
 }
 
@@ -36,10 +40,18 @@ script() {
 as_root() {
   if [ "$(id -u)" -eq 0 ]; then
     script "$@"
+  elif [ "$named" -gt 0 ]; then
+    broken "$1" "$1: needs root"
   else
     echo "skipped: $1: needs root" >&2
     tally "$1" 0 0 1
   fi
+}
+
+# sanitized PRESET SANITIZER: builds a preset, which must have the sanitizer.
+sanitized() {
+  scripts/build.sh "$1" &&
+    grep -q "^BEAMGYRO_SANITIZE:.*=$2" "build/$1/CMakeCache.txt"
 }
 
 # The files are read in the bundles of a unity build: most of the time goes to
@@ -52,6 +64,7 @@ tidy() {
 for entry in json.load(open("build/tidy/compile_commands.json")):
     print(entry["file"])' | grep -v '/revision.cpp$' | sort -u >build/tidy_files
   all=$(wc -l <build/tidy_files)
+  [ "$all" -gt 0 ] || { broken tidy "tidy: no sources"; return; }
   : >"$log"
   bad=$(xargs -d '\n' -P "$(nproc)" -I{} bash -c '
     said=$(clang-tidy --quiet -p build/tidy \
@@ -63,35 +76,42 @@ for entry in json.load(open("build/tidy/compile_commands.json")):
   tally tidy $((all - bad)) "$bad" 0
 }
 
-scripts/setup.sh sanitize || { broken set-up "set-up failed"; finish; exit; }
+groups=(test)
+if wanted address || wanted threads; then groups+=(sanitizers); fi
+if wanted deep; then groups+=(deep); fi
+if wanted packages || wanted image; then groups+=(bare); fi
+scripts/setup.sh "${groups[@]}" || { broken set-up "set-up failed"; finish; exit; }
 mkdir -p build
 
 if wanted address; then
-  if scripts/build.sh asan; then
+  if sanitized asan address; then
     unit_tests "unit tests with sanitizers" asan --label-exclude 'many_draws|deep'
   else
-    broken "build (asan)" "no build: see build/asan.log"
+    broken "build (asan)" "no build with sanitizers: see build/asan.log"
   fi
 fi
 if wanted threads; then
-  if scripts/build.sh tsan; then
+  if sanitized tsan thread; then
     program_tests "thread sanitizer" tsan tests/program/thread_test.py
   else
-    broken "build (tsan)" "no build: see build/tsan.log"
+    broken "build (tsan)" "no build with the sanitizer: see build/tsan.log"
   fi
 fi
 wanted tidy && tidy
+# The benchmarks, too, which nothing else compiles.
 if wanted deep || wanted packages || wanted image; then
-  if build_release; then
+  if build_release -DBEAMGYRO_BENCH=ON; then
     if wanted deep; then
       unit_tests "deep unit tests" release --label-regex deep
       program_tests "deep tests of the program" release -n "$(nproc)" -m deep
     fi
     if wanted packages || wanted image; then
-      script "building the packages" scripts/package.sh build/release
+      rm -rf build/packages
+      if script "building the packages" scripts/package.sh build/release; then
+        wanted packages && as_root "packages in a bare Debian" scripts/try_packages.sh
+        wanted image && as_root "image" scripts/try_image.sh
+      fi
     fi
-    wanted packages && as_root "packages in a bare Debian" scripts/try_packages.sh
-    wanted image && as_root "image" scripts/try_image.sh
   else
     broken "build (release)" "no build without warnings: see build/release.log"
   fi

@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Installs the Debian packages that are missing: setup.sh demo|test|sanitize
+# Installs the Debian packages that are missing: setup.sh GROUP...
+# demo: what the program is built and the demo run with, which is in every group;
+# test: scripts/test.sh; sanitizers, deep, bare: parts of scripts/sanitize.sh.
 # Asks apt only when something is missing, so it works offline afterwards.
 set -euo pipefail
 
@@ -17,18 +19,25 @@ tests=(libgtest-dev libbenchmark-dev clang-format clang-tidy netcdf-bin
        dpkg-dev file lintian man-db doxygen python3-breathe python3-sphinx
        python3-sphinx-rtd-theme python3-myst-parser
        python3-ipykernel python3-nbclient python3-nbformat)
-# What scripts/sanitize.sh has beyond the tests: clang's sanitizers, a browser,
-# Slurm, Octave, an emulated Cortex-M4, a bare Debian and an image in it.
-deep=(clang libclang-rt-14-dev chromium slurm-wlm munge octave octave-netcdf
-      gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
-      debootstrap buildah)
+# What scripts/sanitize.sh has beyond the tests.
+sanitizers=(clang libclang-rt-14-dev)
+deep=(clang chromium slurm-wlm munge octave octave-netcdf git
+      gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm)
+bare=(debootstrap buildah git)
 
-case "${1:-}" in
-  demo) wanted=("${build[@]}") ;;
-  test) wanted=("${build[@]}" "${tests[@]}") ;;
-  sanitize) wanted=("${build[@]}" "${tests[@]}" "${deep[@]}") ;;
-  *) echo "usage: $0 demo|test|sanitize" >&2; exit 2 ;;
-esac
+usage="usage: $0 demo|test|sanitizers|deep|bare..."
+[ $# -gt 0 ] || { echo "$usage" >&2; exit 2; }
+wanted=("${build[@]}")
+for group in "$@"; do
+  case "$group" in
+    demo) ;;
+    test) wanted+=("${tests[@]}") ;;
+    sanitizers) wanted+=("${sanitizers[@]}") ;;
+    deep) wanted+=("${deep[@]}") ;;
+    bare) wanted+=("${bare[@]}") ;;
+    *) echo "$usage" >&2; exit 2 ;;
+  esac
+done
 
 fail() {
   echo "setup: $*" >&2

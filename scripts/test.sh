@@ -27,6 +27,7 @@ formatting() {
   bad=$(sed -n 's/^\([^: ]*\):[0-9]*:.*/\1/p' "$log" | sort -u | wc -l)
   cat "$log" >&2
   if [ "$outcome" -ne 0 ] && [ "$bad" -eq 0 ]; then bad=1; fi
+  [ "$all" -gt 0 ] || bad=1 all=1
   tally format $((all - bad)) "$bad" 0
 }
 
@@ -34,7 +35,7 @@ scripts/setup.sh test || { broken set-up "set-up failed"; finish; exit; }
 
 wanted format && formatting
 if wanted units || wanted program; then
-  if build_release; then
+  if build_release -DBEAMGYRO_BENCH=OFF; then
     wanted units && unit_tests "unit tests" release --label-exclude deep
     wanted program && program_tests "tests of the program and the scripts" \
       release -n "$(nproc)" -m "not deep"

@@ -10,7 +10,7 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 whole=no
 if [ "${1:-}" = --whole ]; then whole=yes; shift; fi
-packages=$(realpath "${1:-$root/build/packages}")
+packages=$(realpath -m "${1:-$root/build/packages}")
 place=$(realpath -m "${2:-$root/build/debian12}")
 log=$place/image.log
 
@@ -26,7 +26,9 @@ rm -rf "$store"
 builder() { buildah --root "$store/root" --runroot "$store/run" --storage-driver vfs "$@"; }
 trap 'rm -rf "$store"' EXIT
 
-{
+# A group on the left of || would go on after a failure.
+image() (
+  set -e
   container=$(builder from scratch)
   builder add -q "$container" "$place/bare" /
   base=$(builder commit -q "$container" localhost/bare)
@@ -39,7 +41,12 @@ trap 'rm -rf "$store"' EXIT
   fi
   builder build --isolation chroot --pull=never "${first_stage[@]}" \
     -t localhost/beamgyro "$root"
-} >"$log" 2>&1 || { tail -n 20 "$log" >&2; fail "no image; see $log"; }
+)
+set +e
+image >"$log" 2>&1
+made=$?
+set -e
+[ $made -eq 0 ] || { tail -n 20 "$log" >&2; fail "no image; see $log"; }
 
 container=$(builder from --pull=never localhost/beamgyro)
 mkdir "$store/data"

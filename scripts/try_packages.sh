@@ -55,11 +55,11 @@ inside 'cd /tmp
   beamgyro run /usr/share/beamgyro/scenarios/ten_minutes.toml -o run.h5
   beamgyro info run.h5 | head -n 3
   beamgyro validate --list-metrics | wc -l
-  ! ldd /usr/bin/beamgyro | grep "not found"
+  if ldd /usr/bin/beamgyro | grep "not found"; then exit 1; fi
   man beamgyro | grep -c "beamgyro"
   man beamgyro-run | grep -- "--fidelity"
   . /usr/share/bash-completion/completions/beamgyro
-  COMP_WORDS=(beamgyro al) COMP_CWORD=1; _beamgyro; echo "${COMPREPLY[@]}"
+  COMP_WORDS=(beamgyro al) COMP_CWORD=1; _beamgyro; echo "${COMPREPLY[@]:?}"
   if [ -d /usr/lib/python3/dist-packages/beamgyro ]; then
     python3 -c "import beamgyro
 run = beamgyro.run(\"/usr/share/beamgyro/scenarios/ten_minutes.toml\")
