@@ -158,7 +158,7 @@ TEST_P(RecordingFileOf, AnInterruptWhileAppendingLeavesNothing) {
   EXPECT_EQ(files_there(), 0u);
 }
 
-#ifndef __SANITIZE_ADDRESS__  // which keeps memory that was freed
+#ifndef BEAMGYRO_SANITIZED  // which keeps memory that was freed
 TEST_P(RecordingFileOf, MemoryDoesNotGrowWithTheSamples) {
   const auto peak = [] {  // [KiB]
     rusage usage{};
