@@ -15,8 +15,9 @@ import subprocess
 import tempfile
 import time
 
+from program import PATIENCE
+
 CHROMIUM = shutil.which("chromium")
-PATIENCE = 60.0  # [s]
 
 
 class Browser:

@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from program import PROGRAM
+from program import PATIENCE, PROGRAM
 from qualified import Qualified
 
 
@@ -285,7 +285,8 @@ class Places(Qualified):
                 [str(PROGRAM), "validate", "cubic.toml", "--device",
                  "device.toml", "--qualification", "q.toml", "--json",
                  "v.json"], cwd=self.dir, stdin=subprocess.DEVNULL,
-                stdout=full, stderr=subprocess.PIPE, check=False, timeout=300)
+                stdout=full, stderr=subprocess.PIPE, check=False,
+                timeout=PATIENCE)
         self.assertEqual(answer.returncode, 1)
         self.assertIn(b"standard output", answer.stderr)
         json.loads((self.dir / "v.json").read_text())
@@ -351,7 +352,7 @@ class Places(Qualified):
                     self.assertIsNone(process.poll())
                     time.sleep(0.01)
                 process.send_signal(number)
-                self.assertEqual(process.wait(300), -number)
+                self.assertEqual(process.wait(PATIENCE), -number)
             begun.unlink()
             for name in "rfb":
                 self.assertFalse((self.dir / name).exists(), name)

@@ -5,7 +5,7 @@ exported by the program, and the C compiler."""
 import json
 import subprocess
 
-from program import CUBIC, ProgramTest, ramp
+from program import CUBIC, PATIENCE, ProgramTest, ramp
 
 # Rounding of a * b + c once instead of twice would change last bits.
 WARNINGS = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow",
@@ -94,7 +94,7 @@ class ExportTest(ProgramTest):
     def run_binary(self, *command, given="", status=0):
         answer = subprocess.run([str(word) for word in command], input=given,
                                 text=True, capture_output=True, check=False,
-                                timeout=120)
+                                timeout=PATIENCE)
         self.assertEqual(answer.returncode, status,
                          answer.stdout + answer.stderr)
         return answer.stdout

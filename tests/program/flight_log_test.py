@@ -11,7 +11,7 @@ import sys
 import h5py
 import numpy as np
 
-from program import ROOT, ProgramTest
+from program import PATIENCE, ROOT, ProgramTest
 
 SCRIPT = ROOT / "scripts/flight_log_to_csv.py"
 GYRO = ("uint64_t timestamp;uint64_t timestamp_sample;uint32_t device_id;"
@@ -80,7 +80,7 @@ class FlightLogs(ProgramTest):
     def converted(self, log, *arguments):
         answer = subprocess.run([sys.executable, SCRIPT, log, *arguments],
                                 cwd=self.dir, capture_output=True, text=True,
-                                check=False, timeout=300)
+                                check=False, timeout=PATIENCE)
         self.assertEqual(answer.returncode, 0, answer.stderr)
         return answer.stdout
 
@@ -88,7 +88,7 @@ class FlightLogs(ProgramTest):
         self.write("bad.bin", data)
         answer = subprocess.run([sys.executable, SCRIPT, "bad.bin", *arguments],
                                 cwd=self.dir, capture_output=True, text=True,
-                                check=False, timeout=300)
+                                check=False, timeout=PATIENCE)
         self.assertEqual(answer.returncode, 1)
         self.assertEqual(len(answer.stderr.splitlines()), 1, answer.stderr)
         self.assertIn(says, answer.stderr)

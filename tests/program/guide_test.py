@@ -14,7 +14,7 @@ import sys
 
 import pytest
 
-from program import PROGRAM, ROOT
+from program import PATIENCE, PROGRAM, ROOT
 
 # What library.md shows is C++, and built by library_test.py.
 GUIDES = [page for page in sorted((ROOT / "docs/guide").glob("*.md"))
@@ -62,7 +62,7 @@ def run_guide(guide, folder):
     answer = subprocess.run(["bash", "-c", "\n".join(script)], cwd=folder,
                             text=True, stdin=subprocess.DEVNULL, check=False,
                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                            timeout=300)
+                            timeout=PATIENCE)
     assert answer.returncode == 0, answer.stdout
     return answer.stdout.split(f"{MARK}\n")[:-1]
 

@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from program import PROGRAM, SCENARIO, ProgramTest
+from program import PATIENCE, PROGRAM, SCENARIO, ProgramTest
 
 
 class Outputs(ProgramTest):
@@ -92,7 +92,7 @@ scenario = "\\u001b[31ms.toml"
                     stdout=subprocess.PIPE, stderr=subprocess.PIPE)
                 time.sleep(0.4)
                 process.send_signal(name)
-                said = process.communicate(timeout=300)[1].decode()
+                said = process.communicate(timeout=PATIENCE)[1].decode()
                 self.assertEqual(process.returncode, -name)
                 self.assertIn("interrupted; old.h5 is as it was before", said)
                 self.assertEqual(self.files(), before)

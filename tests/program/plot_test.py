@@ -13,8 +13,8 @@ import h5py
 import numpy as np
 
 import windows
-from program import (CUBIC, NETWORK, PROGRAM, ROOT, SCENARIO, SCENARIOS,
-                     ProgramTest, ramp)
+from program import (CUBIC, NETWORK, PATIENCE, PROGRAM, ROOT, SCENARIO,
+                     SCENARIOS, ProgramTest, ramp)
 
 CAMPAIGN = """\
 name = "few"
@@ -441,7 +441,7 @@ class Surroundings(PlotTest):
                 [PROGRAM, "plot", "rest.h5", "allan.json"], cwd=self.dir,
                 env=env, stderr=subprocess.PIPE, text=True)
             there = windows.Windows(name)
-            until = time.monotonic() + 300
+            until = time.monotonic() + PATIENCE
             while len(there.titles()) < 2 and plot.poll() is None:
                 self.assertLess(time.monotonic(), until, "no window came")
                 time.sleep(0.1)
@@ -456,7 +456,7 @@ class Surroundings(PlotTest):
                 time.sleep(0.1)
             self.assertIsNone(plot.poll())
             there.close(titles["allan.json"])
-            self.assertEqual(plot.communicate(timeout=300), (None, ""))
+            self.assertEqual(plot.communicate(timeout=PATIENCE), (None, ""))
             self.assertEqual(plot.returncode, 0)
 
     def test_what_the_user_set_for_matplotlib_does_not_matter(self):

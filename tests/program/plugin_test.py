@@ -16,7 +16,7 @@ import pytest
 
 from export_firmware_test import CORE, EMULATOR, LINK, missing
 from exported import MODELS, ExportTest
-from program import PROGRAM, ROOT, ProgramTest, ramp
+from program import PATIENCE, PROGRAM, ROOT, ProgramTest, ramp
 
 EXAMPLES = ROOT / "examples/plugins"
 PYTHON = f"'{sys.executable}'"
@@ -171,7 +171,7 @@ class Plugins(ProgramTest):
                     time.sleep(0.05)
                 self.assertTrue(processes(slept))
                 program.send_signal(number)
-                program.communicate(timeout=300)
+                program.communicate(timeout=PATIENCE)
                 self.assertEqual(program.returncode, -number)
             for _ in range(15000):  # until the system has ended them
                 if not processes(slept):
@@ -204,7 +204,8 @@ class Stream(ProgramTest):
     def stream(self, *arguments, text):
         return subprocess.run(
             [PROGRAM, "compensate", *arguments, "--stream"], cwd=self.dir,
-            input=text, text=True, capture_output=True, check=False, timeout=300)
+            input=text, text=True, capture_output=True, check=False,
+            timeout=PATIENCE)
 
     def test_the_answers_are_those_to_the_recording(self):
         text = (self.dir / "run.csv").read_text()
@@ -235,7 +236,7 @@ class Stream(ProgramTest):
                         # The rounding of 298.15 K - 273.15 K in degC.
                         self.assertAlmostEqual(rate, k - BIAS[3], delta=1e-12)
                 program.stdin.close()
-                self.assertEqual(program.wait(timeout=300), 0)
+                self.assertEqual(program.wait(timeout=PATIENCE), 0)
 
     def test_what_is_no_sample_is_named_by_its_line(self):
         names = "time,rate,temperature\n"

@@ -26,6 +26,7 @@ SHIPPED_SCENARIOS = sorted(
     for path in SCENARIOS.glob(pattern) if path.name != "qualification.toml")
 
 LONELY_USER = 54321  # of no one else
+PATIENCE = 300  # [s], after which something hangs; no promise of speed
 
 SCENARIO = """\
 name = "short"
@@ -75,6 +76,13 @@ def said(*command, **options):
     return answer.stdout
 
 
+def processor_time_of_children():
+    """Seconds that all ended children took, in the program and in the kernel;
+    other processes of the machine do not lengthen them."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
 def commands():
     """Names of all commands."""
     return re.findall(r"^  ([a-z]+)  ", said(PROGRAM, "--help"), re.MULTILINE)
@@ -101,7 +109,7 @@ class ProgramTest(unittest.TestCase):
         return subprocess.run(
             [str(PROGRAM), *map(str, arguments)], cwd=self.dir, text=True,
             stdin=subprocess.DEVNULL, capture_output=True, check=False,
-            timeout=120, **options)
+            timeout=PATIENCE, **options)
 
     def ok(self, *arguments):
         """Output of a command that must succeed."""
@@ -126,7 +134,7 @@ class ProgramTest(unittest.TestCase):
         answer = subprocess.run(
             [str(program), *map(str, arguments)], cwd=self.dir, text=True,
             stdin=subprocess.DEVNULL, capture_output=True, check=False,
-            timeout=120, preexec_fn=restrict)
+            timeout=PATIENCE, preexec_fn=restrict)
         self.assertEqual(answer.returncode, 0,
                          f"{arguments}: {answer.stderr}{answer.stdout}")
         return answer.stdout

@@ -7,7 +7,8 @@ import subprocess
 import time
 import unittest
 
-from program import CUBIC, PROGRAM, SCENARIO, SCENARIOS, ProgramTest, ramp
+from program import (CUBIC, PATIENCE, PROGRAM, SCENARIO, SCENARIOS,
+                     ProgramTest, ramp)
 
 CAMPAIGN = """\
 name = "three"
@@ -173,7 +174,7 @@ class Sensitivity(ProgramTest):
              "--json", "s.json"], cwd=self.dir, stderr=subprocess.PIPE)
         time.sleep(1)
         work.send_signal(signal.SIGINT)
-        work.communicate(timeout=300)
+        work.communicate(timeout=PATIENCE)
         self.assertEqual(work.returncode, -signal.SIGINT)
         self.assertEqual(list(self.dir.glob("s.json*")), [])
 

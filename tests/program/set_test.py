@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from program import PROGRAM, SCENARIOS, class_folder
+from program import PATIENCE, PROGRAM, SCENARIOS, class_folder
 
 ENGINES = ("h5netcdf", "netcdf4")
 FIXED = ("device", "time", "truth_time", "part", "device_status", "status")
@@ -31,7 +31,7 @@ class SetTest(unittest.TestCase):
         subprocess.run([PROGRAM, "generate",
                         SCENARIOS / "campaigns/small.toml", "-o", cls.set],
                        check=True, stdin=subprocess.DEVNULL,
-                       capture_output=True, timeout=300)
+                       capture_output=True, timeout=PATIENCE)
         lines = [json.loads(line) for line in
                  (cls.set / "manifest.jsonl").read_text().splitlines()]
         cls.head = lines[0]
@@ -196,7 +196,8 @@ class SetTest(unittest.TestCase):
                 "printf('%d %.17g\\n', numel(x), x(end));\n"
                 for name in (path, self.set / f"{run}.nc")))
         answer = subprocess.run([octave, "--no-gui", script], check=False,
-                                capture_output=True, text=True, timeout=120)
+                                capture_output=True, text=True,
+                                timeout=PATIENCE)
         if "netcdf is not installed" in answer.stderr:
             self.skipTest("no octave-netcdf here")
         with h5py.File(path) as file:

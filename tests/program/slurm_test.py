@@ -14,12 +14,11 @@ import unittest
 
 import pytest
 
-from program import PROGRAM, ROOT, SCENARIOS
+from program import PATIENCE, PROGRAM, ROOT, SCENARIOS
 
 SCRIPT = ROOT / "scripts/slurm_generate.sh"
 SMALL = SCENARIOS / "campaigns/small.toml"
 DAEMONS = ["munged", "slurmctld", "slurmd", "sbatch"]
-PATIENCE = 120  # [s]
 
 CONFIGURATION = """\
 ClusterName=test

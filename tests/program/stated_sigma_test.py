@@ -11,7 +11,8 @@ import unittest
 import h5py
 import numpy as np
 
-from program import CUBIC, PROGRAM, SCENARIO, ProgramTest, ramp
+from program import (CUBIC, PATIENCE, PROGRAM, SCENARIO, ProgramTest,
+                     ramp)
 
 SIGMA = {
     "temperature_degC": [-20.0, 30.0],
@@ -53,7 +54,8 @@ class Stream(StatedSigmaTest):
     def stream(self, compensator, text):
         return subprocess.run(
             [PROGRAM, "compensate", compensator, "--stream"], cwd=self.dir,
-            input=text, text=True, capture_output=True, check=False, timeout=300)
+            input=text, text=True, capture_output=True, check=False,
+            timeout=PATIENCE)
 
     def test_rate_and_sigma_are_those_of_the_copied_recording(self):
         self.ok("run", "run.toml", "-o", "run.csv")
@@ -96,7 +98,7 @@ class Stream(StatedSigmaTest):
             self.assertAlmostEqual(sigma, 2 * math.hypot(0.095, 0.2),
                                    delta=1e-12)
             program.stdin.close()
-            self.assertEqual(program.wait(timeout=300), 0)
+            self.assertEqual(program.wait(timeout=PATIENCE), 0)
 
     def test_a_glitch_of_the_sensor_is_forgotten_with_the_next_sample(self):
         lines = self.stream(

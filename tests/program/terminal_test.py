@@ -16,7 +16,7 @@ import time
 import unittest
 
 from faults import ShimTest
-from program import CUBIC, NETWORK, PROGRAM, SCENARIO, ramp
+from program import CUBIC, NETWORK, PATIENCE, PROGRAM, SCENARIO, ramp
 from sets import CAMPAIGN
 from sets import SCENARIO as REST
 
@@ -27,7 +27,6 @@ PATIENT = NETWORK.replace("[2]", "[12]").replace("restarts = 1",
              "\ngoal_deg_per_s = 0").replace("levenberg_marquardt",
                                              "incremental")
 CLOCK = r"\d+:\d\d:\d\d"
-PATIENCE = 300  # [s], after which something hangs
 
 
 def seconds_of(text):

@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 import beamgyro as bg
-from program import PROGRAM, SCENARIOS, SHIPPED_SCENARIOS
+from program import PATIENCE, PROGRAM, SCENARIOS, SHIPPED_SCENARIOS
 
 SHORT = {
     "quasistatic": {"duration_s": 8, "output_rate_Hz": 10},
@@ -21,7 +21,7 @@ SHORT = {
 def run_program(folder, *arguments):
     answer = subprocess.run([PROGRAM, *map(str, arguments)], cwd=folder,
                             capture_output=True, text=True, check=False,
-                            stdin=subprocess.DEVNULL, timeout=120)
+                            stdin=subprocess.DEVNULL, timeout=PATIENCE)
     assert answer.returncode == 0, answer.stderr
     return answer
 
@@ -109,7 +109,7 @@ def test_validation_is_that_of_the_command(sweeps, tmp_path, monkeypatch):
     answer = subprocess.run(
         [PROGRAM, "validate", "c.json", "b.h5", "--spec", "spec.toml",
          "--json", "v.json"], cwd=tmp_path, capture_output=True, text=True,
-        check=False, timeout=120)
+        check=False, timeout=PATIENCE)
     assert answer.returncode in (0, 3), answer.stderr
     result = bg.validate("c.json", "b.h5", spec="spec.toml")
     assert str(result) == answer.stdout

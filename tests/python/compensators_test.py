@@ -12,7 +12,7 @@ import pytest
 
 import beamgyro as bg
 import qualified
-from program import PROGRAM, SCENARIO, SCENARIOS, ramp
+from program import PATIENCE, PROGRAM, SCENARIO, SCENARIOS, ramp
 
 CUBIC = SCENARIOS / "models/cubic.toml"
 TWO_CYCLES = {"power.on_s": [0.0, 8000.0], "power.off_s": [6000.0]}
@@ -211,7 +211,7 @@ def test_without_limits_the_verdict_is_that_of_the_page_of_the_command(
     answer = subprocess.run(
         [PROGRAM, "validate", "cubic.json", "run.h5", "--report", "page",
          "--json", "result.json"], cwd=tmp_path, capture_output=True,
-        text=True, check=False, timeout=300)
+        text=True, check=False, timeout=PATIENCE)
     assert answer.returncode in (0, 3), answer.stderr
     result = bg.validate(bg.Compensator(tmp_path / "cubic.json"),
                          tmp_path / "run.h5")

@@ -7,14 +7,15 @@ import sys
 
 import pytest
 
-from program import SCENARIOS
+from program import PATIENCE, SCENARIOS
 
 
 def ended(folder, text):
     """The status and the output of a Python process."""
     answer = subprocess.run(
         [sys.executable, "-c", text, str(SCENARIOS / "warm_up.toml")],
-        cwd=folder, text=True, capture_output=True, check=False, timeout=120)
+        cwd=folder, text=True, capture_output=True, check=False,
+        timeout=PATIENCE)
     return answer.returncode, answer.stdout, answer.stderr
 
 

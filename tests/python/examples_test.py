@@ -11,7 +11,7 @@ import sys
 
 import pytest
 
-from program import ROOT, SCENARIOS
+from program import PATIENCE, ROOT, SCENARIOS
 
 EXAMPLES = ROOT / "examples/python"
 PACKAGE = ROOT / "python"
@@ -66,7 +66,7 @@ def test_notebook_in_a_kernel(tmp_path):
     notebook = nbformat.read(EXAMPLES / "first_drift_curve.ipynb", 4)
     (tmp_path / "scenarios").symlink_to(SCENARIOS)
     nbclient.NotebookClient(
-        notebook, timeout=300, kernel_name="python3",
+        notebook, timeout=PATIENCE, kernel_name="python3",
         resources={"metadata": {"path": str(tmp_path)}}).execute()
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
     assert [cell.execution_count for cell in cells] == list(

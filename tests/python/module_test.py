@@ -3,6 +3,7 @@
 """The objects of the package: errors, copies, arrays, memory, interrupts."""
 
 import copy
+import faulthandler
 import os
 import pickle
 import signal
@@ -15,7 +16,7 @@ import numpy as np
 import pytest
 
 import beamgyro as bg
-from program import SCENARIOS
+from program import PATIENCE, SCENARIOS
 
 WARM_UP = SCENARIOS / "warm_up.toml"
 NOMINAL = SCENARIOS / "devices/nominal.toml"
@@ -132,8 +133,12 @@ def test_an_interrupt_ends_a_long_call_soon():
         os.kill(os.getpid(), signal.SIGINT)
 
     threading.Thread(target=interrupt).start()
-    with pytest.raises(KeyboardInterrupt):
-        bg.run(scenario)
+    faulthandler.dump_traceback_later(PATIENCE, exit=True)  # where it hangs
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            bg.run(scenario)
+    finally:
+        faulthandler.cancel_dump_traceback_later()
     # 0.05 s between two looks at the signals, and 0.1 s of patience, all of
     # which the run may use; the rest is for a slow machine.
     assert time.process_time() - sent[0] < 2

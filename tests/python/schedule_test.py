@@ -8,7 +8,7 @@ import pytest
 
 import beamgyro as bg
 from plan_test_population import population_of
-from program import PROGRAM, SCENARIOS
+from program import PATIENCE, PROGRAM, SCENARIOS
 
 
 @pytest.fixture(scope="module", name="population")
@@ -26,7 +26,7 @@ def test_a_plan_is_that_of_the_command(population, planned, tmp_path):
     answer = subprocess.run(
         [PROGRAM, "plan", population, "--soaks", "4", "--candidates",
          "-30,0,20,45", "--json", "plan.json"], cwd=tmp_path,
-        capture_output=True, text=True, check=False, timeout=300)
+        capture_output=True, text=True, check=False, timeout=PATIENCE)
     assert answer.returncode == 0, answer.stderr
     assert planned.to_json() == (tmp_path / "plan.json").read_text()
     assert str(planned) == answer.stdout

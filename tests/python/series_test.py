@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import beamgyro as bg
-from program import PROGRAM, SCENARIOS
+from program import PATIENCE, PROGRAM, SCENARIOS
 
 
 
@@ -115,7 +115,7 @@ def test_a_curve_that_was_not_computed_is_refused(kind):
 
 def command(path):
     return subprocess.run([PROGRAM, "allan", path], capture_output=True,
-                          text=True, check=False, timeout=300)
+                          text=True, check=False, timeout=PATIENCE)
 
 
 def test_times_that_are_not_even_are_refused_as_by_the_command(

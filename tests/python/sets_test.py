@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import beamgyro as bg
-from program import PROGRAM, SCENARIOS
+from program import PATIENCE, PROGRAM, SCENARIOS
 
 
 
@@ -33,7 +33,7 @@ def test_a_set_has_the_bytes_of_the_command(campaign, made, tmp_path):
     answer = subprocess.run(
         [PROGRAM, "generate", campaign, "-o", "set", "--devices", "6"],
         cwd=tmp_path, capture_output=True, text=True, check=False,
-        timeout=300)
+        timeout=PATIENCE)
     assert answer.returncode == 0, answer.stderr
     command = {path.relative_to(tmp_path / "set"): path.read_bytes()
                for path in (tmp_path / "set").rglob("*") if path.is_file()}
@@ -111,7 +111,7 @@ def test_sensitivity_is_that_of_the_command(campaign, tmp_path):
     answer = subprocess.run(
         [PROGRAM, "sensitivity", campaign, "--samples", "64", "--figure",
          "bias_pp_deg_per_s", "--json", tmp_path / "s.json"], text=True,
-        capture_output=True, check=False, timeout=300)
+        capture_output=True, check=False, timeout=PATIENCE)
     assert answer.returncode == 0, answer.stderr
     found = bg.sensitivity(campaign, samples=64,
                            figures=["bias_pp_deg_per_s"])
