@@ -30,7 +30,9 @@ def missing():
     return "" if "/" in specs else "newlib for arm-none-eabi missing"
 
 
-@pytest.mark.deep  # export_test.py compiles the same code for this processor
+# export_test.py compiles and runs the same code for this machine in test.sh.
+# Its bits, its instructions and its size on a Cortex-M4 are tested only here.
+@pytest.mark.deep
 @unittest.skipIf(missing(), missing())
 class ExportFirmware(ExportTest):
     def emulate(self, folder, *options):

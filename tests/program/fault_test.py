@@ -221,8 +221,7 @@ class Sets(Struck):
         super().setUp()
         one_run, _, _ = CAMPAIGN.partition("[[run]]\nname = \"ramp\"")
         self.write("campaign.toml", one_run.replace("rest", "ramp").replace(
-            "devices = 7\ndevices_per_file = 2",
-            "devices = 2\ndevices_per_file = 1"))
+            "devices = 7", "devices = 3"))  # two in the first file
 
     def test_generate(self):
         generate = ["generate", "campaign.toml", "-o", "set", "--jobs", 1]

@@ -76,7 +76,9 @@ class Attributes(ProgramTest):
                     if isinstance(kind, h5py.h5t.TypeStringID):
                         self.assertFalse(kind.is_variable_str(), name)
 
-    @pytest.mark.deep  # the texts are checked above, the values by h5py
+    # In test.sh the form of the texts is tested above and h5py reads values; no
+    # Octave does.
+    @pytest.mark.deep
     @unittest.skipUnless(shutil.which("octave-cli"), "octave is not installed")
     def test_octave_reads_texts_and_values(self):
         script = """

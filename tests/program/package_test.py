@@ -19,9 +19,75 @@ sys.path.insert(0, str(ROOT / "packaging"))
 from help_pages import read_help  # noqa: E402
 
 BUILD = PROGRAM.parent
+PAGES = BUILD / "help_pages"
 
 
-@pytest.mark.deep  # files are installed by install_test.py
+@unittest.skipUnless((PAGES / "completions/beamgyro").exists(),
+                     "the program does not stand in its build")
+class HelpPages(unittest.TestCase):
+    def test_every_command_has_a_page_of_the_manual(self):
+        pages = PAGES / "man1"
+        self.assertEqual(
+            {path.name for path in pages.iterdir()},
+            {"beamgyro.1.gz", *(f"beamgyro-{command}.1.gz"
+                                for command in commands())})
+        for page in pages.iterdir():
+            with self.subTest(page.name):
+                answer = subprocess.run(
+                    ["man", "--warnings", "-l", page], text=True, check=True,
+                    capture_output=True, env={**os.environ, "MANWIDTH": "80"})
+                self.assertEqual(answer.stderr, "")
+                # Neither name, flags nor time stamp: as of gzip -9n.
+                self.assertEqual(page.read_bytes()[3:9], bytes(5) + b"\2")
+
+    def test_a_page_says_all_that_the_help_says(self):
+        pages = PAGES / "man1"
+        for command in commands():
+            page = gzip.open(pages / f"beamgyro-{command}.1.gz", "rt").read()
+            page = page.replace("\\fB", "").replace("\\fR", "").replace(
+                "\\-", "-").replace("\\(aq", "'").replace("\\e", "\\")
+            text = read_help(said(PROGRAM, "help", command))
+            self.assertGreater(len(text.sections), 2)
+            for section in text.sections:
+                for left, right in section.entries:
+                    with self.subTest(f"{command}: {left}"):
+                        self.assertIn(left, page)
+                        self.assertIn(right, page)
+
+    def completed(self, *words):
+        """What bash offers for the last word."""
+        script = ('. "$0"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1));'
+                  '_beamgyro; printf "%s\\n" "${COMPREPLY[@]}"')
+        file = PAGES / "completions/beamgyro"
+        return said("bash", "-c", script, file, "beamgyro", *words,
+                    cwd=ROOT).split()
+
+    def test_bash_completes_commands_options_values_and_files(self):
+        self.assertEqual(self.completed(""), ["help", *commands()])
+        self.assertEqual(self.completed("help", "al"), ["allan"])
+        for command in commands():
+            with self.subTest(command):
+                listed = re.findall(r"^  (?:-\w, )?(--[\w-]+)",
+                                    said(PROGRAM, "help", command),
+                                    re.MULTILINE)
+                self.assertEqual(self.completed(command, "--"), listed)
+        levels = ["quasistatic", "envelope", "carrier"]
+        self.assertEqual(self.completed("run", "--fidelity", ""), levels)
+        self.assertEqual(self.completed("run", "--fidelity", "=", "e"),
+                         levels[1:2])
+        self.assertEqual(self.completed("run", "--fidelity", "="), levels)
+        self.assertIn("scenarios/warm_up.toml",
+                      self.completed("run", "scenarios/w"))
+        self.assertEqual(self.completed("verify", "scenarios/dev"),
+                         ["scenarios/devices"])
+        self.assertEqual(self.completed("run", "README"), [])
+
+
+# What stands for it in test.sh: install_test.py runs what cmake installs, the
+# class above reads manual and completion. That packages can be made, their
+# fields, their documents, lintian's verdict, equal bytes elsewhere, and a
+# library that is found where it was unpacked are tested only here.
+@pytest.mark.deep
 @unittest.skipUnless((BUILD / "CPackConfig.cmake").exists(),
                      "the program does not stand in its build")
 class Packages(unittest.TestCase):
@@ -152,63 +218,14 @@ class Packages(unittest.TestCase):
         self.assertNotIn("RUNPATH", header)
         self.assertNotIn("RPATH", header)
 
-    def test_every_command_has_a_page_of_the_manual(self):
-        pages = self.dir / "beamgyro/usr/share/man/man1"
-        self.assertEqual(
-            {path.name for path in pages.iterdir()},
-            {"beamgyro.1.gz", *(f"beamgyro-{command}.1.gz"
-                                for command in commands())})
-        for page in pages.iterdir():
-            with self.subTest(page.name):
-                answer = subprocess.run(
-                    ["man", "--warnings", "-l", page], text=True, check=True,
-                    capture_output=True, env={**os.environ, "MANWIDTH": "80"})
-                self.assertEqual(answer.stderr, "")
-                # Neither name, flags nor time stamp: as of gzip -9n.
-                self.assertEqual(page.read_bytes()[3:9], bytes(5) + b"\2")
-
-    def test_a_page_says_all_that_the_help_says(self):
-        pages = self.dir / "beamgyro/usr/share/man/man1"
-        for command in commands():
-            page = gzip.open(pages / f"beamgyro-{command}.1.gz", "rt").read()
-            page = page.replace("\\fB", "").replace("\\fR", "").replace(
-                "\\-", "-").replace("\\(aq", "'").replace("\\e", "\\")
-            text = read_help(said(PROGRAM, "help", command))
-            self.assertGreater(len(text.sections), 2)
-            for section in text.sections:
-                for left, right in section.entries:
-                    with self.subTest(f"{command}: {left}"):
-                        self.assertIn(left, page)
-                        self.assertIn(right, page)
-
-    def completed(self, *words):
-        """What bash offers for the last word."""
-        script = ('. "$0"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1));'
-                  '_beamgyro; printf "%s\\n" "${COMPREPLY[@]}"')
-        file = (self.dir / "beamgyro/usr/share/bash-completion/completions"
-                / "beamgyro")
-        return said("bash", "-c", script, file, "beamgyro", *words,
-                    cwd=ROOT).split()
-
-    def test_bash_completes_commands_options_values_and_files(self):
-        self.assertEqual(self.completed(""), ["help", *commands()])
-        self.assertEqual(self.completed("help", "al"), ["allan"])
-        for command in commands():
-            with self.subTest(command):
-                listed = re.findall(r"^  (?:-\w, )?(--[\w-]+)",
-                                    said(PROGRAM, "help", command),
-                                    re.MULTILINE)
-                self.assertEqual(self.completed(command, "--"), listed)
-        levels = ["quasistatic", "envelope", "carrier"]
-        self.assertEqual(self.completed("run", "--fidelity", ""), levels)
-        self.assertEqual(self.completed("run", "--fidelity", "=", "e"),
-                         levels[1:2])
-        self.assertEqual(self.completed("run", "--fidelity", "="), levels)
-        self.assertIn("scenarios/warm_up.toml",
-                      self.completed("run", "scenarios/w"))
-        self.assertEqual(self.completed("verify", "scenarios/dev"),
-                         ["scenarios/devices"])
-        self.assertEqual(self.completed("run", "README"), [])
+    def test_they_have_the_manual_and_the_completion_of_the_build(self):
+        for made, place in [("man1", "man/man1"),
+                            ("completions", "bash-completion/completions")]:
+            packaged, built = [
+                {path.name: path.read_bytes() for path in folder.iterdir()}
+                for folder in [self.dir / "beamgyro/usr/share" / place,
+                               PAGES / made]]
+            self.assertEqual(packaged, built)
 
     def test_the_documents_of_a_package_are_those_of_debian(self):
         for package in self.debs:

@@ -329,7 +329,9 @@ class Firmware(ExportTest):
             / np.sqrt(np.mean(difference ** 2)), 1, delta=1e-9)
         self.assertGreater(difference.max(), 0)
 
-    @pytest.mark.deep  # a library and a command answer above
+    # A library and a command answer above; examples/plugins/cortex_m4.c is
+    # compiled and run only here.
+    @pytest.mark.deep
     @unittest.skipIf(missing(), missing())
     def test_the_image_of_a_cortex_m4_answers_as_the_library(self):
         folder = self.export("cubic")

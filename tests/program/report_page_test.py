@@ -29,7 +29,9 @@ drawn.filter(({chart}) => {
 """
 
 
-@pytest.mark.deep  # ReportFile writes the page
+# ReportFile writes the page in test.sh; what a browser shows of it, and whether
+# its scripts run, is tested only here.
+@pytest.mark.deep
 @unittest.skipIf(CHROMIUM is None,
                  "needs a browser: apt-get install chromium")
 class ReportPage(unittest.TestCase):

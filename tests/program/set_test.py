@@ -183,7 +183,9 @@ class SetTest(unittest.TestCase):
                               header)
                 self.assertNotIn("phony_dim", header)
 
-    @pytest.mark.deep  # ncdump and h5py read the same files
+    # In test.sh ncdump, h5py, netCDF4 and xarray read the same files; no Octave
+    # does.
+    @pytest.mark.deep
     def test_octave_reads_files_and_views(self):
         octave = shutil.which("octave-cli")
         if not octave:

@@ -13,7 +13,13 @@ from program import PROGRAM, ROOT, class_folder, said
 BUILD = PROGRAM.parent
 
 
-@pytest.mark.deep  # pages and links are read by tests/scripts/docs_test.py
+# What stands for it in test.sh: tests/scripts/docs_test.py follows the links of
+# the pages and finds every picture of the gallery on one of them;
+# tests/python/examples_test.py finds the docstrings that Python's reference is
+# made of. That Doxygen and Sphinx read all of it without a warning, the
+# reference of C++, and the way from the front page to every page are tested
+# only here.
+@pytest.mark.deep
 @unittest.skipUnless((BUILD / "python/beamgyro/__init__.py").exists(),
                      "the program does not stand in its build")
 class Site(unittest.TestCase):

@@ -62,7 +62,9 @@ def free_port():
         return listener.getsockname()[1]
 
 
-@pytest.mark.deep  # tasks of a set are made by generate_test.py
+# generate_test.py makes the tasks of a set in test.sh; nothing there runs
+# scripts/slurm_generate.sh.
+@pytest.mark.deep
 @unittest.skipIf(why_not(), why_not())
 class Slurm(unittest.TestCase):
     @classmethod

@@ -77,7 +77,7 @@ def test_notebook_in_a_kernel(tmp_path):
     assert shown[-1]["text/plain"] in ("'fail'", "'undecided'")
 
 
-@pytest.mark.deep
+@pytest.mark.early
 def test_types_of_the_examples(tmp_path):
     """mypy --strict, and what the stub says of the compiled part."""
     pytest.importorskip("mypy")
@@ -129,6 +129,9 @@ def test_the_stub_of_the_compiled_part_has_its_names():
             assert public(vars(thing)) == public(declared(stub[name])), name
 
 
+# What stands for it in test.sh: the test above compares the names of the
+# compiled part, and mypy reads stub and package for the examples. Arguments,
+# their defaults and types are compared with what is imported only here.
 @pytest.mark.deep
 def test_stubs_are_those_of_the_package(tmp_path):
     for module in ("mypy", "xarray", "matplotlib", "h5py"):

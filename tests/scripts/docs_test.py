@@ -49,6 +49,14 @@ class Docs(unittest.TestCase):
                     if anchor:
                         self.assertIn(anchor, anchors(target.read_text()))
 
+    def test_the_pages_show_every_picture_of_plot(self):
+        shown = {name for page in PAGES for name in re.findall(
+            r"!\[[^\]]+\]\([^)]*/(plot_\w+\.png)\)", page.read_text())}
+        pictures = {path.name for path in
+                    (ROOT / "docs/pictures").glob("plot_*.png")}
+        self.assertGreater(len(pictures), 3)
+        self.assertEqual(shown, pictures)
+
     def test_pages_named_in_the_sources_exist(self):
         files = [path for folder in (*ROOMS, "scenarios", "tests", "scripts",
                                      "bench")
