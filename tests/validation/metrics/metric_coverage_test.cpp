@@ -306,13 +306,13 @@ TEST(ManyDrawsOfMetrics, CoverTheNoiseCoefficients) {
 }
 
 TEST(ManyDrawsOfMetrics, CoverTheRateRamp) {
-  const double ramp = 2e-4;  // [deg/s2]
+  const double ramp = 5e-5;  // [deg/s2]
   expect_coverage(
       {{"rate_ramp_deg_per_h_per_h", ramp * 3600 * 3600}},
       [ramp](std::uint64_t seed) {
         Scene scene;
         scene.add({kRest,
-                   {.duration = 1800,
+                   {.duration = 7200,
                     .step = 0.5,
                     .bias = [ramp](double t) { return ramp * t; }}},
                   {.angle_random_walk = 0.01, .bias_instability = 0.005}, seed);
