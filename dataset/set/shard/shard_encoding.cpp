@@ -10,6 +10,7 @@
 #include <string>
 
 #include "dataset/recording/recording_defect.h"
+#include "dataset/set/shard/device_encoding.h"
 
 namespace beamgyro::internal {
 namespace {
