@@ -19,16 +19,6 @@ namespace {
 constexpr const char* kCompensated = "compensated_rate";
 constexpr const char* kCompensatedSigma = "compensated_rate_sigma";
 
-// Of its file; empty where there is none.
-std::string sha256_of(const RateCompensator& compensator) {
-  if (const auto* file =
-          dynamic_cast<const beamgyro::Compensator*>(&compensator))
-    return sha256(file->text());
-  const auto* opened = dynamic_cast<const OpenedCompensator*>(&compensator);
-  if (opened == nullptr || is_command(opened->argument())) return "";
-  return sha256_of_file(opened->argument());
-}
-
 }  // namespace
 
 void require_sound(const Recording& recording, const std::string& name) {
@@ -48,7 +38,7 @@ void require_uncompensated(const Recording& recording,
 CompensatedRate checked_answer(const RateCompensator& compensator,
                                const Recording& recording,
                                const std::string& name) try {
-  return public_answer(tested(compensator)->answer(recording));
+  return public_answer(source_of(compensator).tested->answer(recording));
 } catch (const std::invalid_argument& error) {
   throw std::invalid_argument(fmt::format("{}: {}", name, error.what()));
 }
@@ -56,17 +46,18 @@ CompensatedRate checked_answer(const RateCompensator& compensator,
 std::vector<std::string> range_warnings(const RateCompensator& compensator,
                                         const CompensatedRate& answer,
                                         const std::string& name) {
-  const auto* file = dynamic_cast<const beamgyro::Compensator*>(&compensator);
   if (answer.clamped == 0) return {};
-  if (file == nullptr)
+  const CompensatorSource source = source_of(compensator);
+  if (!source.trained)
     return {fmt::format("{}: {} of {} samples were clamped, as {} says", name,
                         answer.clamped, answer.rate.size(),
                         compensator.name())};
   return {fmt::format(
       "{}: {} of {} samples lie outside {:g} to {:g} degC, the temperatures "
       "seen in training; clamped{}",
-      name, answer.clamped, answer.rate.size(), file->lowest_temperature(),
-      file->highest_temperature(),
+      name, answer.clamped, answer.rate.size(),
+      source.trained->temperature_range.lowest,
+      source.trained->temperature_range.highest,
       answer.sigma.empty() ? ""
                            : ", and sigma there is a guess that grows with the "
                              "distance")};
@@ -79,7 +70,9 @@ void add_answer(const RateCompensator& compensator, CompensatedRate answer,
     recording.columns.push_back(
         column_of(kCompensatedSigma, std::move(answer.sigma)));
   recording.compensator = compensator.name();
-  recording.compensator_sha256 = sha256_of(compensator);
+  const CompensatorSource source = source_of(compensator);
+  recording.compensator_sha256 =
+      source.files.empty() ? "" : sha256(source.files.front().text);
   if (!recording.history.empty()) recording.history += '\n';
   recording.history += history_line("compensate with " + recording.compensator);
 }

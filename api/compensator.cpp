@@ -44,7 +44,7 @@ Compensator compensator_of_text(std::string text, const std::string& name,
   auto state = std::make_shared<Compensator::State>();
   state->compensator = internal::parse_compensator(text, name);
   state->text = std::move(text);
-  state->name = internal::tested_name(name);
+  state->name = std::filesystem::path(name).filename().string();
   state->file = std::move(file);
   return Compensator(std::move(state));
 }
@@ -113,12 +113,13 @@ std::vector<std::string> Compensator::warnings() const {
 
 std::shared_ptr<const RateCompensator> open_compensator(
     const std::string& argument, const ProcessOptions& options) {
-  if (!internal::is_command(argument) && !internal::is_library(argument))
+  const internal::SourceKind kind = internal::source_kind(argument);
+  if (!internal::is_program(kind))
     return std::make_shared<Compensator>(Compensator::read(argument));
   if (!(options.stall_s > 0))
     throw std::invalid_argument(
         fmt::format("stall_s {}: expected a time above 0", options.stall_s));
-  if (internal::is_library(argument)) {
+  if (kind == internal::SourceKind::kLibrary) {
     if (!std::filesystem::exists(argument))
       throw std::invalid_argument(argument + ": No such file or directory");
     if (options.program.empty())
@@ -127,10 +128,10 @@ std::shared_ptr<const RateCompensator> open_compensator(
           ": no program to load it; expected the place of the "
           "program beamgyro");
   }
-  return std::make_shared<internal::OpenedCompensator>(
+  return std::make_shared<internal::OpenedCompensator>(internal::open_source(
       argument, internal::ProcessLimits{.stall = options.stall_s,
                                         .memory = options.memory,
-                                        .program = options.program});
+                                        .program = options.program}));
 }
 
 }  // namespace beamgyro

@@ -12,6 +12,9 @@ struct Compensator::State {
   std::string text, name;
   std::string file;  // its path; empty when it is in memory only
   internal::Compensator compensator;
+
+  /// Returns its path, or the name that it was given in memory.
+  const std::string& path() const { return file.empty() ? name : file; }
 };
 
 }  // namespace beamgyro

@@ -128,46 +128,26 @@ class UserCompensator final : public TestedCompensator {
   const RateCompensator& user_;
 };
 
-/// One that is open already.
-class BorrowedCompensator final : public TestedCompensator {
- public:
-  explicit BorrowedCompensator(const TestedCompensator& opened)
-      : opened_(opened) {}
-  std::vector<std::string> inputs() const override { return opened_.inputs(); }
-  std::vector<Answer> answers(
-      const std::vector<const Recording*>& runs) const override {
-    return opened_.answers(runs);
-  }
-  bool is_timed() const override { return opened_.is_timed(); }
-
- private:
-  const TestedCompensator& opened_;
-};
-
 }  // namespace
 
-OpenedCompensator::OpenedCompensator(std::string argument,
-                                     const ProcessLimits& limits)
-    : argument_(std::move(argument)),
-      limits_(limits),
-      opened_(open_tested_compensator(argument_, limits)) {}
-
 std::vector<std::string> OpenedCompensator::inputs() const {
-  return opened_->inputs();
+  return source_.tested->inputs();
 }
 
 CompensatedRate OpenedCompensator::answer(const Recording& recording) const {
   require_sound(recording, "the recording");
-  return public_answer(opened_->answer(recording));
+  return public_answer(source_.tested->answer(recording));
 }
 
-std::unique_ptr<TestedCompensator> tested(const RateCompensator& compensator) {
+CompensatorSource source_of(const RateCompensator& compensator) {
   if (const auto* file =
           dynamic_cast<const beamgyro::Compensator*>(&compensator))
-    return tested(file->state().compensator);
+    return source_of(file->state().compensator, file->state().path(),
+                     file->text());
   if (const auto* opened = dynamic_cast<const OpenedCompensator*>(&compensator))
-    return std::make_unique<BorrowedCompensator>(opened->opened());
-  return std::make_unique<UserCompensator>(compensator);
+    return opened->source();
+  return source_of(std::make_shared<UserCompensator>(compensator),
+                   compensator.name());
 }
 
 CompensatedRate public_answer(Answer answer) {

@@ -1,24 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "include/beamgyro/validate.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <utility>
 
-#include "api/checked_number.h"
-#include "api/compensator_state.h"
 #include "api/model_state.h"
-#include "api/program_version.h"
 #include "api/reported_progress.h"
 #include "api/user_compensator.h"
 #include "api/validation_texts.h"
-#include "compensation/rows/recorded_runs.h"
-#include "config/range.h"
 #include "dataset/files/json_text.h"
 #include "parallel/work_queue.h"
 #include "report/verdict_report.h"
@@ -60,7 +52,8 @@ nlohmann::ordered_json json_of(const CompletedValidation& validation) {
 
 ValidationTexts texts_of(const CompletedValidation& validation) {
   const nlohmann::ordered_json json = json_of(validation);
-  return {json_text(json), verdict_report(validation.result), page_of(json)};
+  return {json_text(json), verdict_report(validation.result, false),
+          verdict_report(validation.result, true), page_of(json)};
 }
 
 }  // namespace internal
@@ -68,70 +61,6 @@ ValidationTexts texts_of(const CompletedValidation& validation) {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-void require_one_subject(const ValidationOptions& options) {
-  const int subjects = (options.device ? 1 : 0) +
-                       (options.recordings.empty() ? 0 : 1) +
-                       (options.set ? 1 : 0);
-  if (subjects != 1)
-    throw std::invalid_argument(fmt::format(
-        "{} things to validate on; expected a device, recordings or a set",
-        subjects));
-  if (options.device && !options.qualification)
-    throw std::invalid_argument(
-        "qualification is missing; expected a qualification file, which says "
-        "what the device goes through");
-  if (!options.device && (options.qualification || options.campaign))
-    throw std::invalid_argument(
-        "a qualification or a campaign is for a simulated device; expected a "
-        "device");
-  if (!options.set && !(options.runs.empty() && options.devices.empty()))
-    throw std::invalid_argument(
-        "runs and devices choose from a set; expected a set, or none of them");
-  if (options.full_scale && options.device)
-    throw std::invalid_argument(
-        "full_scale is for recordings; a device file says its own");
-  if (options.campaign_devices && !options.campaign)
-    throw std::invalid_argument(
-        "campaign_devices needs a campaign, from which they are drawn");
-}
-
-void require_different(const std::vector<std::filesystem::path>& recordings) {
-  std::vector<std::string> names;
-  for (const std::filesystem::path& path : recordings)
-    names.push_back(path.string());
-  internal::require_different_runs(names);
-}
-
-internal::ValidationRequest request_of(const ValidationOptions& options) {
-  require_one_subject(options);
-  internal::check_number("full_scale", options.full_scale,
-                         internal::positive());
-  internal::ValidationRequest request;
-  if (options.device) {
-    request.device = options.device->name();
-    request.given_device = {options.device->text(),
-                            options.device->overrides()};
-    request.qualification = *options.qualification;
-  }
-  request.runs = options.recordings;
-  require_different(options.recordings);
-  if (options.set) {
-    request.set = options.set->directory();
-    request.selection.runs = options.runs;
-    request.selection.devices = options.devices;
-    if (options.devices.empty())
-      request.selection.part = internal::SetPartNumber::kTest;
-  }
-  request.full_scale = options.full_scale;
-  request.specification = options.specification;
-  request.workbench = options.workbench;
-  request.campaign = options.campaign;
-  if (options.campaign_devices) request.devices = *options.campaign_devices;
-  request.program_version = internal::kProgramVersion;
-  request.git_revision = internal::kGitRevision;
-  return request;
-}
 
 static_assert(static_cast<int>(Verdict::kPass) ==
                   static_cast<int>(internal::Conformity::kPass) &&
@@ -187,6 +116,7 @@ ValidationOutcome public_outcome(
   ValidationOutcome outcome;
   outcome.verdict = public_verdict(result.verdict);
   outcome.words = result.words;
+  outcome.next = result.next;
   outcome.metrics = metrics_of(result);
   for (const internal::CheckResult& check : result.checks)
     outcome.checks.push_back({check.name, outcome_name(check.outcome),
@@ -195,13 +125,14 @@ ValidationOutcome public_outcome(
   internal::ValidationTexts texts = internal::texts_of(validation);
   outcome.json = std::move(texts.json);
   outcome.text = std::move(texts.text);
+  outcome.all_metrics = std::move(texts.all_metrics);
   outcome.page = std::move(texts.page);
   return outcome;
 }
 
-ValidationOutcome validated(internal::ValidationRequest request,
+ValidationOutcome validated(internal::CompensatorSource source,
                             const ValidationOptions& options) {
-  const internal::Validator validator(std::move(request));
+  const internal::Validator validator(std::move(source), options);
   std::mutex one_at_a_time;
   double reported = 0.0;
   internal::ProgressOfWork progress;
@@ -226,34 +157,14 @@ std::string_view verdict_name(Verdict verdict) {
 
 ValidationOutcome validate(const RateCompensator& compensator,
                            const ValidationOptions& options) {
-  internal::ValidationRequest request = request_of(options);
-  request.compensator = compensator.name();
-  internal::GivenCompensator given;
-  if (const auto* file = dynamic_cast<const Compensator*>(&compensator)) {
-    given.kind = "compensator";
-    given.trained = file->state().compensator;
-    given.text = file->text();
-  } else if (const auto* opened =
-                 dynamic_cast<const internal::OpenedCompensator*>(
-                     &compensator)) {
-    request.compensator = opened->argument();  // with its process limits
-    request.limits = opened->limits();
-    return validated(std::move(request), options);
-  } else {
-    given.kind = "function";
-    given.tested = internal::tested(compensator);
-  }
-  request.given = std::move(given);
-  return validated(std::move(request), options);
+  return validated(internal::source_of(compensator), options);
 }
 
 ValidationOutcome validate(const Model& model,
                            const ValidationOptions& options) {
-  internal::ValidationRequest request = request_of(options);
-  request.compensator = model.name();
-  request.given = internal::GivenCompensator{
-      .model = model.state().spec, .kind = "model", .text = model.text()};
-  return validated(std::move(request), options);
+  return validated(
+      internal::source_of(model.state().spec, model.name(), model.text()),
+      options);
 }
 
 }  // namespace beamgyro

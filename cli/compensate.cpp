@@ -17,7 +17,7 @@
 #include "cli/stream.h"
 #include "cli/terminal.h"
 #include "include/beamgyro/compensator.h"
-#include "validation/external/tested_compensator.h"
+#include "validation/external/compensator_source.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -48,7 +48,7 @@ int compensate(const CompensateArguments& arguments) {
   std::optional<Progress> progress("compensating " + arguments.run);
   Recording recording = load_recording(arguments.run);
   std::vector<std::filesystem::path> inputs = {arguments.run};
-  if (!is_command(arguments.compensator))
+  if (source_kind(arguments.compensator) != SourceKind::kCommand)
     inputs.emplace_back(arguments.compensator);
   require_output(arguments.output, inputs);
   require_recording_name(arguments.output);

@@ -29,7 +29,7 @@ void add_process_limits(Command& command, LimitArguments& arguments) {
 void require_limits_for_code(const LimitArguments& arguments,
                              const std::string& compensator) {
   if (!arguments.timeout && !arguments.memory) return;
-  if (is_command(compensator) || is_library(compensator)) return;
+  if (is_program(source_kind(compensator))) return;
   throw std::invalid_argument(fmt::format(
       "{} is for a library or a command; {} is neither",
       arguments.timeout ? "--timeout-s" : "--memory-GiB", compensator));

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cli/command_line.h"
-#include "validation/external/tested_compensator.h"
+#include "validation/external/compensator_source.h"
 
 namespace beamgyro::internal {
 

@@ -1,37 +1,48 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "api/validation_members.h"
 #include "cli/process_limits.h"
-#include "compensation/rows/set_runs.h"
 
 namespace beamgyro::internal {
 
 /// Exit status of a validation that ran and was not passed.
 constexpr int kNotPassed = 3;
 
+/// What stands after an option of the table of members, by its type.
+struct OptionWords {
+  std::optional<std::string> text = {};
+  std::optional<double> number = {};
+  std::optional<long> integer = {};
+  std::vector<std::string> list = {};
+
+  bool empty() const { return !text && !number && !integer && list.empty(); }
+};
+
 /// The words of `validate`.
 struct ValidateArguments {
   std::string compensator, json, report, figures, bundle, check;
-  std::vector<std::string> runs;      // recordings, or one set
-  std::vector<std::string> device;    // a device file, or numbers of a set
-  std::vector<std::string> set_runs;  // names, of a set
-  std::optional<double> full_scale;   // [deg/s]
-  std::optional<std::string> qualification, campaign, specification, workbench;
-  std::optional<long> devices, jobs;
+  std::vector<std::string> runs;    // recordings, or one set
+  std::vector<std::string> device;  // a device file, or numbers of a set
+  std::map<std::string_view, OptionWords> options;  // by name of the member
+  std::optional<long> jobs;
   LimitArguments limits;
-  bool list_metrics = false;
+  bool list_metrics = false, all_metrics = false, runs_code = false;
 };
 
-/// Returns what is chosen from a set: the test devices, or those named.
-SetSelection set_selection(const ValidateArguments& arguments);
+/// Returns what the words ask for. Throws std::invalid_argument for words that
+/// contradict each other.
+ValidationOptions validation_options(const ValidateArguments& arguments);
 
-/// Judges a compensator by every metric, check and limit, on a simulated
-/// device, on recordings or on the devices of a set.
-int validate_by_specification(const ValidateArguments& arguments);
+/// Judges a compensator on a simulated device, on recordings or on the devices
+/// of a set.
+int judge_compensator(const ValidateArguments& arguments);
 
 /// Makes the result of a bundle again. The status is 0 when every byte is the
 /// same, and 1 when not.

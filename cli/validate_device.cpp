@@ -8,19 +8,19 @@
 #include <string_view>
 #include <utility>
 
+#include "api/program_version.h"
 #include "api/validation_texts.h"
+#include "api/validator.h"
 #include "cli/figure_pictures.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
 #include "cli/validate.h"
 #include "cli/validate_outputs.h"
 #include "cli/version.h"
-#include "compensation/rows/recorded_runs.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/made_directories.h"
 #include "parallel/work_queue.h"
 #include "validation/bundle/bundle.h"
-#include "validation/result/validator.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -29,69 +29,31 @@ namespace fs = std::filesystem;
 
 constexpr int kBundleDiffers = 1;
 
-fs::path shipped_qualification() {
-  const fs::path file = shipped_file("scenarios/qualification.toml");
-  if (file.empty())
-    throw std::invalid_argument(
-        "--qualification is missing, and this program has no scenarios beside "
-        "it; expected --qualification QUALIFICATION.toml");
-  return file;
-}
+// A validation as files and the terminal show it.
+struct ShownValidation {
+  Conformity verdict;
+  std::string text;  // for the terminal
+  std::vector<BundleOutput> outputs;
+};
 
-void require_campaign(const ValidateArguments& arguments) {
-  if (arguments.devices && !arguments.campaign)
-    throw std::invalid_argument(
-        "--devices needs --campaign CAMPAIGN.toml, from which they are drawn");
-}
-
-ValidationRequest request_of(const ValidateArguments& arguments) {
-  ValidationRequest request{.compensator = arguments.compensator};
-  request.full_scale = arguments.full_scale;
-  request.devices = arguments.devices;
-  request.program_version = kProgramVersion;
-  request.git_revision = kGitRevision;
-  request.limits = process_limits(arguments.limits);
-  if (is_set(arguments.runs)) {
-    request.set = arguments.runs[0];
-    request.selection = set_selection(arguments);
-  } else {
-    request.runs.assign(arguments.runs.begin(), arguments.runs.end());
-  }
-  if (arguments.runs.empty()) {
-    request.device = arguments.device.at(0);
-    request.qualification = arguments.qualification
-                                ? fs::path(*arguments.qualification)
-                                : shipped_qualification();
-  }
-  if (arguments.specification) request.specification = *arguments.specification;
-  if (arguments.workbench) request.workbench = *arguments.workbench;
-  if (arguments.campaign) request.campaign = *arguments.campaign;
-  return request;
-}
-
-std::vector<BundleOutput> outputs_of(const CompletedValidation& validation) {
-  ValidationTexts texts = texts_of(validation);
-  return {{kResultFile, std::move(texts.json)},
-          {kReportFile, std::move(texts.text)},
-          {kPageFile, std::move(texts.page)}};
-}
-
-std::vector<BundleOutput> validated(const Validator& validator,
-                                    const ValidateArguments& arguments,
-                                    Conformity& verdict) {
-  Progress progress("validating " + validator.request().compensator);
-  const CompletedValidation validation = validator.validate(
-      thread_count(static_cast<unsigned>(arguments.jobs.value_or(0))),
-      [&](double share) { progress.set_share(share); });
+ShownValidation validated(const Validator& validator, bool all_metrics) {
+  Progress progress("validating " + validator.source().argument);
+  const CompletedValidation validation =
+      validator.validate(thread_count(validator.options().jobs),
+                         [&](double share) { progress.set_share(share); });
   for (const std::string& warning : validation.result.warnings)
     keep_warning(warning);
-  verdict = validation.result.verdict;
-  return outputs_of(validation);
+  ValidationTexts texts = texts_of(validation);
+  return {validation.result.verdict,
+          all_metrics ? texts.all_metrics : std::move(texts.text),
+          {{kResultFile, std::move(texts.json)},
+           {kReportFile, std::move(texts.all_metrics)},
+           {kPageFile, std::move(texts.page)}}};
 }
 
 // Returns the work of writing each file and directory that is asked for.
 std::vector<std::function<void()>> writers_of(
-    const ValidateArguments& arguments, const Validator& validator,
+    const ValidateArguments& arguments, const BundleContent& content,
     const std::vector<BundleOutput>& outputs) {
   std::vector<std::function<void()>> writers;
   if (!arguments.json.empty())
@@ -105,7 +67,7 @@ std::vector<std::function<void()>> writers_of(
     });
   if (!arguments.bundle.empty())
     writers.emplace_back(
-        [&] { write_bundle(arguments.bundle, validator, outputs); });
+        [&] { write_bundle(arguments.bundle, content, outputs); });
   if (!arguments.figures.empty())
     writers.emplace_back([&] {
       const MadeDirectories made(arguments.figures);
@@ -114,52 +76,62 @@ std::vector<std::function<void()>> writers_of(
   return writers;
 }
 
-// Says before it happens that code of whoever made the bundle is run.
-void announce_code(const Bundle& bundle) {
-  const std::string& compensator = bundle.request.compensator;
-  if (is_command(compensator) || is_library(compensator))
-    print_note(
-        fmt::format("{}: runs {}", bundle.directory.string(), compensator));
+// Throws unless the user lets code of whoever made the bundle run.
+void require_permission(const Bundle& bundle, const std::string& compensator,
+                        bool runs_code) {
+  if (!is_program(source_kind(compensator))) return;
+  if (!runs_code)
+    throw std::invalid_argument(fmt::format(
+        "{0}: would run {1}, which is code of whoever made the bundle; nothing "
+        "was run. Its files are those that it lists. Expected --run-code to "
+        "run it",
+        bundle.directory.string(), compensator));
+  print_note(
+      fmt::format("{}: runs {}", bundle.directory.string(), compensator));
 }
 
 std::vector<BundleDifference> differences_of(
     const Bundle& bundle, const ValidateArguments& arguments) {
   std::vector<BundleDifference> different = changed_files(bundle);
   if (!different.empty()) return different;
-  announce_code(bundle);
-  ValidationRequest request = bundle.request;
-  request.program_version = kProgramVersion;
-  request.git_revision = kGitRevision;
-  request.limits = process_limits(arguments.limits);
-  const Validator validator(std::move(request));
-  different = different_inputs(bundle, validator);
+  BundledRequest request = request_of(bundle);
+  require_limits_for_code(arguments.limits, request.compensator);
+  require_permission(bundle, request.compensator, arguments.runs_code);
+  request.options.jobs = static_cast<unsigned>(arguments.jobs.value_or(0));
+  const Validator validator(
+      open_source(request.compensator, process_limits(arguments.limits)),
+      std::move(request.options), true);
+  const BundleContent content = bundle_content(validator);
+  different = different_inputs(bundle, content);
   if (!different.empty()) return different;
-  Conformity verdict{};
-  return different_outputs(bundle, validator,
-                           validated(validator, arguments, verdict));
+  return different_outputs(bundle, content, validated(validator, true).outputs);
 }
 
 }  // namespace
 
-int validate_by_specification(const ValidateArguments& arguments) {
-  require_campaign(arguments);
-  const Validator validator(request_of(arguments));
+int judge_compensator(const ValidateArguments& arguments) {
+  ValidationOptions options = validation_options(arguments);
+  if (options.set && !arguments.bundle.empty())
+    throw std::invalid_argument(fmt::format(
+        "--bundle: {} is a set, which no bundle takes; expected recordings",
+        arguments.runs[0]));
+  require_sound(options);
+  const Validator validator(
+      open_source(arguments.compensator, process_limits(arguments.limits)),
+      std::move(options), !arguments.bundle.empty());
+  const BundleContent content = bundle_content(validator);
   std::vector<fs::path> inputs;
   for (const InputFile& input : validator.inputs())
     inputs.push_back(input.path);
   require_outputs_of(arguments, inputs);
-  if (!arguments.bundle.empty())
-    require_new_bundle(arguments.bundle, validator);
-  Conformity verdict{};
-  const std::vector<BundleOutput> outputs =
-      validated(validator, arguments, verdict);
-  return deliver(outputs[1].text, writers_of(arguments, validator, outputs),
-                 verdict == Conformity::kPass ? 0 : kNotPassed);
+  if (!arguments.bundle.empty()) require_new_bundle(arguments.bundle, content);
+  const ShownValidation shown = validated(validator, arguments.all_metrics);
+  return deliver(shown.text, writers_of(arguments, content, shown.outputs),
+                 shown.verdict == Conformity::kPass ? 0 : kNotPassed);
 }
 
 int check_bundle(const ValidateArguments& arguments) {
   const Bundle bundle = read_bundle(arguments.check);
-  require_limits_for_code(arguments.limits, bundle.request.compensator);
   const std::vector<BundleDifference> different =
       differences_of(bundle, arguments);
   for (const auto& [file, words] : different)

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 namespace beamgyro::internal {
@@ -47,17 +48,27 @@ std::vector<std::string> baseline_names(const ValidationResult& result) {
   return names;
 }
 
-std::string metric_table(const ValidationResult& result) {
+// Whether a metric stands in the short table.
+bool decides(const ValidationResult& result, const MetricResult& metric) {
+  if (metric.metric->name == "residual_rms_deg_per_s") return true;
+  return std::ranges::any_of(result.limits, [&](const DecidedLimit& decided) {
+    return decided.limit.metric == metric.metric->name;
+  });
+}
+
+std::string metric_table(const ValidationResult& result, bool all) {
   const std::vector<std::string> names = baseline_names(result);
   std::size_t width = 6;
   for (const MetricResult& metric : result.metrics)
-    width = std::max(width, metric.metric->name.size());
+    if (all || decides(result, metric))
+      width = std::max(width, metric.metric->name.size());
   std::string text =
       fmt::format("{:<{}}{:>10}{:>10}", "metric", width, "before", "after");
   for (const std::string& name : names) text += fmt::format("{:>10}", name);
   text += '\n';
   for (const MetricResult& metric : result.metrics) {
     if (!metric.before && !metric.after) continue;
+    if (!all && !decides(result, metric)) continue;
     text += fmt::format("{:<{}}{:>10}{:>10}", metric.metric->name, width,
                         figure(metric.before), figure(metric.after));
     for (const BaselineEstimate& baseline : metric.baselines)
@@ -113,6 +124,59 @@ std::string check_line(const CheckResult& check) {
   return wrapped(text, 11);
 }
 
+std::string check_lines(const ValidationResult& result, bool all) {
+  std::string text;
+  std::vector<std::string> passed;
+  for (const CheckResult& check : result.checks)
+    if (all || !check.passed())
+      text += check_line(check);
+    else
+      passed.push_back(check.name);
+  if (passed.empty()) return text;
+  return wrapped(fmt::format("{:<11}{}", "passed", fmt::join(passed, ", ")),
+                 11) +
+         text;
+}
+
+std::string run_table(const ValidationResult& result) {
+  std::size_t width = 3;
+  for (const RunResidual& run : result.runs)
+    width = std::max(width, run.name.size());
+  std::string text = fmt::format("{:<{}}  {:<14}{:>10}{:>10}  deg/s rms\n",
+                                 "run", width, "purpose", "before", "after");
+  for (const RunResidual& run : result.runs)
+    text += fmt::format("{:<{}}  {:<14}{:>10.3g}{:>10.3g}\n", run.name, width,
+                        run.purpose, run.before, run.after);
+  return text;
+}
+
+// Median and worst of a figure over devices; one that is missing is the worst.
+std::string median_and_worst(std::vector<double> values) {
+  for (double& value : values)
+    value = std::isnan(value) ? HUGE_VAL : std::abs(value);
+  std::ranges::sort(values);
+  const std::size_t n = values.size();
+  return fmt::format("{:>10.3g}{:>10.3g}",
+                     0.5 * (values[(n - 1) / 2] + values[n / 2]),
+                     values[n - 1]);
+}
+
+std::string device_table(const PopulationYield& population) {
+  if (population.metrics.empty()) return "";
+  std::size_t width = 7;
+  for (const PopulationMetric& metric : population.metrics)
+    width = std::max(width, metric.metric->name.size());
+  std::string text = fmt::format(
+      "{:<{}}{:>20}{:>20}\n{:{}}{:>10}{:>10}{:>10}{:>10}\n",
+      fmt::format("{} devices", population.devices.size()), width, "before",
+      "after", "", width, "median", "worst", "median", "worst");
+  for (const PopulationMetric& metric : population.metrics)
+    text += fmt::format("{:<{}}{}{}\n", metric.metric->name, width,
+                        median_and_worst(metric.before),
+                        median_and_worst(metric.after));
+  return text;
+}
+
 std::string yield_lines(const PopulationYield& population) {
   return wrapped(
       fmt::format(
@@ -145,9 +209,9 @@ std::string sigma_lines(const SigmaReport& sigma) {
   if (sigma.nis)
     text += fmt::format(
         "; a bias filter that believes it has a mean normalised innovation "
-        "squared of {:.3g} [{:.3g}, {:.3g}] over {} updates",
+        "squared of {:.3g} [{:.3g}, {:.3g}] over {} update{}",
         sigma.nis->value, sigma.nis->interval->low, sigma.nis->interval->high,
-        sigma.updates);
+        sigma.updates, sigma.updates == 1 ? "" : "s");
   return wrapped(text, 2);
 }
 
@@ -176,30 +240,33 @@ std::string workbench_line(const JudgedCompensator& compensator) {
       2);
 }
 
-std::string heading(const ValidationResult& result) {
+std::string last_lines(const ValidationResult& result) {
   std::string verdict(conformity_name(result.verdict));
   std::ranges::transform(verdict, verdict.begin(), [](char c) {
     return static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
   });
   return wrapped(fmt::format("{}: {}", verdict, result.words), 2) +
-         wrapped(fmt::format("{} on {}; {}", result.compensator.name,
-                             evidence_words(result),
-                             result.provenance.specification),
-                 2) +
-         workbench_line(result.compensator);
+         wrapped(fmt::format("next: {}", result.next), 2);
 }
 
 }  // namespace
 
-std::string verdict_report(const ValidationResult& result) {
-  std::string text = heading(result) + '\n' + metric_table(result) + '\n';
+std::string verdict_report(const ValidationResult& result, bool all) {
+  std::string text =
+      wrapped(
+          fmt::format("{} on {}; specification {}", result.compensator.name,
+                      evidence_words(result), result.provenance.specification),
+          2) +
+      workbench_line(result.compensator) + '\n' + run_table(result) + '\n' +
+      metric_table(result, all);
+  if (result.population) text += '\n' + device_table(*result.population);
+  if (!result.limits.empty()) text += '\n';
   for (const DecidedLimit& limit : result.limits)
     text += limit_line(result, limit);
-  text += '\n';
-  for (const CheckResult& check : result.checks) text += check_line(check);
+  text += '\n' + check_lines(result, all);
   if (result.sigma) text += '\n' + sigma_lines(*result.sigma);
   if (result.population) text += '\n' + yield_lines(*result.population);
-  return text;
+  return text + '\n' + last_lines(result);
 }
 
 }  // namespace beamgyro::internal

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "compensation/export/firmware_difference.h"
-#include "compensation/scoring/validation.h"
+#include "compensation/scoring/scale_factor.h"
 #include "compensation/training/rate_kept.h"
 
 namespace beamgyro::internal {

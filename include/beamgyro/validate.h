@@ -18,17 +18,20 @@
 
 namespace beamgyro {
 
-/// What a compensator is judged on and by. Give `device` and `qualification`,
-/// or else `recordings`, or else `set`.
+/// What a compensator is judged on and by: `device`, `recordings` or `set`.
+/// The command and Python take the same members under the names of
+/// docs/reference/commands.md and docs/guide/python.md.
 struct ValidationOptions {
   std::optional<Device> device = {};
-  std::optional<std::filesystem::path> qualification = {};  ///< its runs
+  /// The runs that it goes through; that of a device only.
+  std::optional<std::filesystem::path> qualification = {};
   std::vector<std::filesystem::path> recordings = {};
   std::optional<Set> set = {};
   std::vector<std::string> runs = {};  ///< of the set; none: all
   /// Numbers of the set; none: the test devices.
   std::vector<std::uint32_t> devices = {};
-  /// Limits (docs/validation.md); without them some drift must be removed.
+  /// Limits (docs/reference/specification_file.md); without them those of
+  /// specs/default.toml count.
   std::optional<std::filesystem::path> specification = {};
   /// A compensator file that the answers are compared with.
   std::optional<std::filesystem::path> workbench = {};
@@ -80,11 +83,13 @@ struct CheckRow {
 
 struct ValidationOutcome {
   Verdict verdict = Verdict::kUndecided;
-  std::string words;  ///< the verdict in a sentence or two
+  std::string words;  ///< the reason, in a sentence or two
+  std::string next;   ///< what to do next
   std::vector<MetricRow> metrics;
   std::vector<CheckRow> checks;
   std::vector<std::string> warnings;
-  std::string text;  ///< the table that `beamgyro validate` prints
+  std::string text;  ///< what `beamgyro validate` prints
+  std::string all_metrics;  ///< the same with every metric: `--all-metrics`
   std::string json;  ///< what `--json` writes
   std::string page;  ///< HTML, what `--report` writes
 };

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "api/validation_members.h"
 #include "include/beamgyro/allan.h"
 #include "include/beamgyro/campaign.h"
 #include "include/beamgyro/export.h"
@@ -81,19 +82,24 @@ py::tuple allan_file(const Path& file, const std::optional<std::string>& column,
 
 ValidationOptions validation_options(const py::dict& given) {
   ValidationOptions options;
-  take(given, "device", options.device);
-  take(given, "qualification", options.qualification);
-  take(given, "recordings", options.recordings);
-  take(given, "set", options.set);
-  take(given, "runs", options.runs);
-  take(given, "devices", options.devices);
-  take(given, "specification", options.specification);
-  take(given, "workbench", options.workbench);
-  take(given, "campaign", options.campaign);
-  take(given, "campaign_devices", options.campaign_devices);
-  take(given, "full_scale", options.full_scale);
+  for (const internal::ValidationMember& row : internal::validation_members())
+    std::visit(
+        [&](auto member) {
+          take(given, std::string(row.name).c_str(), options.*member);
+        },
+        row.member);
   take(given, "jobs", options.jobs);
   return options;
+}
+
+/// Returns (keyword, member, type, subjects, what it is) of each option.
+std::vector<py::tuple> validation_members() {
+  std::vector<py::tuple> rows;
+  for (const internal::ValidationMember& row : internal::validation_members())
+    rows.push_back(py::make_tuple(row.python, row.name,
+                                  internal::type_name(row),
+                                  internal::subject_names(row), row.help));
+  return rows;
 }
 
 py::tuple outcome_of(const ValidationOutcome& outcome) {
@@ -181,6 +187,7 @@ void bind_analysis(py::module_& core) {
            py::arg("taus"), py::arg("from_s"), py::arg("to_s"));
   core.def("validate", &validate_compensator, py::arg("compensator"),
            py::arg("options"), py::arg("progress"));
+  core.def("validation_members", &validation_members);
   core.def("validate_model", &validate_model, py::arg("model"),
            py::arg("options"), py::arg("progress"));
   core.def("sensitivity", &study_sensitivity, py::arg("campaign"),

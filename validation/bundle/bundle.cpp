@@ -29,9 +29,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// Names of copies by group and path.
-using CopyNames = std::map<std::pair<std::string, fs::path>, std::string>;
-
 // A file of a bundle.
 struct BundleInput {
   std::string name;  // inputs/GROUP/...
@@ -41,7 +38,7 @@ struct BundleInput {
 // Returns the copies of all inputs. Those of a group stand to each other as the
 // originals do, so that the names in them stay valid.
 std::vector<BundleInput> copies_of(const std::vector<InputFile>& inputs,
-                                   CopyNames& names) {
+                                   InputNames& names) {
   std::vector<std::string> groups;
   for (const InputFile& input : inputs)
     if (std::ranges::count(groups, input.group) == 0)
@@ -50,8 +47,7 @@ std::vector<BundleInput> copies_of(const std::vector<InputFile>& inputs,
   for (const std::string& group : groups) {
     std::vector<SourceText> texts;
     for (const InputFile& input : inputs)
-      if (input.group == group)
-        texts.push_back({input.path, read_text_file(input.path)});
+      if (input.group == group) texts.push_back({input.path, input.text});
     const std::vector<SourceEntry> entries = source_entries(texts);
     std::vector<fs::path> placed;  // of the entries: one for each file
     for (SourceText& text : texts) {
@@ -163,45 +159,16 @@ Json hashes_of(const auto& files) {
   return list;
 }
 
-Json request_json(const ValidationRequest& request, const CopyNames& names) {
-  const auto name_of = [&](const char* group, const fs::path& path) {
-    return names.at({group, path});
-  };
-  const auto optional_name = [&](const char* group,
-                                 const std::optional<fs::path>& path) {
-    return path ? Json(name_of(group, *path)) : Json();
-  };
-  Json runs = Json::array();
-  for (const fs::path& run : request.runs) runs.push_back(name_of("runs", run));
-  return {
-      {"compensator", is_command(request.compensator)
-                          ? request.compensator
-                          : name_of("compensator", request.compensator)},
-      {"device", optional_name("device", request.device)},
-      {"qualification",
-       request.device ? Json(name_of("qualification", request.qualification))
-                      : Json()},
-      {"runs", runs},
-      {"full_scale_deg_per_s",
-       request.full_scale ? Json(*request.full_scale) : Json()},
-      {"specification", optional_name("specification", request.specification)},
-      {"workbench", optional_name("workbench", request.workbench)},
-      {"campaign", optional_name("campaign", request.campaign)},
-      {"devices", request.devices ? Json(*request.devices) : Json()}};
-}
-
 // Returns bundle.json.
-std::string bundle_text(const Validator& validator,
+std::string bundle_text(const BundleContent& content,
                         const std::vector<BundleInput>& copies,
-                        const CopyNames& names,
-                        const std::vector<BundleOutput>& outputs,
-                        const std::string& version,
-                        const std::string& revision) {
+                        const InputNames& names,
+                        const std::vector<BundleOutput>& outputs) {
   const Json json{{"filetype", kBundleFiletype},
                   {"format_version", 1},
-                  {"beamgyro_version", version},
-                  {"git_revision", revision},
-                  {"request", request_json(validator.request(), names)},
+                  {"beamgyro_version", content.program_version},
+                  {"git_revision", content.git_revision},
+                  {"request", content.request(names)},
                   {"inputs", hashes_of(copies)},
                   {"outputs", hashes_of(outputs)}};
   return json_text(json);
@@ -209,18 +176,19 @@ std::string bundle_text(const Validator& validator,
 
 }  // namespace
 
-void require_new_bundle(const fs::path& directory, const Validator& validator) {
-  CopyNames names;
+void require_new_bundle(const fs::path& directory,
+                        const BundleContent& content) {
+  InputNames names;
   if (fs::is_directory(status_of(directory)) && !files_of(directory).empty())
-    require_new(directory, copies_of(validator.inputs(), names));
+    require_new(directory, copies_of(content.inputs, names));
   else
     require_new(directory, {});
 }
 
-void write_bundle(const fs::path& directory, const Validator& validator,
+void write_bundle(const fs::path& directory, const BundleContent& content,
                   const std::vector<BundleOutput>& outputs) {
-  CopyNames names;
-  const std::vector<BundleInput> copies = copies_of(validator.inputs(), names);
+  InputNames names;
+  const std::vector<BundleInput> copies = copies_of(content.inputs, names);
   require_new(directory, copies);
   const MadeDirectories made(directory);
   remove_partial_files_of(directory);
@@ -228,10 +196,7 @@ void write_bundle(const fs::path& directory, const Validator& validator,
   for (const BundleInput& copy : copies) files.write(copy.name, copy.text);
   for (const BundleOutput& output : outputs)
     files.write(output.name, output.text);
-  const ValidationRequest& request = validator.request();
-  files.write(kBundleFile,
-              bundle_text(validator, copies, names, outputs,
-                          request.program_version, request.git_revision));
+  files.write(kBundleFile, bundle_text(content, copies, names, outputs));
   files.keep();
 }
 
@@ -252,7 +217,7 @@ std::vector<BundleDifference> changed_files(const Bundle& bundle) {
 }
 
 std::vector<BundleDifference> different_inputs(const Bundle& bundle,
-                                               const Validator& validator) {
+                                               const BundleContent& content) {
   const auto place = [](const fs::path& path) {
     return fs::absolute(path).lexically_normal();
   };
@@ -260,7 +225,7 @@ std::vector<BundleDifference> different_inputs(const Bundle& bundle,
   for (const ListedFile& input : bundle.inputs)
     listed.insert(place(bundle.directory / input.name));
   std::vector<BundleDifference> different;
-  for (const InputFile& input : validator.inputs())
+  for (const InputFile& input : content.inputs)
     if (read.insert(place(input.path)).second &&
         !listed.contains(place(input.path)))
       different.push_back({input.path, "is read and not in the bundle"});
@@ -272,18 +237,18 @@ std::vector<BundleDifference> different_inputs(const Bundle& bundle,
 }
 
 std::vector<BundleDifference> different_outputs(
-    const Bundle& bundle, const Validator& validator,
+    const Bundle& bundle, BundleContent content,
     const std::vector<BundleOutput>& outputs) {
   std::vector<BundleDifference> different;
   for (const BundleOutput& output : outputs)
     if (!has_bytes(bundle.directory, output.name, sha256(output.text)))
       different.push_back({bundle.directory / output.name, "is not the same"});
   if (!different.empty()) return different;
-  CopyNames names;
-  const std::vector<BundleInput> copies = copies_of(validator.inputs(), names);
-  const std::string text =
-      bundle_text(validator, copies, names, outputs, bundle.program_version,
-                  bundle.git_revision);
+  InputNames names;
+  const std::vector<BundleInput> copies = copies_of(content.inputs, names);
+  content.program_version = bundle.program_version;
+  content.git_revision = bundle.git_revision;
+  const std::string text = bundle_text(content, copies, names, outputs);
   if (!has_bytes(bundle.directory, kBundleFile, sha256(text)))
     different.push_back({bundle.directory / kBundleFile, "is not the same"});
   return different;

@@ -60,76 +60,15 @@ std::vector<ListedFile> listed_files(const JsonNode& list, const Json& json,
   return files;
 }
 
-// Reads the names of a request, which are those of inputs.
-class RequestNames {
- public:
-  explicit RequestNames(const Bundle& bundle) : bundle_(bundle) {}
-
-  fs::path path(const JsonNode& node) const {
-    const std::string name = plain_name(node);
-    if (std::ranges::count(bundle_.inputs, name, &ListedFile::name) == 0)
-      node.fail(fmt::format(
-          "\"{}\": is not in \"inputs\"; expected one that is", name));
-    return bundle_.directory / name;
-  }
-
-  std::optional<fs::path> optional_path(const JsonNode& node) const {
-    if (node.is_null()) return {};
-    return path(node);
-  }
-
- private:
-  const Bundle& bundle_;
-};
-
-// Throws for a request that no command line could make.
-void require_sound(const JsonNode& node, const ValidationRequest& request) {
-  const bool has_device = request.device.has_value();
-  if (has_device == !request.runs.empty())
-    node.fail("expected either a device or runs");
-  if (has_device != !request.qualification.empty())
-    node.at("qualification").fail("expected one with a device, else null");
-  if (has_device && request.full_scale)
-    node.at("full_scale_deg_per_s").fail("expected null, with a device");
-  if (request.full_scale && *request.full_scale <= 0)
-    node.at("full_scale_deg_per_s").fail("expected a number above 0");
-  if (!has_device && request.campaign)
-    node.at("campaign").fail("expected null, without a device");
-  if (request.devices && !request.campaign)
-    node.at("devices").fail("expected null, without a campaign");
-  for (const fs::path& run : request.runs)
-    if (std::ranges::count(request.runs, run) > 1)
-      node.at("runs").fail("has one twice; expected each once");
-}
-
-ValidationRequest request_from(const Bundle& bundle, const JsonNode& node,
-                               const Json& json) {
-  const RequestNames names(bundle);
-  ValidationRequest request;
-  const JsonNode compensator = node.at("compensator");
-  require_known_keys(
-      node, json,
-      {"compensator", "device", "qualification", "runs", "full_scale_deg_per_s",
-       "specification", "workbench", "campaign", "devices"});
-  request.compensator = compensator.text();
-  if (!is_command(request.compensator))
-    request.compensator = names.path(compensator).string();
-  request.device = names.optional_path(node.at("device"));
-  request.qualification =
-      names.optional_path(node.at("qualification")).value_or(fs::path());
-  for (const JsonNode& run : node.at("runs").elements())
-    request.runs.push_back(names.path(run));
-  request.full_scale = node.at("full_scale_deg_per_s").optional_number();
-  request.specification = names.optional_path(node.at("specification"));
-  request.workbench = names.optional_path(node.at("workbench"));
-  request.campaign = names.optional_path(node.at("campaign"));
-  if (const JsonNode devices = node.at("devices"); !devices.is_null())
-    request.devices = devices.integer(1, 4'000'000'000);
-  require_sound(node, request);
-  return request;
-}
-
 }  // namespace
+
+std::string listed_name(const Bundle& bundle, const JsonNode& value) {
+  std::string name = plain_name(value);
+  if (std::ranges::count(bundle.inputs, name, &ListedFile::name) == 0)
+    value.fail(fmt::format("\"{}\": is not in \"inputs\"; expected one that is",
+                           name));
+  return name;
+}
 
 Bundle read_bundle(const fs::path& directory) {
   const std::string place = (directory / kBundleFile).string();
@@ -148,10 +87,10 @@ Bundle read_bundle(const fs::path& directory) {
                 .git_revision = root.at("git_revision").text(),
                 .inputs = {},
                 .outputs = {}};
-  const JsonNode request = root.at("request");
   bundle.inputs = listed_files(root.at("inputs"), json["inputs"], true);
   bundle.outputs = listed_files(root.at("outputs"), json["outputs"], false);
-  bundle.request = request_from(bundle, request, json["request"]);
+  root.at("request");  // or throws
+  bundle.request = json["request"];
   return bundle;
 }
 

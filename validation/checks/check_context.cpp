@@ -8,6 +8,8 @@
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/scale_factor.h"
 #include "parallel/work_queue.h"
+#include "validation/checks/gain_judge.h"
+#include "validation/external/file_compensator.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -23,7 +25,36 @@ std::size_t missing_answers(const Recording& run, const Answer& answer) {
   return missing;
 }
 
+ScaleFactorCurve curve_of(const CheckedCompensator& all) {
+  ScaleFactorCurve curve;
+  for (const CheckedRun& run : all.runs)
+    for (const PlateauSlope& plateau :
+         plateau_slopes(*run.recording, kTableRate))
+      curve.add(plateau.temperature, plateau.raw / plateau.truth);
+  return curve;
+}
+
+// A table that divides every rate away is left in, and found.
+bool is_plausible(const LookupTable& table) {
+  return std::ranges::all_of(table.values, [](double s) {
+    return s >= kCancelledBelow && s <= 1.0 / kCancelledBelow;
+  });
+}
+
+std::unique_ptr<const TestedCompensator> stripped(
+    const CheckedCompensator& all, const ScaleFactorCurve& curve) {
+  if (all.trained == nullptr || !all.trained->scale_factor || !curve.empty() ||
+      !is_plausible(*all.trained->scale_factor))
+    return nullptr;
+  return tested(without_scale_factor(*all.trained));
+}
+
 }  // namespace
+
+Compensator without_scale_factor(Compensator compensator) {
+  compensator.scale_factor.reset();
+  return compensator;
+}
 
 std::vector<double> bridged(const Recording& run, std::vector<double> answers) {
   const auto& rate = column_values(run, "rate");
@@ -52,6 +83,12 @@ void ScaleFactorCurve::add(double temperature, double scale_factor) {
   const auto place =
       std::ranges::upper_bound(points_, temperature, {}, &Point::temperature);
   points_.insert(place, {temperature, scale_factor});
+}
+
+bool ScaleFactorCurve::has_point_near(double temperature, double reach) const {
+  return std::ranges::any_of(points_, [&](const Point& point) {
+    return std::abs(point.temperature - temperature) <= reach;
+  });
 }
 
 double ScaleFactorCurve::at(double temperature) const {
@@ -85,16 +122,42 @@ double ScaleFactorCurve::departure_of_corrected(double gain,
 }
 
 CheckContext::CheckContext(const CheckedCompensator& all, std::size_t count)
-    : checked(all), threads(count), altered(*all.compensator) {
+    : checked(all),
+      threads(count),
+      scale_factor(curve_of(all)),
+      without_table(stripped(all, scale_factor)),
+      altered(without_table ? *without_table : *all.compensator) {
   for (const CheckedRun& run : all.runs) {
     const Recording& recording = *run.recording;
     for (const std::uint8_t status : recording.status)
       samples += (status & kUnpowered) == 0 ? 1 : 0;
     missing += missing_answers(recording, run.answer);
-    answers.push_back(bridged(recording, run.answer.rate));
-    for (const PlateauSlope& plateau : plateau_slopes(recording, kTableRate))
-      scale_factor.add(plateau.temperature, plateau.raw / plateau.truth);
+    answers.push_back(
+        bridged(recording, without_table ? without_table->answer(recording).rate
+                                         : run.answer.rate));
   }
+}
+
+std::vector<std::string> CheckContext::untested_by_replay() const {
+  const Compensator* trained = checked.trained;
+  const auto range = temperatures_of(*this, runs_of(thermal_purposes()));
+  if (trained == nullptr || !range) return {};
+  std::vector<std::string> names;
+  const auto add = [&names](const std::string& name) {
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  };
+  for (double T = range->lowest; T < range->highest + 1.0; T += 1.0) {
+    const double here = std::min(T, range->highest);
+    if (scale_factor.has_point_near(here, kRateReach)) continue;
+    for (const Input& input : trained->inputs)
+      if (!sees_the_rate(input) && !input.column.empty() &&
+          input.column != "temperature")
+        add(input.column);
+    if (trained->scale_factor &&
+        std::abs(trained->scale_factor->at(here) - 1.0) > kGainTolerance)
+      add("scale_factor");
+  }
+  return names;
 }
 
 bool CheckContext::answered() const {
@@ -124,6 +187,23 @@ void CheckContext::for_each(
     const std::function<void(std::size_t)>& work) const {
   for_each_task(runs.size(), threads,
                 [&work](std::size_t k, std::size_t) { work(k); });
+}
+
+std::optional<TemperatureRange> temperatures_of(
+    const CheckContext& context, const std::vector<std::size_t>& runs) {
+  TemperatureRange range = {HUGE_VAL, -HUGE_VAL};
+  for (const std::size_t number : runs) {
+    const Recording& run = *context.checked.runs[number].recording;
+    const Column* temperature = find_column(run, "temperature");
+    if (temperature == nullptr) return std::nullopt;
+    for (const SampleRange& stretch : powered_stretches(run))
+      for (std::size_t k = stretch.begin; k < stretch.end; ++k) {
+        range.lowest = std::min(range.lowest, temperature->values[k]);
+        range.highest = std::max(range.highest, temperature->values[k]);
+      }
+  }
+  if (!(range.lowest <= range.highest)) return std::nullopt;
+  return range;
 }
 
 std::vector<RunPurpose> thermal_purposes() {

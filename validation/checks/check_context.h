@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,12 @@ namespace beamgyro::internal {
 /// by the recorded rate less the last correction, so that one missing answer
 /// is found by the check of missing answers alone.
 std::vector<double> bridged(const Recording& run, std::vector<double> answers);
+
+/// Returns the compensator without its table of scale factors.
+Compensator without_scale_factor(Compensator compensator);
+
+/// How far from its temperature a recorded rate speaks.
+constexpr double kRateReach = 10.5;  // [K]
 
 /// Answers to altered recordings, bridged. Notes the faults that were seen.
 /// Every member may be called from several threads at once.
@@ -45,6 +52,7 @@ class ScaleFactorCurve {
  public:
   void add(double temperature, double scale_factor);
   bool empty() const { return points_.empty(); }
+  bool has_point_near(double temperature, double reach) const;  // [K]
   double at(double temperature) const;  // linear between, constant beyond
   double largest_departure() const;     // from 1 [-]
   /// Returns the departure from 1 [-] of a gain that may be 1 / s for every s
@@ -75,15 +83,22 @@ struct CheckContext {
 
   const CheckedCompensator& checked;
   std::size_t threads;
+  ScaleFactorCurve scale_factor;
+  // A trained compensator whose table of scale factors no run tests is asked
+  // without that table, so that its bias is judged all the same.
+  std::unique_ptr<const TestedCompensator> without_table;
   AlteredAnswers altered;
   std::vector<std::vector<double>> answers;  // bridged, of checked.runs
-  ScaleFactorCurve scale_factor;
   std::optional<RandomResponse> random;
   // Powered samples of all runs, and those without a finite answer.
   std::size_t samples = 0, missing = 0;
 
   /// Returns whether enough was answered to say anything else.
   bool answered() const;
+  /// Returns what a rate may move in the gyro and no replay moves,
+  /// "scale_factor" for a table, where no rate table is near a temperature of
+  /// the runs.
+  std::vector<std::string> untested_by_replay() const;
   /// Returns by how many samples of a run the answers come late.
   std::ptrdiff_t lag_in(const Recording& run) const;
   /// Returns the indices of the runs with one of the purposes, or those of all
@@ -94,6 +109,11 @@ struct CheckContext {
   void for_each(const std::vector<std::size_t>& runs,
                 const std::function<void(std::size_t)>& work) const;
 };
+
+/// Returns the lowest and highest measured temperature [degC] of the powered
+/// samples of the runs; nothing where a run has none.
+std::optional<TemperatureRange> temperatures_of(
+    const CheckContext& context, const std::vector<std::size_t>& runs);
 
 /// Purposes of runs that show the temperatures, most of them at rest.
 std::vector<RunPurpose> thermal_purposes();
@@ -108,6 +128,8 @@ CheckResult check_allan_fingerprint(const CheckContext& context);
 CheckResult check_shuffled_output(const CheckContext& context);
 CheckResult check_rate_correlation(const CheckContext& context);
 CheckResult check_hold_out(const CheckContext& context);
+CheckResult check_extrapolation(const CheckContext& context);
+CheckResult check_temperature_input(const CheckContext& context);
 CheckResult check_causality(const CheckContext& context);
 CheckResult check_answers(const CheckContext& context);
 CheckResult check_finite(const CheckContext& context);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
 #include "validation/checks/check_context.h"
 #include "validation/checks/random_response.h"
@@ -27,48 +28,86 @@ struct CheckRow {
   Stage stage = Stage::kComparison;
 };
 
+constexpr const char* kWithoutRate =
+    "train without inputs that hold the rate (rate, output), or with "
+    "rate_penalty";
+constexpr const char* kTurningRun =
+    "a run whose rate changes, such as a rate table";
+
 constexpr std::array kChecks{
-    CheckRow{{"jacobian", "largest departure from 1 of d(answer)/d(rate) [-]"},
+    CheckRow{{"jacobian", "largest departure from 1 of d(answer)/d(rate) [-]",
+              kWithoutRate, kTurningRun},
              check_jacobian},
     CheckRow{{"injection",
               "largest departure from 1 of the share of an added rate that "
-              "comes out [-]"},
+              "comes out [-]",
+              kWithoutRate, "rate tables over the temperatures of the runs"},
              check_injection},
     CheckRow{{"true_rate",
               "largest departure from 1 of the scale factor kept on a rate "
-              "table [-]"},
+              "table [-]",
+              kWithoutRate, "rate tables of 11 rates at 5 temperatures"},
              check_true_rate},
     CheckRow{{"allan_fingerprint",
               "departure from 1 of the Allan deviation at 1 s, after over "
-              "before [-]"},
+              "before [-]",
+              kWithoutRate, "a run of some minutes at rest, with its noise"},
              check_allan_fingerprint},
     CheckRow{{"shuffled_output",
               "change of the correction over change of the output when the "
-              "output is shuffled [-]"},
+              "output is shuffled [-]",
+              kWithoutRate, kTurningRun},
              check_shuffled_output},
     CheckRow{{"rate_correlation",
-              "share of the true rate that the correction follows [-]"},
+              "share of the true rate that the correction follows [-]",
+              kWithoutRate, "a run with random rates"},
              check_rate_correlation},
-    CheckRow{{"hold_out", "runs that training used", true},
+    CheckRow{{"hold_out", "runs that training used",
+              "validate on runs that training has not seen: other seeds, other "
+              "temperatures",
+              "a compensator file, which names its training", true},
              check_hold_out,
              Stage::kFaults},
-    CheckRow{{"causality", "runs whose answers use what follows"},
-             check_causality,
-             Stage::kConduct},
-    CheckRow{{"answers", "runs that are not answered as they must be"},
+    CheckRow{{"extrapolation",
+              "samples at temperatures that training has not seen [%]",
+              "train over the temperatures of these runs",
+              "a compensator file, which names its temperatures", true},
+             check_extrapolation,
+             Stage::kFaults},
+    CheckRow{{"temperature_input",
+              "share of the temperature that is noise or does not follow the "
+              "gyro [-]",
+              "look at the temperature of the runs: its sensor, its unit, its "
+              "column",
+              "runs over more than 2 K", true},
+             check_temperature_input,
+             Stage::kFaults},
+    CheckRow{
+        {"causality", "runs whose answers use what follows",
+         "answer each sample from it and those before", "a run of 100 samples"},
+        check_causality,
+        Stage::kConduct},
+    CheckRow{{"answers", "runs that are not answered as they must be",
+              "mend what the sentence names", "any run"},
              check_answers,
              Stage::kFaults},
-    CheckRow{{"finite", "powered samples without a finite answer"},
+    CheckRow{{"finite", "powered samples without a finite answer",
+              "answer every powered sample", "any run"},
              check_finite,
              Stage::kFaults},
-    CheckRow{{"reset", "runs answered otherwise after a reset"},
+    CheckRow{{"reset", "runs answered otherwise after a reset",
+              "forget everything at a reset", "a run of 100 samples"},
              check_reset,
              Stage::kReset},
     CheckRow{{"output_stuck",
-              "longest time with the same answer while the output changes [s]"},
+              "longest time with the same answer while the output changes [s]",
+              "look at where the answers stay the same", kTurningRun},
              check_output_stuck,
              Stage::kConduct},
-    CheckRow{{"real_time", "", true}, check_real_time, Stage::kFaults}};
+    CheckRow{{"real_time", "", "make it faster, or validate on an idle machine",
+              "a library or a command", true},
+             check_real_time,
+             Stage::kFaults}};
 
 constexpr const char* kTooFewAnswers =
     "Too many answers are missing: see the checks \"answers\" and \"finite\".";
@@ -115,11 +154,18 @@ std::vector<CheckResult> run_checks(const CheckedCompensator& checked,
   return results;
 }
 
-bool may_be_untested(const CheckResult& result) {
+const CheckDefinition& definition_of(const CheckResult& result) {
   const auto& all = check_definitions();
   const auto found =
       std::ranges::find(all, result.name, &CheckDefinition::name);
-  return found != all.end() && found->may_be_untested;
+  if (found == all.end())
+    throw std::invalid_argument(
+        fmt::format("\"{}\": is not the name of a check", result.name));
+  return *found;
+}
+
+bool may_be_untested(const CheckResult& result) {
+  return definition_of(result).may_be_untested;
 }
 
 CheckOutcome outcome_of(const std::vector<CheckResult>& results) {

@@ -33,6 +33,8 @@ struct CheckedCompensator {
   double full_scale = 150.0;  // [deg/s]
   // What the compensator says of its training, where it says anything.
   const Provenance* provenance = nullptr;  // not owned
+  // The same compensator as training wrote it, if it is one of a file.
+  const Compensator* trained = nullptr;  // not owned
   const SetPart* set = nullptr;  // of the runs that have a device; not owned
 };
 
@@ -58,6 +60,8 @@ struct CheckResult {
 struct CheckDefinition {
   std::string_view name;
   std::string_view figure;  // what CheckResult::value is, with its unit
+  // What a user does next where it failed, and the run that would test it.
+  std::string_view mend, test;
   // Whether a compensator passes as a whole without this check having been
   // tested: one that names no training cannot be held against it, and a
   // function of a program shares its processor with others.
@@ -73,6 +77,10 @@ std::span<const CheckDefinition> check_definitions();
 /// its inputs.
 std::vector<CheckResult> run_checks(const CheckedCompensator& checked,
                                     std::size_t threads = 1);
+
+/// Returns what a result is of. Throws std::invalid_argument for a name that is
+/// not that of a check.
+const CheckDefinition& definition_of(const CheckResult& result);
 
 /// Whether a check that was not tested leaves a verdict as it is.
 bool may_be_untested(const CheckResult& result);

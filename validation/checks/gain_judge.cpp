@@ -18,6 +18,8 @@ double counted(const AddedRate& found, double departure) {
 }  // namespace
 
 std::string place_words(const AddedRate& found) {
+  if (std::isnan(found.time))
+    return fmt::format("replayed at {:.1f} degC", found.temperature);
   std::string words;
   if (!std::isnan(found.temperature))
     words = fmt::format("at {:.1f} degC, ", found.temperature);

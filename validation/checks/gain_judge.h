@@ -18,7 +18,7 @@ struct AddedRate {
   double rate;         // [deg/s], to which it was added, or which was added
   double gain;         // [-], share of it in the answers
   double temperature;  // [degC]; NaN where it is not measured
-  double time;         // [s]
+  double time;         // [s]; NaN in a sweep over temperature
   double change;       // [deg/s], what was added
 };
 

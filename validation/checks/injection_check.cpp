@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rates that are added to recordings: held, random and sinusoidal ones.
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include "validation/checks/check_context.h"
 #include "validation/checks/gain_judge.h"
 #include "validation/checks/random_response.h"
+#include "validation/checks/temperature_sweep.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -102,6 +104,33 @@ void add_held(const CheckContext& context, std::size_t number,
                block.rate});
 }
 
+// Rates at temperatures between and beyond the recorded samples: over the range
+// that training saw, or over that of the runs.
+void add_sweep(const CheckContext& context, std::size_t number,
+               GainJudge& judge) {
+  const Compensator* trained = context.checked.trained;
+  if (trained != nullptr &&
+      std::ranges::none_of(trained->inputs, sees_the_rate))
+    return;
+  const auto range = trained != nullptr
+                         ? std::optional(trained->temperature_range)
+                         : temperatures_of(context, {number});
+  if (!range) return;
+  RateEstimator estimator = std::cref(context.altered);
+  if (trained != nullptr)
+    estimator = [bias_only =
+                     without_scale_factor(*trained)](const Recording& any) {
+      return compensated_rate(bias_only, any);
+    };
+  const auto blocks = replays_over_temperature(
+      estimator, *context.checked.runs[number].recording, *range,
+      context.checked.full_scale,
+      trained != nullptr ? kSweepReplays : kSweepReplaysOfProgram);
+  for (const ReplayedBlock& block : blocks)
+    judge.add({block.rate, block.retained, block.temperature, std::nan(""),
+               block.rate});
+}
+
 CheckResult failed_injection(const GainJudge& judge,
                              const RandomResponse& random) {
   CheckResult result{.outcome = CheckOutcome::kFailed,
@@ -130,6 +159,13 @@ CheckResult check_injection(const CheckContext& context) {
   context.for_each(
       runs, [&](std::size_t k) { add_held(context, runs[k], judges[k]); });
   add_sines(context, fastest_run(context), judges.back());
+  const auto replayed = std::ranges::find_if(
+      judges.begin(), judges.end() - 1,
+      [](const GainJudge& judge) { return judge.count() > 0; });
+  if (replayed != judges.end() - 1)
+    add_sweep(context,
+              runs[static_cast<std::size_t>(replayed - judges.begin())],
+              judges.back());
   GainJudge all(context.scale_factor);
   for (const GainJudge& judge : judges) all.add(judge);
   const std::optional<RandomResponse>& random = context.random;
@@ -159,6 +195,12 @@ CheckResult check_injection(const CheckContext& context) {
         "answers by {:.3g} deg/s, must be below {:.3g} deg/s.",
         random->intercept, random->chance);
   }
+  const std::vector<std::string> untested = context.untested_by_replay();
+  if (result.passed() && !untested.empty())
+    return not_tested(fmt::format(
+        "A rate that is added to a recording cannot tell what {} does, and no "
+        "recorded rate does within {:g} K of every temperature of the runs.",
+        fmt::join(untested, ", "), kRateReach));
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/uncertainty/bias_sigma.h"
 #include "validation/external/command_compensator.h"
+#include "validation/external/compensator_source.h"
 #include "validation/external/library_compensator.h"
 #include "validation/external/process_stream.h"
 
@@ -71,11 +72,14 @@ void FileStream::take(const Recording& sample) {
 std::unique_ptr<CompensatorStream> open_compensator_stream(
     const std::string& argument, const ProcessLimits& limits,
     std::optional<double> period) {
-  if (is_command(argument))
-    return process_stream(command_process(argument, limits), limits, 1.0);
-  if (is_library(argument))
-    return process_stream(library_process(argument, limits), limits, period);
-  return std::make_unique<FileStream>(read_compensator(argument));
+  switch (source_kind(argument)) {
+    case SourceKind::kCommand:
+      return process_stream(command_process(argument, limits), limits, 1.0);
+    case SourceKind::kLibrary:
+      return process_stream(library_process(argument, limits), limits, period);
+    default:
+      return std::make_unique<FileStream>(read_compensator(argument));
+  }
 }
 
 }  // namespace beamgyro::internal

@@ -3,9 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "dataset/recording/recording.h"
@@ -83,19 +81,5 @@ class TestedCompensator {
   /// Returns its answers to one run.
   Answer answer(const Recording& run) const;
 };
-
-/// Opens a compensator file (FILE.json), a shared library (FILE.so) with the
-/// interface of beamgyro/plugin.h, or a command ("cmd:PROGRAM ARGS"). Throws
-/// std::invalid_argument when it is none of them or cannot be read.
-std::unique_ptr<TestedCompensator> open_tested_compensator(
-    const std::string& argument, const ProcessLimits& limits = {});
-
-/// What kind of compensator an argument names; a file otherwise.
-bool is_command(std::string_view argument);
-bool is_library(std::string_view argument);
-
-/// Returns the name of a compensator as reports give it: without directories
-/// for a file, whole for a command.
-std::string tested_name(const std::string& argument);
 
 }  // namespace beamgyro::internal

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "dataset/set/source_copies.h"
 #include "sim/scenario/scenario.h"
 #include "validation/evidence/evidence.h"
 
@@ -34,8 +34,8 @@ struct Qualification {
   std::vector<QualificationRun> held_out;  // a network stops early on them
   std::vector<QualificationRun> turning;   // fitted for the scale factor
   MetricRuns metric_runs;
-  std::string text;                          // byte for byte as read
-  std::vector<std::filesystem::path> files;  // all that were read
+  std::string text;               // byte for byte as read
+  std::vector<SourceText> files;  // all that were read
 };
 
 }  // namespace beamgyro::internal

@@ -13,6 +13,7 @@
 #include "config/document.h"
 #include "config/file_error.h"
 #include "config/suggestion.h"
+#include "dataset/files/text_file.h"
 #include "dataset/set/manifest.h"
 #include "sim/scenario/scenario_file.h"
 #include "validation/metrics/metric.h"
@@ -57,7 +58,7 @@ class QualificationReader {
     result_.name = root_.text("name");
     result_.description = root_.text_or("description", "");
     result_.text = document_.text();
-    result_.files.push_back(document_.path());
+    result_.files.push_back({document_.path(), document_.text()});
     for (const ConfigTable& table : root_.tables("run")) {
       result_.runs.push_back(read_run(table));
       const std::string purpose = table.choice("purpose", purpose_names());
@@ -131,9 +132,9 @@ class QualificationReader {
     if (!overrides.all_used()) reject_unused(table, overrides);
     run.scenario_text = document.text();
     run.overrides_text = overrides.text();
-    add_file(path);
+    add_file(path, document.text());
     for (const std::filesystem::path& profile : profile_files(document))
-      add_file(profile);
+      add_file(profile, read_text_file(profile));
   }
 
   [[noreturn]] static void reject_unused(const ConfigTable& table,
@@ -195,9 +196,14 @@ class QualificationReader {
         name, purpose_name(run->purpose), fmt::join(read, ", ")));
   }
 
-  void add_file(const std::filesystem::path& path) {
-    if (std::ranges::count(result_.files, path) == 0)
-      result_.files.push_back(path);
+  // Several runs may read one file, which has to stay the same meanwhile.
+  void add_file(const std::filesystem::path& path, const std::string& text) {
+    const auto known =
+        std::ranges::find(result_.files, path, &SourceText::path);
+    if (known == result_.files.end())
+      result_.files.push_back({path, text});
+    else if (known->text != text)
+      throw std::runtime_error(path.string() + ": changed while it was read");
   }
 
   ConfigDocument document_;

@@ -22,6 +22,7 @@ namespace {
 
 struct BaselineModel {
   std::string_view name, model;
+  bool has_metrics = true;
 };
 constexpr BaselineModel kBaselineModels[] = {
     {"constant", "kind = \"constant\""},
@@ -31,6 +32,10 @@ constexpr BaselineModel kBaselineModels[] = {
     {"spline",
      "kind = \"spline\"\ninputs = [\"temperature\"]\n"
      "[spline]\nknot_spacing_K = 5\nends = \"not_a_knot\""},
+    {"table",
+     "kind = \"table\"\ninputs = [\"temperature\"]\n"
+     "[table]\nbin_width_K = 5",
+     false},
 };
 
 std::vector<TrainingRun> training_runs(
@@ -165,7 +170,7 @@ DeviceEvidence answered_evidence(std::vector<ReadRun> read,
   found.before = found.after = blank;
   found.baselines.push_back({"none", blank});
   for (const BaselineMethod& baseline : answering.baselines)
-    found.baselines.push_back({baseline.name, blank});
+    found.baselines.push_back({baseline.name, blank, baseline.has_metrics});
   for_each_task(count, threads, [&](std::size_t k, std::size_t) {
     const Recording& run = found.runs[k];
     const ReadRun& named = found.read[k];

@@ -17,8 +17,9 @@ namespace beamgyro::internal {
 
 /// A method that a compensator is compared with, trained on the same runs.
 struct Baseline {
-  std::string name;  // "none", "constant", "cubic", "spline"
+  std::string name;  // "none", "constant", "cubic", "spline", "table"
   Evidence evidence;
+  bool has_metrics = true;  // or only a place among the comparisons
 };
 
 /// A run as metrics read it.
@@ -66,6 +67,7 @@ Compensator trained_on(const TrainingData& data, const ModelSpec& model);
 struct BaselineMethod {
   std::string name;
   std::function<std::vector<double>(const Recording&)> rate;  // [deg/s]
+  bool has_metrics = true;                                    // as Baseline
 };
 
 /// How runs are answered.
@@ -86,8 +88,8 @@ DeviceEvidence answered_evidence(std::vector<ReadRun> read,
                                  const std::function<void()>& on_done = {});
 
 /// Simulates the runs of a qualification and answers them. The baselines
-/// "constant", "cubic" and "spline" are trained on `data`; without training
-/// runs there are none of them.
+/// "constant", "cubic", "spline" and "table" are trained on `data`; without
+/// training runs there are none of them.
 DeviceEvidence device_evidence(const Qualification& qualification,
                                const QualifiedDevice& device,
                                const TestedCompensator& compensator,

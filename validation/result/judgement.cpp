@@ -5,14 +5,19 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "compensation/inputs/sample_ranges.h"
+#include "compensation/scoring/residual_scores.h"
 #include "parallel/work_queue.h"
 #include "validation/metrics/sigma_evidence.h"
 #include "validation/metrics/sigma_report.h"
 
 namespace beamgyro::internal {
 namespace {
+
+constexpr const char* kConstantOfRuns = "constant_of_runs";
 
 // Evaluates a metric on the runs that the qualification names for it. A metric
 // without names takes those of its purposes itself.
@@ -42,29 +47,161 @@ std::optional<Estimate> copied(const Estimate* estimate) {
   return estimate == nullptr ? std::nullopt : std::optional(*estimate);
 }
 
+double temperature_span(const std::vector<Recording>& runs) {
+  double lowest = HUGE_VAL, highest = -HUGE_VAL;
+  for (const Recording& run : runs) {
+    const Column* temperature = find_column(run, "temperature");
+    if (temperature == nullptr) return 0.0;
+    for (std::size_t k = 0; k < run.time.size(); ++k)
+      if ((run.status[k] & kUnpowered) == 0) {
+        lowest = std::min(lowest, temperature->values[k]);
+        highest = std::max(highest, temperature->values[k]);
+      }
+  }
+  return highest - lowest;
+}
+
+bool is_required(const SpecificationFile& specification,
+                 const std::string& name) {
+  const std::string asked = name == kConstantOfRuns ? "constant" : name;
+  return std::ranges::count(specification.better_than, asked) > 0;
+}
+
+std::string plain_name(const Comparison& comparison) {
+  if (comparison.with == "before") return "no compensator";
+  if (comparison.with == kConstantOfRuns)
+    return "a constant fitted to these runs";
+  if (comparison.with == "table") return "a table with straight lines";
+  return fmt::format("a {} trained on the same data", comparison.with);
+}
+
+std::string rms_words(const Comparison& comparison) {
+  return fmt::format("{} leaves {:.3g} deg/s rms, the compensator {:.3g}",
+                     plain_name(comparison), comparison.found.other_rms,
+                     comparison.found.rms);
+}
+
+// What stands against a compensator, and what is open.
 struct Reasons {
-  std::vector<std::string> against, open;
+  std::vector<std::string> against, open;  // names of limits and checks
+  const Comparison* no_better = nullptr;
+  const CheckResult* failed = nullptr;  // the first
+  std::vector<const CheckResult*> untested;
 };
 
-Reasons reasons_of(const std::vector<DecidedLimit>& limits,
-                   const std::vector<CheckResult>& checks) {
+void add_name(std::vector<std::string>& names, const std::string& name) {
+  if (std::ranges::count(names, name) == 0) names.push_back(name);
+}
+
+// Whether a check that was not tested leaves the verdict open.
+bool is_open(const SpecificationFile& specification, const CheckResult& check,
+             const std::vector<CheckResult>& all) {
+  if (may_be_untested(check)) return false;
+  if (!specification.may_leave_untested) return true;
+  // Without it only a rate table shows whether rates come out.
+  return check.name == "injection" &&
+         std::ranges::none_of(all, [](const CheckResult& other) {
+           return other.name == "true_rate" && other.passed();
+         });
+}
+
+Reasons reasons_of(const SpecificationFile& specification,
+                   const ValidationResult& result) {
   Reasons reasons;
-  for (const auto& [limit, decision] : limits) {
+  for (const auto& [limit, decision] : result.limits) {
     // A metric may have a limit of its own and some relative to other rates.
-    const auto add = [&name = limit.metric](std::vector<std::string>& names) {
-      if (std::ranges::count(names, name) == 0) names.push_back(name);
-    };
-    if (decision.result == Conformity::kFail) add(reasons.against);
-    if (decision.result == Conformity::kUndecided) add(reasons.open);
+    if (decision.result == Conformity::kFail)
+      add_name(reasons.against, limit.metric);
+    if (decision.result == Conformity::kUndecided)
+      add_name(reasons.open, limit.metric);
   }
-  for (const CheckResult& check : checks)
-    if (check.outcome == CheckOutcome::kFailed)
-      reasons.against.push_back(check.name);
-  if (reasons.against.empty() && outcome_of(checks) == CheckOutcome::kNotTested)
-    for (const CheckResult& check : checks)
-      if (check.outcome == CheckOutcome::kNotTested && !may_be_untested(check))
-        reasons.open.push_back(check.name);
+  for (const Comparison& comparison : result.comparisons)
+    if (comparison.is_required && !comparison.found.is_better() &&
+        (reasons.no_better == nullptr ||
+         comparison.found.other_rms < reasons.no_better->found.other_rms))
+      reasons.no_better = &comparison;
+  for (const CheckResult& check : result.checks) {
+    if (check.outcome == CheckOutcome::kFailed) {
+      add_name(reasons.against, check.name);
+      if (reasons.failed == nullptr) reasons.failed = &check;
+    }
+    if (check.outcome != CheckOutcome::kNotTested) continue;
+    reasons.untested.push_back(&check);
+    if (is_open(specification, check, result.checks))
+      add_name(reasons.open, check.name);
+  }
   return reasons;
+}
+
+// Which simple methods are as good: a reader has to know that first.
+std::string as_good_words(const std::vector<Comparison>& comparisons) {
+  std::vector<std::string> words;
+  for (const Comparison& comparison : comparisons)
+    if ((comparison.with == "cubic" || comparison.with == "table") &&
+        !comparison.is_same && !comparison.found.is_better())
+      words.push_back(rms_words(comparison));
+  if (words.empty()) return "";
+  return fmt::format("No better than a simple method: {}. ",
+                     fmt::join(words, "; "));
+}
+
+std::string failure_words(const Reasons& reasons) {
+  std::string words;
+  if (reasons.no_better != nullptr)
+    words =
+        fmt::format("Not better than {}: {}.", plain_name(*reasons.no_better),
+                    rms_words(*reasons.no_better));
+  if (reasons.against.empty()) return words;
+  words += fmt::format("{}Not met: {}.", words.empty() ? "" : " ",
+                       fmt::join(reasons.against, ", "));
+  if (reasons.failed != nullptr) words += " " + reasons.failed->words;
+  return words;
+}
+
+std::string names_of(const std::vector<const CheckResult*>& checks) {
+  std::vector<std::string> names;
+  for (const CheckResult* check : checks) names.push_back(check->name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string counted(std::size_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+std::string pass_words(const ValidationResult& result, const Reasons& reasons) {
+  const auto passed = static_cast<std::size_t>(
+      std::ranges::count_if(result.checks, &CheckResult::passed));
+  std::vector<std::string> parts;
+  for (const Comparison& comparison : result.comparisons)
+    if (comparison.is_required) {
+      parts.push_back(fmt::format("better than {} ({:.3g} of {:.3g} deg/s rms)",
+                                  plain_name(comparison), comparison.found.rms,
+                                  comparison.found.other_rms));
+    }
+  if (!result.limits.empty())
+    parts.push_back(counted(result.limits.size(), "limit") + " met");
+  parts.push_back(counted(passed, "check") + " passed");
+  std::string words =
+      fmt::format("{}The compensator passes: {}",
+                  as_good_words(result.comparisons), fmt::join(parts, ", "));
+  if (!reasons.untested.empty())
+    words += fmt::format(", {} not tested ({})", reasons.untested.size(),
+                         names_of(reasons.untested));
+  return words + ".";
+}
+
+std::string next_after_failure(const Reasons& reasons) {
+  if (reasons.failed != nullptr)
+    return std::string(definition_of(*reasons.failed).mend);
+  if (reasons.no_better != nullptr)
+    return "train over the temperatures of these runs, and look whether their "
+           "temperature is that of this gyro";
+  return "see what each limit that is not met was compared with";
+}
+
+std::string test_of(const CheckResult& check) {
+  return fmt::format("add {}: it tests {}", definition_of(check).test,
+                     check.name);
 }
 
 }  // namespace
@@ -75,21 +212,24 @@ std::vector<MetricResult> metric_results(const DeviceEvidence& found,
                                          std::size_t threads) {
   std::vector<MetricResult> results;
   const bool has_sigma = states_sigma(found.after);
+  std::vector<const Baseline*> baselines;
+  for (const Baseline& baseline : found.baselines)
+    if (baseline.has_metrics) baselines.push_back(&baseline);
   for (const Metric& metric : metrics()) {
     if (!names.empty() && std::ranges::count(names, metric.name) == 0) continue;
     if (names.empty() && metric.is_of_sigma && !has_sigma) continue;
     results.push_back({&metric, {}, {}, {}});
-    for (const Baseline& baseline : found.baselines)
-      results.back().baselines.push_back({baseline.name, {}});
+    for (const Baseline* baseline : baselines)
+      results.back().baselines.push_back({baseline->name, {}});
   }
-  const std::size_t rates = 2 + found.baselines.size();
+  const std::size_t rates = 2 + baselines.size();
   for_each_task(
       results.size() * rates, threads, [&](std::size_t k, std::size_t) {
         MetricResult& result = results[k / rates];
         const std::size_t rate = k % rates;
         const Evidence& all = rate == 0   ? found.before
                               : rate == 1 ? found.after
-                                          : found.baselines[rate - 2].evidence;
+                                          : baselines[rate - 2]->evidence;
         std::optional<Estimate>& estimate =
             rate == 0   ? result.before
             : rate == 1 ? result.after
@@ -97,6 +237,22 @@ std::vector<MetricResult> metric_results(const DeviceEvidence& found,
         estimate = evaluated(*result.metric, all, runs);
       });
   return results;
+}
+
+std::vector<RunResidual> run_residuals(const DeviceEvidence& found) {
+  std::vector<RunResidual> runs;
+  for (std::size_t k = 0; k < found.read.size(); ++k) {
+    const auto rms = [](const EvidenceRun& run) {
+      return residual_scores(
+                 block_residuals(score_blocks(*run.recording), run.rate,
+                                 column_values(*run.recording, "true_rate")))
+          .rms;
+    };
+    runs.push_back({found.read[k].name,
+                    std::string(purpose_name(found.read[k].purpose)),
+                    rms(found.before.runs[k]), rms(found.after.runs[k])});
+  }
+  return runs;
 }
 
 std::vector<DecidedLimit> decided_limits(
@@ -119,22 +275,56 @@ std::vector<DecidedLimit> decided_limits(
   return decided;
 }
 
-WordedVerdict verdict_of(const std::vector<DecidedLimit>& limits,
-                         const std::vector<CheckResult>& checks) {
-  const auto [against, open] = reasons_of(limits, checks);
-  if (!against.empty())
-    return {Conformity::kFail,
-            fmt::format("Not met: {}.", fmt::join(against, ", "))};
-  if (!open.empty())
-    return {
-        Conformity::kUndecided,
-        fmt::format("The evidence does not tell: {}.", fmt::join(open, ", "))};
-  const auto passed = std::ranges::count_if(checks, &CheckResult::passed);
-  return {Conformity::kPass,
-          fmt::format("The compensator passes: {} limit{} met, {} check{} "
-                      "passed.",
-                      limits.size(), limits.size() == 1 ? "" : "s", passed,
-                      passed == 1 ? "" : "s")};
+std::vector<Comparison> comparisons_of(const SpecificationFile& specification,
+                                       const DeviceEvidence& found) {
+  const LeftDrift own = left_drift(found.after);
+  const LeftDrift before = left_drift(found.before);
+  std::vector<Comparison> all;
+  const auto add = [&](const std::string& name, const LeftDrift& other) {
+    const auto compared = paired_residual(own, other);
+    if (!compared) return;
+    const bool is_same = std::ranges::equal(
+        own.means, other.means,
+        [](double a, double b) { return std::abs(a - b) < 1e-9; });
+    all.push_back({name, *compared, is_required(specification, name), is_same});
+  };
+  add("before", before);
+  for (const Baseline& baseline : found.baselines)
+    if (baseline.name != "none" && baseline.name != "spline")
+      add(baseline.name, left_drift(baseline.evidence));
+  if (temperature_span(found.runs) >= kLeastTemperatures)
+    add(kConstantOfRuns, without_mean(before));
+  return all;
+}
+
+void decide_on(const SpecificationFile& specification,
+               ValidationResult& result) {
+  const Reasons reasons = reasons_of(specification, result);
+  if (reasons.no_better != nullptr || !reasons.against.empty()) {
+    result.verdict = Conformity::kFail;
+    result.words = failure_words(reasons);
+    result.next = next_after_failure(reasons);
+    return;
+  }
+  if (!reasons.open.empty()) {
+    result.verdict = Conformity::kUndecided;
+    result.words = fmt::format("No run could decide on {}.",
+                               fmt::join(reasons.open, ", "));
+    const auto first =
+        std::ranges::find_if(reasons.untested, [&](const CheckResult* check) {
+          return std::ranges::count(reasons.open, check->name) > 0;
+        });
+    result.next = first != reasons.untested.end()
+                      ? test_of(**first)
+                      : "add runs, or longer ones: they narrow the intervals";
+    return;
+  }
+  result.verdict = Conformity::kPass;
+  result.words = pass_words(result, reasons);
+  result.next = !reasons.untested.empty() ? test_of(*reasons.untested.front())
+                : specification.may_leave_untested
+                    ? "state limits of your own in a specification"
+                    : "record the same runs with hardware";
 }
 
 CheckedCompensator checked_runs(const DeviceEvidence& found,
@@ -156,13 +346,14 @@ void judge(const JudgedBy& by, const DeviceEvidence& found, std::size_t threads,
   if (states_sigma(found.after))
     result.sigma = sigma_report(sigma_evidence(found.after));
   result.limits = decided_limits(by.specification, result.metrics);
+  result.comparisons = comparisons_of(by.specification, found);
+  result.runs = run_residuals(found);
   CheckedCompensator checked = checked_runs(found, by.compensator);
-  checked.provenance = by.provenance;
+  checked.trained = by.trained;
+  if (by.trained != nullptr) checked.provenance = &by.trained->provenance;
   checked.set = by.set;
   result.checks = run_checks(checked, threads);
-  WordedVerdict verdict = verdict_of(result.limits, result.checks);
-  result.verdict = verdict.verdict;
-  result.words = std::move(verdict.words);
+  decide_on(by.specification, result);
 }
 
 }  // namespace beamgyro::internal

@@ -26,23 +26,28 @@ std::vector<DecidedLimit> decided_limits(
     const SpecificationFile& specification,
     const std::vector<MetricResult>& metrics);
 
-/// A verdict in words.
-struct WordedVerdict {
-  Conformity verdict;
-  std::string words;
-};
+/// Compares what the compensator leaves with what the recorded rate, the
+/// baselines and a constant of the runs themselves leave. The last is only
+/// there where the runs differ by kLeastTemperatures or more, because at one
+/// temperature no correction can be better than it.
+constexpr double kLeastTemperatures = 10.0;  // [K]
+std::vector<Comparison> comparisons_of(const SpecificationFile& specification,
+                                       const DeviceEvidence& found);
 
-/// Returns kFail when a limit or a check fails, else kUndecided when one is
-/// undecided or not tested that must be, else kPass; and which ones.
-WordedVerdict verdict_of(const std::vector<DecidedLimit>& limits,
-                         const std::vector<CheckResult>& checks);
+/// Writes the verdict, its reason and the next step into `result`, from its
+/// limits, checks and comparisons: kFail when one of them fails, else
+/// kUndecided when a limit is, or when a check was not tested that the
+/// specification wants tested, else kPass. Where the specification wants none
+/// tested, one that shows whether rates come out must be.
+void decide_on(const SpecificationFile& specification,
+               ValidationResult& result);
 
 /// What a compensator is judged by, beside the evidence.
 struct JudgedBy {
   const SpecificationFile& specification;
   const MetricRuns& metric_runs;
   const TestedCompensator& compensator;
-  const Provenance* provenance;  // of its training, where it is known
+  const Compensator* trained;    // the same, if it is one of a file
   const SetPart* set = nullptr;  // of the runs, where they are of one
 };
 
@@ -50,6 +55,9 @@ struct JudgedBy {
 /// them, what is found of a sigma, and the verdict into `result`.
 void judge(const JudgedBy& by, const DeviceEvidence& found, std::size_t threads,
            ValidationResult& result);
+
+/// Returns what each run shows alone; NaN without a block or an answer.
+std::vector<RunResidual> run_residuals(const DeviceEvidence& found);
 
 /// Returns the runs with their answers, as checks want them.
 CheckedCompensator checked_runs(const DeviceEvidence& found,

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <stdexcept>
 #include <utility>
 
@@ -31,6 +32,16 @@ ReadRun named_run(const std::string& name, const Recording& recording) try {
   throw std::invalid_argument(fmt::format("{}: {}", name, error.what()));
 }
 
+// The mean of the cubic in the file over the temperatures that training saw,
+// which stands for a constant trained on the same data.
+double baseline_mean(const Compensator& compensator) {
+  constexpr Eigen::Index kPlaces = 201;
+  const TemperatureRange& range = compensator.temperature_range;
+  const Eigen::ArrayXXd temperatures =
+      Eigen::ArrayXd::LinSpaced(kPlaces, range.lowest, range.highest);
+  return compensator.baseline.predict(temperatures).mean();
+}
+
 DeviceEvidence evidence_of(std::vector<ReadRun> read,
                            std::vector<Recording> recordings,
                            const RecordedAnswering& by, std::size_t threads) {
@@ -41,11 +52,18 @@ DeviceEvidence evidence_of(std::vector<ReadRun> read,
                       .baselines = {},
                       .full_scale = full_scale.value_or(kFullScale),
                       .reports_clamped = by.known != nullptr};
-  if (by.known != nullptr)
+  if (by.known != nullptr) {
+    answering.baselines.push_back(
+        {"constant", [mean = baseline_mean(*by.known)](const Recording& run) {
+           std::vector<double> rate = column_values(run, "rate");
+           for (double& value : rate) value -= mean;
+           return rate;
+         }});
     answering.baselines.push_back(
         {"cubic", [known = by.known](const Recording& run) {
            return baseline_rate(*known, run);
          }});
+  }
   return answered_evidence(std::move(read), std::move(recordings), answering,
                            threads);
 }

@@ -96,6 +96,19 @@ Json check_json(const CheckResult& check) {
           {"words", check.words}};
 }
 
+// Mean squares [(deg/s)^2]: of the other less that of the compensator.
+Json comparison_json(const Comparison& comparison) {
+  const PairedResidual& found = comparison.found;
+  return {{"with", comparison.with},
+          {"rms_deg_per_s", found.other_rms},
+          {"compensated_rms_deg_per_s", found.rms},
+          {"gain", found.gain},
+          {"interval",
+           {found.gain - found.half_width, found.gain + found.half_width}},
+          {"better", found.is_better()},
+          {"required", comparison.is_required}};
+}
+
 Json figures_json(std::span<const double> values) {
   Json numbers = Json::array();
   for (const double value : values) numbers.push_back(number_or_null(value));
@@ -178,6 +191,7 @@ nlohmann::ordered_json to_json(const ValidationResult& result) {
   Json json{{"filetype", "beamgyro-validation"},
             {"verdict", conformity_name(result.verdict)},
             {"words", result.words},
+            {"next", result.next},
             {"compensator",
              {{"name", result.compensator.name},
               {"kind", result.compensator.kind},
@@ -189,6 +203,16 @@ nlohmann::ordered_json to_json(const ValidationResult& result) {
     compensator["workbench_difference_largest_deg_per_s"] = workbench->largest;
     compensator["workbench_difference_rms_deg_per_s"] = workbench->rms;
   }
+  Json& compared = json["compared_with"] = Json::array();
+  for (const Comparison& one : result.comparisons)
+    compared.push_back(comparison_json(one));
+  Json& runs = json["runs"] = Json::array();
+  for (const RunResidual& run : result.runs)
+    runs.push_back({{"name", run.name},
+                    {"purpose", run.purpose},
+                    {"rms_deg_per_s",
+                     {{"before", number_or_null(run.before)},
+                      {"after", number_or_null(run.after)}}}});
   json["metrics"] = metrics_json(result.metrics, result.limits);
   for (const char* list : {"limits", "checks"}) json[list] = Json::array();
   for (const DecidedLimit& limit : result.limits)

@@ -26,18 +26,16 @@ bool is_more_severe(Conformity one, Conformity other) {
 class SetJudge {
  public:
   SetJudge(const RunSource& set, const RecordedAnswering& answering,
-           const SpecificationFile& specification, std::size_t threads)
+           const SpecificationFile& specification, std::size_t threads,
+           const EvidenceVisitor& on_device)
       : set_(*set.set),
         answering_(answering),
         specification_(specification),
-        threads_(threads) {
+        threads_(threads),
+        on_device_(on_device) {
     found_.devices.campaign = set_.name;
-    for (const Limit& limit : specification.limits)
-      if (const Metric* metric = find_metric(limit.metric);
-          std::ranges::none_of(found_.devices.metrics, [&](const auto& one) {
-            return one.metric == metric;
-          }))
-        found_.devices.metrics.push_back({metric, {}, {}});
+    add_metric("residual_rms_deg_per_s");
+    for (const Limit& limit : specification.limits) add_metric(limit.metric);
   }
 
   // Judges the device whose runs these are.
@@ -45,13 +43,9 @@ class SetJudge {
     const std::string device = runs.front().device;
     DeviceEvidence evidence =
         recorded_evidence(std::move(runs), answering_, threads_);
+    if (on_device_) on_device_(evidence);
     ValidationResult result;
-    const Compensator* known = answering_.known;
-    judge({specification_,
-           {},
-           answering_.compensator,
-           known != nullptr ? &known->provenance : nullptr,
-           &set_},
+    judge({specification_, {}, answering_.compensator, answering_.known, &set_},
           evidence, threads_, result);
     if (result.sigma)
       sigma_.add_device(sigma_evidence(evidence.after),
@@ -86,6 +80,14 @@ class SetJudge {
   }
 
  private:
+  void add_metric(const std::string& name) {
+    const Metric* metric = find_metric(name);
+    if (std::ranges::none_of(found_.devices.metrics, [&](const auto& one) {
+          return one.metric == metric;
+        }))
+      found_.devices.metrics.push_back({metric, {}, {}});
+  }
+
   static void add_figures(const ValidationResult& result,
                           PopulationMetric& metric) {
     const auto figure = [](const std::optional<Estimate>& estimate) {
@@ -102,6 +104,7 @@ class SetJudge {
   const RecordedAnswering& answering_;
   const SpecificationFile& specification_;
   std::size_t threads_;
+  const EvidenceVisitor& on_device_;
   SetVerdicts found_;
   SigmaEvidence sigma_;
 };
@@ -111,9 +114,10 @@ class SetJudge {
 SetVerdicts set_verdicts(const RunSource& set,
                          const RecordedAnswering& answering,
                          const SpecificationFile& specification,
-                         std::size_t threads, const ProgressOfWork& progress) {
+                         std::size_t threads, const ProgressOfWork& progress,
+                         const EvidenceVisitor& on_device) {
   if (set.count == 0) throw std::invalid_argument("no run of the set to judge");
-  SetJudge judge(set, answering, specification, threads);
+  SetJudge judge(set, answering, specification, threads, on_device);
   std::vector<TrainingRun> runs;
   std::size_t seen = 0;
   set.for_each_by_device([&](const TrainingRun& run) {

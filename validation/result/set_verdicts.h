@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 
 #include "compensation/rows/run_source.h"
 #include "validation/result/recorded_evidence.h"
@@ -19,6 +20,9 @@ struct SetVerdicts {
   DeviceEvidence evidence;
 };
 
+/// Takes the evidence of each device in turn.
+using EvidenceVisitor = std::function<void(const DeviceEvidence&)>;
+
 /// Judges a compensator on every device of a set, one after the other, with the
 /// runs of one device in memory. A device passes when every limit and check is
 /// met. Throws as recorded_evidence(), and std::invalid_argument without runs.
@@ -26,6 +30,7 @@ SetVerdicts set_verdicts(const RunSource& set,
                          const RecordedAnswering& answering,
                          const SpecificationFile& specification,
                          std::size_t threads,
-                         const ProgressOfWork& progress = {});
+                         const ProgressOfWork& progress = {},
+                         const EvidenceVisitor& on_device = {});
 
 }  // namespace beamgyro::internal

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -10,6 +12,7 @@
 
 #include "validation/checks/checks.h"
 #include "validation/metrics/metric.h"
+#include "validation/metrics/paired_residual.h"
 #include "validation/metrics/sigma_report.h"
 #include "validation/specification/decision.h"
 #include "validation/specification/limit.h"
@@ -35,6 +38,21 @@ struct DecidedLimit {
   Decision decision;
 };
 
+/// The compensated rate beside another one, on the same runs.
+struct Comparison {
+  // "before", a baseline, or "constant_of_runs", fitted to the runs themselves.
+  std::string with;
+  PairedResidual found;
+  bool is_required = false;  // by the specification: to be better than it
+  bool is_same = false;      // they leave the same, sample by sample
+};
+
+/// What a run shows alone.
+struct RunResidual {
+  std::string name, purpose;
+  double before = 0.0, after = 0.0;  // [deg/s], rms
+};
+
 /// A file or run that a result depends on.
 struct ResultFile {
   std::string group;  // "compensator", "device", "qualification", ...
@@ -48,6 +66,18 @@ struct WorkbenchDifference {
   std::string name;                 // of its file
   double largest = 0.0, rms = 0.0;  // [deg/s]
   std::size_t samples = 0;
+
+  /// Adds further samples, of an AnswerDifference or of the same.
+  template <class Difference>
+  void add(const Difference& more) {
+    const auto here = static_cast<double>(samples);
+    const auto there = static_cast<double>(more.samples);
+    if (there == 0.0) return;
+    largest = std::max(largest, more.largest);
+    rms = std::sqrt((here * rms * rms + there * more.rms * more.rms) /
+                    (here + there));
+    samples += more.samples;
+  }
 };
 
 /// What was judged.
@@ -102,8 +132,11 @@ struct ResultProvenance {
 /// The answer of the validator.
 struct ValidationResult {
   Conformity verdict = Conformity::kUndecided;
-  std::string words;  // the verdict, in a sentence or two
+  std::string words;  // the reason for it, in a sentence or two
+  std::string next;   // what to do next, in a sentence
   JudgedCompensator compensator;
+  std::vector<Comparison> comparisons;
+  std::vector<RunResidual> runs;      // of one device, in their order
   std::vector<MetricResult> metrics;  // in the order of metrics()
   std::vector<DecidedLimit> limits;   // in the order of the specification
   std::vector<CheckResult> checks;    // in the order of check_definitions()

@@ -51,6 +51,19 @@ void add_limits(const ConfigTable& limits, const std::string& relative_to,
   }
 }
 
+constexpr const char* kDoesNotDecide = "does not decide";
+
+std::vector<std::string> better_than(const ConfigTable& root) {
+  if (!root.has("better_than")) return {};
+  std::vector<std::string> names = root.texts("better_than");
+  for (const std::string& name : names)
+    if (name != "before" && name != "constant")
+      root.fail(
+          "better_than",
+          fmt::format("'{}', must be of \"before\" and \"constant\"", name));
+  return names;
+}
+
 SpecificationFile specification_of(const ConfigDocument& document) {
   const ConfigTable& root = document.root();
   SpecificationFile file;
@@ -62,8 +75,12 @@ SpecificationFile specification_of(const ConfigDocument& document) {
   const ConfigTable relative = root.table_or_empty("limits_relative_to");
   for (const char* reference : {"before", "constant", "cubic", "spline"})
     add_limits(relative.table_or_empty(reference), reference, file.limits);
+  file.better_than = better_than(root);
+  file.may_leave_untested =
+      root.choice_or("not_tested", "is undecided",
+                     {"is undecided", kDoesNotDecide}) == kDoesNotDecide;
   document.reject_unknown_keys();
-  if (file.limits.empty())
+  if (file.limits.empty() && file.better_than.empty())
     root.fail("limits", "empty, must limit one metric or more");
   file.text = document.text();
   return file;

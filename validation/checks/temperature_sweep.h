@@ -2,8 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
-#include "compensation/compensator/compensator.h"
+#include "compensation/inputs/features.h"
 #include "compensation/scoring/rate_injection.h"
 #include "dataset/recording/recording.h"
 
@@ -22,13 +23,14 @@ Recording temperature_sweep(const Recording& recording,
 /// temperature both signs of rates that lie a factor of 1.7 or less apart.
 constexpr std::size_t kSweepReplays = 64;
 
-/// Returns the worst blocks of the replays of that sweep with rates up to
+/// The same for a program of the user: a process for each is slow.
+constexpr std::size_t kSweepReplaysOfProgram = 2;
+
+/// Returns the blocks of `replays` replays of that sweep with rates up to
 /// `full_scale` [deg/s]. It tests temperatures between those of the recorded
-/// samples. The scale-factor table is left out. Returns nothing for a
-/// compensator whose inputs do not see the rate, and where replay() returns
-/// nothing.
-WorstBlocks worst_over_temperature(const Compensator& compensator,
-                                   const Recording& recording,
-                                   double full_scale);
+/// samples. Returns none where replay() returns nothing.
+std::vector<ReplayedBlock> replays_over_temperature(
+    const RateEstimator& estimator, const Recording& recording,
+    const TemperatureRange& range, double full_scale, std::size_t replays);
 
 }  // namespace beamgyro::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/scoring/temperature_sweep.h"
+#include "validation/checks/temperature_sweep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -83,25 +83,18 @@ Recording temperature_sweep(const Recording& recording,
   return sweep;
 }
 
-WorstBlocks worst_over_temperature(const Compensator& compensator,
-                                   const Recording& recording,
-                                   double full_scale) {
-  WorstBlocks worst;
-  if (std::ranges::none_of(compensator.inputs, sees_the_rate)) return worst;
-  Compensator bias_only = compensator;
-  bias_only.scale_factor.reset();
-  const auto estimator = [&bias_only](const Recording& any) {
-    return compensated_rate(bias_only, any);
-  };
-  const Recording sweep =
-      temperature_sweep(recording, compensator.temperature_range);
+std::vector<ReplayedBlock> replays_over_temperature(
+    const RateEstimator& estimator, const Recording& recording,
+    const TemperatureRange& range, double full_scale, std::size_t replays) {
+  const Recording sweep = temperature_sweep(recording, range);
   const std::vector<double> answers = estimator(sweep);
-  for (std::size_t first = 0; first < kSweepReplays; ++first) {
+  std::vector<ReplayedBlock> all;
+  for (std::size_t first = 0; first < replays; ++first) {
     const auto blocks = replay(estimator, sweep, answers, full_scale, first);
-    if (!blocks) return worst;
-    for (const ReplayedBlock& block : *blocks) worst.add(block);
+    if (!blocks) return {};
+    all.insert(all.end(), blocks->begin(), blocks->end());
   }
-  return worst;
+  return all;
 }
 
 }  // namespace beamgyro::internal

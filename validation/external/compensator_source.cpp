@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "validation/external/compensator_source.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <utility>
+
+#include "compensation/compensator/compensator_file.h"
+#include "dataset/files/text_file.h"
+#include "validation/external/command_compensator.h"
+#include "validation/external/file_compensator.h"
+#include "validation/external/library_compensator.h"
+
+namespace beamgyro::internal {
+namespace {
+
+constexpr std::string_view kCommandPrefix = "cmd:";
+constexpr std::string_view kElf =
+    "\x7f"
+    "ELF";
+constexpr std::size_t kEnoughToTell = 65536;  // bytes
+
+std::string first_bytes(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) return "";
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes(kEnoughToTell, '\0');
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return bytes;
+}
+
+// Whether a line begins with the key `kind`.
+bool has_kind(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    if (!line.starts_with("kind")) continue;
+    line.remove_prefix(4);
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    if (line.starts_with('=')) return true;
+  }
+  return false;
+}
+
+std::string plain_name(const std::string& argument) {
+  return std::filesystem::path(argument).filename().string();
+}
+
+}  // namespace
+
+std::string_view kind_name(SourceKind kind) {
+  switch (kind) {
+    case SourceKind::kFile:
+      return "compensator";
+    case SourceKind::kLibrary:
+      return "library";
+    case SourceKind::kCommand:
+      return "command";
+    case SourceKind::kModel:
+      return "model";
+    case SourceKind::kFunction:
+      break;
+  }
+  return "function";
+}
+
+bool is_program(SourceKind kind) {
+  return kind == SourceKind::kLibrary || kind == SourceKind::kCommand;
+}
+
+SourceKind source_kind(const std::string& argument) {
+  if (argument.starts_with(kCommandPrefix)) return SourceKind::kCommand;
+  const std::string bytes = first_bytes(argument);
+  const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+  if (bytes.starts_with(kElf)) return SourceKind::kLibrary;
+  if (first != std::string::npos && bytes[first] == '{')
+    return SourceKind::kFile;
+  if (argument.ends_with(".toml")) return SourceKind::kModel;
+  if (argument.ends_with(".so")) return SourceKind::kLibrary;
+  return !argument.ends_with(".json") && has_kind(bytes) ? SourceKind::kModel
+                                                         : SourceKind::kFile;
+}
+
+CompensatorSource open_source(const std::string& argument,
+                              const ProcessLimits& limits) {
+  switch (const SourceKind kind = source_kind(argument)) {
+    case SourceKind::kCommand:
+      return {kind, argument, argument, open_command(argument, limits)};
+    case SourceKind::kLibrary: {
+      CompensatorSource source{kind, argument, plain_name(argument),
+                               open_library(argument, limits)};
+      source.files.push_back({argument, read_text_file(argument)});
+      return source;
+    }
+    case SourceKind::kModel: {
+      ModelSpec model = read_model(std::filesystem::path(argument));
+      const std::string text = model.text;
+      return source_of(std::move(model), argument, text);
+    }
+    case SourceKind::kFile:
+    case SourceKind::kFunction:
+      break;
+  }
+  const std::string text = read_text_file(argument);
+  return source_of(parse_compensator(text, argument), argument, text);
+}
+
+CompensatorSource source_of(Compensator compensator, const std::string& name,
+                            const std::string& text) {
+  CompensatorSource source{SourceKind::kFile, name, plain_name(name),
+                           tested(compensator), std::move(compensator)};
+  source.files.push_back({name, text});
+  return source;
+}
+
+CompensatorSource source_of(ModelSpec model, const std::string& name,
+                            const std::string& text) {
+  CompensatorSource source{SourceKind::kModel, name, plain_name(name)};
+  source.files.push_back({name, text});
+  for (std::size_t k = 1; k < model.files.size(); ++k)  // the first is its own
+    source.files.push_back({model.files[k], read_text_file(model.files[k])});
+  source.model = std::move(model);
+  return source;
+}
+
+CompensatorSource source_of(std::shared_ptr<const TestedCompensator> function,
+                            const std::string& name) {
+  return {SourceKind::kFunction, name, name, std::move(function)};
+}
+
+void require_unchanged(const CompensatorSource& source) {
+  if (source.kind != SourceKind::kLibrary) return;
+  for (const SourceText& file : source.files)
+    if (read_text_file(file.path) != file.text)
+      throw std::runtime_error(fmt::format(
+          "{}: changed while it was asked, so the answers may be those of two "
+          "libraries",
+          file.path.string()));
+}
+
+std::shared_ptr<const TestedCompensator> open_tested_compensator(
+    const std::string& argument, const ProcessLimits& limits) {
+  CompensatorSource source = open_source(argument, limits);
+  if (source.model)
+    throw std::invalid_argument(fmt::format(
+        "{}: is a model, which has no answers; expected a compensator",
+        argument));
+  return source.tested;
+}
+
+}  // namespace beamgyro::internal
