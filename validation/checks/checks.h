@@ -33,7 +33,8 @@ struct CheckedCompensator {
   double full_scale = 150.0;  // [deg/s]
   // What the compensator says of its training, where it says anything.
   const Provenance* provenance = nullptr;  // not owned
-  const SetPart* set = nullptr;  // of the runs that have a device; not owned
+  const TrainingSet* set =
+      nullptr;  // of the runs that have a device; not owned
 };
 
 enum class CheckOutcome {

@@ -42,8 +42,8 @@ struct JudgedBy {
   const SpecificationFile& specification;
   const MetricRuns& metric_runs;
   const TestedCompensator& compensator;
-  const Provenance* provenance;  // of its training, where it is known
-  const SetPart* set = nullptr;  // of the runs, where they are of one
+  const Provenance* provenance;      // of its training, where it is known
+  const TrainingSet* set = nullptr;  // of the runs, where they are of one
 };
 
 /// Evaluates every metric, decides on the limits, runs the checks and writes

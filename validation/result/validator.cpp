@@ -53,7 +53,7 @@ std::string kind_of(const std::string& argument) {
 }
 
 std::vector<std::string> warnings_about(const Qualification& qualification,
-                                        const Device& device,
+                                        const DeviceParameters& device,
                                         const DeviceEvidence& found) {
   std::vector<std::string> warnings;
   for (std::size_t k = 0; k < found.runs.size(); ++k) {
@@ -88,7 +88,7 @@ struct Validator::State {
   Qualification qualification;
   SpecificationFile specification;
   QualifiedDevice device;
-  std::optional<Campaign> campaign;
+  std::optional<CampaignPlan> campaign;
   // The compensator, its training where it is known, or a model.
   std::shared_ptr<const TestedCompensator> compensator;
   std::optional<Compensator> file;
@@ -250,7 +250,7 @@ Validator::Validator(ValidationRequest request)
   for (const auto& path : asked.runs) s.add_file("runs", path);
   if (asked.specification) s.add_file("specification", *asked.specification);
   if (asked.campaign) {
-    s.campaign = Campaign::read(*asked.campaign, asked.devices);
+    s.campaign = CampaignPlan::read(*asked.campaign, asked.devices);
     for (const SourceText& source : s.campaign->sources())
       s.add_file("campaign", source.path);
   }

@@ -75,8 +75,8 @@ struct CompletedValidation {
 class Validator {
  public:
   /// Reads every file. Throws std::invalid_argument as read_qualification(),
-  /// load_device(), read_specification_file(), Campaign::read(), read_model()
-  /// and open_tested_compensator(), and when
+  /// load_device(), read_specification_file(), CampaignPlan::read(),
+  /// read_model() and open_tested_compensator(), and when
   /// - a model is to be trained and the qualification has no training runs;
   /// - a limit is relative to a baseline, and there are none of them either.
   explicit Validator(ValidationRequest request);
