@@ -261,20 +261,19 @@ TauSpacing spacing_of(const AllanQuestion& asked) {
 }
 
 /// The overlapping deviation at octaves, to which the coefficients are fitted.
-std::vector<AllanPoint> octaves(
-    const EvenSeries& series, TauSpacing spacing,
-    const std::vector<internal::DeviationCurve>& curves) {
-  const auto found = std::ranges::find(curves, DeviationKind::kOadev,
-                                       &internal::DeviationCurve::kind);
+std::vector<AllanPoint> octaves(const EvenSeries& series, TauSpacing spacing,
+                                const std::vector<DeviationSeries>& curves) {
+  const auto found =
+      std::ranges::find(curves, DeviationKind::kOadev, &DeviationSeries::kind);
   if (spacing == TauSpacing::kOctave && found != curves.end())
     return found->points;
   return allan_curve(series, octave_taus(series)).overlapping;
 }
 
-void add_curves(const std::vector<internal::DeviationCurve>& curves,
+void add_curves(const std::vector<DeviationSeries>& curves,
                 AllanResult& result) {
-  for (const internal::DeviationCurve& curve : curves) {
-    beamgyro::DeviationCurve shown{name_of(curve.kind), {}};
+  for (const DeviationSeries& curve : curves) {
+    DeviationCurve shown{name_of(curve.kind), {}};
     for (const AllanPoint& point : curve.points)
       shown.points.push_back({point.tau, point.deviation, point.interval.low,
                               point.interval.high, point.clusters});
@@ -325,7 +324,7 @@ AllanResult result_of(const AllanQuestion& asked, AllanSignal signal) {
         "{}: {} of {} samples used; {} missing between them", asked.file,
         series.samples, series.samples + series.left_out, series.missing));
   const TauSpacing spacing = spacing_of(asked);
-  const std::vector<internal::DeviationCurve> curves = deviation_curves(
+  const std::vector<DeviationSeries> curves = deviation_curves(
       series, kinds_asked_for(asked), taus_of(series, spacing),
       [&](double share) { report(asked.options.progress, share); });
   AllanResult result;

@@ -16,7 +16,7 @@ std::optional<long> as_long(std::optional<std::uint32_t> number) {
   return number ? std::optional<long>(*number) : std::nullopt;
 }
 
-Campaign campaign_of(internal::Campaign campaign) {
+Campaign campaign_of(internal::CampaignPlan campaign) {
   return Campaign(std::make_shared<const Campaign::State>(std::move(campaign)));
 }
 
@@ -27,26 +27,22 @@ Campaign::Campaign(std::shared_ptr<const State> state)
 
 Campaign Campaign::read(const std::filesystem::path& file,
                         std::optional<std::uint32_t> devices) {
-  return campaign_of(internal::Campaign::read(file, as_long(devices)));
+  return campaign_of(internal::CampaignPlan::read(file, as_long(devices)));
 }
 
 Campaign Campaign::parse(const std::vector<InputFile>& files,
                          std::optional<std::uint32_t> devices) {
   if (files.empty())
     throw std::invalid_argument("no files; expected those of a campaign");
-  std::vector<internal::SourceText> copies;
-  for (const InputFile& file : files) copies.push_back({file.path, file.text});
-  return campaign_of(internal::Campaign::of_copies(copies, as_long(devices)));
+  return campaign_of(
+      internal::CampaignPlan::of_copies(files, as_long(devices)));
 }
 
 std::string Campaign::name() const { return state_->campaign.name(); }
 std::string Campaign::text() const { return state_->campaign.text(); }
 
 std::vector<InputFile> Campaign::files() const {
-  std::vector<InputFile> files;
-  for (const internal::SourceText& source : state_->campaign.sources())
-    files.push_back({source.path, source.text});
-  return files;
+  return state_->campaign.sources();
 }
 
 std::uint32_t Campaign::devices() const { return state_->campaign.devices(); }

@@ -9,9 +9,9 @@
 namespace beamgyro {
 
 struct Campaign::State {
-  explicit State(internal::Campaign read) : campaign(std::move(read)) {}
+  explicit State(internal::CampaignPlan read) : campaign(std::move(read)) {}
 
-  internal::Campaign campaign;
+  internal::CampaignPlan campaign;
 };
 
 }  // namespace beamgyro

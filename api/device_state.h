@@ -13,7 +13,7 @@ namespace beamgyro {
 struct Device::State {
   std::string text, name;
   std::vector<std::string> overrides;
-  internal::Device device;
+  internal::DeviceParameters device;
   internal::UnitGyro gyro = {};
 };
 

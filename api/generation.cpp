@@ -97,7 +97,7 @@ void make_files(const internal::ShardPlan& plan,
 GenerationOutcome generate(const Campaign& campaign,
                            const std::filesystem::path& directory,
                            const GenerationOptions& options) {
-  const internal::Campaign& own = campaign.state().campaign;
+  const internal::CampaignPlan& own = campaign.state().campaign;
   const internal::ShardPlan plan(
       own, {internal::kProgramVersion, internal::kGitRevision});
   internal::require_moderate_files(campaign.name(), plan);

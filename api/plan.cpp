@@ -57,8 +57,8 @@ const Population& population_of(const beamgyro::Compensator& compensator) {
   return *own.population;
 }
 
-ChamberView view_of(const beamgyro::Device& device) try {
-  const Device& own = device.state().device;
+ChamberView view_of(const Device& device) try {
+  const DeviceParameters& own = device.state().device;
   return ChamberView(own.thermal, own.temperature_sensor.offset);
 } catch (const std::invalid_argument& error) {
   throw std::invalid_argument(
@@ -108,7 +108,8 @@ SlowNoise slow_noise(const NoiseParameters& noise) {
 
 // What the device's thermal model says of soaks and of the minutes after
 // power-on, and its noise.
-SoakBehaviour behaviour_of(const PlanOptions& options, const Device& device,
+SoakBehaviour behaviour_of(const PlanOptions& options,
+                           const DeviceParameters& device,
                            const TemperatureRange& range,
                            const ChamberTime& time) {
   const double farthest =
@@ -150,7 +151,7 @@ void check_goal(const PlanOptions& options) {
 }
 
 struct PlanStudy::State {
-  State(const beamgyro::Compensator& population, const beamgyro::Device& unit,
+  State(const beamgyro::Compensator& population, const Device& unit,
         const PlanOptions& asked)
       : options(asked),
         file(name_of_file(population)),
@@ -186,7 +187,7 @@ struct PlanStudy::State {
 
   PlanOptions options;
   std::string file;  // of the population
-  beamgyro::Device device;
+  Device device;
   ChamberView view;
   TemperatureRange range, chamber;  // [degC]
   ChamberTime time;
@@ -195,8 +196,7 @@ struct PlanStudy::State {
 };
 
 PlanStudy::PlanStudy(const beamgyro::Compensator& population,
-                     const beamgyro::Device& device,
-                     const PlanOptions& options) {
+                     const Device& device, const PlanOptions& options) {
   check_goal(options);
   population_of(population);
   check_number("hours", options.hours, positive());

@@ -123,7 +123,7 @@ std::string Scenario::fidelity() const {
 std::uint64_t Scenario::seed() const { return state_->loaded.scenario.seed; }
 
 double Scenario::estimated_seconds() const {
-  const internal::Scenario& scenario = state_->loaded.scenario;
+  const internal::ScenarioPlan& scenario = state_->loaded.scenario;
   return scenario.fidelity == internal::Fidelity::kCarrier
              ? internal::carrier_cost(scenario)
              : 0.0;

@@ -110,7 +110,7 @@ std::uint64_t SensitivityStudy::devices() const {
   return devices_of_sample(campaign.state().campaign, sample);
 }
 
-SensitivityStudy checked_study(const beamgyro::Campaign& campaign,
+SensitivityStudy checked_study(const Campaign& campaign,
                                const SensitivityOptions& options) {
   DeviceSampleOptions sample;
   sample.merits = merits_of(options);
@@ -126,7 +126,7 @@ SensitivityStudy checked_study(const beamgyro::Campaign& campaign,
   sample.halves_tolerances = !options.limits.empty();
   sample.jobs = options.jobs;
   std::map<Merit, double> limits = limits_of(options, sample.merits);
-  const internal::Campaign& own = campaign.state().campaign;
+  const CampaignPlan& own = campaign.state().campaign;
   require_comparable(factors_of(own.device_plan()),
                      own.sources().front().path.string());
   return {campaign, std::move(sample), std::move(limits), options.linear};

@@ -18,7 +18,7 @@ std::vector<std::string> merit_names();
 
 /// A study whose options were checked.
 struct SensitivityStudy {
-  const beamgyro::Campaign& campaign;  // not owned
+  const Campaign& campaign;  // not owned
   DeviceSampleOptions sample;
   std::map<Merit, double> limits;  // largest magnitudes that are good
   bool linear = false;             // no logarithms
@@ -27,7 +27,7 @@ struct SensitivityStudy {
 };
 
 /// Returns the study of the options. Throws as sensitivity().
-SensitivityStudy checked_study(const beamgyro::Campaign& campaign,
+SensitivityStudy checked_study(const Campaign& campaign,
                                const SensitivityOptions& options);
 
 /// sensitivity() with counts that other threads may read.

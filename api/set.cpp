@@ -18,10 +18,10 @@
 namespace beamgyro {
 namespace internal {
 
-std::vector<SetDefect> set_defects(const std::filesystem::path& directory,
-                                   const Manifest& manifest,
-                                   const CheckProgress& progress) {
-  std::vector<SetDefect> defects = check_set(directory, manifest, progress);
+std::vector<FileDefect> set_defects(const std::filesystem::path& directory,
+                                    const Manifest& manifest,
+                                    const CheckProgress& progress) {
+  std::vector<FileDefect> defects = check_set(directory, manifest, progress);
   // Another program may make views of other bytes.
   if (manifest.head && manifest.head->program_version == kProgramVersion &&
       manifest.head->git_revision == kGitRevision)
@@ -153,7 +153,7 @@ std::vector<DrawnParameter> Set::drawn_parameters(std::string_view run,
 
 std::vector<SetDefect> Set::verify(const Progress& progress) const {
   std::vector<SetDefect> defects;
-  for (const internal::SetDefect& defect : internal::set_defects(
+  for (const internal::FileDefect& defect : internal::set_defects(
            state_->directory, state_->manifest,
            [&](std::uint64_t done, std::uint64_t total) {
              internal::report(progress, static_cast<double>(done) /

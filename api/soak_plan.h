@@ -21,8 +21,8 @@ void check_goal(const PlanOptions& options);
 class PlanStudy {
  public:
   /// Throws as plan(), but for the candidates, which are not looked at.
-  PlanStudy(const beamgyro::Compensator& population,
-            const beamgyro::Device& device, const PlanOptions& options);
+  PlanStudy(const beamgyro::Compensator& population, const Device& device,
+            const PlanOptions& options);
   ~PlanStudy();
   PlanStudy(const PlanStudy&) = delete;
   PlanStudy& operator=(const PlanStudy&) = delete;

@@ -12,7 +12,7 @@ namespace beamgyro::internal {
 class UnitGyro {
  public:
   /// Throws as make_gyro(). Any thread may call it.
-  const Gyro& of(const Device& device) const {
+  const Gyro& of(const DeviceParameters& device) const {
     std::call_once(once_, [&] { gyro_.emplace(make_gyro(device)); });
     return *gyro_;
   }

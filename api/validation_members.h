@@ -19,8 +19,7 @@ namespace beamgyro::internal {
 template <class T>
 using OptionOf = T ValidationOptions::*;
 using AnyOption = std::variant<
-    OptionOf<std::optional<beamgyro::Device>>,
-    OptionOf<std::optional<beamgyro::Set>>,
+    OptionOf<std::optional<Device>>, OptionOf<std::optional<Set>>,
     OptionOf<std::vector<std::filesystem::path>>,
     OptionOf<std::optional<std::filesystem::path>>,
     OptionOf<std::vector<std::string>>, OptionOf<std::vector<std::uint32_t>>,

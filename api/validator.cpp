@@ -38,7 +38,7 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t kMostDevices = 4'000'000'000;
 
 std::vector<std::string> warnings_about(const Qualification& qualification,
-                                        const Device& device,
+                                        const DeviceParameters& device,
                                         const DeviceEvidence& found) {
   std::vector<std::string> warnings;
   for (std::size_t k = 0; k < found.runs.size(); ++k) {
@@ -74,7 +74,7 @@ struct Validator::State {
   Qualification qualification;
   SpecificationFile specification;
   QualifiedDevice device;
-  std::optional<Campaign> campaign;
+  std::optional<CampaignPlan> campaign;
   std::optional<Compensator> workbench;
   std::optional<RunSource> set;
   std::vector<InputFile> inputs;
@@ -127,7 +127,7 @@ struct Validator::State {
   }
 
   void read_campaign() {
-    campaign = Campaign::read(
+    campaign = CampaignPlan::read(
         *options.campaign, options.campaign_devices
                                ? std::optional<long>(*options.campaign_devices)
                                : std::nullopt);
@@ -335,11 +335,9 @@ RequestValue stored_value(const ValidationMember& row,
           if (!value) return nullptr;
           if constexpr (std::is_same_v<Value, std::optional<fs::path>>)
             return name_of(*value);
-          else if constexpr (std::is_same_v<Value,
-                                            std::optional<beamgyro::Device>>)
+          else if constexpr (std::is_same_v<Value, std::optional<Device>>)
             return name_of(value->name());
-          else if constexpr (std::is_same_v<Value,
-                                            std::optional<beamgyro::Set>>)
+          else if constexpr (std::is_same_v<Value, std::optional<Set>>)
             throw std::logic_error("a set is in no bundle");
           else
             return *value;
@@ -367,9 +365,8 @@ void read_value(const ValidationMember& row, const Bundle& bundle,
           return;
         } else if constexpr (std::is_same_v<Value, std::optional<fs::path>>) {
           value = listed_path(bundle, node);
-        } else if constexpr (std::is_same_v<Value,
-                                            std::optional<beamgyro::Device>>) {
-          value = beamgyro::Device::read(listed_path(bundle, node));
+        } else if constexpr (std::is_same_v<Value, std::optional<Device>>) {
+          value = Device::read(listed_path(bundle, node));
         } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
           value = node.number();
           if (!(*value > 0)) node.fail("expected a number above 0");

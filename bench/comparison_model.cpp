@@ -33,7 +33,7 @@ std::vector<double> list(const Eigen::Ref<const Eigen::VectorXd>& v) {
 
 json pair(std::complex<double> z) { return {z.real(), z.imag()}; }
 
-Device device_of(const Recording& recording) {
+DeviceParameters device_of(const Recording& recording) {
   std::vector<std::string> sets;
   std::istringstream lines(recording.overrides_text);
   for (std::string line; std::getline(lines, line);) sets.push_back(line);
@@ -126,7 +126,7 @@ Eigen::VectorXd probe(Eigen::Index size) {
 }
 
 json envelope(const Gyro& gyro, const RateProfile& rate) {
-  Scenario scenario;
+  ScenarioPlan scenario;
   scenario.duration = 1500;
   scenario.output_rate = 10;
   scenario.powered = {{.on = 0}};

@@ -10,13 +10,13 @@ namespace beamgyro::internal {
 namespace {
 
 void project_device(benchmark::State& state) {
-  const Device device = shipped_device();
+  const DeviceParameters device = shipped_device();
   for (auto _ : state) benchmark::DoNotOptimize(project_beam(device));
 }
 BENCHMARK(project_device)->Unit(benchmark::kMillisecond);
 
 void project_and_trim_device(benchmark::State& state) {
-  const Device device = shipped_device();
+  const DeviceParameters device = shipped_device();
   for (auto _ : state) benchmark::DoNotOptimize(make_gyro(device));
 }
 BENCHMARK(project_and_trim_device)->Unit(benchmark::kMillisecond);
@@ -34,7 +34,7 @@ BENCHMARK(static_solve)->Unit(benchmark::kMicrosecond);
 
 // All that a run over -40 to 55 degC and +-120 deg/s needs of a new device.
 void prepare_device(benchmark::State& state) {
-  const Device device = shipped_device();
+  const DeviceParameters device = shipped_device();
   for (auto _ : state) {
     const Gyro gyro = make_gyro(device);
     benchmark::DoNotOptimize(StaticMap(gyro, 233.15, 328.15, 2.1));
@@ -44,7 +44,7 @@ BENCHMARK(prepare_device)->Unit(benchmark::kMillisecond);
 
 // What `characterise` does for its 401 temperatures.
 void characterise_401_temperatures(benchmark::State& state) {
-  const Device device = shipped_device();
+  const DeviceParameters device = shipped_device();
   for (auto _ : state) {
     const Gyro gyro = make_gyro(device);
     for (int i = 0; i < 401; ++i) {

@@ -19,8 +19,9 @@ constexpr double kReference = 1e-11;                // tolerance [rad/s]
 
 const SineSignal kSine{.amplitude = 10 * kDegree, .frequency = 0.05};
 
-Scenario warm_up(const RateProfile& rate, double duration, double output_rate) {
-  Scenario scenario;
+ScenarioPlan warm_up(const RateProfile& rate, double duration,
+                     double output_rate) {
+  ScenarioPlan scenario;
   scenario.duration = duration;
   scenario.output_rate = output_rate;
   scenario.seed = 1;
@@ -42,7 +43,7 @@ double largest_difference(const std::vector<double>& a,
 // the rate is not zero. The error is that of the output against the same
 // equations at a tight tolerance.
 void envelope(benchmark::State& state, const RateProfile& rate) {
-  const Scenario scenario = warm_up(rate, 1500, 10);
+  const ScenarioPlan scenario = warm_up(rate, 1500, 10);
   const Gyro gyro = make_gyro(shipped_device());
   const Motion motion(scenario, gyro, {});
   const std::vector<double> times = sample_times(scenario);
@@ -67,12 +68,12 @@ void envelope(benchmark::State& state, const RateProfile& rate) {
 
 // A second of start-up at 2 kHz, twin included.
 void carrier(benchmark::State& state, const RateProfile& rate) {
-  const Scenario scenario = [&] {
-    Scenario s = warm_up(rate, 1, 2000);
+  const ScenarioPlan scenario = [&] {
+    ScenarioPlan s = warm_up(rate, 1, 2000);
     s.fidelity = Fidelity::kCarrier;
     return s;
   }();
-  const Device device = shipped_device();
+  const DeviceParameters device = shipped_device();
   for (auto _ : state)
     simulate_carrier(scenario, device, {}, [](Recording&& block) {
       benchmark::DoNotOptimize(block);
@@ -81,12 +82,12 @@ void carrier(benchmark::State& state, const RateProfile& rate) {
 
 // A day of changing ambient at 10 Hz, block by block.
 void envelope_day(benchmark::State& state) {
-  Scenario scenario = warm_up(PiecewiseLinear::constant(0), 86400, 10);
+  ScenarioPlan scenario = warm_up(PiecewiseLinear::constant(0), 86400, 10);
   scenario.fidelity = Fidelity::kEnvelope;
   scenario.ambient = PiecewiseLinear({0, 21600, 43200, 64800, 86400},
                                      {253.15, 313.15, 253.15, 313.15, 253.15});
   scenario.noise_enabled = true;
-  const Device device = shipped_device();
+  const DeviceParameters device = shipped_device();
   for (auto _ : state)
     simulate_envelope(scenario, device, {}, [](Recording&& block) {
       benchmark::DoNotOptimize(block);

@@ -15,8 +15,8 @@ namespace {
 constexpr double kDuration = 3600;  // [s]
 
 // An hour at 10 Hz from power-on at 25 degC, all noise on.
-Scenario warm_up(const RateProfile& rate) {
-  Scenario scenario;
+ScenarioPlan warm_up(const RateProfile& rate) {
+  ScenarioPlan scenario;
   scenario.duration = kDuration;
   scenario.output_rate = 10;
   scenario.seed = 1;
@@ -31,8 +31,8 @@ void report_speed(benchmark::State& state) {
 }
 
 void run_in_memory(benchmark::State& state, const RateProfile& rate) {
-  const Device device = shipped_device();
-  const Scenario scenario = warm_up(rate);
+  const DeviceParameters device = shipped_device();
+  const ScenarioPlan scenario = warm_up(rate);
   for (auto _ : state) benchmark::DoNotOptimize(simulated(scenario, device));
   report_speed(state);
 }
@@ -40,14 +40,14 @@ void run_in_memory(benchmark::State& state, const RateProfile& rate) {
 // The same of a device that is at hand, as in the later runs of a set.
 void run_of_a_prepared_device(benchmark::State& state) {
   const Gyro gyro = make_gyro(shipped_device());
-  const Scenario scenario = warm_up(PiecewiseLinear::constant(0));
+  const ScenarioPlan scenario = warm_up(PiecewiseLinear::constant(0));
   for (auto _ : state) benchmark::DoNotOptimize(simulated(scenario, gyro));
   report_speed(state);
 }
 
 void run_to_file(benchmark::State& state) {
-  const Device device = shipped_device();
-  const Scenario scenario = warm_up(PiecewiseLinear::constant(0));
+  const DeviceParameters device = shipped_device();
+  const ScenarioPlan scenario = warm_up(PiecewiseLinear::constant(0));
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / "beamgyro_bench.h5";
   for (auto _ : state) write_recording(simulated(scenario, device), file);

@@ -13,15 +13,15 @@
 namespace beamgyro::internal {
 namespace {
 
-Campaign shipped_population() {
-  return Campaign::read(std::string(BEAMGYRO_SCENARIOS) +
-                        "/campaigns/population.toml");
+CampaignPlan shipped_population() {
+  return CampaignPlan::read(std::string(BEAMGYRO_SCENARIOS) +
+                            "/campaigns/population.toml");
 }
 
 // A curve of the bias is a device drawn, solved and tabulated at 37
 // temperatures, on one thread: 30,000 of them take 30 times as long.
 void sample_population(benchmark::State& state, std::vector<Merit> merits) {
-  const Campaign campaign = shipped_population();
+  const CampaignPlan campaign = shipped_population();
   DeviceSampleOptions options;
   options.merits = std::move(merits);
   options.rows = 64;
@@ -44,7 +44,7 @@ BENCHMARK_CAPTURE(sample_population, four_figures,
 
 // Indices and intervals of 2048 rows and 13 factors.
 void analyse_figure(benchmark::State& state) {
-  const Campaign campaign = shipped_population();
+  const CampaignPlan campaign = shipped_population();
   DeviceSampleOptions options;
   options.merits = {Merit::kWarmUpChange};
   DeviceSampleCounts counts;

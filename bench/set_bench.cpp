@@ -25,7 +25,7 @@ const fs::path kFile =
 
 // Hours of warm-up of twenty devices, before they are put into a file.
 struct Hours {
-  Campaign campaign = Campaign::read(kCampaign, kDevices);
+  CampaignPlan campaign = CampaignPlan::read(kCampaign, kDevices);
   ShardPlan plan{campaign, {"bench", "bench"}};
   std::vector<DeviceRow> rows;
   std::vector<Recording> recordings;
@@ -107,7 +107,7 @@ void file_made(benchmark::State& state) {
 
 // The part of it before any file: computed, in memory.
 void hours_computed(benchmark::State& state) {
-  const Campaign& campaign = hours().campaign;
+  const CampaignPlan& campaign = hours().campaign;
   for (auto _ : state) {
     for (std::uint32_t d = 0; d < kDevices; ++d) {
       const Gyro gyro = make_gyro(campaign.device(d).device.value());
@@ -120,7 +120,7 @@ void hours_computed(benchmark::State& state) {
 }
 
 void device_drawn(benchmark::State& state) {
-  const Campaign& campaign = hours().campaign;
+  const CampaignPlan& campaign = hours().campaign;
   std::uint32_t d = 0;
   for (auto _ : state) benchmark::DoNotOptimize(campaign.device(d++));
 }

@@ -7,7 +7,7 @@
 
 namespace beamgyro::internal {
 
-inline Device shipped_device() {
+inline DeviceParameters shipped_device() {
   const ConfigDocument document = ConfigDocument::read(
       std::string(BEAMGYRO_SCENARIOS) + "/devices/nominal.toml");
   return read_device(document);

@@ -65,8 +65,7 @@ std::vector<double> temperature_grid(const std::string& text) {
 
 int characterise(const CharacteriseArguments& arguments) {
   const std::vector<double> grid = temperature_grid(arguments.temperatures);
-  const auto device =
-      beamgyro::Device::read(arguments.device, arguments.overrides);
+  const auto device = Device::read(arguments.device, arguments.overrides);
   require_output(arguments.output, {arguments.device});
   require_ending(arguments.output, {".csv"});
 

@@ -81,8 +81,8 @@ std::string note_for_interruption(const GenerateArguments& arguments) {
 int generate(const GenerateArguments& arguments) {
   const SetTask task = task_of(arguments.shard);
   require_directory_name(arguments.output);
-  const Campaign campaign =
-      Campaign::read(arguments.campaign, arguments.devices);
+  const CampaignPlan campaign =
+      CampaignPlan::read(arguments.campaign, arguments.devices);
   const ShardPlan plan(campaign, {kProgramVersion, kGitRevision});
   require_moderate_files(arguments.campaign, plan);
   if (arguments.lacking) {

@@ -39,14 +39,14 @@ fs::path device_of(const PlanArguments& arguments) {
                                   : fs::path(arguments.device);
 }
 
-beamgyro::Device read_device_of(const PlanArguments& arguments) {
+Device read_device_of(const PlanArguments& arguments) {
   const fs::path device = device_of(arguments);
   if (device.empty())
     throw std::invalid_argument(
         fmt::format("{} is not beside this program; expected --device "
                     "DEVICE.toml",
                     kShippedDevice));
-  return beamgyro::Device::read(device);
+  return Device::read(device);
 }
 
 // The device as a scenario at `output` names it: by a path from there, unless

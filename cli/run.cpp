@@ -27,7 +27,7 @@ struct RunArguments {
 // A run that will take longer needs --yes [s].
 constexpr double kLongRun = 3600;
 
-void require_consent(const beamgyro::Scenario& scenario, bool yes) {
+void require_consent(const Scenario& scenario, bool yes) {
   const double cost = scenario.estimated_seconds();
   if (cost <= kLongRun || yes) return;
   throw std::invalid_argument(fmt::format(
@@ -43,7 +43,7 @@ int run(const RunArguments& arguments) {
     overrides.push_back(fmt::format("seed={}", *arguments.seed));
   if (!arguments.fidelity.empty())
     overrides.push_back(fmt::format("fidelity=\"{}\"", arguments.fidelity));
-  const auto scenario = beamgyro::Scenario::read(arguments.scenario, overrides);
+  const auto scenario = Scenario::read(arguments.scenario, overrides);
   require_output(arguments.output, scenario.files());
   require_consent(scenario, arguments.yes);
 

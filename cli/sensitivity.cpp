@@ -74,7 +74,7 @@ SensitivityResult run_with_progress(const SensitivityStudy& study) {
 }
 
 void require_places(const SensitivityArguments& arguments,
-                    const beamgyro::Campaign& campaign) {
+                    const Campaign& campaign) {
   std::vector<std::filesystem::path> inputs;
   for (const InputFile& file : campaign.files()) inputs.push_back(file.path);
   if (!arguments.compensator.empty())
@@ -107,7 +107,7 @@ SensitivityOptions options_of(const SensitivityArguments& arguments) {
 }
 
 int sensitivity(const SensitivityArguments& arguments) {
-  const auto campaign = beamgyro::Campaign::read(arguments.campaign);
+  const auto campaign = Campaign::read(arguments.campaign);
   const SensitivityStudy study = checked_study(campaign, options_of(arguments));
   require_places(arguments, campaign);
   const SensitivityResult result = run_with_progress(study);

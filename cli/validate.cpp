@@ -162,7 +162,7 @@ ValidationOptions validation_options(const ValidateArguments& arguments) {
         words != arguments.options.end() && !words->second.empty())
       set_member(row, words->second, options);
   if (is_of_set) {
-    options.set = beamgyro::Set::open(arguments.runs[0]);
+    options.set = Set::open(arguments.runs[0]);
     std::vector<long> numbers;
     for (const std::string& word : arguments.device)
       numbers.push_back(whole_number("--device", word, 0, kLastDevice));
@@ -170,7 +170,7 @@ ValidationOptions validation_options(const ValidateArguments& arguments) {
   } else {
     options.recordings.assign(arguments.runs.begin(), arguments.runs.end());
     if (!arguments.device.empty())
-      options.device = beamgyro::Device::read(arguments.device[0]);
+      options.device = Device::read(arguments.device[0]);
   }
   if (options.device && options.recordings.empty() && !options.qualification)
     options.qualification = shipped_qualification();

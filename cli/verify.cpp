@@ -29,8 +29,8 @@ struct VerifyArguments {
   bool repair = false;
 };
 
-std::vector<SetDefect> checked(const fs::path& directory,
-                               const Manifest& manifest) {
+std::vector<FileDefect> checked(const fs::path& directory,
+                                const Manifest& manifest) {
   Progress progress("verifying " + directory.string());
   return set_defects(directory, manifest,
                      [&](std::uint64_t done, std::uint64_t total) {
@@ -39,16 +39,16 @@ std::vector<SetDefect> checked(const fs::path& directory,
                      });
 }
 
-std::string listed(const std::vector<SetDefect>& defects) {
+std::string listed(const std::vector<FileDefect>& defects) {
   std::string text;
-  for (const SetDefect& defect : defects)
+  for (const FileDefect& defect : defects)
     fmt::format_to(std::back_inserter(text), "{}: {}\n", defect.file,
                    defect.what);
   return text;
 }
 
 void repair(const fs::path& directory, const Manifest& manifest,
-            const std::vector<SetDefect>& defects, unsigned jobs) {
+            const std::vector<FileDefect>& defects, unsigned jobs) {
   SetRepair repair(directory, manifest, defects, kProgram);
   require_moderate_files(directory.string(), repair.plan());
   repair.begin();
@@ -67,7 +67,7 @@ void repair(const fs::path& directory, const Manifest& manifest,
 int verify(const VerifyArguments& arguments) {
   const fs::path directory = arguments.directory;
   Manifest manifest = manifest_of_set(directory);
-  std::vector<SetDefect> defects = checked(directory, manifest);
+  std::vector<FileDefect> defects = checked(directory, manifest);
   print_result(listed(defects));
   if (!defects.empty() && arguments.repair) {
     try {

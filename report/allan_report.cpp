@@ -26,7 +26,7 @@ std::string series_line(const EvenSeries& series) {
       series.missing, series.left_out);
 }
 
-std::string deviation_table(const std::vector<DeviationCurve>& curves,
+std::string deviation_table(const std::vector<DeviationSeries>& curves,
                             const std::string& unit) {
   std::string text = fmt::format("{:>12}", "tau s");
   auto out = std::back_inserter(text);

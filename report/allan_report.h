@@ -15,7 +15,7 @@ std::string series_line(const EvenSeries& series);
 
 /// Returns a table of the deviations in `unit`, a line for each tau, with the
 /// 95 % interval of the last curve. "-" is a deviation that there is not.
-std::string deviation_table(const std::vector<DeviationCurve>& curves,
+std::string deviation_table(const std::vector<DeviationSeries>& curves,
                             const std::string& unit);
 
 /// Returns the noise coefficients of a series in `unit` and what the fit of

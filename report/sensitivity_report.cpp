@@ -28,7 +28,7 @@ double unsigned_zero(double value, int digits) {
   return std::abs(value) < 0.5 * std::pow(10, -digits) ? 0.0 : value;
 }
 
-std::string index_text(const SensitivityIndex& index) {
+std::string index_text(const IndexEstimate& index) {
   return fmt::format(
       "{:>6.3f} {:>13}", unsigned_zero(index.value, 3),
       fmt::format("{:.2f} .. {:.2f}", unsigned_zero(index.low, 2),
@@ -129,7 +129,7 @@ std::string yield_table(const MeritResult& result) {
   return text;
 }
 
-nlohmann::ordered_json interval_json(const SensitivityIndex& index) {
+nlohmann::ordered_json interval_json(const IndexEstimate& index) {
   return {index.low, index.high};
 }
 

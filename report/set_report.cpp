@@ -158,8 +158,8 @@ std::string info_on_device(const fs::path& path, std::uint32_t device) {
     throw std::invalid_argument(
         fmt::format("--device {}: {} has devices 0 to {}", device,
                     path.string(), head.devices - 1));
-  const Campaign campaign =
-      Campaign::of_copies(read_copies(path, head), head.devices);
+  const CampaignPlan campaign =
+      CampaignPlan::of_copies(read_copies(path, head), head.devices);
   const VirtualDevice drawn = campaign.device(device);
   std::string text = fmt::format("device {}, drawn of {}\n{}", device,
                                  head.campaign, drawn.overrides);

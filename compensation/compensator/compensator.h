@@ -49,7 +49,7 @@ struct Provenance {
   std::vector<SourceFile> training;
   std::vector<SourceFile> held_out;
   // In place of files: the set that the runs come from.
-  std::optional<SetPart> training_set, held_out_set;
+  std::optional<TrainingSet> training_set, held_out_set;
   std::string model_text;  // model file byte for byte as read
   std::uint64_t seed = 0;
   std::string stop_reason;

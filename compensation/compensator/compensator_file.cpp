@@ -76,7 +76,7 @@ Json ranges_of(const std::vector<std::uint32_t>& numbers) {
   return ranges;
 }
 
-Json json_of(const std::optional<SetPart>& set) {
+Json json_of(const std::optional<TrainingSet>& set) {
   if (!set) return {};
   return {{"name", set->name},
           {"manifest_sha256", set->manifest_sha256},
@@ -150,10 +150,11 @@ std::vector<std::uint32_t> read_ranges(const JsonNode& node) {
 }
 
 // The oldest files lack the key; later ones lack the list of devices.
-std::optional<SetPart> read_set(const JsonNode& node, const std::string& key) {
+std::optional<TrainingSet> read_set(const JsonNode& node,
+                                    const std::string& key) {
   if (!node.has(key) || node.at(key).is_null()) return std::nullopt;
   const JsonNode set = node.at(key);
-  SetPart part{
+  TrainingSet part{
       set.at("name").text(), set.at("manifest_sha256").text(),
       static_cast<std::size_t>(set.at("devices").integer(0, kLargestDevice)),
       static_cast<std::size_t>(set.at("files").integer(0, kLargestDevice))};

@@ -32,13 +32,13 @@ bool any_file(const Provenance& provenance, const Is& is) {
          std::ranges::any_of(provenance.held_out, is);
 }
 
-bool is_same_set(const SetPart& a, const SetPart& b) {
+bool is_same_set(const TrainingSet& a, const TrainingSet& b) {
   return a.manifest_sha256 == b.manifest_sha256 ||
          (!a.campaign_sha256.empty() &&
           a.campaign_sha256 == b.campaign_sha256 && a.seed == b.seed);
 }
 
-bool used(const SetPart& part, const TrainingRun& run) {
+bool used(const TrainingSet& part, const TrainingRun& run) {
   const auto is_device = [&run](std::uint32_t number) {
     return std::to_string(number) == run.device;
   };
@@ -101,17 +101,17 @@ bool was_used_in_training(const Provenance& provenance,
          shares_stretches_of_training(provenance, recording);
 }
 
-bool was_used_in_training(const Provenance& provenance, const SetPart& set,
+bool was_used_in_training(const Provenance& provenance, const TrainingSet& set,
                           const TrainingRun& run) {
   return std::ranges::any_of(
       std::array{&provenance.training_set, &provenance.held_out_set},
-      [&](const std::optional<SetPart>* part) {
+      [&](const std::optional<TrainingSet>* part) {
         return *part && is_same_set(**part, set) && used(**part, run);
       });
 }
 
-bool may_have_used(const Provenance& provenance, const SetPart& set) {
-  const std::optional<SetPart>& part = provenance.training_set;
+bool may_have_used(const Provenance& provenance, const TrainingSet& set) {
+  const std::optional<TrainingSet>& part = provenance.training_set;
   return part && part->device_numbers.empty() && is_same_set(*part, set);
 }
 

@@ -24,12 +24,12 @@ bool was_used_in_training(const Provenance& provenance,
 /// Returns whether training used this run of a device of `set`. If training
 /// learned from several devices, any run of the device counts, because the
 /// device is known to the compensator then.
-bool was_used_in_training(const Provenance& provenance, const SetPart& set,
+bool was_used_in_training(const Provenance& provenance, const TrainingSet& set,
                           const TrainingRun& run);
 
 /// Returns whether the compensator was trained on `set` by an older program
 /// that did not record on which devices.
-bool may_have_used(const Provenance& provenance, const SetPart& set);
+bool may_have_used(const Provenance& provenance, const TrainingSet& set);
 
 /// Returns a warning when the compensator names neither files nor a set that it
 /// was trained on, so that no run can be told in-sample; else an empty text.

@@ -22,7 +22,7 @@ struct TrainingRun {
 };
 
 /// The set of devices that the runs of a source come from.
-struct SetPart {
+struct TrainingSet {
   std::string name;             // of the set's directory
   std::string manifest_sha256;  // tells every file of the set
   std::size_t devices = 0;
@@ -34,7 +34,7 @@ struct SetPart {
   std::vector<std::string> runs = {};
   std::vector<std::uint32_t> device_numbers = {};  // increasing
 
-  bool operator==(const SetPart&) const = default;
+  bool operator==(const TrainingSet&) const = default;
 };
 
 /// A source of runs, one after the other, so that only one is in memory at a
@@ -46,7 +46,8 @@ struct RunSource {
   /// Calls the visitor with each run, in the same order every time. An
   /// exception for a run that cannot be read names the file.
   std::function<void(const Visitor&)> for_each;
-  std::optional<SetPart> set = {};  // nothing for runs in files of their own
+  std::optional<TrainingSet> set =
+      {};  // nothing for runs in files of their own
   /// The same in another order: the runs of a device follow each other. Of sets
   /// only.
   std::function<void(const Visitor&)> for_each_by_device = {};

@@ -120,15 +120,15 @@ RunSource runs_of_set(const std::filesystem::path& directory,
   }
   RunSource source;
   source.count = count;
-  source.set =
-      SetPart{std::filesystem::weakly_canonical(directory).filename().string(),
-              sha256_of_set_file(directory, kManifestName),
-              devices.size(),
-              files.size(),
-              manifest.head->campaign_sha256,
-              manifest.head->seed,
-              selection.runs.empty() ? runs : selection.runs,
-              {devices.begin(), devices.end()}};
+  source.set = TrainingSet{
+      std::filesystem::weakly_canonical(directory).filename().string(),
+      sha256_of_set_file(directory, kManifestName),
+      devices.size(),
+      files.size(),
+      manifest.head->campaign_sha256,
+      manifest.head->seed,
+      selection.runs.empty() ? runs : selection.runs,
+      {devices.begin(), devices.end()}};
   source.for_each_by_device = [files](const RunSource::Visitor& visit) {
     visit_by_device(files, visit);
   };

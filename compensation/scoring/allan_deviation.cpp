@@ -80,7 +80,7 @@ class SeriesDeviations {
   }
 
   /// Adds to each curve its point at m samples.
-  void add(Index m, std::vector<DeviationCurve>& curves) {
+  void add(Index m, std::vector<DeviationSeries>& curves) {
     const RateDifferences plain = sums(DeviationKind::kAdev, m);
     const RateDifferences overlapping = sums(DeviationKind::kOadev, m);
     if (plain.count == 0.0 || !(variance_of(plain, 2, m) >= 0.0) ||
@@ -228,11 +228,11 @@ std::vector<double> taus_of(const EvenSeries& series, TauSpacing spacing) {
   return taus;
 }
 
-std::vector<DeviationCurve> deviation_curves(
+std::vector<DeviationSeries> deviation_curves(
     const EvenSeries& series, std::span<const DeviationKind> kinds,
     std::span<const double> taus, const std::function<void(double)>& advance) {
   const std::size_t longest = longest_stretch(series);
-  std::vector<DeviationCurve> curves;
+  std::vector<DeviationSeries> curves;
   for (const DeviationKind kind : kinds) curves.push_back({kind, {}});
   SeriesDeviations deviations(series);
   for (std::size_t i = 0; i < taus.size(); ++i) {
@@ -280,7 +280,7 @@ SampleRange longest_gapless_range(const Recording& recording,
   return longest;
 }
 
-nlohmann::ordered_json to_json(const std::vector<DeviationCurve>& curves) {
+nlohmann::ordered_json to_json(const std::vector<DeviationSeries>& curves) {
   nlohmann::ordered_json json;
   for (const auto& [kind, points] : curves) json[name_of(kind)] = list(points);
   return json;

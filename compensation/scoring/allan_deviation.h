@@ -46,7 +46,7 @@ std::vector<double> taus_of(const EvenSeries& series, TauSpacing spacing);
 std::vector<double> octave_taus(std::size_t samples, double interval);
 std::vector<double> octave_taus(const EvenSeries& series);
 
-struct DeviationCurve {
+struct DeviationSeries {
   DeviationKind kind;
   std::vector<AllanPoint> points;
 };
@@ -86,7 +86,7 @@ struct AllanCurve {
 ///
 /// Throws std::invalid_argument for a tau that is no multiple of the interval
 /// to 1e-6 or leaves fewer than two clusters.
-std::vector<DeviationCurve> deviation_curves(
+std::vector<DeviationSeries> deviation_curves(
     const EvenSeries& series, std::span<const DeviationKind> kinds,
     std::span<const double> taus,
     const std::function<void(double)>& advance = {});
@@ -110,6 +110,6 @@ SampleRange longest_gapless_range(const Recording& recording,
 
 /// {"adev": [{"tau_s", "deviation", "clusters", "interval": [low, high],
 /// "freedom", "noise"}, ...], "oadev": [...]}
-nlohmann::ordered_json to_json(const std::vector<DeviationCurve>& curves);
+nlohmann::ordered_json to_json(const std::vector<DeviationSeries>& curves);
 
 }  // namespace beamgyro::internal

@@ -57,7 +57,7 @@ class Check {
     }
   }
 
-  std::vector<SetDefect> run() {
+  std::vector<FileDefect> run() {
     check_manifest();
     for (const Listed& file : files_) check_file(file);
     check_directory();
@@ -225,14 +225,14 @@ class Check {
   std::map<std::string, std::string> names_by_hash_;
   std::set<std::uint64_t> sizes_;
   std::uint64_t done_ = 0, total_ = 0;
-  std::vector<SetDefect> defects_;
+  std::vector<FileDefect> defects_;
 };
 
 }  // namespace
 
-std::vector<SetDefect> check_set(const fs::path& directory,
-                                 const Manifest& manifest,
-                                 const CheckProgress& progress) {
+std::vector<FileDefect> check_set(const fs::path& directory,
+                                  const Manifest& manifest,
+                                  const CheckProgress& progress) {
   return Check(directory, manifest, progress).run();
 }
 

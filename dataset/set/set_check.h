@@ -13,7 +13,7 @@
 
 namespace beamgyro::internal {
 
-struct SetDefect {
+struct FileDefect {
   std::string file;  // relative to the set
   std::string what;
   std::optional<std::uint32_t> index;  // of the file to be made again
@@ -30,8 +30,8 @@ using CheckProgress = std::function<void(std::uint64_t, std::uint64_t)>;
 /// - the same for views and source copies;
 /// - lines of the manifest that are damaged or missing.
 /// It reads bytes only and does not use HDF5.
-std::vector<SetDefect> check_set(const std::filesystem::path& directory,
-                                 const Manifest& manifest,
-                                 const CheckProgress& progress = {});
+std::vector<FileDefect> check_set(const std::filesystem::path& directory,
+                                  const Manifest& manifest,
+                                  const CheckProgress& progress = {});
 
 }  // namespace beamgyro::internal

@@ -7,13 +7,11 @@
 #include <vector>
 
 #include "dataset/set/manifest.h"
+#include "include/beamgyro/device.h"
 
 namespace beamgyro::internal {
 
-struct SourceText {
-  std::filesystem::path path;
-  std::string text;
-};
+using SourceText = beamgyro::InputFile;
 
 /// Returns the names of the copies of `files` in a set, below source/. The
 /// copies are placed to each other as the originals are, so that relative paths

@@ -19,13 +19,13 @@ bool holds(const std::filesystem::path& file, const std::string& hash) {
 
 }  // namespace
 
-std::vector<SetDefect> check_views(const std::filesystem::path& directory,
-                                   const Manifest& manifest,
-                                   std::span<const SetDefect> known) {
-  std::vector<SetDefect> defects;
+std::vector<FileDefect> check_views(const std::filesystem::path& directory,
+                                    const Manifest& manifest,
+                                    std::span<const FileDefect> known) {
+  std::vector<FileDefect> defects;
   if (!manifest.head || !manifest.is_finished) return defects;
   std::set<std::string> damaged;
-  for (const SetDefect& defect : known) damaged.insert(defect.file);
+  for (const FileDefect& defect : known) damaged.insert(defect.file);
   const auto runs = static_cast<std::uint32_t>(manifest.head->runs.size());
   for (std::uint32_t run = 0; run < runs; ++run) {
     std::vector<ManifestEntry> entries;

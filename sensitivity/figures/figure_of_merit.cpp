@@ -51,7 +51,7 @@ double left_by_cubic(const StaticCurve& curve) {
 /// The figures of one device; the curve is computed once, when one needs it.
 class MeritsOf {
  public:
-  MeritsOf(const Device& device, const MeritOptions& options)
+  MeritsOf(const DeviceParameters& device, const MeritOptions& options)
       : gyro_(make_gyro(device)), options_(options) {}
 
   double operator()(Merit merit) {
@@ -98,7 +98,7 @@ const FigureOfMerit* find_figure_of_merit(std::string_view name) {
   return found == kFigures.end() ? nullptr : found;
 }
 
-std::vector<double> device_merits(const Device& device,
+std::vector<double> device_merits(const DeviceParameters& device,
                                   std::span<const Merit> merits,
                                   const MeritOptions& options) {
   MeritsOf merits_of(device, options);

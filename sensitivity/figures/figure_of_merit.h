@@ -51,7 +51,7 @@ struct MeritOptions {
 ///   lock, a passive material would have gains, temperatures do not settle;
 /// - std::invalid_argument for a compensator with an input that a settled gyro
 ///   does not have.
-std::vector<double> device_merits(const Device& device,
+std::vector<double> device_merits(const DeviceParameters& device,
                                   std::span<const Merit> merits,
                                   const MeritOptions& options);
 

@@ -25,7 +25,8 @@ std::vector<double> held(const Eigen::ArrayXd& values) {
   return samples;
 }
 
-Recording settled_recording(const Device& device, const StaticCurve& curve) {
+Recording settled_recording(const DeviceParameters& device,
+                            const StaticCurve& curve) {
   Recording recording;
   for (Eigen::Index k = 0; k < curve.temperature.size(); ++k) {
     const double start = 2 * kSettled * static_cast<double>(k);
@@ -49,7 +50,7 @@ Recording settled_recording(const Device& device, const StaticCurve& curve) {
 }  // namespace
 
 Eigen::ArrayXd settled_residual(const Compensator& compensator,
-                                const Device& device,
+                                const DeviceParameters& device,
                                 const StaticCurve& curve) {
   const std::vector<double> rate =
       compensated_rate(compensator, settled_recording(device, curve));

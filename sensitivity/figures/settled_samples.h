@@ -16,6 +16,7 @@ namespace beamgyro::internal {
 /// the curve. Throws std::invalid_argument naming an input that is not among
 /// them.
 Eigen::ArrayXd settled_residual(const Compensator& compensator,
-                                const Device& device, const StaticCurve& curve);
+                                const DeviceParameters& device,
+                                const StaticCurve& curve);
 
 }  // namespace beamgyro::internal

@@ -15,7 +15,7 @@ double percentile(const std::vector<double>& sorted, double share) {
          (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
-SensitivityIndex with_interval(double value, std::vector<double> replicates) {
+IndexEstimate with_interval(double value, std::vector<double> replicates) {
   std::erase_if(replicates, [](double each) { return !std::isfinite(each); });
   if (replicates.empty()) return {value, value, value};
   std::sort(replicates.begin(), replicates.end());

@@ -7,7 +7,7 @@
 namespace beamgyro::internal {
 
 /// A Sobol' index with its interval of 95 %.
-struct SensitivityIndex {
+struct IndexEstimate {
   double value = 0, low = 0, high = 0;  // [-]
 };
 
@@ -21,6 +21,6 @@ double percentile(const std::vector<double>& sorted, double share);
 /// Returns `value` with the interval of 95 % of its replicates: their 2.5 and
 /// 97.5 percentiles (Efron, 1979). Replicates that are not finite do not count;
 /// without any the interval is `value`.
-SensitivityIndex with_interval(double value, std::vector<double> replicates);
+IndexEstimate with_interval(double value, std::vector<double> replicates);
 
 }  // namespace beamgyro::internal

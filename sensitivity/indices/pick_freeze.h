@@ -19,7 +19,7 @@ struct PickFreezeValues {
 };
 
 struct FactorIndices {
-  SensitivityIndex first, total;
+  IndexEstimate first, total;
   double total_by_product = 0;  // second estimator of the total index
   std::size_t rows = 0;         // with all values that the indices need
 };

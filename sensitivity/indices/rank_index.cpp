@@ -79,9 +79,9 @@ struct PairSums {
 
 }  // namespace
 
-SensitivityIndex rank_index(const std::vector<double>& values,
-                            const Eigen::MatrixXd& numbers, std::uint64_t seed,
-                            std::uint32_t stream) {
+IndexEstimate rank_index(const std::vector<double>& values,
+                         const Eigen::MatrixXd& numbers, std::uint64_t seed,
+                         std::uint32_t stream) {
   std::vector<std::size_t> rows;
   double mean = 0;
   for (std::size_t j = 0; j < values.size(); ++j) {

@@ -26,8 +26,8 @@ namespace beamgyro::internal {
 /// blocks of 16 successive products drawn again with replacement (random stream
 /// kRankResampleStream of `seed`, run `stream`). Values that do not vary have
 /// the index 0.
-SensitivityIndex rank_index(const std::vector<double>& values,
-                            const Eigen::MatrixXd& numbers, std::uint64_t seed,
-                            std::uint32_t stream);
+IndexEstimate rank_index(const std::vector<double>& values,
+                         const Eigen::MatrixXd& numbers, std::uint64_t seed,
+                         std::uint32_t stream);
 
 }  // namespace beamgyro::internal

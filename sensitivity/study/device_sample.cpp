@@ -17,7 +17,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 class RowSampler {
  public:
-  RowSampler(const Campaign& campaign, const DeviceSampleOptions& options,
+  RowSampler(const CampaignPlan& campaign, const DeviceSampleOptions& options,
              DeviceSampleCounts& counts, DeviceSample& sample)
       : campaign_(campaign),
         options_(options),
@@ -124,7 +124,7 @@ class RowSampler {
     if (failures_[row].empty()) failures_[row] = std::move(failure);
   }
 
-  const Campaign& campaign_;
+  const CampaignPlan& campaign_;
   const DeviceSampleOptions& options_;
   DeviceSampleCounts& counts_;
   DeviceSample& sample_;
@@ -136,7 +136,7 @@ class RowSampler {
 
 }  // namespace
 
-std::uint64_t devices_of_sample(const Campaign& campaign,
+std::uint64_t devices_of_sample(const CampaignPlan& campaign,
                                 const DeviceSampleOptions& options) {
   const DrawPlan& plan = campaign.device_plan();
   std::uint64_t each = 3 + factors_of(plan).size();
@@ -147,7 +147,7 @@ std::uint64_t devices_of_sample(const Campaign& campaign,
   return each * options.rows;
 }
 
-DeviceSample sample_devices(const Campaign& campaign,
+DeviceSample sample_devices(const CampaignPlan& campaign,
                             const DeviceSampleOptions& options,
                             DeviceSampleCounts& counts) {
   DeviceSample sample;

@@ -52,7 +52,7 @@ struct DeviceSample {
 };
 
 /// Returns the number of devices that sample_devices() computes.
-std::uint64_t devices_of_sample(const Campaign& campaign,
+std::uint64_t devices_of_sample(const CampaignPlan& campaign,
                                 const DeviceSampleOptions& options);
 
 /// Draws devices by the tolerances of a campaign and computes their figures of
@@ -67,7 +67,7 @@ std::uint64_t devices_of_sample(const Campaign& campaign,
 /// does not depend on `jobs`. Throws std::invalid_argument for a campaign with
 /// fewer than two factors, and what device_merits() throws for the base device,
 /// which is computed first.
-DeviceSample sample_devices(const Campaign& campaign,
+DeviceSample sample_devices(const CampaignPlan& campaign,
                             const DeviceSampleOptions& options,
                             DeviceSampleCounts& counts);
 

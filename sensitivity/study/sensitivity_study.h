@@ -23,7 +23,7 @@ DeviceShare device_share(std::size_t k, std::size_t n);
 
 struct FactorResult {
   std::string key;
-  SensitivityIndex first, total, first_by_rank;
+  IndexEstimate first, total, first_by_rank;
   double total_by_product = 0;
   std::size_t rows = 0;
 };

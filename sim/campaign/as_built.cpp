@@ -5,7 +5,8 @@
 
 namespace beamgyro::internal {
 
-void set_as_built(const Trims& trims, const Gyro& base, Device& device) {
+void set_as_built(const Trims& trims, const Gyro& base,
+                  DeviceParameters& device) {
   ReadoutParameters& readout = device.readout;
   if (!trims.quadrature)
     readout.quadrature_trim = built_quadrature(device, base.stiffness_trim);

@@ -16,6 +16,7 @@ struct Trims {
 /// - its scale factor under the base unit's gain;
 /// - its output at T_0 and rest under the base unit's offset.
 /// Throws SimulationFailure when the drive loop does not lock.
-void set_as_built(const Trims& trims, const Gyro& base, Device& device);
+void set_as_built(const Trims& trims, const Gyro& base,
+                  DeviceParameters& device);
 
 }  // namespace beamgyro::internal

@@ -41,7 +41,7 @@ ConfigDocument drawn_from(const ConfigDocument& file, Overrides& overrides) {
   return file.with(overrides, file.path().filename().string());
 }
 
-void add_as_built(const CampaignState& campaign, Device device,
+void add_as_built(const CampaignState& campaign, DeviceParameters device,
                   Overrides& overrides) {
   const Trims& trims = campaign.trims;
   set_as_built(trims, *campaign.base_gyro, device);
@@ -64,7 +64,7 @@ VirtualDevice built_device(const CampaignState& campaign, const DrawPlan& plan,
   Overrides overrides = overrides_of(plan, drawn.values);
   attempt(result, [&] {
     const ConfigDocument& document = *campaign.device_document;
-    Device device = read_device(drawn_from(document, overrides));
+    DeviceParameters device = read_device(drawn_from(document, overrides));
     if (campaign.base_gyro) {
       add_as_built(campaign, device, overrides);
       device = read_device(drawn_from(document, overrides));
@@ -77,69 +77,75 @@ VirtualDevice built_device(const CampaignState& campaign, const DrawPlan& plan,
 
 }  // namespace
 
-Campaign::Campaign(std::shared_ptr<const CampaignState> state)
+CampaignPlan::CampaignPlan(std::shared_ptr<const CampaignState> state)
     : state_(std::move(state)) {}
 
-Campaign Campaign::read(const std::filesystem::path& file,
-                        std::optional<long> devices) {
-  return Campaign(
+CampaignPlan CampaignPlan::read(const std::filesystem::path& file,
+                                std::optional<long> devices) {
+  return CampaignPlan(
       std::make_shared<const CampaignState>(read_campaign(file, devices)));
 }
 
-Campaign Campaign::of_copies(std::span<const SourceText> copies,
-                             std::optional<long> devices) {
-  return Campaign(
+CampaignPlan CampaignPlan::of_copies(std::span<const SourceText> copies,
+                                     std::optional<long> devices) {
+  return CampaignPlan(
       std::make_shared<const CampaignState>(read_campaign(copies, devices)));
 }
 
-const std::string& Campaign::name() const { return state_->name; }
-const std::string& Campaign::text() const { return state_->text; }
-std::uint32_t Campaign::devices() const { return state_->devices; }
-std::uint32_t Campaign::devices_per_file() const {
+const std::string& CampaignPlan::name() const { return state_->name; }
+const std::string& CampaignPlan::text() const { return state_->text; }
+std::uint32_t CampaignPlan::devices() const { return state_->devices; }
+std::uint32_t CampaignPlan::devices_per_file() const {
   return state_->devices_per_file;
 }
-std::uint64_t Campaign::seed() const { return state_->source.seed; }
-const CampaignOutput& Campaign::output() const { return state_->output; }
-const std::vector<CampaignRun>& Campaign::runs() const { return state_->runs; }
-const Device& Campaign::base_device() const { return state_->device; }
-const std::string& Campaign::device_text() const {
+std::uint64_t CampaignPlan::seed() const { return state_->source.seed; }
+const CampaignOutput& CampaignPlan::output() const { return state_->output; }
+const std::vector<CampaignRun>& CampaignPlan::runs() const {
+  return state_->runs;
+}
+const DeviceParameters& CampaignPlan::base_device() const {
+  return state_->device;
+}
+const std::string& CampaignPlan::device_text() const {
   return state_->device_document->text();
 }
-const Scenario& Campaign::base_scenario(std::size_t run) const {
+const ScenarioPlan& CampaignPlan::base_scenario(std::size_t run) const {
   return state_->scenarios.at(run);
 }
-const std::vector<SourceText>& Campaign::sources() const {
+const std::vector<SourceText>& CampaignPlan::sources() const {
   return state_->sources;
 }
-const std::vector<DrawnParameter>& Campaign::parameters() const {
+const std::vector<DeviceVariable>& CampaignPlan::parameters() const {
   return state_->device_plan.parameters;
 }
-const std::vector<DrawnParameter>& Campaign::run_parameters(
+const std::vector<DeviceVariable>& CampaignPlan::run_parameters(
     std::size_t run) const {
   return state_->run_plans.at(run).parameters;
 }
 
-bool Campaign::is_drawn(std::string_view device_key) const {
+bool CampaignPlan::is_drawn(std::string_view device_key) const {
   return internal::is_drawn(state_->device_plan, *state_->device_document,
                             device_key);
 }
-const MovedAxes& Campaign::moved_axes(std::size_t run) const {
+const MovedAxes& CampaignPlan::moved_axes(std::size_t run) const {
   return state_->moved_axes.at(run);
 }
 
-const DrawPlan& Campaign::device_plan() const { return state_->device_plan; }
+const DrawPlan& CampaignPlan::device_plan() const {
+  return state_->device_plan;
+}
 
-VirtualDevice Campaign::device(std::uint32_t index) const {
+VirtualDevice CampaignPlan::device(std::uint32_t index) const {
   const DrawPlan& plan = state_->device_plan;
   return built_device(*state_, plan, drawn_values(plan, state_->source, index));
 }
 
-VirtualDevice Campaign::device_at(const DrawPlan& plan,
-                                  std::vector<double> uniform) const {
+VirtualDevice CampaignPlan::device_at(const DrawPlan& plan,
+                                      std::vector<double> uniform) const {
   return built_device(*state_, plan, drawn_values(plan, std::move(uniform)));
 }
 
-VirtualRun Campaign::run(std::size_t run, std::uint32_t device) const {
+VirtualRun CampaignPlan::run(std::size_t run, std::uint32_t device) const {
   const DrawPlan& plan = state_->run_plans.at(run);
   VirtualRun result;
   if (plan.draws.empty()) {
@@ -158,7 +164,7 @@ VirtualRun Campaign::run(std::size_t run, std::uint32_t device) const {
   return result;
 }
 
-Part Campaign::part(std::uint32_t device) const {
+Part CampaignPlan::part(std::uint32_t device) const {
   RandomStream stream(seed(), device, stream_number("split"),
                       kDeviceDrawStream);
   return static_cast<Part>(

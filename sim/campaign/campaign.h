@@ -39,16 +39,16 @@ struct CampaignRun {
 };
 
 struct VirtualDevice {
-  std::vector<double> parameters;  // one per Campaign::parameters()
-  std::optional<Device> device;    // none when it cannot be built
-  std::string overrides;           // KEY=VALUE lines that make it of the base
-  std::string failure;             // why not, one line
+  std::vector<double> parameters;          // one per CampaignPlan::parameters()
+  std::optional<DeviceParameters> device;  // none when it cannot be built
+  std::string overrides;  // KEY=VALUE lines that make it of the base
+  std::string failure;    // why not, one line
 };
 
 /// One run of one device.
 struct VirtualRun {
-  std::vector<double> parameters;  // one per Campaign::run_parameters()
-  std::optional<Scenario> scenario;
+  std::vector<double> parameters;  // one per CampaignPlan::run_parameters()
+  std::optional<ScenarioPlan> scenario;
   std::string overrides;  // KEY=VALUE lines that make it of the scenario file
   std::string failure;
 };
@@ -59,20 +59,20 @@ struct CampaignState;
 /// file (docs/reference/campaign_file.md). Immutable; its const members may be
 /// called by many threads at once, and what they return depends on the
 /// campaign's files and their arguments alone.
-class Campaign {
+class CampaignPlan {
  public:
   /// Reads a campaign. `devices` replaces the number of devices in the file.
   /// Checks the base device, every scenario, every choice and the median of
   /// every distribution. Throws std::invalid_argument "file:line:column: key:
   /// ...".
-  static Campaign read(const std::filesystem::path& file,
-                       std::optional<long> devices = {});
+  static CampaignPlan read(const std::filesystem::path& file,
+                           std::optional<long> devices = {});
 
   /// The same from the copies that a set keeps, the campaign first. It reads no
   /// other file, because the maker of the set may have named any file. Also
   /// throws std::invalid_argument for a file that has no copy.
-  static Campaign of_copies(std::span<const SourceText> copies,
-                            std::optional<long> devices = {});
+  static CampaignPlan of_copies(std::span<const SourceText> copies,
+                                std::optional<long> devices = {});
 
   const std::string& name() const;
   const std::string& text() const;  // byte for byte
@@ -81,17 +81,17 @@ class Campaign {
   std::uint64_t seed() const;
   const CampaignOutput& output() const;
   const std::vector<CampaignRun>& runs() const;
-  const Device& base_device() const;
+  const DeviceParameters& base_device() const;
   const std::string& device_text() const;
   /// Returns the scenario of a run as its file says, with the seed of the
   /// campaign.
-  const Scenario& base_scenario(std::size_t run) const;
+  const ScenarioPlan& base_scenario(std::size_t run) const;
   /// Returns campaign, device, scenarios and their profiles in the order of
   /// reading.
   const std::vector<SourceText>& sources() const;
 
-  const std::vector<DrawnParameter>& parameters() const;
-  const std::vector<DrawnParameter>& run_parameters(std::size_t run) const;
+  const std::vector<DeviceVariable>& parameters() const;
+  const std::vector<DeviceVariable>& run_parameters(std::size_t run) const;
 
   /// Returns whether devices may differ in this dotted key of the device file.
   bool is_drawn(std::string_view device_key) const;
@@ -114,7 +114,7 @@ class Campaign {
   Part part(std::uint32_t device) const;
 
  private:
-  explicit Campaign(std::shared_ptr<const CampaignState> state);
+  explicit CampaignPlan(std::shared_ptr<const CampaignState> state);
 
   std::shared_ptr<const CampaignState> state_;
 };

@@ -207,7 +207,7 @@ class CampaignReader {
     const std::string name = read_run_name(run);
     const ConfigDocument document = read_named(run, "scenario");
     add_source(document);
-    Scenario scenario = scenario_of(document);
+    ScenarioPlan scenario = scenario_of(document);
     document.reject_unknown_keys();
     scenario.seed = state_.source.seed;
     state_.runs.push_back({name, document.path(), document.text()});
@@ -246,8 +246,8 @@ class CampaignReader {
 
   // A file holds the parameters of the device and those of the run.
   void require_other_names(const ConfigTable& run, const DrawPlan& plan) {
-    for (const DrawnParameter& mine : plan.parameters) {
-      for (const DrawnParameter& other : state_.device_plan.parameters) {
+    for (const DeviceVariable& mine : plan.parameters) {
+      for (const DeviceVariable& other : state_.device_plan.parameters) {
         if (mine.name == other.name)
           run.fail("vary", fmt::format("two numbers are called {}; draw one of "
                                        "them",
@@ -313,9 +313,9 @@ class CampaignReader {
 
   // An error in a profile names its place in the scenario, unless there are
   // only copies to read.
-  Scenario scenario_of(const ConfigDocument& document) {
+  ScenarioPlan scenario_of(const ConfigDocument& document) {
     if (!copies_.empty()) add_profiles(document);
-    Scenario scenario =
+    ScenarioPlan scenario =
         read_scenario(document, copies_.empty() ? nullptr : &state_.profiles);
     if (copies_.empty()) add_profiles(document);
     return scenario;

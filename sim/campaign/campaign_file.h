@@ -26,19 +26,19 @@ struct CampaignState {
   ProfileTables profiles;  // of the scenarios, as they were read
 
   std::optional<ConfigDocument> device_document;
-  Device device;
+  DeviceParameters device;
   std::optional<Gyro> base_gyro;  // where a trim is left out
   DrawPlan device_plan;
 
   // One entry of each for each run.
   std::vector<CampaignRun> runs;
   std::vector<ConfigDocument> scenario_documents;
-  std::vector<Scenario> scenarios;
+  std::vector<ScenarioPlan> scenarios;
   std::vector<DrawPlan> run_plans;
   std::vector<MovedAxes> moved_axes;  // by some device
 };
 
-/// See Campaign::read and Campaign::of_copies.
+/// See CampaignPlan::read and CampaignPlan::of_copies.
 CampaignState read_campaign(const std::filesystem::path& file,
                             std::optional<long> devices);
 CampaignState read_campaign(std::span<const SourceText> copies,

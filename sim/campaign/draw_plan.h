@@ -8,17 +8,12 @@
 
 #include "config/config_node.h"
 #include "config/overrides.h"
+#include "dataset/set/shard/shard.h"
 #include "sim/campaign/copula.h"
 #include "sim/campaign/distribution.h"
 #include "sim/campaign/uniform_source.h"
 
 namespace beamgyro::internal {
-
-/// A number that is drawn for each device. Sets store it as a variable over
-/// device. The name is an identifier such as "patches_offset_m_0".
-struct DrawnParameter {
-  std::string name, units, long_name;
-};
 
 /// One key of a device or scenario file that differs between devices.
 struct Draw {
@@ -39,7 +34,7 @@ std::string key_of(const Draw& draw);
 struct DrawPlan {
   std::vector<Draw> draws;
   // One entry of each for each number, in the order of the draws.
-  std::vector<DrawnParameter> parameters;
+  std::vector<DeviceVariable> parameters;
   std::vector<std::uint32_t> streams;
   std::size_t first_dimension = 0;  // of the Sobol' points
   std::vector<CorrelatedGroup> groups;

@@ -79,10 +79,10 @@ void check_values(const Draw& draw, const DrawnFile& file) {
   }
 }
 
-DrawnParameter parameter(const Draw& draw, const std::string& run,
+DeviceVariable parameter(const Draw& draw, const std::string& run,
                          std::size_t element) {
   const std::string key = key_of(draw);
-  DrawnParameter result{key, draw.numeric ? units_of(key) : units_of(""),
+  DeviceVariable result{key, draw.numeric ? units_of(key) : units_of(""),
                         fmt::format("drawn {}", key)};
   std::replace(result.name.begin(), result.name.end(), '.', '_');
   std::replace(result.name.begin(), result.name.end(), '-', '_');
@@ -189,8 +189,8 @@ void add_draw(const Draw& draw, const std::string& run, DrawPlan& plan,
     }
   }
   for (std::size_t i = 0; i < draw.numbers(); ++i) {
-    DrawnParameter next = parameter(draw, run, i);
-    for (const DrawnParameter& other : plan.parameters) {
+    DeviceVariable next = parameter(draw, run, i);
+    for (const DeviceVariable& other : plan.parameters) {
       if (other.name == next.name) {
         reject(draw.place, fmt::format("{}: two numbers are called {}; draw "
                                        "one of them",

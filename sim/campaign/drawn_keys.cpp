@@ -47,7 +47,7 @@ void add_moving(const std::array<RateProfile, kAxes>& profiles,
   for (std::size_t i = 0; i < kAxes; ++i) axes[i] |= moves(profiles[i]);
 }
 
-void add_moving(const Scenario& scenario, MovedAxes& axes) {
+void add_moving(const ScenarioPlan& scenario, MovedAxes& axes) {
   add_moving(scenario.cross_rate, axes.cross_rate);
   add_moving(scenario.acceleration, axes.acceleration);
 }
@@ -75,8 +75,9 @@ bool is_drawn(const DrawPlan& plan, const ConfigDocument& document,
   });
 }
 
-MovedAxes moved_axes(const Scenario& scenario, const ConfigDocument& document,
-                     const DrawPlan& plan, const ProfileTables& profiles) {
+MovedAxes moved_axes(const ScenarioPlan& scenario,
+                     const ConfigDocument& document, const DrawPlan& plan,
+                     const ProfileTables& profiles) {
   MovedAxes axes;
   add_moving(scenario, axes);
   for (const Draw& draw : plan.draws) {

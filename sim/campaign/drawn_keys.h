@@ -26,7 +26,8 @@ struct MovedAxes {
 /// Returns the axes that some device may move: those of the scenario itself,
 /// those of each choice of `plan` that can be drawn, and those with a number
 /// from a continuous distribution. `profiles` are the files that they name.
-MovedAxes moved_axes(const Scenario& scenario, const ConfigDocument& document,
-                     const DrawPlan& plan, const ProfileTables& profiles);
+MovedAxes moved_axes(const ScenarioPlan& scenario,
+                     const ConfigDocument& document, const DrawPlan& plan,
+                     const ProfileTables& profiles);
 
 }  // namespace beamgyro::internal

@@ -36,10 +36,11 @@ ManifestHead repairable_head(const fs::path& directory,
   return *manifest.head;
 }
 
-Campaign campaign_of(const fs::path& directory, const Manifest& manifest) try {
+CampaignPlan campaign_of(const fs::path& directory,
+                         const Manifest& manifest) try {
   restore_copies(directory, manifest);
-  return Campaign::of_copies(read_copies(directory, *manifest.head),
-                             manifest.head->devices);
+  return CampaignPlan::of_copies(read_copies(directory, *manifest.head),
+                                 manifest.head->devices);
 } catch (const FileError&) {
   throw;
 } catch (const std::bad_alloc&) {
@@ -76,7 +77,7 @@ Manifest manifest_of_set(const fs::path& directory) {
 }
 
 SetRepair::SetRepair(const fs::path& directory, const Manifest& manifest,
-                     const std::vector<SetDefect>& defects,
+                     const std::vector<FileDefect>& defects,
                      const ProgramRevision& program)
     : directory_(directory),
       head_(repairable_head(directory, manifest, program)),
@@ -91,7 +92,7 @@ SetRepair::SetRepair(const fs::path& directory, const Manifest& manifest,
                     "made of",
                     directory.string()));
   std::set<std::uint32_t> files;
-  for (const SetDefect& defect : defects)
+  for (const FileDefect& defect : defects)
     if (defect.index) files.insert(*defect.index);
   files_.assign(files.begin(), files.end());
   for (const ManifestEntry& entry : manifest.entries)

@@ -28,7 +28,7 @@ class SetRepair {
   /// std::runtime_error when the campaign cannot be found again, when the
   /// manifest is not that of the campaign, or for a set of another program.
   SetRepair(const std::filesystem::path& directory, const Manifest& manifest,
-            const std::vector<SetDefect>& defects,
+            const std::vector<FileDefect>& defects,
             const ProgramRevision& program);
 
   /// The files to make, of plan().
@@ -49,7 +49,7 @@ class SetRepair {
  private:
   std::filesystem::path directory_;
   ManifestHead head_;
-  Campaign campaign_;
+  CampaignPlan campaign_;
   ShardPlan plan_;
   std::vector<std::uint32_t> files_;
   std::map<std::uint32_t, std::string> hashes_;  // that the manifest states

@@ -29,7 +29,7 @@ void ShardMaker::prepare(std::uint32_t range) {
   if (range_ == range) return;
   range_.reset();
   prepared_.clear();
-  const Campaign& campaign = plan_.campaign();
+  const CampaignPlan& campaign = plan_.campaign();
   const std::uint32_t first = range * campaign.devices_per_file();
   const std::uint32_t last =
       std::min(first + campaign.devices_per_file(), campaign.devices());

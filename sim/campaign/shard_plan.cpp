@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -30,7 +31,8 @@ struct Conversion {
 };
 
 // The converter of each measured signal.
-std::map<std::string_view, Conversion> conversions(const Device& device) {
+std::map<std::string_view, Conversion> conversions(
+    const DeviceParameters& device) {
   const ReadoutParameters& readout = device.readout;
   const double lsb =
       readout.full_scale / std::ldexp(1.0, readout.adc_bits - 1);  // [rad/s]
@@ -66,7 +68,7 @@ std::map<std::string_view, Conversion> conversions(const Device& device) {
 
 // The shorter type whose counts reach `most`; floating point with a step too
 // fine for that, or one that is not the same for all devices.
-Storage storage_of(const Conversion& conversion, const Campaign& campaign) {
+Storage storage_of(const Conversion& conversion, const CampaignPlan& campaign) {
   const auto holds = [&](int most_bits, double largest_count) {
     return conversion.most == 0
                ? conversion.bits <= most_bits
@@ -84,7 +86,7 @@ Storage storage_of(const Conversion& conversion, const Campaign& campaign) {
 
 // How a variable of a recording is kept in a set: converters' counts as
 // integers, truth at the campaign's precision and rate.
-SetVariable set_variable(const Campaign& campaign, const Column& column) {
+SetVariable set_variable(const CampaignPlan& campaign, const Column& column) {
   SetVariable variable;
   variable.name = column.name;
   variable.units = column.units;
@@ -121,19 +123,20 @@ void set_moving(const std::array<bool, kAxes>& axes,
 // Returns the columns of a run of two samples of the base device, with every
 // axis in motion that some device moves. So they do not depend on the values of
 // any device.
-std::vector<Column> columns_of(const Campaign& campaign, std::size_t run) {
-  Scenario scenario = campaign.base_scenario(run);
+std::vector<Column> columns_of(const CampaignPlan& campaign, std::size_t run) {
+  ScenarioPlan scenario = campaign.base_scenario(run);
   scenario.duration = 2 / scenario.output_rate;
   const MovedAxes& axes = campaign.moved_axes(run);
   set_moving(axes.cross_rate, scenario.cross_rate);
   set_moving(axes.acceleration, scenario.acceleration);
-  Device device = campaign.base_device();
+  DeviceParameters device = campaign.base_device();
   if (!device.loop_channels && campaign.is_drawn("loop_channels"))
     device.loop_channels.emplace();
   return simulated(scenario, make_gyro(device)).columns;
 }
 
-std::size_t slow_step(const Campaign& campaign, const Scenario& scenario) {
+std::size_t slow_step(const CampaignPlan& campaign,
+                      const ScenarioPlan& scenario) {
   const double slow = campaign.output().truth_rate;
   if (slow == 0) return 1;
   return static_cast<std::size_t>(std::round(scenario.output_rate / slow));
@@ -154,12 +157,13 @@ double bytes_of(Storage storage) {
 
 }  // namespace
 
-ShardPlan::ShardPlan(const Campaign& campaign, const ProgramRevision& program)
+ShardPlan::ShardPlan(const CampaignPlan& campaign,
+                     const ProgramRevision& program)
     : campaign_(&campaign) {
   const std::vector<std::string>& wanted = campaign.output().variables;
   std::vector<std::string> met;
   for (std::size_t r = 0; r < campaign.runs().size(); ++r) {
-    const Scenario& scenario = campaign.base_scenario(r);
+    const ScenarioPlan& scenario = campaign.base_scenario(r);
     ShardHead head;
     head.time = sample_times(scenario);
     head.slow_step = slow_step(campaign, scenario);
@@ -171,12 +175,9 @@ ShardPlan::ShardPlan(const Campaign& campaign, const ProgramRevision& program)
           std::ranges::find(wanted, column.name) != wanted.end())
         head.variables.push_back(set_variable(campaign, column));
     }
-    for (const auto* drawn :
-         {&campaign.parameters(), &campaign.run_parameters(r)}) {
-      for (const DrawnParameter& parameter : *drawn)
-        head.parameters.push_back(
-            {parameter.name, parameter.units, parameter.long_name});
-    }
+    head.parameters = campaign.parameters();
+    std::ranges::copy(campaign.run_parameters(r),
+                      std::back_inserter(head.parameters));
     head.compress = campaign.output().compress;
     head.run = campaign.runs()[r].name;
     head.fidelity = fidelity_name(scenario.fidelity);

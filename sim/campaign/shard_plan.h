@@ -22,7 +22,7 @@ class ShardPlan {
  public:
   /// Simulates two samples of every run with the base device to learn its
   /// variables. Throws std::invalid_argument for a variable that no run has.
-  ShardPlan(const Campaign& campaign, const ProgramRevision& program);
+  ShardPlan(const CampaignPlan& campaign, const ProgramRevision& program);
 
   const ManifestHead& manifest_head() const { return manifest_head_; }
 
@@ -42,10 +42,10 @@ class ShardPlan {
   /// [bytes].
   double largest_file() const;
 
-  const Campaign& campaign() const { return *campaign_; }
+  const CampaignPlan& campaign() const { return *campaign_; }
 
  private:
-  const Campaign* campaign_;
+  const CampaignPlan* campaign_;
   ManifestHead manifest_head_;
   std::vector<ShardHead> heads_;                   // one per run, for range 0
   std::vector<std::vector<std::string>> columns_;  // names, one list per run

@@ -114,7 +114,7 @@ struct ReadoutParameters {
 };
 
 /// One unit, complete: what a device file holds, in SI units.
-struct Device {
+struct DeviceParameters {
   BeamParameters beam;
   PatchParameters patches;
   BondParameters bond;

@@ -255,7 +255,7 @@ std::optional<LoopChannelParameters> read_loop_channels(
 
 }  // namespace
 
-Device read_device(const ConfigDocument& document) {
+DeviceParameters read_device(const ConfigDocument& document) {
   const ConfigTable& root = document.root();
   const ConfigTable sensor = root.table("temperature_sensor");
   const BeamParameters beam = read_beam(root.table("beam"));

@@ -10,6 +10,6 @@ namespace beamgyro::internal {
 /// (docs/reference/device_file.md). Throws std::invalid_argument naming file,
 /// line, key and value. The caller rejects unknown keys once every document of
 /// the command is read.
-Device read_device(const ConfigDocument& document);
+DeviceParameters read_device(const ConfigDocument& document);
 
 }  // namespace beamgyro::internal

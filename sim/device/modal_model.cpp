@@ -24,7 +24,7 @@ constexpr double kAluminiumExpansion = 23e-6;  // housing [1/K]
 bool on_x_face(Patch patch) { return patch == kDrive || patch == kFeedback; }
 
 // r r^T + second moments of the patch's own section [m2].
-Matrix2d patch_second_moment(const Device& device, Patch patch) {
+Matrix2d patch_second_moment(const DeviceParameters& device, Patch patch) {
   const Vector2d r = patch_position(device, patch);
   Vector2d own(device.patches.thickness * device.patches.thickness / 12,
                device.patches.width * device.patches.width / 12);
@@ -38,7 +38,7 @@ struct PatchMaterials {
   PerPatch<Complex> S;  // shear_lag()
 };
 
-Complex bond_at(const Device& device, double T, double omega,
+Complex bond_at(const DeviceParameters& device, double T, double omega,
                 const MemoryState& memory) {
   if (!device.memory.relaxation || memory.glass_offset == 0)
     return bond_modulus(device.bond, T, omega);
@@ -46,8 +46,8 @@ Complex bond_at(const Device& device, double T, double omega,
                       memory.glass_offset, T, omega);
 }
 
-PatchMaterials patch_materials(const Device& device, double T, double omega,
-                               const MemoryState& memory) {
+PatchMaterials patch_materials(const DeviceParameters& device, double T,
+                               double omega, const MemoryState& memory) {
   PatchMaterials materials{patch_modulus(device.patches, T), {}};
   const Complex G_b = bond_at(device, T, omega, memory);
   for (std::size_t p = 0; p < kPatchCount; ++p) {
@@ -69,8 +69,8 @@ std::string memory_text(const MemoryState& memory) {
 }
 
 // The device with every property that ages at its value after `decades`.
-Device aged(const Device& device, double decades) {
-  Device old = device;
+DeviceParameters aged(const DeviceParameters& device, double decades) {
+  DeviceParameters old = device;
   const AgeingParameters& per_decade = *device.memory.ageing;
   old.patches.youngs_modulus *= 1 + per_decade.patch_modulus * decades;
   old.patches.d31 *= 1 + per_decade.d31 * decades;
@@ -83,7 +83,8 @@ Device aged(const Device& device, double decades) {
   return old;
 }
 
-Matrix2cd stiffness_of(const Device& device, const ProjectedBeam& beam,
+Matrix2cd stiffness_of(const DeviceParameters& device,
+                       const ProjectedBeam& beam,
                        const PatchMaterials& materials, double T,
                        const MemoryState& memory) {
   const double omega = beam.timoshenko_frequency;
@@ -134,7 +135,7 @@ Matrix2cd stiffness_of(const Device& device, const ProjectedBeam& beam,
   return K;
 }
 
-Vector2cd coupling_of(const Device& device, const ProjectedBeam& beam,
+Vector2cd coupling_of(const DeviceParameters& device, const ProjectedBeam& beam,
                       const PatchMaterials& materials, Patch patch, double T) {
   return (piezo_stress_constant(device.patches, T) * device.patches.width *
           materials.S[static_cast<std::size_t>(patch)] * beam.patch_curvature) *
@@ -143,7 +144,7 @@ Vector2cd coupling_of(const Device& device, const ProjectedBeam& beam,
 
 }  // namespace
 
-Vector2d patch_position(const Device& device, Patch patch) {
+Vector2d patch_position(const DeviceParameters& device, Patch patch) {
   const auto p = static_cast<std::size_t>(patch);
   const double h = lever_arm(device, device.bond.thickness[p]);
   const double delta = device.patches.offset[p];
@@ -159,14 +160,14 @@ Vector2d patch_position(const Device& device, Patch patch) {
   }
 }
 
-Vector2cd patch_coupling(const Device& device, const ProjectedBeam& beam,
-                         Patch patch, double T) {
+Vector2cd patch_coupling(const DeviceParameters& device,
+                         const ProjectedBeam& beam, Patch patch, double T) {
   return coupling_of(device, beam,
                      patch_materials(device, T, beam.timoshenko_frequency, {}),
                      patch, T);
 }
 
-std::vector<double> modal_kinks(const Device& device) {
+std::vector<double> modal_kinks(const DeviceParameters& device) {
   return {device.bond.glass_transition, device.mount.glass_transition,
           kColdestCeramic, kHottestCeramic};
 }
@@ -176,7 +177,7 @@ double patch_capacitance(const PatchParameters& patches, double T) {
          patches.thickness;
 }
 
-ModalParameters modal_parameters(const Device& device,
+ModalParameters modal_parameters(const DeviceParameters& device,
                                  const ProjectedBeam& beam, double T,
                                  double stiffness_trim,
                                  const MemoryState& memory) {
@@ -211,7 +212,8 @@ ModalParameters modal_parameters(const Device& device,
   return modal;
 }
 
-void require_passive_memory(const Device& device, const ProjectedBeam& beam) {
+void require_passive_memory(const DeviceParameters& device,
+                            const ProjectedBeam& beam) {
   // The loss part is linear in the hysteresis but for the mount's axis, and
   // each ageing property is linear in the decades: their extremes are the
   // worst. A quench leaves the bond less than 10 K above its reference, and

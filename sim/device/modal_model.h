@@ -22,11 +22,12 @@ struct ModalParameters {
 };
 
 /// Centre of patch p in the cross section, r_p [m].
-Eigen::Vector2d patch_position(const Device& device, Patch patch);
+Eigen::Vector2d patch_position(const DeviceParameters& device, Patch patch);
 
 /// Theta_p(T) [N/V], complex transducer coupling (1.1).
-Eigen::Vector2cd patch_coupling(const Device& device, const ProjectedBeam& beam,
-                                Patch patch, double T);
+Eigen::Vector2cd patch_coupling(const DeviceParameters& device,
+                                const ProjectedBeam& beam, Patch patch,
+                                double T);
 
 /// C_p(T) [F], clamped capacitance of one patch (1.2).
 double patch_capacitance(const PatchParameters& patches, double T);
@@ -37,7 +38,7 @@ double patch_capacitance(const PatchParameters& patches, double T);
 /// (12.5). Without it the result is that of the unit at its trim.
 /// Throws SimulationFailure when the loss part of K* is not positive definite,
 /// which no passive material can do.
-ModalParameters modal_parameters(const Device& device,
+ModalParameters modal_parameters(const DeviceParameters& device,
                                  const ProjectedBeam& beam, double T,
                                  double stiffness_trim,
                                  const MemoryState& memory = {});
@@ -45,11 +46,12 @@ ModalParameters modal_parameters(const Device& device,
 /// Throws SimulationFailure when a memory effect of the device makes the loss
 /// part of K* indefinite at a temperature, a state of the bond, a sign of the
 /// hysteresis or an age that a history can bring about.
-void require_passive_memory(const Device& device, const ProjectedBeam& beam);
+void require_passive_memory(const DeviceParameters& device,
+                            const ProjectedBeam& beam);
 
 /// Beam temperatures [K] where modal_parameters() may have a kink, in no order:
 /// glass transitions and the ends of the ceramic's linear range. It is analytic
 /// between them.
-std::vector<double> modal_kinks(const Device& device);
+std::vector<double> modal_kinks(const DeviceParameters& device);
 
 }  // namespace beamgyro::internal

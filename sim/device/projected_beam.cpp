@@ -8,7 +8,7 @@
 namespace beamgyro::internal {
 
 // Distance of a patch centre from the beam axis along its face normal [m].
-double lever_arm(const Device& device, double bond_thickness) {
+double lever_arm(const DeviceParameters& device, double bond_thickness) {
   return 0.5 * device.beam.side + bond_thickness +
          0.5 * device.patches.thickness;
 }
@@ -21,7 +21,7 @@ struct Stretch {
 };
 
 // Element boundaries fall on patch edges and supports.
-std::vector<Stretch> stretches(const Device& device) {
+std::vector<Stretch> stretches(const DeviceParameters& device) {
   const double L = device.beam.length;
   const double edge = 0.5 * (L - device.patches.length);
   const double pin = kSupportPosition * L;
@@ -58,7 +58,7 @@ Masses modal_masses(const std::vector<BeamElement>& elements,
 
 }  // namespace
 
-CompositeBeam composite_beam(const Device& device, int count) {
+CompositeBeam composite_beam(const DeviceParameters& device, int count) {
   const BeamParameters& beam = device.beam;
   const PatchParameters& patches = device.patches;
   const double a2 = beam.side * beam.side;
@@ -102,7 +102,7 @@ CompositeBeam composite_beam(const Device& device, int count) {
   return mesh;
 }
 
-ProjectedBeam project_beam(const Device& device, int elements) {
+ProjectedBeam project_beam(const DeviceParameters& device, int elements) {
   const CompositeBeam mesh = composite_beam(device, elements);
   std::vector<BeamElement> euler = mesh.elements;
   for (BeamElement& e : euler) {

@@ -10,7 +10,7 @@ namespace beamgyro::internal {
 
 /// Distance of a patch centre from the beam axis along its face normal,
 /// h_p = a/2 + t_b + t_p/2 [m].
-double lever_arm(const Device& device, double bond_thickness);
+double lever_arm(const DeviceParameters& device, double bond_thickness);
 
 /// Elements of the symmetric unit at T_0, as Timoshenko beam: shear-lag factor
 /// 1, mean bond thickness, no bond mass, shear area of the metal alone, nodes
@@ -19,7 +19,7 @@ struct CompositeBeam {
   std::vector<BeamElement> elements;
   std::vector<bool> under_patches, between_pins;  // one per element
 };
-CompositeBeam composite_beam(const Device& device, int elements);
+CompositeBeam composite_beam(const DeviceParameters& device, int elements);
 
 /// What the finite-element solution of a unit leaves behind: its first bending
 /// mode at T_0 with symmetric sections, reduced to integrals (1.4). The modal
@@ -43,7 +43,8 @@ inline constexpr int kBeamElements = 120;
 
 /// Solves the composite beam twice, as Euler-Bernoulli beam for shape and
 /// integrals and as Timoshenko beam for the frequency (1.4).
-ProjectedBeam project_beam(const Device& device, int elements = kBeamElements);
+ProjectedBeam project_beam(const DeviceParameters& device,
+                           int elements = kBeamElements);
 
 /// Position of the two supports, as a share of the beam length from its ends.
 inline constexpr double kSupportPosition = 0.231;

@@ -15,7 +15,7 @@ Complex signal(const Gyro& gyro, const ModalParameters& modal,
   return static_solution(gyro, modal, motion).signal;
 }
 
-Gyro untrimmed_gyro(const Device& device) {
+Gyro untrimmed_gyro(const DeviceParameters& device) {
   Gyro gyro;
   gyro.device = device;
   gyro.beam = project_beam(device);
@@ -75,7 +75,7 @@ Complex zero_rate_terms(const Gyro& gyro, const ModalParameters& modal) {
   return signal(gyro, modal, {}) / rate_response(gyro, modal);
 }
 
-Gyro make_gyro(const Device& device) {
+Gyro make_gyro(const DeviceParameters& device) {
   Gyro gyro = untrimmed_gyro(device);
   require_passive_memory(device, gyro.beam);
   gyro.stiffness_trim = trimmed_stiffness(gyro);
@@ -92,7 +92,7 @@ Gyro make_gyro(const Device& device) {
   return gyro;
 }
 
-double built_quadrature(const Device& device, double stiffness_trim) {
+double built_quadrature(const DeviceParameters& device, double stiffness_trim) {
   const Gyro gyro = untrimmed_gyro(device);
   return -zero_rate_terms(
               gyro, modal_parameters(device, gyro.beam, kCalibrationTemperature,

@@ -13,7 +13,7 @@ namespace beamgyro::internal {
 /// One unit after the factory: the device, its projected beam, and the trims
 /// and references that are set once with board and beam at T_0 (2.4, 2.6).
 struct Gyro {
-  Device device;
+  DeviceParameters device;
   ProjectedBeam beam;
   double stiffness_trim = 0;  // k_trim [N/m]
   DriveLoop loop{};
@@ -29,12 +29,12 @@ struct Gyro {
 /// - the demodulation reference psi_d = arg dr/dOmega;
 /// - the output offset, so that the zero-rate output is `offset_trim`.
 /// Throws SimulationFailure when the drive loop cannot lock at T_0.
-Gyro make_gyro(const Device& device);
+Gyro make_gyro(const DeviceParameters& device);
 
 /// Returns the input-referred quadrature at T_0 [rad/s] when k_trim is
 /// `stiffness_trim` [N/m] in place of the value trimmed for this unit. Throws
 /// SimulationFailure when the drive loop cannot lock at T_0.
-double built_quadrature(const Device& device, double stiffness_trim);
+double built_quadrature(const DeviceParameters& device, double stiffness_trim);
 
 /// Demodulated, input-referred signal r/(dr/dOmega at T_0) [rad/s] with the
 /// board at T_0. The real part is in phase with a rate, the imaginary part is

@@ -138,7 +138,7 @@ class LoopedResponse {
 
 }  // namespace
 
-NoiseDensities noise_densities(const Device& device,
+NoiseDensities noise_densities(const DeviceParameters& device,
                                const ModalParameters& modal, double T,
                                double drive_frequency) {
   require_positive(T, "noise: beam temperature", "K");

@@ -22,7 +22,7 @@ struct NoiseDensities {
 /// Returns all densities at beam temperature T [K]. `modal` belongs to that
 /// temperature, w_d [rad/s] is the drive frequency. Throws
 /// std::invalid_argument for a temperature or a frequency not above 0.
-NoiseDensities noise_densities(const Device& device,
+NoiseDensities noise_densities(const DeviceParameters& device,
                                const ModalParameters& modal, double T,
                                double drive_frequency);
 

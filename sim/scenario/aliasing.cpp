@@ -124,7 +124,7 @@ struct NamedMotion {
   const RateProfile& profile;
 };
 
-std::vector<NamedMotion> motions_of(const Scenario& scenario) {
+std::vector<NamedMotion> motions_of(const ScenarioPlan& scenario) {
   std::vector<NamedMotion> motions = {{"rate", scenario.rate}};
   constexpr std::string_view kAxisNames[] = {"x", "y", "z"};
   for (std::size_t i = 0; i < scenario.cross_rate.size(); ++i)
@@ -164,7 +164,8 @@ std::string random_text(const std::string& key, const RandomRate& random,
       key, random.bandwidth, grid.rate, grid.count);
 }
 
-std::string aliasing_text(const NamedMotion& motion, const Scenario& scenario) {
+std::string aliasing_text(const NamedMotion& motion,
+                          const ScenarioPlan& scenario) {
   const SampleGrid grid = sample_grid(scenario);
   if (!moves(motion.profile)) return {};
   if (const auto* sine = std::get_if<SineSignal>(&motion.profile))
@@ -182,8 +183,8 @@ std::string aliasing_text(const NamedMotion& motion, const Scenario& scenario) {
 
 }  // namespace
 
-std::vector<std::string> aliasing_warnings(const Scenario& scenario) {
-  const Scenario aligned = with_aligned_borders(scenario);
+std::vector<std::string> aliasing_warnings(const ScenarioPlan& scenario) {
+  const ScenarioPlan aligned = with_aligned_borders(scenario);
   std::vector<std::string> texts;
   for (const NamedMotion& motion : motions_of(aligned)) {
     std::string text = aliasing_text(motion, aligned);

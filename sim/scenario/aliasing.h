@@ -14,6 +14,6 @@ namespace beamgyro::internal {
 /// - a profile with swings of which the samples show less than half. A swing
 ///   goes from one turn of the profile to the next; one of less than 5 % of the
 ///   range of the profile counts as noise.
-std::vector<std::string> aliasing_warnings(const Scenario& scenario);
+std::vector<std::string> aliasing_warnings(const ScenarioPlan& scenario);
 
 }  // namespace beamgyro::internal

@@ -28,7 +28,7 @@ void add_borders(const PiecewiseLinear& profile, std::vector<Border>& borders) {
 }
 
 template <class Visit>
-void visit_profiles(Scenario& scenario, const Visit& visit) {
+void visit_profiles(ScenarioPlan& scenario, const Visit& visit) {
   visit(scenario.ambient);
   const auto visit_motion = [&](RateProfile& profile) {
     if (auto* points = std::get_if<PiecewiseLinear>(&profile)) visit(*points);
@@ -104,8 +104,8 @@ PiecewiseLinear moved(const PiecewiseLinear& profile,
 
 }  // namespace
 
-Scenario with_aligned_borders(const Scenario& scenario) {
-  Scenario aligned = scenario;
+ScenarioPlan with_aligned_borders(const ScenarioPlan& scenario) {
+  ScenarioPlan aligned = scenario;
   std::vector<Border> borders;
   for (const PowerInterval& interval : scenario.powered) {
     borders.push_back({interval.on, true});

@@ -14,6 +14,6 @@ namespace beamgyro::internal {
 /// A single switch or jump moves likewise; a single bend stays. Two points of
 /// one profile at the same time make a jump. Random motions have no points yet
 /// and are not changed.
-Scenario with_aligned_borders(const Scenario& scenario);
+ScenarioPlan with_aligned_borders(const ScenarioPlan& scenario);
 
 }  // namespace beamgyro::internal

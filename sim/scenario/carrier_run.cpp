@@ -50,7 +50,7 @@ VectorXd carrier_error_weights() {
 // One trajectory in order of time, from tick to tick.
 class CarrierTrajectory {
  public:
-  CarrierTrajectory(const Scenario& scenario, const Gyro& gyro,
+  CarrierTrajectory(const ScenarioPlan& scenario, const Gyro& gyro,
                     const Motion& motion, const RunTemperatures& temperatures,
                     const ModalMemory* memory, bool at_rest)
       : scenario_(scenario),
@@ -143,7 +143,7 @@ class CarrierTrajectory {
     }
   }
 
-  const Scenario& scenario_;
+  const ScenarioPlan& scenario_;
   const Motion& motion_;
   const RunTemperatures& temperatures_;
   const ModalMemory* memory_;
@@ -191,7 +191,7 @@ RunSamples samples_at(std::span<const double> times, const Gyro& gyro,
   return s;
 }
 
-void require_rate(const Scenario& scenario, const Gyro& gyro) {
+void require_rate(const ScenarioPlan& scenario, const Gyro& gyro) {
   const double drive =
       loop_electronics(gyro).nominal_frequency / (2 * std::numbers::pi);
   if (scenario.output_rate <= drive / 4) return;
@@ -204,7 +204,7 @@ void require_rate(const Scenario& scenario, const Gyro& gyro) {
 
 }  // namespace
 
-double carrier_cost(const Scenario& scenario) {
+double carrier_cost(const ScenarioPlan& scenario) {
   double powered = 0;
   for (const PowerInterval& interval : scenario.powered) {
     powered +=
@@ -213,14 +213,15 @@ double carrier_cost(const Scenario& scenario) {
   return powered * kCostPerSecond * (moves(scenario.rate) ? 2 : 1);
 }
 
-void simulate_carrier(const Scenario& scenario, const Device& device,
-                      const RunKey& key, const BlockSink& on_block) {
+void simulate_carrier(const ScenarioPlan& scenario,
+                      const DeviceParameters& device, const RunKey& key,
+                      const BlockSink& on_block) {
   simulate_carrier(scenario, make_gyro(device), key, on_block);
 }
 
-void simulate_carrier(const Scenario& given, const Gyro& gyro,
+void simulate_carrier(const ScenarioPlan& given, const Gyro& gyro,
                       const RunKey& key, const BlockSink& on_block) {
-  const Scenario scenario = with_aligned_borders(given);
+  const ScenarioPlan scenario = with_aligned_borders(given);
   require_rate(scenario, gyro);
   const Motion motion(scenario, gyro, key);
   const RunTemperatures temperatures(scenario, gyro, kThermalStep);

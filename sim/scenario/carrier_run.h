@@ -13,15 +13,16 @@ namespace beamgyro::internal {
 /// kCarrierTick. Everything else is as in simulate_envelope(). Throws
 /// std::invalid_argument for an output rate above a quarter of the drive
 /// frequency.
-void simulate_carrier(const Scenario& scenario, const Gyro& gyro,
+void simulate_carrier(const ScenarioPlan& scenario, const Gyro& gyro,
                       const RunKey& key, const BlockSink& on_block);
-void simulate_carrier(const Scenario& scenario, const Device& device,
-                      const RunKey& key, const BlockSink& on_block);
+void simulate_carrier(const ScenarioPlan& scenario,
+                      const DeviceParameters& device, const RunKey& key,
+                      const BlockSink& on_block);
 
 inline constexpr double kCarrierTick = 1e-3;  // [s]
 
 /// Estimates the processor time [s] of simulate_carrier(), from the measured
 /// cost of a powered second (bench/README.md).
-double carrier_cost(const Scenario& scenario);
+double carrier_cost(const ScenarioPlan& scenario);
 
 }  // namespace beamgyro::internal

@@ -16,7 +16,7 @@ bool is_locked(const DriveSignals& drive) {
          std::abs(drive.phase) < kPhaseErrorLocked;
 }
 
-bool lock_is_due(const Scenario& scenario, double t) {
+bool lock_is_due(const ScenarioPlan& scenario, double t) {
   const auto after =
       std::upper_bound(scenario.powered.begin(), scenario.powered.end(), t,
                        [](double time, const PowerInterval& powered) {
@@ -27,7 +27,7 @@ bool lock_is_due(const Scenario& scenario, double t) {
   return t < last.off && t - last.on >= kLockTime;
 }
 
-std::vector<Border> power_borders(const Scenario& scenario) {
+std::vector<Border> power_borders(const ScenarioPlan& scenario) {
   std::vector<Border> borders;
   for (const PowerInterval& interval : scenario.powered) {
     borders.insert(
@@ -37,7 +37,7 @@ std::vector<Border> power_borders(const Scenario& scenario) {
   return borders;
 }
 
-void require_lock(const Scenario& scenario, const Recording& block) {
+void require_lock(const ScenarioPlan& scenario, const Recording& block) {
   for (std::size_t k = 0; k < block.time.size(); ++k) {
     const double t = block.time[k];
     if ((block.status[k] & kLoopNotLocked) == 0 || !lock_is_due(scenario, t))

@@ -17,14 +17,14 @@ bool is_locked(const DriveSignals& drive);
 
 /// Returns whether the loops of a sound device are locked at `t` [s]: the power
 /// has been on for kLockTime.
-bool lock_is_due(const Scenario& scenario, double t);
+bool lock_is_due(const ScenarioPlan& scenario, double t);
 
 /// Returns the times at which the power switches and, without a jump, those at
 /// which locking is due. There the steps of a start-up end.
-std::vector<Border> power_borders(const Scenario& scenario);
+std::vector<Border> power_borders(const ScenarioPlan& scenario);
 
 /// Throws SimulationFailure at the first sample of a block that is not locked
 /// although that is due. The message has its time, temperature and voltage.
-void require_lock(const Scenario& scenario, const Recording& block);
+void require_lock(const ScenarioPlan& scenario, const Recording& block);
 
 }  // namespace beamgyro::internal

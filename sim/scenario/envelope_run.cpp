@@ -16,14 +16,15 @@
 
 namespace beamgyro::internal {
 
-void simulate_envelope(const Scenario& scenario, const Device& device,
-                       const RunKey& key, const BlockSink& on_block) {
+void simulate_envelope(const ScenarioPlan& scenario,
+                       const DeviceParameters& device, const RunKey& key,
+                       const BlockSink& on_block) {
   simulate_envelope(scenario, make_gyro(device), key, on_block);
 }
 
-void simulate_envelope(const Scenario& given, const Gyro& gyro,
+void simulate_envelope(const ScenarioPlan& given, const Gyro& gyro,
                        const RunKey& key, const BlockSink& on_block) {
-  const Scenario scenario = with_aligned_borders(given);
+  const ScenarioPlan scenario = with_aligned_borders(given);
   const Motion motion(scenario, gyro, key);
   const std::unique_ptr<MemoryTrajectory> memory =
       memory_of_run(scenario, gyro);

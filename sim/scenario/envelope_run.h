@@ -13,9 +13,10 @@ namespace beamgyro::internal {
 /// follow as in every run. At each power-on the gyro starts at rest. `on_block`
 /// receives the recording block by block, so memory does not grow with the run.
 /// Throws as MaterialLimits and the integrator.
-void simulate_envelope(const Scenario& scenario, const Gyro& gyro,
+void simulate_envelope(const ScenarioPlan& scenario, const Gyro& gyro,
                        const RunKey& key, const BlockSink& on_block);
-void simulate_envelope(const Scenario& scenario, const Device& device,
-                       const RunKey& key, const BlockSink& on_block);
+void simulate_envelope(const ScenarioPlan& scenario,
+                       const DeviceParameters& device, const RunKey& key,
+                       const BlockSink& on_block);
 
 }  // namespace beamgyro::internal

@@ -65,7 +65,7 @@ NodeVector nodes_of(const VectorXd& y) {
 }
 
 // Whether the motion bends so often that an explicit method is the faster one.
-bool needs_explicit_method(const Scenario& scenario, const Motion& motion) {
+bool needs_explicit_method(const ScenarioPlan& scenario, const Motion& motion) {
   constexpr double kBends = 50;  // [1/s]
   const std::size_t pieces =
       pieces_until(scenario.duration, motion.borders()).size();
@@ -73,7 +73,8 @@ bool needs_explicit_method(const Scenario& scenario, const Motion& motion) {
 }
 
 // Where any input bends or jumps, or the start-up has ended.
-std::vector<Border> borders_of(const Scenario& scenario, const Motion& motion) {
+std::vector<Border> borders_of(const ScenarioPlan& scenario,
+                               const Motion& motion) {
   std::vector<Border> borders = motion.borders();
   for (const auto& more : {power_borders(scenario), scenario.ambient.borders()})
     borders.insert(borders.end(), more.begin(), more.end());
@@ -121,7 +122,7 @@ class EnvelopeTrajectory::Sampler {
   std::size_t next_ = 0;
 };
 
-EnvelopeTrajectory::EnvelopeTrajectory(const Scenario& scenario,
+EnvelopeTrajectory::EnvelopeTrajectory(const ScenarioPlan& scenario,
                                        const Gyro& gyro, const Motion& motion,
                                        bool at_rest, const ModalMemory* memory,
                                        double tolerance)

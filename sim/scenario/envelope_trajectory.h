@@ -29,7 +29,7 @@ class EnvelopeTrajectory {
   /// `at_rest` selects the twin, whose rate about z is zero. The scenario, gyro
   /// and motion must outlive the trajectory. `tolerance` is the local error of
   /// a step in the output [rad/s], other states in proportion.
-  EnvelopeTrajectory(const Scenario& scenario, const Gyro& gyro,
+  EnvelopeTrajectory(const ScenarioPlan& scenario, const Gyro& gyro,
                      const Motion& motion, bool at_rest,
                      const ModalMemory* memory = nullptr,
                      double tolerance = 1e-8);
@@ -51,7 +51,7 @@ class EnvelopeTrajectory {
   double time() const;
   const Eigen::VectorXd& state() const;
 
-  const Scenario& scenario_;
+  const ScenarioPlan& scenario_;
   const Gyro& gyro_;
   const Motion& motion_;
   bool at_rest_;

@@ -16,7 +16,7 @@ namespace beamgyro::internal {
 class MaterialLimits {
  public:
   /// `scenario` must outlive the object.
-  MaterialLimits(const Scenario& scenario, const ThermalParameters& thermal)
+  MaterialLimits(const ScenarioPlan& scenario, const ThermalParameters& thermal)
       : scenario_(scenario), electronics_power_(thermal.electronics_power) {}
 
   /// `nodes` [K] at `t` [s], by ThermalNode.
@@ -35,7 +35,7 @@ class MaterialLimits {
              const SampleGrid& grid) const;
 
  private:
-  const Scenario& scenario_;
+  const ScenarioPlan& scenario_;
   double electronics_power_;  // [W]
 };
 

@@ -63,7 +63,8 @@ bool MotionSegment::is_constant() const {
          std::none_of(acceleration_.begin(), acceleration_.end(), moving);
 }
 
-Motion::Motion(const Scenario& scenario, const Gyro& gyro, const RunKey& key)
+Motion::Motion(const ScenarioPlan& scenario, const Gyro& gyro,
+               const RunKey& key)
     : rate_moves_(moves(scenario.rate)), mount_(gyro.device.mount) {
   const auto realise = [&](const RateProfile& profile,
                            RandomPurpose purpose) -> Signal {

@@ -220,12 +220,13 @@ double sensing_noise(const Gyro& gyro) {
 
 }  // namespace
 
-void simulate_quasistatic(const Scenario& scenario, const Device& device,
-                          const RunKey& key, const BlockSink& on_block) {
+void simulate_quasistatic(const ScenarioPlan& scenario,
+                          const DeviceParameters& device, const RunKey& key,
+                          const BlockSink& on_block) {
   simulate_quasistatic(scenario, make_gyro(device), key, on_block);
 }
 
-void simulate_quasistatic(const Scenario& given, const Gyro& gyro,
+void simulate_quasistatic(const ScenarioPlan& given, const Gyro& gyro,
                           const RunKey& key, const BlockSink& on_block,
                           std::size_t block_samples) {
   if (given.fidelity != Fidelity::kQuasistatic) {
@@ -233,7 +234,7 @@ void simulate_quasistatic(const Scenario& given, const Gyro& gyro,
         "fidelity: a scenario of another fidelity was given to the "
         "quasi-static run; expected \"quasistatic\"");
   }
-  const Scenario scenario = with_aligned_borders(given);
+  const ScenarioPlan scenario = with_aligned_borders(given);
   const SampleGrid grid = sample_grid(scenario);
   const Motion motion(scenario, gyro, key);
   const std::unique_ptr<MemoryTrajectory> memory =

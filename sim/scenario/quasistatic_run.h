@@ -16,10 +16,11 @@ namespace beamgyro::internal {
 /// with every column (docs/reference/recording.md) and `status`, so memory does
 /// not grow with the samples. The recording does not depend on the size of the
 /// blocks. Throws std::invalid_argument for a scenario of another fidelity.
-void simulate_quasistatic(const Scenario& scenario, const Gyro& gyro,
+void simulate_quasistatic(const ScenarioPlan& scenario, const Gyro& gyro,
                           const RunKey& key, const BlockSink& on_block,
                           std::size_t block_samples = kBlockSamples);
-void simulate_quasistatic(const Scenario& scenario, const Device& device,
-                          const RunKey& key, const BlockSink& on_block);
+void simulate_quasistatic(const ScenarioPlan& scenario,
+                          const DeviceParameters& device, const RunKey& key,
+                          const BlockSink& on_block);
 
 }  // namespace beamgyro::internal

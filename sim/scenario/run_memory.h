@@ -11,11 +11,11 @@ namespace beamgyro::internal {
 
 /// Returns the memory of a unit at the start of a scenario, to be driven by its
 /// thermal solution, or null for a unit without memory effects.
-std::unique_ptr<MemoryTrajectory> memory_at_start(const Scenario& scenario,
+std::unique_ptr<MemoryTrajectory> memory_at_start(const ScenarioPlan& scenario,
                                                   const Gyro& gyro);
 
 /// The same, driven over the whole scenario.
-std::unique_ptr<MemoryTrajectory> memory_of_run(const Scenario& scenario,
+std::unique_ptr<MemoryTrajectory> memory_of_run(const ScenarioPlan& scenario,
                                                 const Gyro& gyro);
 
 }  // namespace beamgyro::internal

@@ -71,8 +71,9 @@ void add(Recording& block, std::string_view name, Samples values,
 
 }  // namespace
 
-RunRecorder::RunRecorder(const Scenario& scenario, const Device& device,
-                         const RunKey& key, const RunNoise& loop_noise)
+RunRecorder::RunRecorder(const ScenarioPlan& scenario,
+                         const DeviceParameters& device, const RunKey& key,
+                         const RunNoise& loop_noise)
     : scenario_(scenario),
       device_(device),
       noise_(with(device.noise, loop_noise.sensing), scenario.output_rate,

@@ -68,8 +68,8 @@ struct RunNoise {
 class RunRecorder {
  public:
   /// `device` and `scenario` must outlive the recorder.
-  RunRecorder(const Scenario& scenario, const Device& device, const RunKey& key,
-              const RunNoise& loop_noise = {});
+  RunRecorder(const ScenarioPlan& scenario, const DeviceParameters& device,
+              const RunKey& key, const RunNoise& loop_noise = {});
 
   /// Returns the recording of the next samples, with every column
   /// (docs/reference/recording.md).
@@ -91,8 +91,8 @@ class RunRecorder {
   void add_truth(Recording& block, RunSamples& samples) const;
   void add_memory(Recording& block, const RunSamples& samples) const;
 
-  const Scenario& scenario_;
-  const Device& device_;
+  const ScenarioPlan& scenario_;
+  const DeviceParameters& device_;
   RateNoise noise_;
   std::vector<double> turn_on_;     // of each power cycle [rad/s]
   std::vector<double> transients_;  // of each power cycle, at power-on [rad/s]

@@ -9,7 +9,7 @@
 
 namespace beamgyro::internal {
 
-ThermalLoad thermal_load(const Scenario& scenario, const Gyro& gyro) {
+ThermalLoad thermal_load(const ScenarioPlan& scenario, const Gyro& gyro) {
   const DriveHeating heating = drive_heating(gyro);
   return {.ambient = scenario.ambient,
           .stirred = scenario.stirred,
@@ -18,7 +18,7 @@ ThermalLoad thermal_load(const Scenario& scenario, const Gyro& gyro) {
           .dielectric_power = heating.dielectric};
 }
 
-RunTemperatures::RunTemperatures(const Scenario& scenario, const Gyro& gyro,
+RunTemperatures::RunTemperatures(const ScenarioPlan& scenario, const Gyro& gyro,
                                  double step)
     : step_(step) {
   std::vector<double> times;

@@ -14,7 +14,7 @@
 namespace beamgyro::internal {
 namespace {
 
-std::string soaks_text(const Scenario& scenario) {
+std::string soaks_text(const ScenarioPlan& scenario) {
   constexpr double kRoundoff = 1e-9;  // as for the number of samples
   const std::vector<double>& ends = scenario.soak_ends;
   const auto cut = std::ranges::count_if(ends, [&](double end) {
@@ -28,7 +28,7 @@ std::string soaks_text(const Scenario& scenario) {
 }
 
 /// Why no sample is powered.
-std::string power_cause(const Scenario& scenario) {
+std::string power_cause(const ScenarioPlan& scenario) {
   const SampleGrid grid = sample_grid(scenario);
   const double last = grid.time(grid.count - 1);
   std::string before, after;

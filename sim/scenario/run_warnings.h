@@ -23,7 +23,7 @@ namespace beamgyro::internal {
 class RunWarnings {
  public:
   /// `scenario` and `device` must outlive the object.
-  RunWarnings(const Scenario& scenario, const Device& device)
+  RunWarnings(const ScenarioPlan& scenario, const DeviceParameters& device)
       : scenario_(scenario), device_(device) {}
 
   /// Takes the next block of the run.
@@ -46,8 +46,8 @@ class RunWarnings {
   std::string saturation_text() const;
   std::string lock_text() const;
 
-  const Scenario& scenario_;
-  const Device& device_;
+  const ScenarioPlan& scenario_;
+  const DeviceParameters& device_;
   std::size_t samples_ = 0, powered_ = 0, saturated_ = 0, unlocked_ = 0;
   std::size_t limited_ = 0;  // not locked, with the voltage at its limit
   Temperatures lost_;        // not locked, although that is due

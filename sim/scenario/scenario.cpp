@@ -18,7 +18,7 @@ std::string_view fidelity_name(Fidelity fidelity) {
   return "";
 }
 
-std::string title_of(const Scenario& scenario) {
+std::string title_of(const ScenarioPlan& scenario) {
   constexpr std::size_t kLongest = 1000;  // characters
   std::string title = scenario.name;
   if (!scenario.description.empty() && scenario.description.size() <= kLongest)
@@ -27,18 +27,18 @@ std::string title_of(const Scenario& scenario) {
   return title;
 }
 
-std::size_t sample_count(const Scenario& scenario) {
+std::size_t sample_count(const ScenarioPlan& scenario) {
   // 0.3 s x 10 Hz is three samples, whatever the last bit of the product says.
   constexpr double kRoundoff = 1e-9;
   const double count = scenario.duration * scenario.output_rate;
   return static_cast<std::size_t>(std::floor(count * (1 + kRoundoff)));
 }
 
-SampleGrid sample_grid(const Scenario& scenario) {
+SampleGrid sample_grid(const ScenarioPlan& scenario) {
   return {scenario.output_rate, sample_count(scenario)};
 }
 
-std::vector<double> sample_times(const Scenario& scenario) {
+std::vector<double> sample_times(const ScenarioPlan& scenario) {
   return sample_grid(scenario).times(0, sample_count(scenario));
 }
 

@@ -24,7 +24,7 @@ enum class Fidelity {
 };
 
 /// What happens to one gyro: power, surroundings and rotation over time.
-struct Scenario {
+struct ScenarioPlan {
   std::string name, description;
   std::filesystem::path device_file;
   Fidelity fidelity = Fidelity::kQuasistatic;
@@ -53,16 +53,16 @@ std::string_view fidelity_name(Fidelity fidelity);
 
 /// Returns name and description, for a title; without a description that is
 /// longer than a title.
-std::string title_of(const Scenario& scenario);
+std::string title_of(const ScenarioPlan& scenario);
 
 /// Returns the number of samples, floor(duration x output_rate).
-std::size_t sample_count(const Scenario& scenario);
+std::size_t sample_count(const ScenarioPlan& scenario);
 
 /// time(k) = k / output_rate [s], k = 0 .. sample_count - 1.
-SampleGrid sample_grid(const Scenario& scenario);
+SampleGrid sample_grid(const ScenarioPlan& scenario);
 
 /// Returns the times of all samples.
-std::vector<double> sample_times(const Scenario& scenario);
+std::vector<double> sample_times(const ScenarioPlan& scenario);
 
 /// Returns the highest output rate [Hz] that a fidelity allows.
 double highest_output_rate(Fidelity fidelity);

@@ -196,11 +196,11 @@ void read_axes(const ConfigTable& table, const MotionKeys& keys,
 
 }  // namespace
 
-Scenario read_scenario(const ConfigDocument& document,
-                       const ProfileTables* profiles) {
+ScenarioPlan read_scenario(const ConfigDocument& document,
+                           const ProfileTables* profiles) {
   const ConfigTable& root = document.root();
   const ProfileFolder folder{document.path().parent_path(), profiles};
-  Scenario scenario;
+  ScenarioPlan scenario;
   scenario.name = root.text("name");
   scenario.description = root.text_or("description", "");
   scenario.device_file = folder.path / root.text("device");

@@ -15,8 +15,8 @@ namespace beamgyro::internal {
 /// resolved likewise. Files that are in `profiles` are not read again. Throws
 /// std::invalid_argument naming file, line, key and value. The caller rejects
 /// unknown keys after the device has been read, too.
-Scenario read_scenario(const ConfigDocument& document,
-                       const ProfileTables* profiles = nullptr);
+ScenarioPlan read_scenario(const ConfigDocument& document,
+                           const ProfileTables* profiles = nullptr);
 
 /// Returns the CSV files that a valid scenario names.
 std::vector<std::filesystem::path> profile_files(

@@ -11,12 +11,13 @@
 
 namespace beamgyro::internal {
 
-bool has_channel_noise(const Scenario& scenario, const Device& device) {
+bool has_channel_noise(const ScenarioPlan& scenario,
+                       const DeviceParameters& device) {
   return scenario.noise_enabled && device.loop_channels &&
          device.loop_channels->noise;
 }
 
-SensingNoise::SensingNoise(const Scenario& scenario, const Gyro& gyro,
+SensingNoise::SensingNoise(const ScenarioPlan& scenario, const Gyro& gyro,
                            const RunKey& key)
     : scenario_(scenario),
       gyro_(gyro),
@@ -65,7 +66,7 @@ RunNoise SensingNoise::rms() {
   return {.drive_frequency = rms(0), .drive_voltage = rms(1)};
 }
 
-SlowDriveNoise::SlowDriveNoise(const Scenario& scenario, const Gyro& gyro,
+SlowDriveNoise::SlowDriveNoise(const ScenarioPlan& scenario, const Gyro& gyro,
                                const TemperatureSpan& beam, const RunKey& key)
     : scenario_(scenario),
       gyro_(gyro),

@@ -12,7 +12,8 @@
 namespace beamgyro::internal {
 
 /// Returns whether the channels of the drive loop carry noise in this run.
-bool has_channel_noise(const Scenario& scenario, const Device& device);
+bool has_channel_noise(const ScenarioPlan& scenario,
+                       const DeviceParameters& device);
 
 /// Noise of mechanics and charge amplifiers behind loops and filters
 /// (loop_noise()), exact at the sample times. The coefficients follow the
@@ -21,7 +22,8 @@ bool has_channel_noise(const Scenario& scenario, const Device& device);
 class SensingNoise {
  public:
   /// `scenario` and `gyro` must outlive it.
-  SensingNoise(const Scenario& scenario, const Gyro& gyro, const RunKey& key);
+  SensingNoise(const ScenarioPlan& scenario, const Gyro& gyro,
+               const RunKey& key);
 
   /// Adds the noise to output and quadrature of the next samples and, where
   /// the channels carry noise, writes that of drive frequency and voltage. A
@@ -32,7 +34,7 @@ class SensingNoise {
   RunNoise rms();
 
  private:
-  const Scenario& scenario_;
+  const ScenarioPlan& scenario_;
   const Gyro& gyro_;
   EnvelopeOde ode_;
   RunKey key_;
@@ -49,7 +51,7 @@ class SlowDriveNoise {
  public:
   /// `beam` holds all temperatures of the beam. `scenario` and `gyro` must
   /// outlive the object.
-  SlowDriveNoise(const Scenario& scenario, const Gyro& gyro,
+  SlowDriveNoise(const ScenarioPlan& scenario, const Gyro& gyro,
                  const TemperatureSpan& beam, const RunKey& key);
 
   /// Writes the noise of the next samples.
@@ -62,7 +64,7 @@ class SlowDriveNoise {
   Eigen::Vector2d exact_sigma(double T);
   Eigen::Vector2d sigma_at(double beam) const;
 
-  const Scenario& scenario_;
+  const ScenarioPlan& scenario_;
   const Gyro& gyro_;
   EnvelopeOde ode_;
   RandomStream frequency_stream_, voltage_stream_;

@@ -37,7 +37,7 @@ void append_block(Recording& whole, Recording&& block, std::size_t samples) {
   reserve(whole, samples);
 }
 
-void simulate(const Scenario& scenario, const Gyro& gyro, const RunKey& key,
+void simulate(const ScenarioPlan& scenario, const Gyro& gyro, const RunKey& key,
               const BlockSink& on_block) {
   switch (scenario.fidelity) {
     case Fidelity::kQuasistatic:
@@ -49,7 +49,7 @@ void simulate(const Scenario& scenario, const Gyro& gyro, const RunKey& key,
   }
 }
 
-Recording simulated(const Scenario& scenario, const Gyro& gyro,
+Recording simulated(const ScenarioPlan& scenario, const Gyro& gyro,
                     const RunKey& key) {
   Recording whole;
   if (scenario.fidelity == Fidelity::kQuasistatic) {  // in one block
@@ -65,8 +65,8 @@ Recording simulated(const Scenario& scenario, const Gyro& gyro,
   return whole;
 }
 
-Recording simulated(const Scenario& scenario, const Device& device,
-                    const RunKey& key) {
+Recording simulated(const ScenarioPlan& scenario,
+                    const DeviceParameters& device, const RunKey& key) {
   return simulated(scenario, make_gyro(device), key);
 }
 

@@ -26,7 +26,7 @@ LoadedDevice device_of(const ConfigDocument& document, const Overrides& set) {
 
 /// A scenario, and the profiles that it names as they were read.
 struct ReadScenario {
-  Scenario scenario;
+  ScenarioPlan scenario;
   ProfileTexts profiles;
 };
 
@@ -36,7 +36,7 @@ ReadScenario scenario_of(const ConfigDocument& document,
   for (const auto& [path, text] : known)
     tables.emplace(path, parse_csv(text, path));
   // An error in a profile names its place in the scenario.
-  Scenario scenario = read_scenario(document, &tables);
+  ScenarioPlan scenario = read_scenario(document, &tables);
   document.reject_unknown_keys();
   ProfileTexts profiles;
   bool has_read = false;

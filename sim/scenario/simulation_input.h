@@ -19,7 +19,7 @@ struct InputText {
 
 /// A device, with the overrides of the command applied.
 struct LoadedDevice {
-  Device device;
+  DeviceParameters device;
   std::string text;  // byte for byte as read
 };
 LoadedDevice load_device(const std::filesystem::path& path,
@@ -33,8 +33,8 @@ using ProfileTexts = std::map<std::filesystem::path, std::string>;
 
 /// A scenario, its device, and the texts that a recording stores.
 struct LoadedScenario {
-  Scenario scenario;
-  Device device;
+  ScenarioPlan scenario;
+  DeviceParameters device;
   std::string scenario_text, device_text, overrides_text;
   std::vector<std::filesystem::path> files;  // all that were read
   ProfileTexts profiles;                     // those among them

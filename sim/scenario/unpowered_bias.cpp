@@ -7,7 +7,7 @@
 
 namespace beamgyro::internal {
 
-UnpoweredBias::UnpoweredBias(const Scenario& scenario, const Gyro& gyro,
+UnpoweredBias::UnpoweredBias(const ScenarioPlan& scenario, const Gyro& gyro,
                              const Motion& motion,
                              const MemoryTrajectory* memory)
     : scenario_(scenario), gyro_(gyro), memory_(memory) {

@@ -17,7 +17,7 @@ class UnpoweredBias {
  public:
   /// The arguments must outlive the object; `memory` is null for a unit
   /// without.
-  UnpoweredBias(const Scenario& scenario, const Gyro& gyro,
+  UnpoweredBias(const ScenarioPlan& scenario, const Gyro& gyro,
                 const Motion& motion, const MemoryTrajectory* memory);
 
   /// Replaces the bias of the samples without power. The samples must follow
@@ -30,7 +30,7 @@ class UnpoweredBias {
   void fill_still(const std::vector<std::size_t>& unpowered,
                   RunSamples& samples) const;
 
-  const Scenario& scenario_;
+  const ScenarioPlan& scenario_;
   const Gyro& gyro_;
   const MemoryTrajectory* memory_;
   LockPath path_;

@@ -19,13 +19,13 @@ namespace {
 
 const std::string kRebalance = "readout.mode=\"force_rebalance\"";
 
-Device fine_device(std::vector<std::string> overrides = {}) {
+DeviceParameters fine_device(std::vector<std::string> overrides = {}) {
   overrides.emplace_back("readout.adc_bits=32");
   return nominal_device(overrides);
 }
 
-Recording simulated(Scenario scenario, Fidelity fidelity,
-                    const Device& device) {
+Recording simulated(ScenarioPlan scenario, Fidelity fidelity,
+                    const DeviceParameters& device) {
   scenario.fidelity = fidelity;
   scenario.noise_enabled = false;
   return internal::simulated(scenario, device);
@@ -49,9 +49,9 @@ std::string constant_ambient(double celsius) {
 }
 
 TEST(Agreement, QuasistaticAndEnvelopeOverAWarmUpOfAnHour) {
-  const Device device = fine_device();
+  const DeviceParameters device = fine_device();
   for (const double celsius : {25.0, -30.0}) {
-    const Scenario scenario =
+    const ScenarioPlan scenario =
         scenario_from("", constant_ambient(celsius), "3600", "1");
     const Recording slow = simulated(scenario, Fidelity::kQuasistatic, device);
     const Recording fast = simulated(scenario, Fidelity::kEnvelope, device);
@@ -65,12 +65,12 @@ TEST(Agreement, QuasistaticAndEnvelopeOverAWarmUpOfAnHour) {
 }
 
 TEST(Agreement, QuasistaticAndEnvelopeOverARampOfAKelvinAMinute) {
-  const Scenario scenario = scenario_from(
+  const ScenarioPlan scenario = scenario_from(
       "[chamber]\nstirred = true\n",
       "[ambient]\npoints = [[0, -40], [600, -40], [6000, 50]]\n", "6600", "1");
   for (const std::vector<std::string>& overrides :
        {std::vector<std::string>{}, std::vector<std::string>{kRebalance}}) {
-    const Device device = fine_device(overrides);
+    const DeviceParameters device = fine_device(overrides);
     const Recording slow = simulated(scenario, Fidelity::kQuasistatic, device);
     const Recording fast = simulated(scenario, Fidelity::kEnvelope, device);
     EXPECT_LT(difference(slow, fast, "true_bias", 1, 6600), 2e-3);
@@ -88,9 +88,9 @@ TEST(Agreement, QuasistaticAndEnvelopeWithStronglyCoupledModes) {
         std::vector<std::string>{"beam.side_difference=-0.0004",
                                  "mount.glassy_stiffness_share=0.0258",
                                  "mount.axis_angle_deg=33.9"}}) {
-    const Device device = fine_device(modes);
+    const DeviceParameters device = fine_device(modes);
     for (const double celsius : {-40.0, -30.0}) {
-      const Scenario scenario =
+      const ScenarioPlan scenario =
           scenario_from("", constant_ambient(celsius), "3", "50");
       const Recording slow =
           simulated(scenario, Fidelity::kQuasistatic, device);
@@ -104,12 +104,12 @@ TEST(Agreement, QuasistaticAndEnvelopeWithStronglyCoupledModes) {
 }
 
 TEST(Agreement, QuasistaticAndEnvelopeUnderRateCrossRatesAndAcceleration) {
-  const Scenario scenario = scenario_from(
+  const ScenarioPlan scenario = scenario_from(
       "[rate]\nsine = { amplitude_deg_per_s = 50, frequency_Hz = 0.02 }\n"
       "[cross_rate]\nx = { constant_deg_per_s = 200 }\n"
       "y = { sine = { amplitude_deg_per_s = 100, frequency_Hz = 0.05 } }\n"
       "[acceleration]\nx = { constant_g = 5 }\nz = { constant_g = -3 }\n");
-  const Device device = fine_device();
+  const DeviceParameters device = fine_device();
   const Recording slow = simulated(scenario, Fidelity::kQuasistatic, device);
   const Recording fast = simulated(scenario, Fidelity::kEnvelope, device);
   EXPECT_LT(difference(slow, fast, "true_bias", 1, 100), 1e-3);
@@ -124,9 +124,10 @@ TEST(Agreement, QuasistaticAndEnvelopeUnderRateCrossRatesAndAcceleration) {
 }
 
 // Start-up at rest, then a step of 10 deg/s.
-Scenario step_at(double celsius) {
-  Scenario scenario = scenario_from("[rate]\nsteps = [[0, 0], [0.40025, 10]]\n",
-                                    constant_ambient(celsius), "0.7", "200");
+ScenarioPlan step_at(double celsius) {
+  ScenarioPlan scenario =
+      scenario_from("[rate]\nsteps = [[0, 0], [0.40025, 10]]\n",
+                    constant_ambient(celsius), "0.7", "200");
   scenario.output_rate = 2000;
   return scenario;
 }
@@ -134,8 +135,8 @@ Scenario step_at(double celsius) {
 class AtTemperature : public testing::TestWithParam<double> {};
 
 TEST_P(AtTemperature, V22CarrierAndEnvelopeOverStartUpAndStep) {
-  const Device device = fine_device();
-  const Scenario scenario = step_at(GetParam());
+  const DeviceParameters device = fine_device();
+  const ScenarioPlan scenario = step_at(GetParam());
   const Recording envelope = simulated(scenario, Fidelity::kEnvelope, device);
   const Recording carrier = simulated(scenario, Fidelity::kCarrier, device);
   EXPECT_LT(difference(envelope, carrier, "rate", 0.05, 0.4), 0.03);
@@ -149,10 +150,11 @@ TEST_P(AtTemperature, V22CarrierAndEnvelopeOverStartUpAndStep) {
 
 TEST_P(AtTemperature, StaticSolutionIsWhereEnvelopeAndCarrierComeToRest) {
   const double T = GetParam() + kZeroCelsius;
-  Scenario scenario =
+  ScenarioPlan scenario =
       scenario_from("", constant_ambient(GetParam()), "0.9", "100");
   // A board without mass or power keeps every node at ambient.
-  const Device device = fine_device({"thermal.electronics_power_W=0"});
+  const DeviceParameters device =
+      fine_device({"thermal.electronics_power_W=0"});
   const Gyro gyro = make_gyro(device);
   for (const Fidelity fidelity : {Fidelity::kEnvelope, Fidelity::kCarrier}) {
     const Recording run = simulated(scenario, fidelity, device);
@@ -172,7 +174,7 @@ INSTANTIATE_TEST_SUITE_P(DeepTemperatures, AtTemperature,
                          testing::Values(-15.0, 10.0));
 
 TEST(Agreement, V22CarrierAndEnvelopeWithForceRebalance) {
-  const Device device = fine_device({kRebalance});
+  const DeviceParameters device = fine_device({kRebalance});
   const Recording envelope =
       simulated(step_at(25), Fidelity::kEnvelope, device);
   const Recording carrier = simulated(step_at(25), Fidelity::kCarrier, device);
@@ -185,10 +187,11 @@ TEST(Agreement, V22CarrierAndEnvelopeWithForceRebalance) {
 
 TEST(Agreement, NoiseOfEnvelopeAndQuasistaticAreOneAtLowFrequencies) {
   // Without the output stage's own noise: what comes through the mechanics.
-  const Device device = fine_device(
+  const DeviceParameters device = fine_device(
       {"noise={angle_random_walk_deg_per_sqrt_s=0,bias_instability_deg_per_s="
        "0,rate_random_walk_deg_per_s_per_sqrt_s=0,turn_on_deg_per_s=0}"});
-  Scenario scenario = scenario_from("", constant_ambient(25), "2000", "100");
+  ScenarioPlan scenario =
+      scenario_from("", constant_ambient(25), "2000", "100");
   const auto deviation = [&](const Recording& run) {
     const std::vector<double>& rate = column_values(run, "rate");
     const std::vector<double>& bias = column_values(run, "true_bias");

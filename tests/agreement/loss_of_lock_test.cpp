@@ -17,7 +17,8 @@
 namespace beamgyro::internal::loss_of_lock_test {
 namespace {
 
-Recording run_at(Scenario scenario, Fidelity fidelity, const Device& device) {
+Recording run_at(ScenarioPlan scenario, Fidelity fidelity,
+                 const DeviceParameters& device) {
   scenario.fidelity = fidelity;
   scenario.noise_enabled = false;
   return internal::simulated(scenario, device);
@@ -48,7 +49,7 @@ double last_unlocked(const Recording& run) {
 // The bond's glass transition takes the drive beyond its voltage limit from 82
 // to 117 degC.
 TEST(Verification, V56EnvelopeLocksAgainAfterAHotExcursion) {
-  const Device device = nominal_device({"readout.adc_bits=32"});
+  const DeviceParameters device = nominal_device({"readout.adc_bits=32"});
   const Gyro gyro = make_gyro(device);
   const Recording run = run_at(
       scenario_from(
@@ -79,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Temperatures, StartedHot,
 
 // The envelope settles to the static solution with the drive at its limit.
 TEST_P(StartedHot, RunsOnWithItsStatusBit) {
-  const Device device = nominal_device({"readout.adc_bits=32"});
+  const DeviceParameters device = nominal_device({"readout.adc_bits=32"});
   const std::string constant =
       ambient("constant_degC = " + std::to_string(GetParam()));
   const Recording envelope = run_at(scenario_from("", constant, "3", "20"),
@@ -100,8 +101,8 @@ TEST_P(StartedHot, RunsOnWithItsStatusBit) {
 }
 
 TEST(LossOfLock, OfACarrierRunIsThatOfTheEnvelope) {
-  const Device device = nominal_device({"readout.adc_bits=32"});
-  const Scenario scenario =
+  const DeviceParameters device = nominal_device({"readout.adc_bits=32"});
+  const ScenarioPlan scenario =
       scenario_from("", ambient("constant_degC = 95"), "1.3", "100");
   const Recording envelope = run_at(scenario, Fidelity::kEnvelope, device);
   const Recording carrier = run_at(scenario, Fidelity::kCarrier, device);
@@ -114,13 +115,13 @@ TEST(LossOfLock, OfACarrierRunIsThatOfTheEnvelope) {
 
 // Without power a sample has the bias that the gyro would settle to.
 TEST(UnpoweredBias, IsTheSameInEveryFidelity) {
-  const Device device = nominal_device();
+  const DeviceParameters device = nominal_device();
   for (const std::string motion :
        {"", "[rate]\nconstant_deg_per_s = 5\n",
         "[cross_rate]\nx = { constant_deg_per_s = 300 }\n"
         "[acceleration]\nx = { steps = [[0, 0], [3.5, 5]] }\n"}) {
     const std::string short_power = "[power]\non_s = [2]\noff_s = [2.5]\n";
-    const Scenario scenario =
+    const ScenarioPlan scenario =
         scenario_from(short_power + motion,
                       ambient("points = [[0, -10], [5, -10.5]]"), "5", "20");
     const Recording slow = run_at(scenario, Fidelity::kQuasistatic, device);
@@ -137,8 +138,8 @@ TEST(UnpoweredBias, IsTheSameInEveryFidelity) {
 }
 
 // The message of a run that is refused, or nothing.
-std::string refusal(const Scenario& scenario, Fidelity fidelity,
-                    const Device& device) {
+std::string refusal(const ScenarioPlan& scenario, Fidelity fidelity,
+                    const DeviceParameters& device) {
   try {
     run_at(scenario, fidelity, device);
   } catch (const SimulationFailure& error) {
@@ -149,9 +150,10 @@ std::string refusal(const Scenario& scenario, Fidelity fidelity,
 
 // The board is the first part that gets too hot: 0.5 s from 100 to 150 degC.
 TEST(MaterialRange, IsOneForEveryFidelity) {
-  const Scenario scenario =
+  const ScenarioPlan scenario =
       scenario_from("", ambient("constant_degC = 100"), "2", "50");
-  const Device device = nominal_device({"thermal.electronics_power_W=600"});
+  const DeviceParameters device =
+      nominal_device({"thermal.electronics_power_W=600"});
   for (const Fidelity fidelity :
        {Fidelity::kQuasistatic, Fidelity::kEnvelope, Fidelity::kCarrier}) {
     const std::string said = refusal(scenario, fidelity, device);
@@ -164,7 +166,8 @@ TEST(MaterialRange, IsOneForEveryFidelity) {
 
 // The heat of a run that would go beyond what any table holds.
 TEST(MaterialRange, NamesTheFirstSampleHoweverHotTheRunEnds) {
-  const Device device = nominal_device({"thermal.electronics_power_W=600"});
+  const DeviceParameters device =
+      nominal_device({"thermal.electronics_power_W=600"});
   const auto said = [&](const char* duration) {
     return refusal(
         scenario_from("", ambient("constant_degC = 100"), duration, "50"),
@@ -175,9 +178,10 @@ TEST(MaterialRange, NamesTheFirstSampleHoweverHotTheRunEnds) {
 
 // At both ends of the range the model works in every fidelity.
 TEST(MaterialRange, BelongsToEveryFidelity) {
-  const Device device = nominal_device({"thermal.electronics_power_W=0"});
+  const DeviceParameters device =
+      nominal_device({"thermal.electronics_power_W=0"});
   for (const double celsius : {-100.0, 149.9}) {
-    const Scenario scenario = scenario_from(
+    const ScenarioPlan scenario = scenario_from(
         "", ambient("constant_degC = " + std::to_string(celsius)), "1.2", "20");
     for (const Fidelity fidelity :
          {Fidelity::kQuasistatic, Fidelity::kEnvelope, Fidelity::kCarrier})

@@ -17,11 +17,11 @@ namespace {
 
 constexpr char kQuiet[] = "[noise]\nenabled = false\n";
 
-Device lifelike() {
+DeviceParameters lifelike() {
   Overrides none;
   const ConfigDocument document = ConfigDocument::read(
       std::string(BEAMGYRO_SCENARIOS) + "/devices/lifelike.toml", none);
-  const Device device = read_device(document);
+  const DeviceParameters device = read_device(document);
   document.reject_unknown_keys();
   return device;
 }
@@ -40,8 +40,8 @@ double farthest(const std::vector<double>& a, const std::vector<double>& b,
 }
 
 // Up through the glass transition and back within an hour.
-Scenario excursion(Fidelity fidelity, const std::string& more = "") {
-  Scenario scenario =
+ScenarioPlan excursion(Fidelity fidelity, const std::string& more = "") {
+  ScenarioPlan scenario =
       scenario_from(kQuiet + more,
                     "[ambient]\npoints = [[0, 25], [1200, 55], [1800, 55], "
                     "[3600, 5]]\n[chamber]\nstirred = true\n",
@@ -51,7 +51,7 @@ Scenario excursion(Fidelity fidelity, const std::string& more = "") {
 }
 
 TEST(V48Memory, EffectsOfNoStrengthChangeNothing) {
-  const Scenario scenario = excursion(Fidelity::kQuasistatic);
+  const ScenarioPlan scenario = excursion(Fidelity::kQuasistatic);
   const Recording plain = simulated(scenario, nominal_device());
   EXPECT_FALSE(has_column(plain, "true_fictive_temperature"));
   EXPECT_FALSE(has_column(plain, "true_hysteresis"));
@@ -72,7 +72,8 @@ TEST(V48Memory, EffectsOfNoStrengthChangeNothing) {
 // The bias of a run by the exact solution, with the memory taken through its
 // temperatures sample by sample [deg/s]; not a number but at every `stride`-th
 // sample.
-std::vector<double> direct_bias(const Recording& run, const Device& device,
+std::vector<double> direct_bias(const Recording& run,
+                                const DeviceParameters& device,
                                 std::size_t stride) {
   const Gyro gyro = make_gyro(device);
   const auto at = [&](const char* name, std::size_t k) {
@@ -102,7 +103,7 @@ std::vector<double> direct_bias(const Recording& run, const Device& device,
 
 TEST(Memory, ARunIsThatOfSmallStepsAndTheExactSolution) {
   constexpr std::size_t kStride = 7;
-  for (const Device& device :
+  for (const DeviceParameters& device :
        {lifelike(), nominal_device({"memory.relaxation={}",
                                     "memory.hysteresis.mount_axis_deg=0.02",
                                     "memory.ageing.trim_age_hours=1.0"})}) {
@@ -115,10 +116,10 @@ TEST(Memory, ARunIsThatOfSmallStepsAndTheExactSolution) {
 }
 
 TEST(Memory, EnvelopeAndQuasiStaticRunAgree) {
-  const auto bias = [](Fidelity fidelity, const Device& device) {
+  const auto bias = [](Fidelity fidelity, const DeviceParameters& device) {
     return column_values(simulated(excursion(fidelity), device), "true_bias");
   };
-  const auto distance = [&](const Device& device) {
+  const auto distance = [&](const DeviceParameters& device) {
     constexpr std::size_t kLocked = 20;  // [s]
     return farthest(bias(Fidelity::kQuasistatic, device),
                     bias(Fidelity::kEnvelope, device), kLocked);
@@ -130,10 +131,10 @@ TEST(Memory, EnvelopeAndQuasiStaticRunAgree) {
 }
 
 TEST(Memory, CarrierAndEnvelopeAgree) {
-  Scenario scenario = scenario_from(
+  ScenarioPlan scenario = scenario_from(
       kQuiet, "[ambient]\npoints = [[0, 36], [10, 45]]\n", "0.8", "50");
   scenario.history = PiecewiseLinear({0, 1000}, {333.15, 309.15});
-  const auto end = [&](Fidelity fidelity, const Device& device) {
+  const auto end = [&](Fidelity fidelity, const DeviceParameters& device) {
     scenario.fidelity = fidelity;
     return column_values(simulated(scenario, device), "true_bias").back();
   };
@@ -146,7 +147,7 @@ TEST(Memory, CarrierAndEnvelopeAgree) {
 }
 
 // Heating and cooling at 0.05 K/min [deg/s], by the temperature of the sensor.
-double widest_loop(const Device& device) {
+double widest_loop(const DeviceParameters& device) {
   const Recording run = simulated(
       scenario_from(kQuiet,
                     "[ambient.soaks]\ntemperatures_degC = [-40, 50, -40]\n"
@@ -192,7 +193,7 @@ TEST(Memory, AYearMovesTheBiasByTenthsOfADegreePerSecond) {
 
 TEST(Memory, AHistoryOfTheScenarioShapesTheGlass) {
   const auto fictive = [](const std::string& more) {
-    const Scenario scenario =
+    const ScenarioPlan scenario =
         scenario_from(kQuiet + more, "[ambient]\nconstant_degC = 5\n");
     return column_values(simulated(scenario, lifelike()),
                          "true_fictive_temperature")
@@ -205,7 +206,7 @@ TEST(Memory, AHistoryOfTheScenarioShapesTheGlass) {
 }
 
 TEST(Memory, DoesNotDependOnTheOutputRate) {
-  Scenario fine = excursion(Fidelity::kQuasistatic), coarse = fine;
+  ScenarioPlan fine = excursion(Fidelity::kQuasistatic), coarse = fine;
   coarse.output_rate = 0.01;
   const std::vector<double> a =
       column_values(simulated(fine, lifelike()), "true_bias");

@@ -16,15 +16,15 @@ namespace {
 constexpr double kError = 0.04;
 constexpr double kRate = 50;  // [deg/s]
 
-Device unit(const std::string& mode, double error) {
+DeviceParameters unit(const std::string& mode, double error) {
   return nominal_device(
       {"readout.mode=\"" + mode + "\"", "readout.adc_bits=32",
        "readout.scale_factor_error=" + std::to_string(error)});
 }
 
 // What the output shows of kRate at 25 degC, the output at rest taken off.
-double shown(const Device& device, Fidelity fidelity) {
-  Scenario scenario = scenario_from(
+double shown(const DeviceParameters& device, Fidelity fidelity) {
+  ScenarioPlan scenario = scenario_from(
       "[rate]\nconstant_deg_per_s = 50\n[noise]\nenabled = false\n",
       "[ambient]\nconstant_degC = 25\n", "0.4", "100");
   scenario.fidelity = fidelity;

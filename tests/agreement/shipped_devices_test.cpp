@@ -17,11 +17,11 @@
 namespace beamgyro::internal::shipped_devices_test {
 namespace {
 
-Device shipped(const std::string& name) {
+DeviceParameters shipped(const std::string& name) {
   Overrides none;
   const ConfigDocument document = ConfigDocument::read(
       std::string(BEAMGYRO_SCENARIOS) + "/devices/" + name + ".toml", none);
-  const Device device = read_device(document);
+  const DeviceParameters device = read_device(document);
   document.reject_unknown_keys();
   return device;
 }
@@ -55,8 +55,8 @@ double cubic_residual(const std::vector<double>& curve) {
 class ShippedDevice : public testing::TestWithParam<std::string> {};
 
 TEST_P(ShippedDevice, RunsAtBothFidelitiesAndKeepsItsTrims) {
-  const Device device = shipped(GetParam());
-  Scenario scenario = scenario_from(
+  const DeviceParameters device = shipped(GetParam());
+  ScenarioPlan scenario = scenario_from(
       "[rate]\nsteps = [[0, 0], [1.5, 20]]\n[noise]\nenabled = false\n",
       "[ambient]\nconstant_degC = 25\n", "3", "10");
   for (const Fidelity fidelity :
@@ -111,7 +111,7 @@ TEST(ShippedDevices, HardCeramicDoublesQ) {
 }
 
 TEST(ShippedDevices, TheOvenHoldsTheBeamOverTheAmbientRange) {
-  const Device oven = shipped("oven");
+  const DeviceParameters oven = shipped("oven");
   std::vector<double> beam, bias;
   for (const int celsius : {-40, 0, 50}) {
     const Recording run = simulated(

@@ -8,7 +8,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::filesystem::path file =
       scratch_file("campaign.toml", text_of(data, size));
   accept_or_reject([&] {
-    const Campaign campaign = Campaign::read(file);
+    const CampaignPlan campaign = CampaignPlan::read(file);
     for (std::uint32_t device = 0; device < 2; ++device) {
       static_cast<void>(campaign.device(device));
       static_cast<void>(campaign.part(device));

@@ -9,7 +9,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   accept_or_reject([&] {
     const ConfigDocument document =
         ConfigDocument::parse(text_of(data, size), "fuzz.toml");
-    const Device device = read_device(document);
+    const DeviceParameters device = read_device(document);
     document.reject_unknown_keys();
     try {
       static_cast<void>(drive_heating(make_gyro(device)));

@@ -50,6 +50,14 @@ class CheckNames(unittest.TestCase):
         self.assertEqual(answer.stdout, "Answered: a type in compensation/a/"
                          "a.h, validation/b/b.h\n")
 
+    def test_a_type_of_the_library_with_a_public_name(self):
+        answer = self.check({
+            "include/beamgyro/a.h": "class Gyro {\n};\nenum class Part {\n};\n",
+            "sim/device/b.h": "struct Gyro {\n  int k;\n};\n"})
+        self.assertEqual(answer.returncode, 1)
+        self.assertEqual(answer.stdout, "Gyro: a type in sim/device/b.h, "
+                         "include/beamgyro/a.h\n")
+
     def test_sources_of_python_meet_each_other_only(self):
         text = local("int options_of(int x) {\n  return x;\n}\n")
         header = "int options_of(int x);\n"

@@ -35,7 +35,8 @@ struct CheckedCompensator {
   const Provenance* provenance = nullptr;  // not owned
   // The same compensator as training wrote it, if it is one of a file.
   const Compensator* trained = nullptr;  // not owned
-  const SetPart* set = nullptr;  // of the runs that have a device; not owned
+  const TrainingSet* set =
+      nullptr;  // of the runs that have a device; not owned
 };
 
 enum class CheckOutcome {

@@ -16,7 +16,7 @@ struct QualificationRun {
   std::string name;                        // [a-z][a-z0-9_]*
   RunPurpose purpose = RunPurpose::kSoak;  // not used of training runs
   double from = 0;             // [s], metrics read the run from here on
-  Scenario scenario;           // its device is not used
+  ScenarioPlan scenario;       // its device is not used
   std::string scenario_text;   // byte for byte as read
   std::string overrides_text;  // one KEY=VALUE per line
 };

@@ -14,7 +14,7 @@ namespace beamgyro::internal {
 
 /// A device that goes through a qualification.
 struct QualifiedDevice {
-  Device device;
+  DeviceParameters device;
   std::string text;            // of the device file, byte for byte
   std::string overrides = {};  // KEY=VALUE lines that make it of that text
   std::uint32_t number = 0;    // selects its random streams

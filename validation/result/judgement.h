@@ -47,8 +47,8 @@ struct JudgedBy {
   const SpecificationFile& specification;
   const MetricRuns& metric_runs;
   const TestedCompensator& compensator;
-  const Compensator* trained;    // the same, if it is one of a file
-  const SetPart* set = nullptr;  // of the runs, where they are of one
+  const Compensator* trained;        // the same, if it is one of a file
+  const TrainingSet* set = nullptr;  // of the runs, where they are of one
 };
 
 /// Evaluates every metric, decides on the limits, runs the checks and writes

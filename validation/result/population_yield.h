@@ -14,7 +14,7 @@ namespace beamgyro::internal {
 
 /// What a population is put through.
 struct PopulationTask {
-  const Campaign* campaign;  // not owned, as everything here
+  const CampaignPlan* campaign;  // not owned, as everything here
   const Qualification* qualification;
   const SpecificationFile* specification;
   const TestedCompensator* compensator = nullptr;  // one for all, or

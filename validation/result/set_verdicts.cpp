@@ -100,7 +100,7 @@ class SetJudge {
     }
   }
 
-  const SetPart& set_;
+  const TrainingSet& set_;
   const RecordedAnswering& answering_;
   const SpecificationFile& specification_;
   std::size_t threads_;

@@ -28,7 +28,8 @@ struct SetVariable {
   std::string comment = {};  // attribute; mostly empty
 };
 
-/// A variable over (device), one number for each.
+/// A variable over (device), one number for each. The name is an identifier
+/// such as "patches_offset_m_0".
 struct DeviceVariable {
   std::string name, units, long_name;
 };

@@ -58,19 +58,19 @@ TEST(TrainingUse, KnowsFilesByEitherHash) {
 }
 
 TEST(TrainingUse, KnowsDevicesOfASetByCampaignAndSeed) {
-  const SetPart part{.name = "set",
-                     .manifest_sha256 = "m",
-                     .devices = 2,
-                     .campaign_sha256 = "c",
-                     .seed = 4,
-                     .runs = {"sweep"},
-                     .device_numbers = {3, 11}};
-  const auto trained_on = [](const SetPart& set) {
+  const TrainingSet part{.name = "set",
+                         .manifest_sha256 = "m",
+                         .devices = 2,
+                         .campaign_sha256 = "c",
+                         .seed = 4,
+                         .runs = {"sweep"},
+                         .device_numbers = {3, 11}};
+  const auto trained_on = [](const TrainingSet& set) {
     Provenance provenance;
     provenance.training_set = set;
     return provenance;
   };
-  const auto used = [&](const SetPart& trained, const SetPart& set,
+  const auto used = [&](const TrainingSet& trained, const TrainingSet& set,
                         const char* device, const char* run) {
     TrainingRun of_set;
     of_set.device = device;
@@ -80,18 +80,18 @@ TEST(TrainingUse, KnowsDevicesOfASetByCampaignAndSeed) {
   EXPECT_TRUE(used(part, part, "11", "sweep"));
   EXPECT_TRUE(used(part, part, "3", "check"));
   EXPECT_FALSE(used(part, part, "1", "sweep"));
-  SetPart longer = part;  // more devices of the same campaign
+  TrainingSet longer = part;  // more devices of the same campaign
   longer.manifest_sha256 = "n";
   EXPECT_TRUE(used(part, longer, "11", "sweep"));
   longer.seed = 5;
   EXPECT_FALSE(used(part, longer, "11", "sweep"));
-  SetPart one = part;
+  TrainingSet one = part;
   one.devices = 1;
   one.device_numbers = {3};
   EXPECT_TRUE(used(one, part, "3", "sweep"));
   EXPECT_FALSE(used(one, part, "3", "check"));
   EXPECT_FALSE(may_have_used(trained_on(part), part));
-  SetPart silent = part;
+  TrainingSet silent = part;
   silent.device_numbers.clear();
   EXPECT_TRUE(may_have_used(trained_on(silent), part));
 }

@@ -21,21 +21,21 @@ const std::vector<Input> kWithQuadrature = {parse_input("temperature"),
                                             parse_input("quadrature")};
 
 // Parabolas of bias and quadrature: splines hold them exactly.
-struct Device {
+struct DeviceParameters {
   double a, b, c;
 
   double bias(double T) const { return a + b * T + c * T * T; }
   double quadrature(double T) const { return 30.0 * c * 1e3 + 0.5 * T; }
 };
 
-const std::vector<Device> kDevices = {{1.0, 0.03, 1e-3},
-                                      {-2.0, 0.01, -2e-3},
-                                      {0.5, -0.05, 5e-4},
-                                      {3.0, 0.02, 2e-3},
-                                      {-1.0, 0.04, -1e-3}};
+const std::vector<DeviceParameters> kDevices = {{1.0, 0.03, 1e-3},
+                                                {-2.0, 0.01, -2e-3},
+                                                {0.5, -0.05, 5e-4},
+                                                {3.0, 0.02, 2e-3},
+                                                {-1.0, 0.04, -1e-3}};
 
 // Rows of devices at given temperatures.
-TrainingRows rows_at(const std::vector<Device>& devices,
+TrainingRows rows_at(const std::vector<DeviceParameters>& devices,
                      const std::vector<double>& temperatures) {
   std::vector<Leg> legs;
   for (std::size_t d = 0; d < devices.size(); ++d)
@@ -91,7 +91,7 @@ TEST(Population, MeanAndCovarianceAreThoseOfTheCurves) {
   MatrixXd curves(2 * p.grid(), 5);
   for (Index d = 0; d < 5; ++d)
     for (Index k = 0; k < p.grid(); ++k) {
-      const Device& device = kDevices[static_cast<std::size_t>(d)];
+      const DeviceParameters& device = kDevices[static_cast<std::size_t>(d)];
       curves(k, d) = device.bias(p.temperatures(k));
       curves(p.grid() + k, d) = device.quadrature(p.temperatures(k));
     }
@@ -154,7 +154,7 @@ TEST(Population, AChannelTellsOfTheBias) {
 
 TEST(Population, ThreeExactPointsAreMetAndTellTheParabola) {
   const Population p = of_parabolas();
-  const Device unseen{-0.7, 0.06, 1.4e-3};
+  const DeviceParameters unseen{-0.7, 0.06, 1.4e-3};
   const TrainingRows soaks = rows_at({unseen}, {-33.0, -5.0, 45.0});
   for (const auto& inputs : {kTemperature, kWithQuadrature}) {
     const AdaptedBias b = adapted_bias(

@@ -124,14 +124,15 @@ TEST_F(SetRuns, RowsKnowTheirDeviceAndTheProvenanceTheManifest) {
           .compensator.provenance;
   EXPECT_TRUE(p.training.empty());
   ASSERT_TRUE(p.training_set && p.held_out_set);
-  EXPECT_EQ(*p.training_set, (SetPart{folder_.filename().string(),
-                                      sha256_of_file(folder_ / kManifestName),
-                                      3,
-                                      4,
-                                      "",
-                                      0,
-                                      {"soaks", "ramp"},
-                                      {0, 1, 4}}));
+  EXPECT_EQ(*p.training_set,
+            (TrainingSet{folder_.filename().string(),
+                         sha256_of_file(folder_ / kManifestName),
+                         3,
+                         4,
+                         "",
+                         0,
+                         {"soaks", "ramp"},
+                         {0, 1, 4}}));
   EXPECT_EQ(p.held_out_set->devices, 1u);
   EXPECT_NEAR(*p.held_out_rms, 20.25 - (0.25 + 50.0 / 3.0), 0.1);
 }

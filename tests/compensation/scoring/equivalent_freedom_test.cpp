@@ -90,7 +90,7 @@ void expect_coverage(Make make, const char* what) {
   constexpr std::uint32_t kRecords = 150;
   const std::vector<DeviationKind> kinds{kAdev, kOadev, kMdev,
                                          kHdev, kOhdev, kTotdev};
-  std::vector<std::vector<DeviationCurve>> records;
+  std::vector<std::vector<DeviationSeries>> records;
   for (std::uint32_t run = 0; run < kRecords; ++run) {
     const EvenSeries series =
         series_of((NoiseSamples(1024, 0.1, run).*make)(), 0.1);

@@ -133,7 +133,7 @@ TEST(TrainedSigma, OfACurveTellsOfOneDeviceOfASetAndNotOfSeveral) {
   std::vector<TrainingRun> runs = soak_runs(2, 70);
   for (TrainingRun& run : runs) run.device = "7";
   RunSource source = source_of(runs);
-  source.set = SetPart{"set", "sha", 1, 1};
+  source.set = TrainingSet{"set", "sha", 1, 1};
   const std::vector<TrainingRun> none;
   EXPECT_TRUE(train(line_spec(), source, source_of(none), 1).compensator.sigma);
   runs[1].device = "8";

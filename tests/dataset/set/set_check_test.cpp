@@ -23,12 +23,12 @@ class CheckSet : public SetDirectory {
     SetDirectory::SetUp();
     manifest = write_sample_set(directory);
   }
-  std::vector<SetDefect> defects() const {
+  std::vector<FileDefect> defects() const {
     return check_set(directory, read_manifest(directory, kManifestName));
   }
   /// The only defect there is, as "FILE WHAT INDEX".
   std::string defect() const {
-    const std::vector<SetDefect> found = defects();
+    const std::vector<FileDefect> found = defects();
     if (found.size() != 1) return std::to_string(found.size()) + " defects";
     return found[0].file + ' ' + found[0].what +
            (found[0].index ? ' ' + std::to_string(*found[0].index) : "");
@@ -89,7 +89,7 @@ TEST_F(CheckSet, FindsEveryFlippedBitInTheManifest) {
 TEST_F(CheckSet, AFileWhoseLineIsDamagedCanBeNamed) {
   const fs::path path = directory / kManifestName;
   flip(path, read_text_file(path).find("\"index\":3"), 0);
-  const std::vector<SetDefect> found = defects();
+  const std::vector<FileDefect> found = defects();
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].file, kManifestName);
   EXPECT_EQ(found[0].what, "line 5 is damaged");
@@ -122,7 +122,7 @@ TEST_F(CheckSet, TellsWhoseBytesASwappedFileHolds) {
   fs::rename(directory / "rest_00000.h5", directory / "x");
   fs::rename(directory / "rest_00001.h5", directory / "rest_00000.h5");
   fs::rename(directory / "x", directory / "rest_00001.h5");
-  const std::vector<SetDefect> found = defects();
+  const std::vector<FileDefect> found = defects();
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].what, "holds the bytes of rest_00001.h5");
   EXPECT_EQ(found[0].index, 0u);
@@ -157,7 +157,7 @@ TEST_F(CheckSet, AnUnfinishedSetLacksWhatIsNotMadeYet) {
   fs::create_directory(directory / "source");
   start_manifest(directory, kHeadCopyName, head);
   start_manifest(directory, kManifestName, head);
-  const std::vector<SetDefect> found = defects();
+  const std::vector<FileDefect> found = defects();
   ASSERT_EQ(found.size(), 8u);
   EXPECT_EQ(found[0].what, "is not finished");
   EXPECT_EQ(found[7].file, "source/campaign.toml");
@@ -170,7 +170,7 @@ TEST_F(CheckSet, AnUnfinishedSetLacksWhatIsNotMadeYet) {
 TEST_F(CheckSet, AHeadMayClaimMoreFilesThanMemoryHolds) {
   manifest.head->devices = 4'000'000'000;
   write_manifest(directory, kManifestName, manifest);
-  const std::vector<SetDefect> found = defects();
+  const std::vector<FileDefect> found = defects();
   rusage used{};
   getrusage(RUSAGE_SELF, &used);
   EXPECT_LT(used.ru_maxrss, 500'000);  // [KiB]

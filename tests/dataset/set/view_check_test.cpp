@@ -44,10 +44,10 @@ class ViewCheck : public SetDirectory {
     write_manifest(directory, kManifestName, manifest);
   }
 
-  std::vector<SetDefect> defects() const {
+  std::vector<FileDefect> defects() const {
     const Manifest read = read_manifest(directory, kManifestName);
-    const std::vector<SetDefect> known = check_set(directory, read);
-    std::vector<SetDefect> found = check_views(directory, read, known);
+    const std::vector<FileDefect> known = check_set(directory, read);
+    std::vector<FileDefect> found = check_views(directory, read, known);
     found.insert(found.end(), known.begin(), known.end());
     return found;
   }
@@ -64,7 +64,7 @@ TEST_F(ViewCheck, FindsAViewWithoutTheTexts) {
   head.scenario_text.clear();
   head.campaign_text.clear();
   publish_view("rest", head);
-  const std::vector<SetDefect> found = defects();
+  const std::vector<FileDefect> found = defects();
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].file, "rest.nc");
   EXPECT_EQ(found[0].what, "is not the view of its files");
@@ -87,7 +87,7 @@ TEST_F(ViewCheck, FindsAViewWithoutAVariableOrAFile) {
 
 TEST_F(ViewCheck, ADamagedFileLeavesItsViewOut) {
   write_text_file(directory / "rest_00000.h5", "nothing");
-  const std::vector<SetDefect> found = defects();
+  const std::vector<FileDefect> found = defects();
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].file, "rest_00000.h5");
 }

@@ -20,12 +20,12 @@
 namespace beamgyro::internal::device_merits_test {
 namespace {
 
-Device nominal() {
+DeviceParameters nominal() {
   return read_device(ConfigDocument::read(std::string(BEAMGYRO_SCENARIOS) +
                                           "/devices/nominal.toml"));
 }
 
-double merit_of(const Device& device, Merit merit,
+double merit_of(const DeviceParameters& device, Merit merit,
                 const MeritOptions& options = {}) {
   return device_merits(device, std::vector{merit}, options).front();
 }
@@ -54,7 +54,7 @@ TEST(DeviceMerits, TheCurveIsThatOfCharacterise) {
 }
 
 TEST(DeviceMerits, ALinearOffsetAloneLeavesACubicNothingMore) {
-  Device device = nominal();
+  DeviceParameters device = nominal();
   const MeritOptions options;
   const double before = merit_of(device, Merit::kCubicRms, options);
   const StaticCurve curve = static_curve(make_gyro(device), options.grid);
@@ -69,7 +69,7 @@ TEST(DeviceMerits, ALinearOffsetAloneLeavesACubicNothingMore) {
 TEST(DeviceMerits, ThirtySevenTemperaturesFindThePeaks) {
   MeritOptions fine;
   fine.grid.count = 1801;
-  const Device device = nominal();
+  const DeviceParameters device = nominal();
   for (const Merit merit :
        {Merit::kBiasPeakToPeak, Merit::kScaleFactorDrift, Merit::kQuadrature}) {
     const double exact = merit_of(device, merit, fine);
@@ -106,7 +106,7 @@ TEST(DeviceMerits, TheWarmUpEndsAtTheTemperaturesOfALongRun) {
 }
 
 TEST(DeviceMerits, ACompensatorThatKnowsTheCurveLeavesTheCubicsResidual) {
-  Device device = nominal();
+  DeviceParameters device = nominal();
   device.temperature_sensor.offset = 0;
   MeritOptions options;
   const StaticCurve curve = static_curve(make_gyro(device), options.grid);
@@ -122,7 +122,7 @@ TEST(DeviceMerits, ACompensatorThatKnowsTheCurveLeavesTheCubicsResidual) {
 }
 
 TEST(DeviceMerits, ADeviceThatDoesNotLockFails) {
-  Device device = nominal();
+  DeviceParameters device = nominal();
   device.drive.pll_phase = 3;  // no mode gives that phase
   EXPECT_THROW(merit_of(device, Merit::kBiasPeakToPeak), SimulationFailure);
 }

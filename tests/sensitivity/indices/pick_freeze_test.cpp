@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kRows = 2048;
 
-void expect_inside(const SensitivityIndex& index, double exact) {
+void expect_inside(const IndexEstimate& index, double exact) {
   EXPECT_GE(exact, index.low);
   EXPECT_LE(exact, index.high);
   // An interval that holds everything would show nothing.

@@ -20,7 +20,7 @@ TEST(RankIndex, OfIshigamisFunctionLiesInItsInterval) {
     const IndependentSample sample =
         independent_sample(ishigami, 3, 2048, seed);
     for (Eigen::Index i = 0; i < 3; ++i) {
-      const SensitivityIndex index =
+      const IndexEstimate index =
           rank_index(sample.values, sample.numbers.col(i), seed,
                      static_cast<std::uint32_t>(i));
       inside += index.low <= first[i] && first[i] <= index.high ? 1 : 0;

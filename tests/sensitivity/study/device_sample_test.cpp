@@ -32,7 +32,7 @@ DeviceSampleOptions options_of(std::size_t rows, unsigned jobs) {
   return options;
 }
 
-double merit_at(const Campaign& campaign, const DrawPlan& plan,
+double merit_at(const CampaignPlan& campaign, const DrawPlan& plan,
                 const std::vector<double>& u) {
   const std::vector<Merit> merits = {Merit::kBiasPeakToPeak};
   return device_merits(*campaign.device_at(plan, u).device, merits, {})[0];
@@ -40,7 +40,7 @@ double merit_at(const Campaign& campaign, const DrawPlan& plan,
 
 TEST(DeviceSample, RowsAreTheHalvesOfASobolPoint) {
   const CampaignFolder folder;
-  const Campaign campaign = folder.campaign(with_tolerances(kTolerances));
+  const CampaignPlan campaign = folder.campaign(with_tolerances(kTolerances));
   const DeviceSampleOptions options = options_of(4, 1);
   DeviceSampleCounts counts;
   const DeviceSample sample = sample_devices(campaign, options, counts);
@@ -65,7 +65,7 @@ TEST(DeviceSample, RowsAreTheHalvesOfASobolPoint) {
 
 TEST(DeviceSample, DoesNotDependOnTheNumberOfThreads) {
   const CampaignFolder folder;
-  const Campaign campaign = folder.campaign(with_tolerances(kTolerances));
+  const CampaignPlan campaign = folder.campaign(with_tolerances(kTolerances));
   DeviceSampleCounts one, three;
   const DeviceSample a = sample_devices(campaign, options_of(16, 1), one);
   const DeviceSample b = sample_devices(campaign, options_of(16, 3), three);
@@ -80,7 +80,7 @@ TEST(DeviceSample, DoesNotDependOnTheNumberOfThreads) {
 TEST(DeviceSample, ADeviceThatDoesNotWorkIsCounted) {
   // Each of four bonds is below zero with a probability of 2.3 %.
   const CampaignFolder folder;
-  const Campaign campaign = folder.campaign(with_tolerances(
+  const CampaignPlan campaign = folder.campaign(with_tolerances(
       "\"bond.thickness_m\" = { normal = { mean = 30e-6, sigma = 15e-6 } }\n"
       "\"mount.axis_angle_deg\" = { normal = { mean = 0, sigma = 1 } }\n"));
   DeviceSampleOptions options = options_of(64, 2);
@@ -108,7 +108,7 @@ TEST(DeviceSample, ADeviceThatDoesNotWorkIsCounted) {
 TEST(DeviceSample, ADeviceThatCannotBeTrimmedIsCounted) {
   // Patches half a millimetre off couple the modes more than the trim undoes.
   const CampaignFolder folder;
-  const Campaign campaign = folder.campaign(with_tolerances(
+  const CampaignPlan campaign = folder.campaign(with_tolerances(
       "\"patches.offset_m\" = { normal = { mean = 0, sigma = 5e-4 } }\n"
       "\"mount.axis_angle_deg\" = { normal = { mean = 0, sigma = 1 } }\n"));
   DeviceSampleOptions options = options_of(32, 2);

@@ -18,7 +18,7 @@ constexpr const char* kTolerances =
 
 TEST(Factor, AnArrayIsOneFactorOfAllItsElements) {
   const CampaignFolder folder;
-  const Campaign campaign = folder.campaign(with_tolerances(kTolerances));
+  const CampaignPlan campaign = folder.campaign(with_tolerances(kTolerances));
   const std::vector<Factor> factors = factors_of(campaign.device_plan());
   ASSERT_EQ(factors.size(), 3U);
   EXPECT_EQ(factors[1].key, "patches.offset_m");
@@ -28,7 +28,7 @@ TEST(Factor, AnArrayIsOneFactorOfAllItsElements) {
 
 TEST(Factor, CorrelatedKeysAreOneFactor) {
   const CampaignFolder folder;
-  const Campaign campaign = folder.campaign(
+  const CampaignPlan campaign = folder.campaign(
       campaign_text(std::string("[tolerances]\n") + kTolerances +
                     "[[correlated]]\nkeys = [\"beam.length_m\", "
                     "\"beam.side_m\"]\ncorrelation = 0.5\n"));
@@ -41,7 +41,7 @@ TEST(Factor, CorrelatedKeysAreOneFactor) {
 TEST(Factor, OneOrNoneCannotBeCompared) {
   const CampaignFolder folder;
   const auto message = [&](const char* tolerances) -> std::string {
-    const Campaign campaign = folder.campaign(with_tolerances(tolerances));
+    const CampaignPlan campaign = folder.campaign(with_tolerances(tolerances));
     try {
       require_comparable(factors_of(campaign.device_plan()), "c.toml");
     } catch (const std::invalid_argument& error) {

@@ -15,7 +15,7 @@ namespace {
 constexpr Trims kNone{false, false, false};
 
 // Another unit of the same design.
-Device drawn_unit(std::vector<std::string> more = {}) {
+DeviceParameters drawn_unit(std::vector<std::string> more = {}) {
   more.insert(more.end(),
               {"patches.offset_m=[2e-6, -7e-6, 9e-6, -4e-6]",
                "beam.side_difference=-0.0095", "mount.axis_angle_deg=-1"});
@@ -25,9 +25,9 @@ Device drawn_unit(std::vector<std::string> more = {}) {
 class AsBuilt : public testing::TestWithParam<std::string> {};
 
 TEST_P(AsBuilt, TheBaseUnitHasItsOwnTrims) {
-  const Device base =
+  const DeviceParameters base =
       nominal_device({GetParam(), "readout.scale_factor_error=0.03"});
-  Device built = base;
+  DeviceParameters built = base;
   set_as_built(kNone, make_gyro(base), built);
   // make_gyro trims to 1e-9 rad/s.
   EXPECT_NEAR(built.readout.quadrature_trim, base.readout.quadrature_trim,
@@ -40,7 +40,7 @@ TEST_P(AsBuilt, TheBaseUnitHasItsOwnTrims) {
 TEST_P(AsBuilt, AUnitKeepsTheBaseUnitsSettings) {
   const Gyro base = make_gyro(
       nominal_device({GetParam(), "readout.scale_factor_error=0.03"}));
-  Device built = drawn_unit({GetParam()});
+  DeviceParameters built = drawn_unit({GetParam()});
   set_as_built(kNone, base, built);
   EXPECT_GT(std::abs(built.readout.quadrature_trim -
                      base.device.readout.quadrature_trim),
@@ -54,15 +54,15 @@ TEST_P(AsBuilt, AUnitKeepsTheBaseUnitsSettings) {
 
 TEST_P(AsBuilt, WhatIsTrimmedStaysAsItIs) {
   const Gyro base = make_gyro(nominal_device({GetParam()}));
-  const Device drawn =
+  const DeviceParameters drawn =
       drawn_unit({GetParam(), "readout.scale_factor_error=-0.01"});
-  Device built = drawn;
+  DeviceParameters built = drawn;
   set_as_built({.quadrature = true, .offset = false, .scale_factor = true},
                base, built);
   EXPECT_EQ(built.readout.quadrature_trim, drawn.readout.quadrature_trim);
   EXPECT_EQ(built.readout.scale_factor_error, -0.01);
   EXPECT_NEAR(make_gyro(built).offset, base.offset, 1e-9);
-  Device trimmed = drawn;
+  DeviceParameters trimmed = drawn;
   set_as_built({}, base, trimmed);
   EXPECT_EQ(trimmed.readout.offset_trim, drawn.readout.offset_trim);
 }

@@ -20,7 +20,7 @@ constexpr const char* kOffset =
 
 TEST(CampaignFile, MinimalCampaignHasTheDefaults) {
   const CampaignFolder folder;
-  const Campaign c = folder.campaign(campaign_text(""));
+  const CampaignPlan c = folder.campaign(campaign_text(""));
   EXPECT_EQ(c.name(), "test");
   EXPECT_EQ(c.devices(), 100u);
   EXPECT_EQ(c.devices_per_file(), 50u);
@@ -41,7 +41,7 @@ TEST(CampaignFile, MinimalCampaignHasTheDefaults) {
 
 TEST(CampaignFile, EveryKeyArrives) {
   const CampaignFolder folder;
-  const Campaign c = folder.campaign(campaign_text(
+  const CampaignPlan c = folder.campaign(campaign_text(
       "[split]\ntrain = 0.5\nvalidation = 0.25\ntest = 0.25\n[tolerances]\n" +
           std::string(kOffset) +
           "\"readout.mode\" = { discrete = { values = [\"open_loop\", "
@@ -75,9 +75,9 @@ TEST(CampaignFile, EveryKeyArrives) {
 TEST(CampaignFile, DevicesOfTheCommandReplaceThoseOfTheFile) {
   const CampaignFolder folder;
   folder.campaign(campaign_text(""));
-  EXPECT_EQ(Campaign::read(folder.path() / "c.toml", 3).devices(), 3u);
+  EXPECT_EQ(CampaignPlan::read(folder.path() / "c.toml", 3).devices(), 3u);
   EXPECT_NE(rejection([&] {
-              Campaign::read(folder.path() / "c.toml", 0);
+              CampaignPlan::read(folder.path() / "c.toml", 0);
             }).find("--devices 0: out of range"),
             std::string::npos);
 }
@@ -352,7 +352,7 @@ TEST(CampaignFile, CopiesOfTheSourcesMakeTheSameCampaign) {
       "[\"profiles/a.csv\", \"profiles/b.csv\"] } }\n"
       "\"rate\" = { discrete = { values = [{constant_deg_per_s = 1}, {file = "
       "\"profiles/c.csv\"}] } }\n");
-  const Campaign original = folder.campaign(text);
+  const CampaignPlan original = folder.campaign(text);
   ASSERT_EQ(original.sources().size(), 6u);
   EXPECT_EQ(original.sources()[0].text, text);
 
@@ -367,7 +367,7 @@ TEST(CampaignFile, CopiesOfTheSourcesMakeTheSameCampaign) {
   for (const char* name : {"a", "b", "c"})
     std::filesystem::remove(folder.path() / "profiles" /
                             (std::string(name) + ".csv"));
-  const Campaign again = Campaign::read(copy.path() / "c.toml");
+  const CampaignPlan again = CampaignPlan::read(copy.path() / "c.toml");
   bool differ = false;
   for (std::uint32_t i = 0; i < 20; ++i) {
     EXPECT_EQ(original.device(i).overrides, again.device(i).overrides);
@@ -384,8 +384,8 @@ TEST(CampaignFile, CopiesOfTheSourcesMakeTheSameCampaign) {
 TEST(CampaignFile, TheShippedCampaignsCanBeRead) {
   for (const char* name : {"small", "paper", "warm_up", "large", "lifelike",
                            "lifelike_population", "population"}) {
-    const Campaign c = Campaign::read(std::string(BEAMGYRO_SCENARIOS) +
-                                      "/campaigns/" + name + ".toml");
+    const CampaignPlan c = CampaignPlan::read(std::string(BEAMGYRO_SCENARIOS) +
+                                              "/campaigns/" + name + ".toml");
     EXPECT_EQ(c.name(), name);
     for (std::uint32_t i = 0; i < 20; ++i) {
       EXPECT_EQ(c.device(i).failure, "");

@@ -36,9 +36,9 @@ void CampaignFolder::write(const std::string& file,
   ASSERT_TRUE(stream.flush()) << file;
 }
 
-Campaign CampaignFolder::campaign(const std::string& text) const {
+CampaignPlan CampaignFolder::campaign(const std::string& text) const {
   write("c.toml", text);
-  return Campaign::read(path_ / "c.toml");
+  return CampaignPlan::read(path_ / "c.toml");
 }
 
 std::string campaign_text(const std::string& tables, const std::string& keys,

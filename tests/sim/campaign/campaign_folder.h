@@ -20,7 +20,7 @@ class CampaignFolder {
   const std::filesystem::path& path() const { return path_; }
   void write(const std::string& file, const std::string& text) const;
   /// Writes c.toml and reads it.
-  Campaign campaign(const std::string& text) const;
+  CampaignPlan campaign(const std::string& text) const;
 
  private:
   std::filesystem::path path_;

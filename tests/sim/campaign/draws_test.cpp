@@ -30,7 +30,7 @@ std::vector<std::string> lines(const std::string& text) {
   return result;
 }
 
-void expect_same_unit(const Device& a, const Device& b) {
+void expect_same_unit(const DeviceParameters& a, const DeviceParameters& b) {
   const Gyro x = make_gyro(a), y = make_gyro(b);
   EXPECT_EQ(a.patches.offset, b.patches.offset);
   EXPECT_EQ(a.bond.thickness, b.bond.thickness);
@@ -54,8 +54,8 @@ std::string sampling(const std::string& name) {
 
 TEST(Draws, AnotherToleranceLeavesTheOthersAsTheyAre) {
   const CampaignFolder folder;
-  const Campaign few = folder.campaign(with_tolerances(kOffset));
-  const Campaign more = folder.campaign(with_tolerances(
+  const CampaignPlan few = folder.campaign(with_tolerances(kOffset));
+  const CampaignPlan more = folder.campaign(with_tolerances(
       kTransitions +
       std::string("\"readout.adc_bits\" = { discrete = { values = [14, 16] } "
                   "}\n") +
@@ -71,7 +71,7 @@ TEST(Draws, AnotherToleranceLeavesTheOthersAsTheyAre) {
 
 TEST_P(EitherSampling, DevicesAreTheSameInAnyOrderAndThread) {
   const CampaignFolder folder;
-  const Campaign c = folder.campaign(with_tolerances(
+  const CampaignPlan c = folder.campaign(with_tolerances(
       std::string(kOffset) + kTransitions, sampling(GetParam())));
   constexpr std::uint32_t kDevices = 64;
   std::vector<std::string> forward, backward(kDevices);
@@ -91,7 +91,7 @@ TEST_P(EitherSampling, DevicesAreTheSameInAnyOrderAndThread) {
 
 TEST_P(EitherSampling, OverridesMakeTheSameUnitFromTheDeviceFile) {
   const CampaignFolder folder;
-  const Campaign c = folder.campaign(campaign_text(
+  const CampaignPlan c = folder.campaign(campaign_text(
       "[tolerances]\n" + std::string(kOffset) +
           "\"readout.adc_bits\" = { discrete = { values = [14, 16] } }\n"
           "\"readout.mode\" = { discrete = { values = [\"open_loop\", "
@@ -114,7 +114,7 @@ TEST_P(EitherSampling, OverridesMakeTheSameUnitFromTheDeviceFile) {
 
 TEST(Draws, OverridesHoldWhatWasNotTrimmed) {
   const CampaignFolder folder;
-  const Campaign c = folder.campaign(campaign_text(
+  const CampaignPlan c = folder.campaign(campaign_text(
       "[tolerances]\n" + std::string(kOffset) + kTransitions +
       "[trims]\nquadrature = false\noffset = false\nscale_factor = false\n"));
   const Gyro base = make_gyro(c.base_device());
@@ -132,7 +132,7 @@ TEST(Draws, OverridesHoldWhatWasNotTrimmed) {
 
 TEST(Draws, WhatAFileWouldRefuseIsAFailureOfTheDevice) {
   const CampaignFolder folder;
-  const Campaign c = folder.campaign(with_tolerances(
+  const CampaignPlan c = folder.campaign(with_tolerances(
       "\"beam.poisson_ratio\" = { normal = { mean = 0.45, sigma = 0.1 } }\n"));
   int failures = 0;
   for (std::uint32_t i = 0; i < 40; ++i) {
@@ -159,7 +159,7 @@ TEST(Draws, FailuresNameFilesWithoutTheirFolder) {
                "\"quasistatic\"\nduration_s = 10\noutput_rate_Hz = 10\nseed = "
                "7\n[ambient]\nfile = \"hot.csv\"\n");
   folder.write("hot.csv", "time_s,temperature_degC\n0,140\n");
-  const Campaign c = folder.campaign(campaign_text(
+  const CampaignPlan c = folder.campaign(campaign_text(
       "[tolerances]\n\"beam.side_m\" = { discrete = { values = [0.003, 0.0035, "
       "0.0021] } }\n\"patches.width_m\" = { discrete = { values = [0.002, "
       "0.0029] } }\n",
@@ -183,7 +183,7 @@ TEST(Draws, FailuresNameFilesWithoutTheirFolder) {
 
 TEST(Draws, RunsVaryAndShiftTheirAmbient) {
   const CampaignFolder folder;
-  const Campaign c = folder.campaign(campaign_text(
+  const CampaignPlan c = folder.campaign(campaign_text(
       "", "",
       "ambient_offset_K = { uniform = { low = -3, high = 3 } }\n[run.vary]\n"
       "\"rate\" = { discrete = { values = [{constant_deg_per_s = 10}, {steps "
@@ -214,8 +214,8 @@ TEST(Draws, PartsFollowTheirSharesWhateverElseIsDrawn) {
   const CampaignFolder folder;
   const std::string split =
       "[split]\ntrain = 0.7\nvalidation = 0\ntest = 0.3\n";
-  const Campaign few = folder.campaign(campaign_text(split));
-  const Campaign more = folder.campaign(
+  const CampaignPlan few = folder.campaign(campaign_text(split));
+  const CampaignPlan more = folder.campaign(
       campaign_text(split + "[tolerances]\n" + kOffset, sampling("sobol")));
   std::array<int, 3> counts{};
   constexpr std::uint32_t kDevices = 10000;
@@ -231,7 +231,7 @@ TEST(Draws, PartsFollowTheirSharesWhateverElseIsDrawn) {
 // standard error of about 1/sqrt(n).
 TEST_P(EitherSampling, CorrelatedKeysHaveTheirCorrelationAndMargins) {
   const CampaignFolder folder;
-  const Campaign c = folder.campaign(with_tolerances(
+  const CampaignPlan c = folder.campaign(with_tolerances(
       std::string(kTransitions) + kOffset +
           "\"beam.side_difference\" = { uniform = { low = -0.0125, high = "
           "-0.0065 } }\n"

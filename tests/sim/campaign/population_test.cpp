@@ -54,9 +54,9 @@ const Cumulative& distribution_of(const std::string& name) {
   return std::prev(after)->second;
 }
 
-Campaign shipped(const std::string& name) {
-  return Campaign::read(std::string(BEAMGYRO_SCENARIOS) + "/campaigns/" + name +
-                        ".toml");
+CampaignPlan shipped(const std::string& name) {
+  return CampaignPlan::read(std::string(BEAMGYRO_SCENARIOS) + "/campaigns/" +
+                            name + ".toml");
 }
 
 // Random draws of warm_up, Sobol' points of large.
@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(Samplings, Population,
 
 TEST_P(Population, AThousandDevicesFollowTheirDistributions) {
   constexpr std::uint32_t kDevices = 1000;
-  const Campaign campaign = shipped(GetParam());
+  const CampaignPlan campaign = shipped(GetParam());
   const std::size_t parameters = campaign.parameters().size();
   ASSERT_EQ(parameters, 19u);
   std::vector<std::vector<double>> shares(parameters);
@@ -92,7 +92,7 @@ TEST_P(Population, AThousandDevicesFollowTheirDistributions) {
 }
 
 // Zero-rate output, board and beam at -40 .. 50 degC [deg/s].
-double drift(const Device& device) {
+double drift(const DeviceParameters& device) {
   const Gyro gyro = make_gyro(device);
   double low = 1e9, high = -1e9;
   for (int celsius = -40; celsius <= 50; celsius += 5) {
@@ -117,7 +117,7 @@ double median(std::vector<double> values) {
 // 0.5 holds for any seed; what forty devices show scatters far more.
 TEST_P(Population, DriftsByAFewDegreesPerSecond) {
   constexpr std::uint32_t kDevices = 1000;
-  const Campaign campaign = shipped(GetParam());
+  const CampaignPlan campaign = shipped(GetParam());
   std::vector<double> drifts;
   for (std::uint32_t i = 0; i < kDevices; ++i)
     drifts.push_back(drift(*campaign.device(i).device));

@@ -24,7 +24,7 @@ std::string about_x(const std::string& rates) {
 // made gives recordings that the plan does not foresee.
 TEST(ShardMaking, RefusesAVariableThatWasNotPlanned) {
   const CampaignFolder folder;
-  Campaign campaign = folder.campaign(about_x("0, 0"));
+  CampaignPlan campaign = folder.campaign(about_x("0, 0"));
   const ShardPlan plan(campaign, {"0", "0"});
   ASSERT_FALSE(plan.has_column(0, "true_cross_rate_x"));
   GenerationCounts counts;
@@ -45,7 +45,7 @@ TEST(ShardMaking, RefusesAVariableThatWasNotPlanned) {
 // that the others have.
 TEST(ShardMaking, HasTheTrueDriveFrequencyWhereItsErrorsAreDrawn) {
   const CampaignFolder folder;
-  const Campaign campaign = folder.campaign(with_tolerances(
+  const CampaignPlan campaign = folder.campaign(with_tolerances(
       "\"loop_channels.clock_offset_ppm\" = { uniform = { low = 5, high = 9 } "
       "}\n",
       "devices_per_file = 10"));

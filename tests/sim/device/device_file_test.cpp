@@ -11,7 +11,7 @@ namespace beamgyro::internal::device_file_test {
 namespace {
 
 TEST(DeviceFile, NominalUnitIsReadInSiUnits) {
-  const Device device = nominal_device();
+  const DeviceParameters device = nominal_device();
   EXPECT_DOUBLE_EQ(device.mount.axis_angle, 2 * kDegree);
   EXPECT_DOUBLE_EQ(device.mount.glass_transition, 225.15);
   EXPECT_DOUBLE_EQ(device.readout.full_scale, 150 * kDegree);

@@ -22,7 +22,7 @@ constexpr double kHertz = 2 * std::numbers::pi;  // [rad/s]
 constexpr double kT0 = kCalibrationTemperature;
 
 TEST(Verification, V7VoltageToForceEqualsDisplacementToCharge) {
-  const Device device = nominal_device();
+  const DeviceParameters device = nominal_device();
   const CompositeBeam mesh = composite_beam(device, kBeamElements);
   std::vector<BeamElement> euler = mesh.elements;
   for (BeamElement& e : euler) {
@@ -64,7 +64,7 @@ TEST(Verification, V7VoltageToForceEqualsDisplacementToCharge) {
 }
 
 TEST(Verification, V8OpenCircuitStiffeningOfEachPatch) {
-  const Device device = verification_device();
+  const DeviceParameters device = verification_device();
   const ProjectedBeam beam = project_beam(device);
   const ModalParameters modal = modal_parameters(device, beam, kT0, 0);
   const double C = patch_capacitance(device.patches, kT0);
@@ -88,7 +88,7 @@ TEST(Verification, V8OpenCircuitStiffeningOfEachPatch) {
 }
 
 TEST(Verification, V10LossOfTheStiffnessIsPositiveDefiniteAtAllTemperatures) {
-  const Device device = nominal_device();
+  const DeviceParameters device = nominal_device();
   const ProjectedBeam beam = project_beam(device);
   for (double T = 213.15; T <= 373.15; T += 1) {
     const Matrix2d loss = modal_parameters(device, beam, T, 0).damping;
@@ -118,7 +118,7 @@ TEST(ModalModel, RotaryInertiaTakesTwoPercentOfTheCoriolisMass) {
 }
 
 TEST(ModalModel, CoarserMeshesApproachTheModel) {
-  const Device device = nominal_device();
+  const DeviceParameters device = nominal_device();
   const double fine = project_beam(device, 480).timoshenko_frequency;
   const double at_60 = project_beam(device, 60).timoshenko_frequency - fine;
   const double at_120 = project_beam(device, 120).timoshenko_frequency - fine;
@@ -127,8 +127,9 @@ TEST(ModalModel, CoarserMeshesApproachTheModel) {
 }
 
 TEST(ModalModel, PinsStiffenBothModesAlikeWhenTheHousingGrowsMore) {
-  const Device loose = nominal_device();
-  const Device clamped = nominal_device({"mount.pin_stiffness_N_per_m=2e4"});
+  const DeviceParameters loose = nominal_device();
+  const DeviceParameters clamped =
+      nominal_device({"mount.pin_stiffness_N_per_m=2e4"});
   const ProjectedBeam beam = project_beam(loose);
   const auto shift = [&](double T) {
     return Matrix2d(modal_parameters(clamped, beam, T, 0).stiffness -
@@ -146,7 +147,7 @@ TEST(ModalModel, PinsStiffenBothModesAlikeWhenTheHousingGrowsMore) {
 }
 
 TEST(ModalModel, AnActiveMaterialIsRefused) {
-  Device device = nominal_device();
+  DeviceParameters device = nominal_device();
   device.beam.loss_factor = -0.01;
   const ProjectedBeam beam = project_beam(device);
   EXPECT_THROW(modal_parameters(device, beam, kT0, 0), std::runtime_error);

@@ -33,7 +33,7 @@ struct CarrierUnit {
   ModalParameters modal{
       modal_parameters(gyro.device, gyro.beam, T_beam, gyro.stiffness_trim)};
 
-  explicit CarrierUnit(const Device& device,
+  explicit CarrierUnit(const DeviceParameters& device,
                        double beam = kCalibrationTemperature,
                        double board = kCalibrationTemperature,
                        const CaseMotion& moving = {})

@@ -18,7 +18,7 @@ constexpr double kT0 = kCalibrationTemperature;
 // couplings: the ceramic's loss turns the drive force by phi_D + phi_F against
 // the Coriolis force, a third order term that (2.21) and (2.22) leave out.
 struct IdealGyro {
-  Device device = verification_device();
+  DeviceParameters device = verification_device();
   ProjectedBeam beam = project_beam(device);
   ModalParameters modal = modal_parameters(device, beam, kT0, 0);
   DriveLoop loop{};

@@ -78,7 +78,7 @@ TEST(Gyro, AmplitudeControlCancelsThePiezoConstantInTheScaleFactor) {
 }
 
 TEST(Gyro, AnImpossibleTrimIsReported) {
-  Device device = nominal_device();
+  DeviceParameters device = nominal_device();
   device.readout.quadrature_trim = 1e9;
   EXPECT_THROW(make_gyro(device), std::runtime_error);
 }

@@ -25,7 +25,8 @@ constexpr double kTwoPi = 2 * std::numbers::pi;
 // The envelope of one unit at T_0, its temperatures held.
 class HeldEnvelope {
  public:
-  explicit HeldEnvelope(const Device& device, double tolerance = 1e-11)
+  explicit HeldEnvelope(const DeviceParameters& device,
+                        double tolerance = 1e-11)
       : gyro(make_gyro(device)), ode_(gyro, {0, 0}), tolerance_(tolerance) {}
 
   ExplicitRk from(const VectorXd& start) {

@@ -25,7 +25,8 @@ constexpr double kRectification = 0.002;  // [deg/s/g^2]
 std::vector<double> bias_change(const std::string& motion,
                                 const std::string& duration = "20",
                                 const std::string& rate = "20") {
-  const Device device = nominal_device({"thermal.electronics_power_W=0.0"});
+  const DeviceParameters device =
+      nominal_device({"thermal.electronics_power_W=0.0"});
   const auto bias = [&](const std::string& text) {
     return column_values(
         simulated(scenario_from(text, "[ambient]\nconstant_degC = 25\n",

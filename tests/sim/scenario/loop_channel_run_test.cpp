@@ -20,7 +20,7 @@ namespace beamgyro::internal::loop_channel_run_test {
 namespace {
 
 // A unit that makes no heat, with channels that are not quantised.
-Device unit(std::vector<std::string> overrides) {
+DeviceParameters unit(std::vector<std::string> overrides) {
   overrides.insert(overrides.end(),
                    {"thermal.electronics_power_W=0.0",
                     "readout.drive_frequency_resolution_Hz=0.0",
@@ -32,9 +32,9 @@ Device unit(std::vector<std::string> overrides) {
 const std::vector<std::string> kNoise = {"loop_channels.noise=true"};
 const std::string kAt25 = "[ambient]\nconstant_degC = 25\n";
 
-Recording at_rest(Fidelity fidelity, const Device& device,
+Recording at_rest(Fidelity fidelity, const DeviceParameters& device,
                   const std::string& duration, double rate) {
-  Scenario scenario = scenario_from("", kAt25, duration);
+  ScenarioPlan scenario = scenario_from("", kAt25, duration);
   scenario.fidelity = fidelity;
   scenario.output_rate = rate;
   return simulated(scenario, device);
@@ -56,7 +56,8 @@ std::vector<double> frequency_noise(const Recording& recording, double lost) {
 //   theta' = C F (phi - (theta' - n) tau / (1 + s tau)),  C = K_p + K_i / s.
 class PhaseLoop {
  public:
-  explicit PhaseLoop(const Device& device) : gyro_(make_gyro(device)) {
+  explicit PhaseLoop(const DeviceParameters& device)
+      : gyro_(make_gyro(device)) {
     EnvelopeOde ode(gyro_, drive_heating(gyro_));
     loops_ = ode.loops();
     const ModalParameters modal =
@@ -140,7 +141,7 @@ Ratio ratio_to(const PhaseLoop& loop,
 
 TEST(Verification, V55DriveFrequencyHasTheNoiseOfThePhaseLoop) {
   constexpr double kRate = 2000;  // [Hz], beyond the bandwidth of the loop
-  const Device device = unit(kNoise);
+  const DeviceParameters device = unit(kNoise);
   const PhaseLoop loop(device);
   EXPECT_NEAR(loop.density(0.1) / loop.leeson(), 1, 0.01);
   std::vector<double> noise =
@@ -159,7 +160,7 @@ TEST(Verification, V55DriveFrequencyHasTheNoiseOfThePhaseLoop) {
 
 TEST(LoopChannelRun, QuasistaticNoiseHasTheDensityBelowTheBandwidth) {
   constexpr double kRate = 10;
-  const Device device = unit(kNoise);
+  const DeviceParameters device = unit(kNoise);
   const std::vector<double> noise = frequency_noise(
       at_rest(Fidelity::kQuasistatic, device, "5000", kRate), 0);
   double variance = 0;
@@ -171,7 +172,7 @@ TEST(LoopChannelRun, QuasistaticNoiseHasTheDensityBelowTheBandwidth) {
 }
 
 TEST(LoopChannelRun, CarrierAndEnvelopeHaveTheSameNoise) {
-  const Device device = unit(kNoise);
+  const DeviceParameters device = unit(kNoise);
   const auto envelope =
       frequency_noise(at_rest(Fidelity::kEnvelope, device, "1.5", 100), 0);
   const auto carrier =
@@ -200,10 +201,10 @@ TEST(LoopChannelRun, NoiseOfTheChannelsLeavesTheRateAsItIs) {
 }
 
 TEST(LoopChannelRun, WithoutNoiseClockAndGainStay) {
-  Scenario scenario = scenario_from("[age]\nhours = 4383\n",
-                                    "[ambient]\nconstant_degC = -20\n");
+  ScenarioPlan scenario = scenario_from("[age]\nhours = 4383\n",
+                                        "[ambient]\nconstant_degC = -20\n");
   scenario.noise_enabled = false;
-  const Device device =
+  const DeviceParameters device =
       unit({"loop_channels.noise=true", "loop_channels.clock_offset_ppm=10.0",
             "loop_channels.clock_tc2_ppm_per_K2=-0.034",
             "loop_channels.clock_ageing_ppm_per_year=2.0",
@@ -229,7 +230,7 @@ TEST(LoopChannelRun, WithoutNoiseClockAndGainStay) {
 }
 
 TEST(LoopChannelRun, SaysWhereNoiseHidesBehindTheResolution) {
-  const Scenario scenario = scenario_from("");
+  const ScenarioPlan scenario = scenario_from("");
   const Recording on = simulated(scenario, nominal_device(kNoise));
   const std::string comment = find_column(on, "drive_frequency")->comment;
   EXPECT_NE(comment.find("is below the resolution of 0.001 Hz"),
@@ -243,9 +244,9 @@ TEST(LoopChannelRun, SaysWhereNoiseHidesBehindTheResolution) {
 }
 
 TEST(LoopChannelRun, NoiseOfADriveAtItsLimitIsFinite) {
-  const Device device =
+  const DeviceParameters device =
       unit({"loop_channels.noise=true", "drive.voltage_limit_V=0.7"});
-  Scenario scenario =
+  ScenarioPlan scenario =
       scenario_from("", "[ambient]\nconstant_degC = 50\n", "10");
   const Recording recording = simulated(scenario, device);
   ASSERT_TRUE(recording.status[0] & kLoopNotLocked);
@@ -257,7 +258,7 @@ TEST(LoopChannelRun, NoiseOfADriveAtItsLimitIsFinite) {
 }
 
 TEST(LoopChannelRun, TheTransientOfATurnOnSettles) {
-  Scenario scenario = scenario_from(
+  ScenarioPlan scenario = scenario_from(
       "[power]\non_s = [0, 2000]\noff_s = [1000]\n", kAt25, "3000", "1");
   const std::vector<std::string> quiet = {
       "noise.angle_random_walk_deg_per_sqrt_s=0.0",

@@ -67,8 +67,8 @@ std::vector<AxisCase> axes() {
 class EveryAxis : public testing::TestWithParam<AxisCase> {
  protected:
   // The table of this axis with one form in it.
-  Scenario scenario(const std::string& form,
-                    const std::string& duration = "10") const {
+  ScenarioPlan scenario(const std::string& form,
+                        const std::string& duration = "10") const {
     return scenario_from("[" + GetParam().table + "]\n" + form + "\n",
                          "[ambient]\nconstant_degC = 25\n", duration);
   }
@@ -76,7 +76,7 @@ class EveryAxis : public testing::TestWithParam<AxisCase> {
     return name + GetParam().suffix + " = " + value;
   }
   // What the axis does at `times` [s], in the unit of the file.
-  std::vector<double> values(const Scenario& scenario,
+  std::vector<double> values(const ScenarioPlan& scenario,
                              std::vector<double> times) const {
     RunSamples samples;
     samples.time = std::move(times);
@@ -165,7 +165,7 @@ RunSamples all_random(double duration) {
     text += "[" + axis.table + ".random]\nrms_" + axis.suffix +
             " = 1\nbandwidth_Hz = 5\n";
   }
-  const Scenario scenario = scenario_from(
+  const ScenarioPlan scenario = scenario_from(
       text, "[ambient]\nconstant_degC = 25\n", std::to_string(duration), "20");
   RunSamples samples;
   samples.time = sample_times(scenario);

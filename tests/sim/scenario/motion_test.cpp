@@ -19,7 +19,7 @@ const Gyro& nominal_gyro() {
   return gyro;
 }
 
-std::vector<Piece> pieces(const Scenario& scenario, const Motion& motion) {
+std::vector<Piece> pieces(const ScenarioPlan& scenario, const Motion& motion) {
   return pieces_until(scenario.duration, motion.borders());
 }
 
@@ -30,7 +30,7 @@ std::vector<double> ends(const std::vector<Piece>& pieces) {
 }
 
 TEST(Motion, HasItsLimitsOnBothSidesOfAStep) {
-  const Scenario scenario =
+  const ScenarioPlan scenario =
       scenario_from("[rate]\nsteps = [[0, 1], [10, 3]]\n");
   const Motion motion(scenario, nominal_gyro(), {});
   EXPECT_EQ(ends(pieces(scenario, motion)), (std::vector<double>{10, 100}));
@@ -43,7 +43,7 @@ TEST(Motion, HasItsLimitsOnBothSidesOfAStep) {
 }
 
 TEST(Motion, OfPointsBendsAndHasTheirSlope) {
-  const Scenario scenario =
+  const ScenarioPlan scenario =
       scenario_from("[rate]\npoints = [[0, 0], [10, 20], [20, 0]]\n");
   const Motion motion(scenario, nominal_gyro(), {});
   EXPECT_EQ(ends(pieces(scenario, motion)), (std::vector<double>{10, 20, 100}));
@@ -57,7 +57,7 @@ TEST(Motion, OfPointsBendsAndHasTheirSlope) {
 }
 
 TEST(Motion, OfEveryAxisTogether) {
-  const Scenario scenario = scenario_from(
+  const ScenarioPlan scenario = scenario_from(
       "[rate]\nsine = { amplitude_deg_per_s = 2, frequency_Hz = 0.5 }\n"
       "[cross_rate]\nx = { constant_deg_per_s = 3 }\n"
       "y = { points = [[0, 0], [100, 100]] }\n"
@@ -74,7 +74,7 @@ TEST(Motion, OfEveryAxisTogether) {
 }
 
 TEST(Motion, BreaksWhereAnyAxisDoes) {
-  const Scenario scenario = scenario_from(
+  const ScenarioPlan scenario = scenario_from(
       "[rate]\npoints = [[0, 0], [30, 3], [60, 0]]\n"
       "[cross_rate]\ny = { points = [[30, 0], [40, 5], [200, 0]] }\n"
       "[acceleration]\nx = { steps = [[0, 0], [20, 2], [100, 1]] }\n"
@@ -87,7 +87,7 @@ TEST(Motion, BreaksWhereAnyAxisDoes) {
 }
 
 TEST(Motion, OfAccelerationJumpsAtAStepOnly) {
-  const Scenario scenario =
+  const ScenarioPlan scenario =
       scenario_from("[acceleration]\nx = { steps = [[0, 0], [20, 2]] }\n");
   const Motion motion(scenario, nominal_gyro(), {});
   EXPECT_TRUE(motion.rate_is_zero());
@@ -98,7 +98,7 @@ TEST(Motion, OfAccelerationJumpsAtAStepOnly) {
 }
 
 TEST(Motion, OfTheTwinKeepsAllButTheRateAboutZ) {
-  const Scenario scenario = scenario_from(
+  const ScenarioPlan scenario = scenario_from(
       "[rate]\nsine = { amplitude_deg_per_s = 2, frequency_Hz = 0.5, "
       "phase_rad = 0.3, offset_deg_per_s = 1 }\n"
       "[cross_rate]\nx = { sine = { amplitude_deg_per_s = 3, frequency_Hz = "
@@ -119,7 +119,7 @@ TEST(Motion, OfTheTwinKeepsAllButTheRateAboutZ) {
 }
 
 TEST(Motion, OfASegmentMeetsTheSamplesOfTheRun) {
-  const Scenario scenario = scenario_from(
+  const ScenarioPlan scenario = scenario_from(
       "[rate.random]\nrms_deg_per_s = 5\nbandwidth_Hz = 0.5\n"
       "[cross_rate]\ny = { points = [[0, 0], [33, 10], [50, -4]] }\n");
   const Motion motion(scenario, nominal_gyro(), {});

@@ -40,10 +40,10 @@ constexpr const char* kQuiet = "[noise]\nenabled = false\n";
 const std::vector<std::string> kCold = {"thermal.electronics_power_W=0.0"};
 
 TEST(Verification, V47SameSeedGivesTheSameBitsInAnyThread) {
-  const Scenario scenario = scenario_from(
+  const ScenarioPlan scenario = scenario_from(
       "[rate.random]\nrms_deg_per_s = 3\nbandwidth_Hz = 2\n"
       "[power]\non_s = [0, 60]\noff_s = [50]\n");
-  const Device device = nominal_device();
+  const DeviceParameters device = nominal_device();
   const Recording alone = simulated(scenario, device);
   Recording first, second;
   std::thread a([&] { first = simulated(scenario, device); });
@@ -57,7 +57,7 @@ TEST(Verification, V47SameSeedGivesTheSameBitsInAnyThread) {
 }
 
 TEST(QuasistaticRun, AtItsTrimTemperatureTheGyroShowsTrimPlusRate) {
-  const Scenario scenario = scenario_from(
+  const ScenarioPlan scenario = scenario_from(
       std::string("[rate]\nsteps = [[0, 0], [50, 100]]\n") + kQuiet);
   const Recording run = simulated(scenario, nominal_device(kCold));
   const double lsb = 300.0 / 65536;  // [deg/s]
@@ -76,7 +76,7 @@ TEST(QuasistaticRun, AtItsTrimTemperatureTheGyroShowsTrimPlusRate) {
 
 TEST(QuasistaticRun, TrueBiasIsTheTwinAtRest) {
   const std::string ambient = "[ambient]\npoints = [[0, -20], [100, 30]]\n";
-  const Device device = nominal_device();
+  const DeviceParameters device = nominal_device();
   const Recording turning = simulated(
       scenario_from("[rate]\nconstant_deg_per_s = 80\n", ambient), device);
   const Recording resting = simulated(scenario_from(kQuiet, ambient), device);
@@ -89,7 +89,7 @@ TEST(QuasistaticRun, TrueBiasIsTheTwinAtRest) {
 }
 
 TEST(QuasistaticRun, UnpoweredSamplesAreBlankAndFlagged) {
-  const Scenario scenario =
+  const ScenarioPlan scenario =
       scenario_from("[power]\non_s = [10, 60]\noff_s = [40]\n");
   const Recording run = simulated(scenario, nominal_device());
   for (std::size_t k = 0; k < run.time.size(); ++k) {
@@ -105,7 +105,8 @@ TEST(QuasistaticRun, UnpoweredSamplesAreBlankAndFlagged) {
 }
 
 TEST(QuasistaticRun, EveryPowerCycleHasItsOwnTurnOnOffset) {
-  const Device device = nominal_device({"noise.turn_on_deg_per_s=5.0"});
+  const DeviceParameters device =
+      nominal_device({"noise.turn_on_deg_per_s=5.0"});
   const Recording cycled = simulated(
       scenario_from("[power]\non_s = [0, 50]\noff_s = [40]\n"), device);
   const auto offset = [&](std::size_t k) {
@@ -129,7 +130,7 @@ TEST(QuasistaticRun, ARateBeyondFullScaleSaturatesAndSaysSo) {
 // What the random walk alone adds to the rate of a run [deg/s].
 std::vector<double> walk_of(const std::string& age,
                             const std::string& duration) {
-  const Device device = nominal_device(
+  const DeviceParameters device = nominal_device(
       {"noise.angle_random_walk_deg_per_sqrt_s=0.0",
        "noise.bias_instability_deg_per_s=0.0", "noise.turn_on_deg_per_s=0.0",
        "noise.rate_random_walk_deg_per_s_per_sqrt_s=0.1",
@@ -172,7 +173,7 @@ TEST(QuasistaticRun, DoesNotDependOnHowItIsCutIntoBlocks) {
        {"[rate]\nsine = { amplitude_deg_per_s = 20, frequency_Hz = 0.1 }\n",
         "[rate.random]\nrms_deg_per_s = 3\nbandwidth_Hz = 2\n[acceleration]\n"
         "x = { random = { rms_g = 1, bandwidth_Hz = 2 } }\n"}) {
-    const Scenario scenario = scenario_from(motion, ambient, "2000", "10");
+    const ScenarioPlan scenario = scenario_from(motion, ambient, "2000", "10");
     const Recording whole = simulated(scenario, nominal_device());
     std::size_t first = 0, blocks = 0;
     simulate_quasistatic(
@@ -198,8 +199,8 @@ TEST(QuasistaticRun, DoesNotDependOnHowItIsCutIntoBlocks) {
 }
 
 TEST(QuasistaticRun, RefusesAScenarioOfAnotherFidelity) {
-  Scenario scenario = scenario_from("");
-  const Device device = nominal_device();
+  ScenarioPlan scenario = scenario_from("");
+  const DeviceParameters device = nominal_device();
   for (const Fidelity other : {Fidelity::kEnvelope, Fidelity::kCarrier}) {
     scenario.fidelity = other;
     try {
@@ -214,7 +215,7 @@ TEST(QuasistaticRun, RefusesAScenarioOfAnotherFidelity) {
 }
 
 TEST(QuasistaticRun, WhiteNoiseHasTheDensityOfTheDeviceAtAnyOutputRate) {
-  const Device device =
+  const DeviceParameters device =
       nominal_device({"noise.bias_instability_deg_per_s=0.0",
                       "noise.rate_random_walk_deg_per_s_per_sqrt_s=0.0",
                       "noise.turn_on_deg_per_s=0.0", "readout.adc_bits=30",

@@ -19,19 +19,19 @@ const std::string kRate =
     "[rate.random]\nrms_deg_per_s = 3\nbandwidth_Hz = 2\n";
 
 // Devices that differ in what is solved, tabulated and integrated.
-Device device(std::size_t i) {
+DeviceParameters device(std::size_t i) {
   return nominal_device({"bond.glass_transition_degC=" + std::to_string(30 + i),
                          "mount.axis_angle_deg=" + std::to_string(1 + i),
                          "thermal.electronics_power_W=0." + std::to_string(i)});
 }
 
-Recording run(const Scenario& scenario, std::size_t i) {
+Recording run(const ScenarioPlan& scenario, std::size_t i) {
   const Gyro gyro = make_gyro(device(i));
   const RunKey key{.device = static_cast<std::uint32_t>(i), .run = 0};
   return simulated(scenario, gyro, key);
 }
 
-std::vector<Recording> runs(const Scenario& scenario, int threads) {
+std::vector<Recording> runs(const ScenarioPlan& scenario, int threads) {
   std::vector<Recording> all(kDevices);
   std::atomic<std::size_t> next = 0;
   std::vector<std::thread> workers;
@@ -61,7 +61,7 @@ bool same_bits(const Recording& a, const Recording& b) {
 class RunThreads : public testing::TestWithParam<Fidelity> {};
 
 TEST_P(RunThreads, EightDevicesGiveTheSameBitsOnOneThreadAndOnFour) {
-  Scenario scenario =
+  ScenarioPlan scenario =
       scenario_from(kRate, "[ambient]\npoints = [[0, 20], [10, 45]]\n", "5");
   if (GetParam() == Fidelity::kEnvelope) scenario.duration = 1.5;
   if (GetParam() == Fidelity::kCarrier) {
@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(Fidelities, RunThreads,
 TEST(PreparedGyro, ServesManyRunsLikeTheDeviceItself) {
   const Gyro gyro = make_gyro(device(3));
   for (const char* ambient : {"20", "60"}) {
-    Scenario scenario = scenario_from(
+    ScenarioPlan scenario = scenario_from(
         kRate, std::string("[ambient]\nconstant_degC = ") + ambient + "\n",
         "10");
     EXPECT_TRUE(

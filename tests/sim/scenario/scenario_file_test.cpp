@@ -16,7 +16,7 @@ constexpr double kZeroCelsius = 273.15;  // [K]
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
 TEST(ScenarioFile, SoaksHoldAndRampInTurn) {
-  const Scenario scenario = scenario_from(
+  const ScenarioPlan scenario = scenario_from(
       "",
       "[ambient.soaks]\ntemperatures_degC = [-40, 50, 20]\nhold_s = 600\n"
       "ramp_K_per_min = 2\n");
@@ -48,7 +48,7 @@ TEST(ScenarioFile, AKeyInPlaceOfThePointsOfAHistoryIsNamed) {
 
 TEST(ScenarioFile, StepsAreHeldAndPointsAreJoined) {
   const auto rate = [](const std::string& text, double t) {
-    const Scenario scenario = scenario_from(text);
+    const ScenarioPlan scenario = scenario_from(text);
     return std::get<PiecewiseLinear>(scenario.rate).value(t) / kDegree;
   };
   const std::string steps = "[rate]\nsteps = [[10, 5], [20, -3]]\n";
@@ -63,7 +63,7 @@ TEST(ScenarioFile, StepsAreHeldAndPointsAreJoined) {
 }
 
 TEST(ScenarioFile, WithoutRateAndPowerItRestsAndIsOnFromTheStart) {
-  const Scenario scenario = scenario_from("");
+  const ScenarioPlan scenario = scenario_from("");
   EXPECT_EQ(std::get<PiecewiseLinear>(scenario.rate).value(50), 0);
   ASSERT_EQ(scenario.powered.size(), 1u);
   EXPECT_EQ(scenario.powered[0].on, 0);

@@ -8,7 +8,7 @@
 namespace beamgyro::internal {
 
 /// A short scenario at 25 degC and rest with `extra` TOML after it.
-inline Scenario scenario_from(
+inline ScenarioPlan scenario_from(
     const std::string& extra,
     const std::string& ambient = "[ambient]\nconstant_degC = 25\n",
     const std::string& duration = "100", const std::string& rate = "10") {
@@ -19,7 +19,7 @@ inline Scenario scenario_from(
           duration + "\noutput_rate_Hz = " + rate + "\nseed = 7\n" + ambient +
           extra,
       std::string(BEAMGYRO_SCENARIOS) + "/test.toml", overrides);
-  const Scenario scenario = read_scenario(document);
+  const ScenarioPlan scenario = read_scenario(document);
   document.reject_unknown_keys();
   return scenario;
 }

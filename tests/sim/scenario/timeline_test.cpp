@@ -26,7 +26,7 @@ const Gyro& fine_gyro() {
   return gyro;
 }
 
-Recording run_of(Scenario scenario, Fidelity fidelity) {
+Recording run_of(ScenarioPlan scenario, Fidelity fidelity) {
   scenario.fidelity = fidelity;
   scenario.noise_enabled = false;
   return simulated(scenario, fine_gyro());
@@ -40,7 +40,7 @@ double value_at(const Recording& run, const char* column, double t) {
 
 TEST(Timeline, AStepOneRoundingAfterTheLockTimeOfAPowerOnIsAStep) {
   // 0.36 + 1 is 1.3599999999999999: locking is due a rounding before the step.
-  const Scenario scenario = scenario_from(
+  const ScenarioPlan scenario = scenario_from(
       "[power]\non_s = [0.36]\n[rate]\nsteps = [[0, 0], [1.36, 10]]\n",
       "[ambient]\nconstant_degC = 25\n", "5", "10");
   const Recording run = run_of(scenario, Fidelity::kEnvelope);
@@ -53,7 +53,7 @@ TEST(Timeline, AStepOneRoundingAfterTheLockTimeOfAPowerOnIsAStep) {
 
 TEST(Timeline, PowerGoesOffAtTheEndOfASoakProgramme) {
   // Three holds of 4500 s and 140 K at 7 K/min: the sum is 14699.999999999998.
-  const Scenario scenario = scenario_from(
+  const ScenarioPlan scenario = scenario_from(
       "[power]\non_s = [0]\noff_s = [14700]\n[chamber]\nstirred = true\n",
       "[ambient.soaks]\ntemperatures_degC = [20, -30, 60]\nhold_s = 4500\n"
       "ramp_K_per_min = 7\n",
@@ -66,7 +66,7 @@ TEST(Timeline, PowerGoesOffAtTheEndOfASoakProgramme) {
 }
 
 TEST(Timeline, PowerComesOnOneRoundingAfterASoaksEnd) {
-  Scenario scenario = scenario_from(
+  ScenarioPlan scenario = scenario_from(
       "",
       "[ambient.soaks]\ntemperatures_degC = [25, 30]\nhold_s = 10\n"
       "ramp_K_per_min = 60\n",
@@ -80,14 +80,14 @@ TEST(Timeline, PowerComesOnOneRoundingAfterASoaksEnd) {
 
 TEST(Timeline, BordersMoveToTheSampleOrTheDecimalsThatAreThere) {
   const auto after = [](double t) { return std::nextafter(t, 1e9); };
-  Scenario scenario = scenario_from("");  // at 10 Hz
+  ScenarioPlan scenario = scenario_from("");  // at 10 Hz
   scenario.powered = {{after(0.3), 0.1 + 0.6}, {after(20.123), 1e7 / 3}};
   scenario.ambient =
       PiecewiseLinear({0.3, after(40.01), 50.01}, {300, 301, 302});
   scenario.rate = PiecewiseLinear(
       {20.123, after(20.123), 40.01, 50, after(50), after(after(50))},
       {1, 2, 3, 4, 5, 6});
-  const Scenario aligned = with_aligned_borders(scenario);
+  const ScenarioPlan aligned = with_aligned_borders(scenario);
   EXPECT_EQ(aligned.powered[0].on, 0.3);
   EXPECT_EQ(aligned.powered[0].off, 0.7);
   EXPECT_EQ(aligned.powered[1].on, 20.123);
@@ -99,7 +99,7 @@ TEST(Timeline, BordersMoveToTheSampleOrTheDecimalsThatAreThere) {
 }
 
 TEST(Timeline, BendsThatAreAloneStay) {
-  Scenario scenario = scenario_from("");
+  ScenarioPlan scenario = scenario_from("");
   scenario.ambient =
       PiecewiseLinear({std::nextafter(0.3, 1), 7.0 / 3}, {300, 301});
   EXPECT_EQ(with_aligned_borders(scenario).ambient.times(),
@@ -134,10 +134,10 @@ class Dice {
 // A scenario of three borders at which inputs jump and bend together, each at a
 // time of its own: `nudge` makes it of the border.
 template <class Nudge>
-Scenario scenario_of_borders(std::uint32_t seed, double duration,
-                             double output_rate, const Nudge& nudge) {
+ScenarioPlan scenario_of_borders(std::uint32_t seed, double duration,
+                                 double output_rate, const Nudge& nudge) {
   Dice dice(seed);
-  Scenario scenario = scenario_from("");
+  ScenarioPlan scenario = scenario_from("");
   scenario.duration = duration;
   scenario.output_rate = output_rate;
   std::vector<double> borders;  // on samples, on a random motion's or anywhere
@@ -212,7 +212,7 @@ TEST_P(BordersARoundingApart, AreOneBorder) {
   for (std::uint32_t seed = 0; seed < seeds; ++seed) {
     Dice dice(seed + 1000);
     const auto run = [&](const auto& nudge) {
-      Scenario scenario =
+      ScenarioPlan scenario =
           scenario_of_borders(seed, duration, output_rate, nudge);
       scenario.fidelity = GetParam();
       scenario.noise_enabled = false;

@@ -247,11 +247,11 @@ TEST(PlantedFaults, TrainedOnTheTestRun) {
 
 TEST(PlantedFaults, TrainedOnADeviceOfTheTestSet) {
   const FunctionCompensator compensator(sound);
-  const SetPart set{.name = "set",
-                    .manifest_sha256 = std::string(64, 'a'),
-                    .devices = 10,
-                    .files = 1};
-  SetPart part = set;
+  const TrainingSet set{.name = "set",
+                        .manifest_sha256 = std::string(64, 'a'),
+                        .devices = 10,
+                        .files = 1};
+  TrainingSet part = set;
   part.device_numbers = {3, 4};
   Provenance provenance;
   provenance.training_set = part;

@@ -20,7 +20,7 @@ std::string constant_ambient(double celsius) {
 Recording run_of(const std::string& ambient, const std::string& rate,
                  const std::string& duration, const std::string& output_rate,
                  std::uint64_t seed) {
-  Scenario scenario = scenario_from(rate, ambient, duration, output_rate);
+  ScenarioPlan scenario = scenario_from(rate, ambient, duration, output_rate);
   scenario.seed = seed;
   return simulated(scenario, nominal_device());
 }

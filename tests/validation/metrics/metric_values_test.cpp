@@ -146,7 +146,7 @@ TEST(MetricValues, WarmUpIsTheLongestOfThem) {
 
 TEST(MetricValues, WarmUpOfTheSimulatedGyro) {
   // physics: within 5 % of the whole change 23.8 min after power-on at 25 degC.
-  Scenario scenario =
+  ScenarioPlan scenario =
       scenario_from("[noise]\nenabled = false\n",
                     "[ambient]\nconstant_degC = 25\n", "14400", "0.5");
   Scene scene;
@@ -305,7 +305,7 @@ TEST(MetricValues, BandwidthOfTheSimulatedOutputFilter) {
   // The quasi-static model has the output filter alone: 38.6 Hz.
   Scene scene;
   for (const int f : {2, 10, 20, 30, 36, 38, 40, 50, 58, 62}) {
-    const Scenario scenario = scenario_from(
+    const ScenarioPlan scenario = scenario_from(
         fmt::format("[rate]\nsine = {{ amplitude_deg_per_s = 20, frequency_Hz "
                     "= {} }}\n[noise]\nenabled = false\n",
                     f),
@@ -369,7 +369,7 @@ TEST(MetricValues, GSensitivityOfEachAxis) {
 }
 
 TEST(MetricValues, GSensitivityOfTheSimulatedGyro) {
-  const Scenario scenario = scenario_from(
+  const ScenarioPlan scenario = scenario_from(
       "[noise]\nenabled = false\n[acceleration]\n"
       "x = { steps = [[0, 0], [6000.5, 1], [6060.5, -1], [6120.5, 0]] }\n"
       "y = { steps = [[0, 0], [6120.5, 1], [6180.5, -1], [6240.5, 0]] }\n"
