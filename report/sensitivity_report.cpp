@@ -105,9 +105,9 @@ std::string words_of_partners(const MeritResult& result) {
 }
 
 std::string share_text(const DeviceShare& share) {
-  return fmt::format(
-      "{:>6.1f} % {:>15}", 100 * share.value,
-      fmt::format("{:.1f} .. {:.1f}", 100 * share.low, 100 * share.high));
+  return fmt::format("{:>6.1f} % {:>15}", 100 * share.value,
+                     fmt::format("{:.1f} .. {:.1f}", 100 * share.interval.low,
+                                 100 * share.interval.high));
 }
 
 std::string yield_table(const MeritResult& result) {
@@ -140,14 +140,16 @@ nlohmann::ordered_json yield_json(const YieldResult& yield) {
         {"key", each.key}, {"yield", nullptr}, {"yield_interval", nullptr}};
     if (each.share) {
       entry["yield"] = each.share->value;
-      entry["yield_interval"] = {each.share->low, each.share->high};
+      entry["yield_interval"] = {each.share->interval.low,
+                                 each.share->interval.high};
     }
     halved.push_back(entry);
   }
-  return {{"limit", yield.limit},
-          {"as_is", yield.as_is.value},
-          {"as_is_interval", {yield.as_is.low, yield.as_is.high}},
-          {"halved", halved}};
+  return {
+      {"limit", yield.limit},
+      {"as_is", yield.as_is.value},
+      {"as_is_interval", {yield.as_is.interval.low, yield.as_is.interval.high}},
+      {"halved", halved}};
 }
 
 nlohmann::ordered_json merit_json(const MeritResult& result) {

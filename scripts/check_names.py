@@ -19,8 +19,8 @@ import sys
 LIBRARIES = ["dataset/set/", "dataset/", "sim/numerics/", "sim/thermal/",
              "sim/signal/", "sim/memory/", "sim/device/", "sim/dynamics/",
              "sim/scenario/", "sim/campaign/", "compensation/", "config/",
-             "linear_algebra/", "random/", "parallel/", "validation/",
-             "planning/", "sensitivity/", "report/", "api/", "cli/",
+             "linear_algebra/", "statistics/", "random/", "parallel/",
+             "validation/", "planning/", "sensitivity/", "report/", "api/", "cli/",
              "python/"]
 
 # A library sees no header of these.

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "sensitivity/indices/rank_index.h"
+#include "statistics/intervals.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -40,10 +41,11 @@ std::array<double, 3> quantiles_of(std::vector<double> values) {
 }
 
 DeviceShare share_within(const std::vector<double>& values, double limit) {
-  const auto passed =
+  const auto passed = static_cast<double>(
       std::count_if(values.begin(), values.end(),
-                    [&](double value) { return std::abs(value) <= limit; });
-  return device_share(static_cast<std::size_t>(passed), values.size());
+                    [&](double value) { return std::abs(value) <= limit; }));
+  const auto count = static_cast<double>(values.size());
+  return {passed / count, clopper_pearson(passed, count)};
 }
 
 YieldResult yield_of(const DeviceSample& sample, const MeritSample& values,
@@ -66,17 +68,6 @@ YieldResult yield_of(const DeviceSample& sample, const MeritSample& values,
 }
 
 }  // namespace
-
-DeviceShare device_share(std::size_t k, std::size_t n) {
-  constexpr double z = 1.959963984540054;  // of 95 %
-  const auto count = static_cast<double>(n);
-  const double p = static_cast<double>(k) / count;
-  const double middle = (p + z * z / (2 * count)) / (1 + z * z / count);
-  const double half =
-      z / (1 + z * z / count) *
-      std::sqrt(p * (1 - p) / count + z * z / (4 * count * count));
-  return {p, std::max(0.0, middle - half), std::min(1.0, middle + half)};
-}
 
 MeritResult analysed(const DeviceSample& sample, std::size_t index,
                      const MeritQuestion& question, std::uint64_t seed) {

@@ -10,16 +10,15 @@
 
 #include "sensitivity/indices/index_interval.h"
 #include "sensitivity/study/device_sample.h"
+#include "statistics/intervals.h"
 
 namespace beamgyro::internal {
 
-/// A share of devices with its interval of 95 % (Wilson, 1927).
+/// A share of devices with its interval after Clopper and Pearson.
 struct DeviceShare {
-  double value = 0, low = 0, high = 0;
+  double value = 0;
+  Interval interval{};
 };
-
-/// Returns k of n with its interval; n > 0.
-DeviceShare device_share(std::size_t k, std::size_t n);
 
 struct FactorResult {
   std::string key;

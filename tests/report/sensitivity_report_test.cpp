@@ -72,7 +72,7 @@ TEST(SensitivityReport, SaysWhenNothingVaries) {
 TEST(SensitivityReport, AYieldOfAChoiceHasNoHalf) {
   MeritResult result = merit(0.71);
   result.yield = {
-      10, device_share(48, 64), {{"a.b", device_share(60, 64)}, {"c.d", {}}}};
+      10, {0.75, {0.6, 0.9}}, {{"a.b", {{0.9375, {0.8, 1}}}}, {"c.d", {}}}};
   const std::string text = sensitivity_table(result);
   EXPECT_NE(text.find("as they are"), std::string::npos);
   EXPECT_NE(text.find("a.b/2         93.8 %"), std::string::npos) << text;
