@@ -8,7 +8,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sensitivity/indices/rank_index.h"
 #include "statistics/intervals.h"
 
 namespace beamgyro::internal {
@@ -89,8 +88,7 @@ MeritResult analysed(const DeviceSample& sample, std::size_t index,
     const FactorIndices& factor = indices.factors[i];
     result.sum_of_first += factor.first.value;
     result.factors.push_back({sample.factors[i].key, factor.first, factor.total,
-                              rank_index(of.independent, sample.numbers[i],
-                                         seed, static_cast<std::uint32_t>(i)),
+                              rank_index(of.independent, sample.numbers[i]),
                               factor.total_by_product, factor.rows});
   }
   std::stable_sort(result.factors.begin(), result.factors.end(),

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sensitivity/indices/index_interval.h"
+#include "sensitivity/indices/rank_index.h"
 #include "sensitivity/study/device_sample.h"
 #include "statistics/intervals.h"
 
@@ -22,7 +23,8 @@ struct DeviceShare {
 
 struct FactorResult {
   std::string key;
-  SensitivityIndex first, total, first_by_rank;
+  SensitivityIndex first, total;
+  RankIndex first_by_rank;
   double total_by_product = 0;
   std::size_t rows = 0;
 };
