@@ -11,6 +11,7 @@
 #include "linear_algebra/cholesky.h"
 #include "planning/random_purposes.h"
 #include "random/random_stream.h"
+#include "statistics/intervals.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -31,18 +32,9 @@ MatrixXd normal_numbers(Index rows, Index columns, std::uint32_t number) {
   return values;
 }
 
-// With straight lines between the order statistics.
-double quantile_of(const std::vector<double>& sorted, double probability) {
-  const double place = probability * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return std::lerp(sorted[below], sorted[above],
-                   place - static_cast<double>(below));
-}
-
 ResidualForecast quantiles_of(std::vector<double> rms) {
   std::ranges::sort(rms);
-  return {quantile_of(rms, 0.5), quantile_of(rms, 0.9), quantile_of(rms, 0.95)};
+  return {percentile(rms, 0.5), percentile(rms, 0.9), percentile(rms, 0.95)};
 }
 
 MatrixXd inverse_with_identity(MatrixXd B) {

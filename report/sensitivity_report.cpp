@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,11 +29,16 @@ double unsigned_zero(double value, int digits) {
   return std::abs(value) < 0.5 * std::pow(10, -digits) ? 0.0 : value;
 }
 
+std::string index_text(double value, const std::optional<Interval>& interval) {
+  return fmt::format("{:>6.3f} {:>13}", unsigned_zero(value, 3),
+                     interval ? fmt::format("{:.2f} .. {:.2f}",
+                                            unsigned_zero(interval->low, 2),
+                                            unsigned_zero(interval->high, 2))
+                              : "-");
+}
+
 std::string index_text(const IndexEstimate& index) {
-  return fmt::format(
-      "{:>6.3f} {:>13}", unsigned_zero(index.value, 3),
-      fmt::format("{:.2f} .. {:.2f}", unsigned_zero(index.low, 2),
-                  unsigned_zero(index.high, 2)));
+  return index_text(index.value, Interval{index.low, index.high});
 }
 
 // So that a row has no more than 100 columns.
@@ -105,9 +111,9 @@ std::string words_of_partners(const MeritResult& result) {
 }
 
 std::string share_text(const DeviceShare& share) {
-  return fmt::format(
-      "{:>6.1f} % {:>15}", 100 * share.value,
-      fmt::format("{:.1f} .. {:.1f}", 100 * share.low, 100 * share.high));
+  return fmt::format("{:>6.1f} % {:>15}", 100 * share.value,
+                     fmt::format("{:.1f} .. {:.1f}", 100 * share.interval.low,
+                                 100 * share.interval.high));
 }
 
 std::string yield_table(const MeritResult& result) {
@@ -140,29 +146,33 @@ nlohmann::ordered_json yield_json(const YieldResult& yield) {
         {"key", each.key}, {"yield", nullptr}, {"yield_interval", nullptr}};
     if (each.share) {
       entry["yield"] = each.share->value;
-      entry["yield_interval"] = {each.share->low, each.share->high};
+      entry["yield_interval"] = {each.share->interval.low,
+                                 each.share->interval.high};
     }
     halved.push_back(entry);
   }
-  return {{"limit", yield.limit},
-          {"as_is", yield.as_is.value},
-          {"as_is_interval", {yield.as_is.low, yield.as_is.high}},
-          {"halved", halved}};
+  return {
+      {"limit", yield.limit},
+      {"as_is", yield.as_is.value},
+      {"as_is_interval", {yield.as_is.interval.low, yield.as_is.interval.high}},
+      {"halved", halved}};
 }
 
 nlohmann::ordered_json merit_json(const MeritResult& result) {
   nlohmann::ordered_json indices = nlohmann::ordered_json::array();
   for (const FactorResult& factor : result.factors) {
-    indices.push_back(
-        {{"key", factor.key},
-         {"first", factor.first.value},
-         {"first_interval", interval_json(factor.first)},
-         {"total", factor.total.value},
-         {"total_interval", interval_json(factor.total)},
-         {"first_by_rank", factor.first_by_rank.value},
-         {"first_by_rank_interval", interval_json(factor.first_by_rank)},
-         {"total_by_product", factor.total_by_product},
-         {"rows", factor.rows}});
+    indices.push_back({{"key", factor.key},
+                       {"first", factor.first.value},
+                       {"first_interval", interval_json(factor.first)},
+                       {"total", factor.total.value},
+                       {"total_interval", interval_json(factor.total)},
+                       {"first_by_rank", factor.first_by_rank.value},
+                       {"first_by_rank_interval", nullptr},
+                       {"total_by_product", factor.total_by_product},
+                       {"rows", factor.rows}});
+    if (const auto& interval = factor.first_by_rank.interval)
+      indices.back()["first_by_rank_interval"] = {interval->low,
+                                                  interval->high};
   }
   const FigureOfMerit& figure = figure_of_merit(result.merit);
   return {{"of", studied_name(result)},
@@ -213,9 +223,10 @@ std::string sensitivity_table(const MeritResult& result) {
                                            : fmt::format(" {}", figure.unit),
       "tolerance", width, "total", "95 %", "first", "95 %", "ranks", "95 %");
   for (const FactorResult& factor : result.factors)
-    text += fmt::format("{} {} {} {}\n", key_cell(factor.key, width),
-                        index_text(factor.total), index_text(factor.first),
-                        index_text(factor.first_by_rank));
+    text += fmt::format(
+        "{} {} {} {}\n", key_cell(factor.key, width), index_text(factor.total),
+        index_text(factor.first),
+        index_text(factor.first_by_rank.value, factor.first_by_rank.interval));
   text += words_of_sum(result) + words_of_partners(result);
   if (result.rows < result.samples)
     text +=

@@ -26,7 +26,8 @@ VALIDATION = [f"validation/{room}" for room in
 SENSITIVITY = [f"sensitivity/{room}" for room in
                ("indices", "figures", "study")]
 
-BASE = ["config", "linear_algebra", "random", "parallel", "include"]
+BASE = ["config", "linear_algebra", "statistics", "random", "parallel",
+        "include"]
 
 
 def in_order(rooms, below):
@@ -37,7 +38,8 @@ ALL = [*BASE, *DATASET, *SIM, *COMPENSATION]
 
 # What each room may include besides itself.
 MAY_INCLUDE = {
-    "config": set(), "linear_algebra": set(), "random": set(),
+    "config": set(), "linear_algebra": set(), "statistics": set(),
+    "random": set(),
     "parallel": set(), "include": set(),
     **in_order(DATASET, ["config", "include"]),
     **in_order(SIM, [*BASE, *DATASET]),
@@ -59,7 +61,7 @@ MAY_INCLUDE = {
     "agreement": {*ALL, *VALIDATION, *SENSITIVITY, "planning"},
 }
 # Beside each other, not above each other.
-MAY_INCLUDE["sensitivity/indices"] = {"random"}
+MAY_INCLUDE["sensitivity/indices"] = {"random", "statistics"}
 MAY_INCLUDE["sensitivity/figures"] -= {"sensitivity/indices"}
 MAY_INCLUDE["dataset/recording"] -= {"dataset/files"}
 MAY_INCLUDE["dataset/log"] -= {"dataset/netcdf"}

@@ -20,8 +20,8 @@ import sys
 LIBRARIES = ["dataset/set/", "dataset/", "sim/numerics/", "sim/thermal/",
              "sim/signal/", "sim/memory/", "sim/device/", "sim/dynamics/",
              "sim/scenario/", "sim/campaign/", "compensation/", "config/",
-             "linear_algebra/", "random/", "parallel/", "validation/",
-             "planning/", "sensitivity/", "report/", "api/", "cli/",
+             "linear_algebra/", "statistics/", "random/", "parallel/",
+             "validation/", "planning/", "sensitivity/", "report/", "api/", "cli/",
              "python/"]
 
 # Public names that the library still uses for something else.

@@ -14,10 +14,6 @@ struct IndexEstimate {
 /// How often an estimate is made again from resampled values for its interval.
 inline constexpr std::size_t kResamples = 400;
 
-/// Returns the value below which a share [0, 1] of sorted values lies,
-/// interpolated between neighbours. There must be one.
-double percentile(const std::vector<double>& sorted, double share);
-
 /// Returns `value` with the interval of 95 % of its replicates: their 2.5 and
 /// 97.5 percentiles (Efron, 1979). Replicates that are not finite do not count;
 /// without any the interval is `value`.

@@ -7,13 +7,13 @@
 #include <limits>
 #include <utility>
 
-#include "random/random_stream.h"
-#include "sensitivity/indices/random_purposes.h"
-
 namespace beamgyro::internal {
 namespace {
 
-constexpr std::size_t kBlockOfPairs = 16, kMostNeighbours = 8192;
+constexpr std::size_t kMostNeighbours = 8192;
+constexpr Eigen::Index kLeastRows = 32;  // of an interval
+// Of a degree of freedom: a ratio of moments of few rows is skew.
+constexpr double kRowsOfFreedom = 8;
 constexpr double kSameValue = 1e-20;  // [-], variance over the mean's square
 
 using RowPair = std::pair<std::size_t, std::size_t>;
@@ -54,34 +54,10 @@ std::vector<RowPair> pairs_by_distance(std::vector<std::size_t> rows,
   return pairs;
 }
 
-// Sums over a block of pairs.
-struct PairSums {
-  double count = 0, value = 0, square = 0, product = 0;
-
-  void add(double f, double neighbour) {
-    count += 1;
-    value += f;
-    square += f * f;
-    product += f * neighbour;
-  }
-  void add(const PairSums& other) {
-    count += other.count;
-    value += other.value;
-    square += other.square;
-    product += other.product;
-  }
-  double index() const {
-    const double mean = value / count;
-    const double variance = square / count - mean * mean;
-    return (product / count - mean * mean) / variance;
-  }
-};
-
 }  // namespace
 
-IndexEstimate rank_index(const std::vector<double>& values,
-                         const Eigen::MatrixXd& numbers, std::uint64_t seed,
-                         std::uint32_t stream) {
+RankIndex rank_index(const std::vector<double>& values,
+                     const Eigen::MatrixXd& numbers) {
   std::vector<std::size_t> rows;
   double mean = 0;
   for (std::size_t j = 0; j < values.size(); ++j) {
@@ -91,28 +67,34 @@ IndexEstimate rank_index(const std::vector<double>& values,
   }
   if (rows.size() < 2) return {};
   mean /= static_cast<double>(rows.size());
-  const std::vector<RowPair> pairs = numbers.cols() == 1
+  const bool is_ordered = numbers.cols() == 1;
+  const std::vector<RowPair> pairs = is_ordered
                                          ? pairs_by_rank(rows, numbers)
                                          : pairs_by_distance(rows, numbers);
-  std::vector<PairSums> blocks((pairs.size() + kBlockOfPairs - 1) /
-                               kBlockOfPairs);
-  PairSums all;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const auto [row, next] = pairs[k];
-    blocks[k / kBlockOfPairs].add(values[row] - mean, values[next] - mean);
+  const auto n = static_cast<Eigen::Index>(pairs.size());
+  Eigen::ArrayXd f(n), next(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto [row, neighbour] = pairs[static_cast<std::size_t>(k)];
+    f(k) = values[row] - mean;
+    next(k) = values[neighbour] - mean;
   }
-  for (const PairSums& block : blocks) all.add(block);
-  if (all.square / all.count <= kSameValue * mean * mean) return {};
-  std::vector<double> replicates;
-  for (std::uint32_t k = 0; k < kResamples; ++k) {
-    RandomStream random(seed, k, stream, kRankResampleStream);
-    PairSums drawn;
-    for (std::size_t n = 0; n < blocks.size(); ++n)
-      drawn.add(blocks[static_cast<std::size_t>(
-          random.uniform() * static_cast<double>(blocks.size()))]);
-    replicates.push_back(drawn.index());
-  }
-  return with_interval(all.index(), std::move(replicates));
+  const double variance = f.square().mean() - f.mean() * f.mean();
+  if (variance <= kSameValue * mean * mean) return {0, Interval{0, 0}};
+  const double index = ((f * next).mean() - f.mean() * f.mean()) / variance;
+  if (!is_ordered || n < kLeastRows) return {index, {}};
+
+  // Each row is in two pairs, so pairs that follow each other are correlated.
+  const Eigen::ArrayXd parts =
+      (f * next - 0.5 * index * (f.square() + next.square())) / variance;
+  const double alone = parts.square().sum();
+  const double together =
+      (parts.head(n - 1) * parts.tail(n - 1)).sum() + parts(n - 1) * parts(0);
+  const auto count = static_cast<double>(n);
+  const double sigma =
+      std::max(std::sqrt(std::max(alone, alone + 2 * together)) / count,
+               (1 - index * index) / std::sqrt(count));
+  const double half = student_half_width(count / kRowsOfFreedom) * sigma;
+  return {index, Interval{index - half, index + half}};
 }
 
 }  // namespace beamgyro::internal

@@ -2,12 +2,18 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
+#include <optional>
 #include <vector>
 
-#include "sensitivity/indices/index_interval.h"
+#include "statistics/intervals.h"
 
 namespace beamgyro::internal {
+
+/// A Sobol' index with its interval of 95 %, where there is one.
+struct RankIndex {
+  double value = 0;
+  std::optional<Interval> interval = {};
+};
 
 /// Estimates the first-order Sobol' index of one factor from a single sample,
 /// without a value at any further point:
@@ -22,12 +28,18 @@ namespace beamgyro::internal {
 /// bias then falls as slowly as the distance to it, that is as
 /// rows^(-1/numbers) where f is smooth.
 ///
-/// NaN is a row without a value and does not count. The interval is that of
-/// blocks of 16 successive products drawn again with replacement (random stream
-/// kRankResampleStream of `seed`, run `stream`). Values that do not vary have
-/// the index 0.
-IndexEstimate rank_index(const std::vector<double>& values,
-                         const Eigen::MatrixXd& numbers, std::uint64_t seed,
-                         std::uint32_t stream);
+/// NaN is a row without a value and does not count. Values that do not vary
+/// have the index 0.
+///
+/// The interval is S -+ t sigma. With the parts
+/// p_j = (f_j f_N(j) - S (f_j^2 + f_N(j)^2) / 2) / variance, f less its mean,
+/// sigma^2 is their variance with what neighbours have in common,
+/// sum p_j (p_j + 2 p_j+1) / rows^2, not less than sum p_j^2 / rows^2 and
+/// than (1 - S^2)^2 / rows, that of a correlation of normal numbers (Fisher,
+/// 1915). t is Student's, with a degree of freedom for every 8 rows. There is
+/// none of fewer than 32 rows, and none with several numbers, of which the bias
+/// may be larger than the spread.
+RankIndex rank_index(const std::vector<double>& values,
+                     const Eigen::MatrixXd& numbers);
 
 }  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sensitivity/indices/rank_index.h"
+#include "statistics/intervals.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -40,10 +40,11 @@ std::array<double, 3> quantiles_of(std::vector<double> values) {
 }
 
 DeviceShare share_within(const std::vector<double>& values, double limit) {
-  const auto passed =
+  const auto passed = static_cast<double>(
       std::count_if(values.begin(), values.end(),
-                    [&](double value) { return std::abs(value) <= limit; });
-  return device_share(static_cast<std::size_t>(passed), values.size());
+                    [&](double value) { return std::abs(value) <= limit; }));
+  const auto count = static_cast<double>(values.size());
+  return {passed / count, clopper_pearson(passed, count)};
 }
 
 YieldResult yield_of(const DeviceSample& sample, const MeritSample& values,
@@ -67,17 +68,6 @@ YieldResult yield_of(const DeviceSample& sample, const MeritSample& values,
 
 }  // namespace
 
-DeviceShare device_share(std::size_t k, std::size_t n) {
-  constexpr double z = 1.959963984540054;  // of 95 %
-  const auto count = static_cast<double>(n);
-  const double p = static_cast<double>(k) / count;
-  const double middle = (p + z * z / (2 * count)) / (1 + z * z / count);
-  const double half =
-      z / (1 + z * z / count) *
-      std::sqrt(p * (1 - p) / count + z * z / (4 * count * count));
-  return {p, std::max(0.0, middle - half), std::min(1.0, middle + half)};
-}
-
 MeritResult analysed(const DeviceSample& sample, std::size_t index,
                      const MeritQuestion& question, std::uint64_t seed) {
   const MeritSample& values = sample.merits[index];
@@ -98,8 +88,7 @@ MeritResult analysed(const DeviceSample& sample, std::size_t index,
     const FactorIndices& factor = indices.factors[i];
     result.sum_of_first += factor.first.value;
     result.factors.push_back({sample.factors[i].key, factor.first, factor.total,
-                              rank_index(of.independent, sample.numbers[i],
-                                         seed, static_cast<std::uint32_t>(i)),
+                              rank_index(of.independent, sample.numbers[i]),
                               factor.total_by_product, factor.rows});
   }
   std::stable_sort(result.factors.begin(), result.factors.end(),

@@ -9,21 +9,22 @@
 #include <vector>
 
 #include "sensitivity/indices/index_interval.h"
+#include "sensitivity/indices/rank_index.h"
 #include "sensitivity/study/device_sample.h"
+#include "statistics/intervals.h"
 
 namespace beamgyro::internal {
 
-/// A share of devices with its interval of 95 % (Wilson, 1927).
+/// A share of devices with its interval after Clopper and Pearson.
 struct DeviceShare {
-  double value = 0, low = 0, high = 0;
+  double value = 0;
+  Interval interval{};
 };
-
-/// Returns k of n with its interval; n > 0.
-DeviceShare device_share(std::size_t k, std::size_t n);
 
 struct FactorResult {
   std::string key;
-  IndexEstimate first, total, first_by_rank;
+  IndexEstimate first, total;
+  RankIndex first_by_rank;
   double total_by_product = 0;
   std::size_t rows = 0;
 };

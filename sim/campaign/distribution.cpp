@@ -11,11 +11,11 @@ namespace beamgyro::internal {
 namespace {
 
 // Ends in standard deviations.
-struct Interval {
+struct Ends {
   double low, high;
 };
 
-Interval standardised(const Distribution& d) {
+Ends standardised(const Distribution& d) {
   if (d.kind == Distribution::Kind::kNormal)
     return {(d.low - d.centre) / d.sigma, (d.high - d.centre) / d.sigma};
   const auto z = [&](double end) {
@@ -27,7 +27,7 @@ Interval standardised(const Distribution& d) {
 
 // Both ends above the median are mirrored below it: an upper tail's
 // probabilities are lost beside 1.
-double truncated_normal(Interval ends, double u) {
+double truncated_normal(Ends ends, double u) {
   if (std::isinf(ends.low) && std::isinf(ends.high)) return normal_quantile(u);
   if (ends.low > 0) return -truncated_normal({-ends.high, -ends.low}, 1 - u);
   const double from = normal_cumulative(ends.low);
@@ -71,7 +71,7 @@ double share_inside(const Distribution& d) {
       d.kind == Distribution::Kind::kDiscrete) {
     return 1;
   }
-  Interval ends = standardised(d);
+  Ends ends = standardised(d);
   if (ends.low > 0) ends = {-ends.high, -ends.low};
   return normal_cumulative(ends.high) - normal_cumulative(ends.low);
 }

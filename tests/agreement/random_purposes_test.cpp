@@ -39,7 +39,7 @@ TEST(RandomPurposes, AreAllDifferentAndWhatTheyWere) {
                                kDriveFrequencyNoiseStream,
                                kDriveVoltageNoiseStream,
                                kIndexResampleStream,
-                               kRankResampleStream,
+                               RandomPurpose{23},  // nothing draws from it
                                kRankSampleStream,
                                kResidualForecastStream};
   std::uint32_t number = 0;

@@ -62,6 +62,18 @@ TEST(SensitivityReport, ALongKeyStandsAboveItsRow) {
   }
 }
 
+TEST(SensitivityReport, AnIndexByRanksMayHaveNoInterval) {
+  MeritResult result = merit(0.71);
+  result.factors[0].first_by_rank = {0.11, Interval{0.09, 0.13}};
+  const std::string text = sensitivity_table(result);
+  EXPECT_NE(text.find(" 0.110  0.09 .. 0.13\n"), std::string::npos) << text;
+  EXPECT_NE(text.find(" 0.000             -\n"), std::string::npos) << text;
+  const nlohmann::ordered_json json = to_json(DeviceSample{}, {}, {result});
+  const auto& indices = json["figures"]["bias_pp_deg_per_s"]["indices"];
+  EXPECT_EQ(indices[0]["first_by_rank_interval"][1], 0.13);
+  EXPECT_TRUE(indices[1]["first_by_rank_interval"].is_null());
+}
+
 TEST(SensitivityReport, SaysWhenNothingVaries) {
   MeritResult result = merit(0);
   result.variance = 0;
@@ -72,7 +84,7 @@ TEST(SensitivityReport, SaysWhenNothingVaries) {
 TEST(SensitivityReport, AYieldOfAChoiceHasNoHalf) {
   MeritResult result = merit(0.71);
   result.yield = {
-      10, device_share(48, 64), {{"a.b", device_share(60, 64)}, {"c.d", {}}}};
+      10, {0.75, {0.6, 0.9}}, {{"a.b", {{0.9375, {0.8, 1}}}}, {"c.d", {}}}};
   const std::string text = sensitivity_table(result);
   EXPECT_NE(text.find("as they are"), std::string::npos);
   EXPECT_NE(text.find("a.b/2         93.8 %"), std::string::npos) << text;

@@ -7,14 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "statistics/intervals.h"
 #include "validation/evidence/evidence.h"
 
 namespace beamgyro::internal {
-
-/// The 95 % interval of a value.
-struct Interval {
-  double low, high;
-};
 
 /// The value of a metric, with its 95 % interval where the metric has one.
 struct Estimate {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "compensation/scoring/scale_factor.h"
+#include "config/units.h"
 #include "linear_algebra/least_squares.h"
 #include "validation/metrics/evaluations.h"
 #include "validation/metrics/noisy_means.h"
@@ -11,7 +12,6 @@
 namespace beamgyro::internal::evaluation {
 namespace {
 
-constexpr double kGravity = 9.80665;      // [m/s2] in a g
 constexpr double kMotionBlock = 10.0;     // [s]
 constexpr double kShortBlock = 0.1;       // [s], for cross rates that swing
 constexpr double kDrift = 300.0;          // [s], between knots of the drift
@@ -89,10 +89,11 @@ struct Acceleration {
 };
 
 Acceleration acceleration_of(const Recording& recording) {
-  Acceleration a{{column_or_zero(recording, "true_acceleration_x", kGravity),
-                  column_or_zero(recording, "true_acceleration_y", kGravity),
-                  column_or_zero(recording, "true_acceleration_z", kGravity)},
-                 std::vector<double>(recording.time.size(), 0.0)};
+  Acceleration a{
+      {column_or_zero(recording, "true_acceleration_x", kStandardGravity),
+       column_or_zero(recording, "true_acceleration_y", kStandardGravity),
+       column_or_zero(recording, "true_acceleration_z", kStandardGravity)},
+      std::vector<double>(recording.time.size(), 0.0)};
   for (const auto& axis : a.axes)
     for (std::size_t k = 0; k < axis.size(); ++k)
       a.square[k] += axis[k] * axis[k];

@@ -7,7 +7,6 @@
 #include "compensation/scoring/noise_coefficients.h"
 #include "compensation/scoring/score.h"
 #include "validation/metrics/evaluations.h"
-#include "validation/metrics/intervals.h"
 #include "validation/metrics/segments.h"
 
 namespace beamgyro::internal::evaluation {

@@ -12,8 +12,6 @@
 
 namespace beamgyro::internal {
 
-constexpr double kNormal975 = 1.959963984540054;  // [-], normal quantile
-
 /// Means over segments of several runs, one after the other, with their noise.
 struct NoisyMeans {
   std::vector<double> values;  // [deg/s]

@@ -7,7 +7,7 @@
 
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/residual_scores.h"
-#include "validation/metrics/intervals.h"
+#include "statistics/intervals.h"
 #include "validation/metrics/segments.h"
 
 namespace beamgyro::internal {

@@ -5,7 +5,6 @@
 
 #include "validation/metrics/evaluations.h"
 #include "validation/metrics/frequency_response.h"
-#include "validation/metrics/intervals.h"
 #include "validation/metrics/segments.h"
 
 namespace beamgyro::internal::evaluation {

@@ -10,8 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "validation/metrics/intervals.h"
-
 namespace beamgyro::internal {
 namespace {
 

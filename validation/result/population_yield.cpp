@@ -12,8 +12,8 @@
 
 #include "parallel/work_queue.h"
 #include "sim/numerics/simulation_failure.h"
+#include "statistics/intervals.h"
 #include "validation/external/file_compensator.h"
-#include "validation/metrics/intervals.h"
 #include "validation/result/judgement.h"
 
 namespace beamgyro::internal {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "validation/metrics/intervals.h"
+#include "statistics/intervals.h"
 #include "validation/metrics/sigma_evidence.h"
 #include "validation/metrics/sigma_report.h"
 #include "validation/result/judgement.h"

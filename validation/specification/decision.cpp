@@ -80,8 +80,10 @@ struct Side {
 
 /// The part of an interval of 95 % towards the limit, for another risk. A bias
 /// that the interval takes out does not grow with it: less risk adds a multiple
-/// of the larger part, which has not lost by that.
+/// of the larger part, which has not lost by that. A widening of 0 leaves
+/// nothing of an infinite part, either.
 double guard_band(double towards, double other, double widening) {
+  if (!(widening > 0.0)) return 0.0;
   return widening > 1.0 ? towards + (widening - 1.0) * std::max(towards, other)
                         : widening * towards;
 }
@@ -119,6 +121,10 @@ std::string words_of(const Decision& decision, const Limit& limit) {
     case Conformity::kUndecided:
       break;
   }
+  if (std::isinf(decision.guard_band))
+    return fmt::format(
+        "{:.4g} has an interval without an end towards the limit; must be {}",
+        value, asked);
   return fmt::format(
       "{:.4g} is within {:.3g} of the limit, its guard band; must be {}", value,
       decision.guard_band, asked);

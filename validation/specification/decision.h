@@ -50,7 +50,8 @@ struct Decision {
 /// limit, times w = z(1 - risk) / z(0.975). For w above 1 it is that part and
 /// w - 1 times the larger of the two, since a figure that noise enlarges has an
 /// interval that reaches little or nothing above it.
-/// - A value without an interval is decided without a guard band.
+/// - A value without an interval is decided without a guard band, and so is
+///   every value where the risk is 0.5 and w is 0.
 /// - No value, or one that is not finite, is undecided.
 /// - A quotient has an interval whose ends lie, in logarithms, as far from it
 ///   as the root of the sum of squares of those of its two parts.

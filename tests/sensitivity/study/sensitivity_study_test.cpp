@@ -99,13 +99,5 @@ TEST(SensitivityStudy, NoDeviceThatWorksIsAnError) {
                std::runtime_error);
 }
 
-TEST(DeviceShare, HasWilsonsInterval) {
-  // 0 of 10 and 5 of 10, as in Brown, Cai and DasGupta (2001).
-  EXPECT_NEAR(device_share(0, 10).high, 0.2775, 1e-4);
-  EXPECT_EQ(device_share(0, 10).low, 0);
-  EXPECT_NEAR(device_share(5, 10).low, 0.2366, 1e-4);
-  EXPECT_NEAR(device_share(5, 10).high, 0.7634, 1e-4);
-}
-
 }  // namespace
 }  // namespace beamgyro::internal::sensitivity_study_test

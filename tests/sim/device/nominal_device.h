@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "config/units.h"
 #include "sim/device/device_file.h"
 
 namespace beamgyro::internal {
@@ -26,8 +27,5 @@ inline DeviceParameters verification_device(
   overrides.push_back("beam.angular_gain=1.0");
   return nominal_device(overrides);
 }
-
-inline constexpr double kDegree = 3.14159265358979323846 / 180;  // [rad]
-inline constexpr double kZeroCelsius = 273.15;                   // [K]
 
 }  // namespace beamgyro::internal

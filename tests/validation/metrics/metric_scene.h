@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "config/units.h"
 #include "tests/compensation/recorded_run.h"
 #include "validation/metrics/metric.h"
 #include "validation/metrics/rate_noise_model.h"
@@ -44,8 +45,6 @@ Estimate evaluated(const std::string& metric, const Evidence& evidence);
 
 /// Soaks of `hold` [s] at each temperature, joined by slopes of 300 s.
 SignalOfTime soak_temperatures(std::vector<double> temperatures, double hold);
-
-inline constexpr double kStandardGravity = 9.80665;  // [m/s2]
 
 /// Each axis in turn up and down four times, 60 s each. The bias is 0.3 deg/s,
 /// drifts by `drift` [deg/s/s], and follows the acceleration of each axis by

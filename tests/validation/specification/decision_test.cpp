@@ -110,6 +110,48 @@ TEST(Decision, AnotherRiskWidensTheGuardBand) {
   EXPECT_THROW(decide(kAtMostOne, found, {}, 0.51), std::invalid_argument);
 }
 
+TEST(Decision, AtARiskOfOneHalfTheValueDecides) {
+  const auto at_one_half = [](const Limit& limit, const Estimate& after,
+                              const std::optional<Estimate>& reference = {}) {
+    const Decision decision = decide(limit, after, reference, 0.5);
+    EXPECT_EQ(decision.guard_band, 0.0) << decision.words;
+    return decision.result;
+  };
+  for (const double high : {1.3, kInfinity}) {
+    EXPECT_EQ(at_one_half(kAtMostOne, Estimate{0.9, Interval{0.4, high}}),
+              Conformity::kPass);
+    EXPECT_EQ(at_one_half(kAtMostOne, Estimate{1.2, Interval{-high, 1.3}}),
+              Conformity::kFail);
+    EXPECT_EQ(at_one_half(kAtLeastOne, Estimate{1.2, Interval{-high, high}}),
+              Conformity::kPass);
+  }
+  EXPECT_EQ(at_one_half(kAtMostOne, Estimate{0.9}), Conformity::kPass);
+  // The interval of the reference reaches 0, that of the quotient infinity.
+  Limit limit{.metric = "residual_sigma_deg_per_s", .most = 0.1};
+  limit.relative_to = "before";
+  const Estimate reference{1.0, Interval{0.0, 2.0}};
+  EXPECT_EQ(at_one_half(limit, Estimate{0.05}, reference), Conformity::kPass);
+  EXPECT_EQ(at_one_half(limit, Estimate{0.2}, reference), Conformity::kFail);
+  EXPECT_EQ(at_one_half(limit, Estimate{0.0, Interval{0.0, 1.0}}, reference),
+            Conformity::kPass);
+  EXPECT_EQ(decide(kAtMostOne, Estimate{kNan}, {}, 0.5).result,
+            Conformity::kUndecided);
+}
+
+TEST(Decision, AnIntervalWithoutAnEndIsUndecidedAtEverySmallerRisk) {
+  const Estimate endless{0.5, Interval{0.4, kInfinity}};
+  for (const double risk : {1e-9, 0.001, kFalseAcceptRisk, 0.3, 0.499}) {
+    const Decision decision = decide(kAtMostOne, endless, {}, risk);
+    EXPECT_EQ(decision.result, Conformity::kUndecided) << risk;
+    EXPECT_EQ(decision.guard_band, kInfinity) << risk;
+    EXPECT_EQ(decision.words,
+              "0.5 has an interval without an end towards the limit; must be "
+              "at most 1");
+    EXPECT_EQ(decide(kAtMostOne, Estimate{0.5}, {}, risk).result,
+              Conformity::kPass);
+  }
+}
+
 TEST(Decision, TheWorstCounts) {
   using enum Conformity;
   EXPECT_EQ(worst_of({}), kPass);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "validation/metrics/intervals.h"
+#include "statistics/intervals.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 namespace beamgyro::internal::intervals_test {
 namespace {
@@ -51,6 +52,15 @@ TEST(StudentHalfWidth, IsThatOfTables) {
   EXPECT_NEAR(student_half_width(1.0), 12.706, 5e-4);
   EXPECT_NEAR(student_half_width(9.0), 2.262, 5e-4);
   EXPECT_NEAR(student_half_width(1e6), 1.960, 5e-4);
+}
+
+TEST(Percentile, LiesOnStraightLinesBetweenTheSortedValues) {
+  const std::vector<double> sorted = {-1, 0, 2, 5};
+  EXPECT_EQ(percentile(sorted, 0), -1);
+  EXPECT_EQ(percentile(sorted, 0.5), 1);
+  EXPECT_NEAR(percentile(sorted, 0.9), 4.1, 1e-12);
+  EXPECT_EQ(percentile(sorted, 1), 5);
+  EXPECT_EQ(percentile({3}, 0.95), 3);
 }
 
 }  // namespace beamgyro::internal::intervals_test
