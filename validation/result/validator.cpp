@@ -316,12 +316,12 @@ CompletedValidation Validator::validate(std::size_t threads,
            known != nullptr ? &known->provenance : nullptr},
           done.evidence, threads, result);
   if (s.campaign)
-    result.population =
-        population_yield({&*s.campaign, &s.qualification, &s.specification,
-                          s.compensator.get(), s.model ? &*s.model : nullptr},
-                         threads, [&](double part) {
-                           if (progress) progress(share + (1 - share) * part);
-                         });
+    result.population = population_yield(
+        {&*s.campaign, &s.qualification, &s.specification, s.compensator.get(),
+         s.model ? &*s.model : nullptr, known},
+        threads, [&](double part) {
+          if (progress) progress(share + (1 - share) * part);
+        });
   return done;
 }
 
