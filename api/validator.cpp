@@ -303,7 +303,7 @@ CompletedValidation Validator::validate(std::size_t threads,
   if (s.campaign)
     result.population =
         population_yield({&*s.campaign, &s.qualification, &s.specification,
-                          compensator.get(), model},
+                          compensator.get(), model, known},
                          threads, [&](double part) {
                            if (progress) progress(share + (1 - share) * part);
                          });

@@ -2,8 +2,13 @@
 #include "compensation/scoring/stated_values.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/config_node.h"
@@ -22,21 +27,52 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// Calls `use` with the value of a key. A text that is no TOML, of another
-/// program's device, has none.
+/// Documents of the texts that were asked last, each parsed once. A text that
+/// is no TOML, of another program's device, has none.
+class ParsedTexts {
+ public:
+  using Document = std::shared_ptr<const ConfigDocument>;
+
+  Document of(const std::string& text, const std::string& overrides_text) {
+    const std::lock_guard lock(mutex_);
+    const auto key = std::pair(text, overrides_text);
+    if (const auto found = documents_.find(key); found != documents_.end())
+      return found->second;
+    if (documents_.size() >= kMostTexts) documents_.clear();
+    return documents_[key] = parsed(text, overrides_text);
+  }
+
+ private:
+  static constexpr std::size_t kMostTexts = 64;
+
+  static Document parsed(const std::string& text,
+                         const std::string& overrides_text) try {
+    Overrides overrides(lines_of(overrides_text));
+    return std::make_shared<const ConfigDocument>(
+        ConfigDocument::parse(text, "text of the recording", overrides));
+  } catch (const std::invalid_argument&) {
+    return nullptr;
+  }
+
+  std::mutex mutex_;
+  std::map<std::pair<std::string, std::string>, Document> documents_;
+};
+
+ParsedTexts& texts() {
+  static ParsedTexts only;
+  return only;
+}
+
+/// Calls `use` with the value of a key.
 template <typename Use>
 auto with_value(const std::string& text, const std::string& overrides_text,
                 std::string_view key, Use use)
-    -> decltype(use(std::declval<const ConfigNode&>())) try {
+    -> decltype(use(std::declval<const ConfigNode&>())) {
   if (text.empty()) return std::nullopt;
-  Overrides overrides(lines_of(overrides_text));
-  const ConfigDocument document =
-      ConfigDocument::parse(text, "text of the recording", overrides);
-  const ConfigNode* value = document.value(key);
+  const ParsedTexts::Document document = texts().of(text, overrides_text);
+  const ConfigNode* value = document ? document->value(key) : nullptr;
   if (value == nullptr) return std::nullopt;
   return use(*value);
-} catch (const std::invalid_argument&) {
-  return std::nullopt;
 }
 
 }  // namespace

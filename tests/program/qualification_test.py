@@ -189,17 +189,77 @@ class Populations(Qualified):
         self.assertEqual(len(set(metric["after"])), 4)
 
     def test_a_device_trained_for_itself_is_better_than_one_for_all(self):
-        self.ok("run", "ramp.toml", "--seed", 21, "--set",
-                "ambient.points=[[0, 45], [4000, -35]]", "-o", "t.h5")
-        self.ok("train", "t.h5", "--model", "cubic.toml", "-o", "c.json")
         arguments = ["--campaign", "campaign.toml", "--spec", "spec.toml"]
         each, _ = self.validate(*arguments)
-        one, _ = self.validate(*arguments, model="c.json")
+        one, _ = self.validate(*arguments, model=self.trained_file())
         self.assertFalse(one["population"]["trained_on_each"])
 
         def worst(said):
             return max(said["population"]["metrics"][0]["after"])
         self.assertLess(worst(each), worst(one))
+
+
+    def trained_file(self):
+        self.ok("run", "ramp.toml", "--seed", 21, "--set",
+                "ambient.points=[[0, 45], [4000, -35]]", "-o", "t.h5")
+        self.ok("train", "t.h5", "--model", "cubic.toml", "-o", "c.json")
+        return "c.json"
+
+    def test_a_limit_on_the_extrapolated_share_is_decided_for_a_file(self):
+        self.write("spec.toml", """\
+name = "inside"
+[limits]
+extrapolated_share_percent = { max = 90, source = "a test" }
+""")
+        arguments = ["--campaign", "campaign.toml", "--spec", "spec.toml"]
+        for model in (self.trained_file(), "cubic.toml"):
+            said, _ = self.validate(*arguments, model=model)
+            self.assertEqual(said["population"]["passed"], 3, model)
+
+    def test_the_words_of_a_device_name_the_limit_that_decided(self):
+        # Below no limit, near the second and beyond the third.
+        self.write("spec.toml", """\
+name = "three"
+[limits]
+residual_max_deg_per_s = { max = 500, source = "a test" }
+rate_ramp_deg_per_h_per_h = { max = 1, source = "no run shows it" }
+residual_rms_deg_per_s = { max = 1e-6, source = "a test" }
+""")
+        said, _ = self.validate("--campaign", "campaign.toml", "--spec",
+                                "spec.toml", status=3)
+        for device in said["population"]["verdicts"]:
+            self.assertEqual(device["verdict"], "fail")
+            self.assertRegex(device["words"],
+                             "^residual_rms_deg_per_s: .* beyond by ")
+
+    def test_a_device_that_cannot_be_trained_fails_and_was_simulated(self):
+        # One step of the thermometer covers every temperature.
+        self.write("campaign.toml", CAMPAIGN.replace(
+            '"readout.quadrature_trim_deg_per_s" = { normal = { mean = 0, '
+            'sigma = 30 } }',
+            '"temperature_sensor.resolution_K" = { discrete = { values = '
+            '[0.0625, 1000], weights = [1, 1] } }'))
+        said, _ = self.validate("--campaign", "campaign.toml", "--devices", 6,
+                                "--spec", "spec.toml")
+        found = said["population"]
+        untrained = [device for device in found["verdicts"]
+                     if device["words"].startswith("cannot be trained: ")]
+        self.assertIn(len(untrained), range(1, 6), found["verdicts"])
+        for device in untrained:
+            self.assertEqual(device["verdict"], "fail")
+            self.assertIn("temperature", device["words"])
+        self.assertEqual(found["not_simulated"], 0)
+
+    def test_a_device_that_cannot_be_built_is_not_simulated(self):
+        self.write("campaign.toml", CAMPAIGN.replace(
+            '"readout.quadrature_trim_deg_per_s" = { normal = { mean = 0, '
+            'sigma = 30 } }',
+            '"bond.thickness_m" = { normal = { mean = 1e-5, sigma = 1e-5 } }'))
+        said, _ = self.validate("--campaign", "campaign.toml", "--devices",
+                                12, "--spec", "spec.toml", status=3)
+        found = said["population"]
+        self.assertIn(found["not_simulated"], range(1, 12))
+        self.assertLessEqual(found["not_simulated"], found["failed"])
 
 
 class WrongFiles(Qualified):

@@ -5,7 +5,6 @@
 
 #include "compensation/scoring/allan_deviation.h"
 #include "compensation/scoring/noise_coefficients.h"
-#include "compensation/scoring/score.h"
 #include "validation/metrics/evaluations.h"
 #include "validation/metrics/segments.h"
 
@@ -117,6 +116,36 @@ double half_interval_of_ratio(const DifferenceSums& sums) {
          std::sqrt(squares * (kPieces - 1.0) / kPieces);
 }
 
+constexpr double kWhiteNoiseFall = 0.75;  // [-], deviation at 4 s over 1 s
+constexpr double kShortestSeries = 10.0;  // [s]
+constexpr double kStepTolerance = 1e-3;   // [-]
+
+// The Allan deviation at 1 s of the judged residual over that of the recorded
+// one, in the longest gapless stretch. Returns nothing where the recorded one
+// has no white noise at 1 s (its deviation falls to 0.5 at 4 s), where 1 s is
+// no multiple of the step, and for less than kShortestSeries.
+std::optional<double> ratio_at_1_s(const EvidenceRun& run) {
+  const auto& rate = column_values(*run.recording, "rate");
+  const auto& truth = column_values(*run.recording, "true_rate");
+  const SampleRange range = longest_gapless_range(*run.recording, run.rate);
+  std::vector<double> before, after;
+  for (std::size_t k = range.begin; k < range.end; ++k) {
+    before.push_back(rate[k] - truth[k]);
+    after.push_back(run.rate[k] - truth[k]);
+  }
+  const double step = usual_step(*run.recording);
+  const double samples = step > 0.0 ? std::round(1.0 / step) : 0.0;
+  const bool whole = std::abs(samples * step - 1.0) < kStepTolerance;
+  if (samples < 1.0 || !whole ||
+      static_cast<double>(range.size()) < samples * kShortestSeries)
+    return std::nullopt;
+  const std::array taus{1.0, 4.0};
+  const auto raw = oadev(before, 1.0 / samples, taus);
+  if (!(raw[1].deviation <= kWhiteNoiseFall * raw[0].deviation))
+    return std::nullopt;
+  return oadev(after, 1.0 / samples, taus)[0].deviation / raw[0].deviation;
+}
+
 }  // namespace
 
 std::optional<Estimate> angle_random_walk(const Evidence& evidence) {
@@ -155,8 +184,7 @@ std::optional<Estimate> lowest_allan_deviation(const Evidence& evidence) {
 std::optional<Estimate> white_noise_ratio(const Evidence& evidence) {
   std::optional<Estimate> farthest;
   for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kRest})) {
-    const AnsweredRun answered{run->name, run->recording, run->rate, {}, {}};
-    const std::optional<double> ratio = internal::white_noise_ratio(answered);
+    const std::optional<double> ratio = ratio_at_1_s(*run);
     if (!ratio) continue;
     const bool farther = !farthest || std::abs(std::log(*ratio)) >
                                           std::abs(std::log(farthest->value));

@@ -39,11 +39,24 @@ Qualification shortened_to(const Qualification& whole,
 
 struct DeviceOutcome {
   DeviceVerdict verdict;
-  std::vector<MetricResult> metrics;  // empty: could not be simulated
+  std::vector<MetricResult> metrics = {};
+  bool is_simulated = true;
 };
 
-DeviceOutcome failed(const std::string& words) {
-  return {{Conformity::kFail, words.substr(0, words.find('\n'))}, {}};
+DeviceVerdict failed(const std::string& words) {
+  return {Conformity::kFail, words.substr(0, words.find('\n'))};
+}
+
+DeviceVerdict verdict_on(const std::vector<DecidedLimit>& limits) {
+  std::vector<Conformity> results;
+  for (const auto& [limit, decision] : limits)
+    results.push_back(decision.result);
+  DeviceVerdict verdict{worst_of(results)};
+  if (verdict.verdict == Conformity::kPass) return verdict;
+  const auto& [limit, decision] = limits[static_cast<std::size_t>(
+      std::ranges::find(results, verdict.verdict) - results.begin())];
+  verdict.words = fmt::format("{}: {}", limit.metric, decision.words);
+  return verdict;
 }
 
 class PopulationJudge {
@@ -65,14 +78,12 @@ class PopulationJudge {
 
   DeviceOutcome outcome_of_device(std::uint32_t number) const {
     const VirtualDevice drawn = task_.campaign->device(number);
-    if (!drawn.device) return failed(drawn.failure);
+    if (!drawn.device) return {failed(drawn.failure), {}, false};
     try {
       return judged({*drawn.device, task_.campaign->device_text(),
                      drawn.overrides, number});
     } catch (const SimulationFailure& error) {
-      return failed(error.what());
-    } catch (const std::invalid_argument& error) {
-      return failed(error.what());
+      return {failed(error.what()), {}, false};
     }
   }
 
@@ -82,22 +93,22 @@ class PopulationJudge {
     if (task_.model != nullptr || needs_baselines_)
       data = training_data(*task_.qualification, device, task_.model, 1);
     std::unique_ptr<TestedCompensator> own;
-    if (task_.model != nullptr) own = tested(trained_on(data, *task_.model));
-    const DeviceEvidence found = device_evidence(
-        qualification_, device, own ? *own : *task_.compensator,
-        needs_baselines_ ? data : TrainingData{}, own != nullptr, 1);
+    if (task_.model != nullptr) {
+      try {
+        own = tested(trained_on(data, *task_.model));
+      } catch (const std::invalid_argument& error) {
+        return {failed(fmt::format("cannot be trained: {}", error.what()))};
+      }
+    }
+    const DeviceEvidence found =
+        device_evidence(qualification_, device, own ? *own : *task_.compensator,
+                        needs_baselines_ ? data : TrainingData{},
+                        own != nullptr || task_.known != nullptr, 1);
     DeviceOutcome outcome;
     outcome.metrics =
         metric_results(found, qualification_.metric_runs, names_, 1);
-    const std::vector<DecidedLimit> limits =
-        decided_limits(*task_.specification, outcome.metrics);
-    std::vector<Conformity> results;
-    for (const auto& [limit, decision] : limits) {
-      results.push_back(decision.result);
-      if (decision.result != Conformity::kPass && outcome.verdict.words.empty())
-        outcome.verdict.words = decision.words;
-    }
-    outcome.verdict.verdict = worst_of(results);
+    outcome.verdict =
+        verdict_on(decided_limits(*task_.specification, outcome.metrics));
     return outcome;
   }
 
@@ -126,7 +137,7 @@ void count(const std::vector<DeviceOutcome>& outcomes,
         ++result.undecided;
         break;
     }
-    if (outcome.metrics.empty()) ++result.not_simulated;
+    if (!outcome.is_simulated) ++result.not_simulated;
   }
   result.interval = clopper_pearson(static_cast<double>(result.passed),
                                     static_cast<double>(outcomes.size()));

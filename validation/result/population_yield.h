@@ -19,13 +19,16 @@ struct PopulationTask {
   const SpecificationFile* specification;
   const TestedCompensator* compensator = nullptr;  // one for all, or
   const ModelSpec* model = nullptr;                // one trained on each
+  const Compensator* known = nullptr;  // `compensator` as it was trained
 };
 
 /// Simulates the devices of a campaign, one task each, and decides on every
 /// limit of the specification for each. Runs that no limit reads are not
 /// simulated. A device passes when every limit is met. A device that cannot be
-/// simulated or trained on fails. The result does not depend on the number of
-/// threads.
+/// simulated, or that the model cannot be trained on, fails. The words of a
+/// device that does not pass name its first limit that decided: one that is not
+/// met, or else one that is undecided. The result does not depend on the number
+/// of threads. Throws what else a device throws.
 PopulationYield population_yield(const PopulationTask& task,
                                  std::size_t threads,
                                  const ProgressOfWork& progress = {});
