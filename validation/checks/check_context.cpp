@@ -146,6 +146,8 @@ std::vector<std::string> CheckContext::untested_by_replay() const {
   const auto add = [&names](const std::string& name) {
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   };
+  // GainJudge holds a table against the curve wherever there is one.
+  if (trained->scale_factor && scale_factor.empty()) add("scale_factor");
   for (double T = range->lowest; T < range->highest + 1.0; T += 1.0) {
     const double here = std::min(T, range->highest);
     if (scale_factor.has_point_near(here, kRateReach)) continue;
@@ -153,9 +155,6 @@ std::vector<std::string> CheckContext::untested_by_replay() const {
       if (!sees_the_rate(input) && !input.column.empty() &&
           input.column != "temperature")
         add(input.column);
-    if (trained->scale_factor &&
-        std::abs(trained->scale_factor->at(here) - 1.0) > kGainTolerance)
-      add("scale_factor");
   }
   return names;
 }
