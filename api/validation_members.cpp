@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
+#include <stdexcept>
 
 #include "compensation/rows/recorded_runs.h"
 #include "include/beamgyro/option_error.h"
@@ -26,7 +28,8 @@ constexpr std::array kMembers{
     ValidationMember{"set", &Options::set, kOnSet, "", "set", "", "", "", "",
                      "", ""},
     ValidationMember{"devices", &Options::devices, kOnSet, "", "set_devices",
-                     "", "", "", "", kSetHeading, ""},
+                     "", "", "Devices of the set, by number",
+                     "the test devices", kSetHeading, ""},
     ValidationMember{"full_scale", &Options::full_scale, kOnRecordings | kOnSet,
                      "", "full_scale", "--full-scale", "DEG_PER_S",
                      "Largest rate that is replayed",
@@ -77,6 +80,14 @@ std::string words_of(unsigned subjects) {
 }  // namespace
 
 std::span<const ValidationMember> validation_members() { return kMembers; }
+
+const ValidationMember& member_named(std::string_view name) {
+  const auto* const row =
+      std::ranges::find(kMembers, name, &ValidationMember::name);
+  if (row == kMembers.end())
+    throw std::logic_error(fmt::format("{}: not an option", name));
+  return *row;
+}
 
 std::string_view type_name(const ValidationMember& row) {
   return std::visit(

@@ -47,6 +47,9 @@ struct ValidationMember {
 
 std::span<const ValidationMember> validation_members();
 
+/// Returns the row of a member.
+const ValidationMember& member_named(std::string_view name);
+
 /// Returns "file", "text", "texts", "whole", "wholes" or "number"; empty for a
 /// subject.
 std::string_view type_name(const ValidationMember& row);

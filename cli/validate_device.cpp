@@ -19,6 +19,7 @@
 #include "cli/version.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/made_directories.h"
+#include "include/beamgyro/option_error.h"
 #include "parallel/work_queue.h"
 #include "validation/bundle/bundle.h"
 
@@ -28,6 +29,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kBundleDiffers = 1;
+
+// Options of the table are spelled as its rows say; the subjects by their
+// words.
+std::string spelled_option(std::string_view name, std::string_view) {
+  const ValidationMember& row = member_named(name);
+  if (!row.option.empty()) return std::string(row.option);
+  return name == "device" || name == "devices" ? "--device" : std::string(name);
+}
 
 // A validation as files and the terminal show it.
 struct ShownValidation {
@@ -109,7 +118,7 @@ std::vector<BundleDifference> differences_of(
 
 }  // namespace
 
-int judge_compensator(const ValidateArguments& arguments) {
+int judge_compensator(const ValidateArguments& arguments) try {
   ValidationOptions options = validation_options(arguments);
   if (options.set && !arguments.bundle.empty())
     throw std::invalid_argument(fmt::format(
@@ -128,6 +137,8 @@ int judge_compensator(const ValidateArguments& arguments) {
   const ShownValidation shown = validated(validator, arguments.all_metrics);
   return deliver(shown.text, writers_of(arguments, content, shown.outputs),
                  shown.verdict == Conformity::kPass ? 0 : kNotPassed);
+} catch (const OptionError& error) {
+  throw std::invalid_argument(error.words(spelled_option));
 }
 
 int check_bundle(const ValidateArguments& arguments) {

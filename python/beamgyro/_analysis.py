@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any, Optional, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy as np
 
@@ -36,10 +37,6 @@ _TABLES = ("a table that characterise wrote", "a profile over time")
 def _given(**options: Any) -> dict[str, Any]:
     return {name: value for name, value in options.items()
             if value is not None}
-
-
-def _file(value: Any, name: str, kind: str) -> Optional[str]:
-    return None if value is None else _checks.file(value, name, kind)
 
 
 class _Files:
@@ -109,42 +106,26 @@ class _Files:
 
 def validate(compensator: Any, runs: Optional[Runs] = None, *,
              set: Union[Set, Path, None] = None,
-             set_runs: Iterable[str] = (), set_devices: Iterable[int] = (),
-             device: Optional[DeviceLike] = None,
-             qualification: Optional[Path] = None,
-             spec: Union[Path, Mapping[str, Any], None] = None,
-             workbench: Optional[Path] = None,
-             campaign: Optional[Path] = None,
-             devices: Optional[int] = None,
-             full_scale: Optional[float] = None, jobs: int = 0,
-             progress: ProgressArgument = False) -> ValidationResult:
+             device: Optional[DeviceLike] = None, jobs: int = 0,
+             progress: ProgressArgument = False,
+             **options: Any) -> ValidationResult:
     """Judge a compensator by every metric, check and limit.
 
-    Give recordings, or a set, or a device that is simulated. Compensators of
-    Python are called by one thread at a time, with measured signals only.
+    Give recordings, or a set, or a device that is simulated. The verdict is
+    that of ``beamgyro validate`` with the same inputs. Compensators of Python
+    are called by one thread at a time, with measured signals only.
 
     Args:
         compensator: a `Compensator`, or what makes one; with `device` also a
-            model file (.toml) or a mapping with its contents, which is
-            trained first.
+            model file or a mapping with its contents, which is trained first.
         runs: recordings that training has not seen.
         set: a set, whose test devices are judged.
-        set_runs: runs of the set; all without.
-        set_devices: devices of the set, in place of the test devices.
         device: the device that a qualification is simulated with.
-        qualification: the runs that it goes through; the shipped ones
-            without.
-        spec: a specification with limits, as a file or a mapping; without,
-            some drift must be removed. Unlike the command without ``--spec``,
-            which only scores, this judges by every metric and check, as the
-            command does with ``--report``.
-        workbench: a compensator file to compare the answers with.
-        campaign: a campaign whose devices are judged, too.
-        devices: how many of them.
-        full_scale: of recordings, the largest rate [degree/s], above 0.
         jobs: threads; 0: one for each core.
         progress: True for a bar on standard error, or a function that is
             called with the share of the work that is done, from 0 to 1.
+        options: further options, below. A specification may also be a
+            mapping with its contents.
 
     Returns:
         The result, which prints as a table; ``passed`` tells the verdict.
@@ -158,51 +139,92 @@ def validate(compensator: Any, runs: Optional[Runs] = None, *,
                          "of runs, set= and device=")
     if isinstance(runs, Set):
         raise _checks.wrong(runs, "runs", "recordings; a set is given as set=")
-    named = _checks.texts(set_runs, "set_runs")
-    numbered = _checks.wholes(set_devices, "set_devices")
-    if set is None:
-        _checks.refuse("for a set", set_runs=named or None,
-                       set_devices=numbered or None)
-    if device is None:
-        _checks.refuse("for a device", qualification=qualification)
-    jobs = _arguments.jobs(jobs)
-    if devices is not None:
-        devices = _arguments.whole(devices, "devices", least=1)
-    if full_scale is not None:
-        full_scale = _arguments.number(full_scale, "full_scale", above=0)
     with _Files() as files, Watched(progress, "validating") as function:
-        options = _given(
-            workbench=_file(workbench, "workbench", "a compensator"),
-            campaign=_file(campaign, "campaign", "a campaign"),
-            campaign_devices=devices, full_scale=full_scale, jobs=jobs)
+        given: dict[str, Any] = {"jobs": _arguments.jobs(jobs)}
+        for keyword, value in options.items():
+            if keyword not in _OPTIONS:
+                raise TypeError("validate() got an unexpected keyword "
+                                f"argument '{keyword}'")
+            option = _OPTIONS[keyword]
+            if value is not None:
+                given[option.member] = option.read(files, value)
         if runs is not None:
-            options["recordings"] = [files.of_run(name, run)
-                                     for name, run in named_runs(runs)]
+            given["recordings"] = [files.of_run(name, run)
+                                   for name, run in named_runs(runs)]
         elif set is not None:
-            options["set"] = (set if isinstance(set, Set)
-                              else Set(set))._native
-            options["runs"], options["devices"] = named, numbered
+            given["set"] = (set if isinstance(set, Set) else Set(set))._native
         else:
             assert device is not None
-            options["device"] = device_of(device)._native
-            options["qualification"] = (
-                _shipped.file("scenarios/qualification.toml")
-                if qualification is None else _checks.file(
-                    qualification, "qualification", "a qualification"))
-        if spec is not None:
-            options["specification"] = files.of_table("spec", spec,
-                                                      "a specification")
-        found = _judged(compensator, options, function)
+            given["device"] = device_of(device)._native
+            given.setdefault("qualification", _shipped.file(
+                "scenarios/qualification.toml"))
+        found = _judged(compensator, given, function)
     text, json_text, warnings, page = found
     warn(warnings)
     return ValidationResult(text, json_text, warnings, page)
+
+
+class _Option(NamedTuple):
+    """An option of `validate`, from the table of the compiled part."""
+
+    keyword: str
+    member: str
+    type: str
+    kind: str
+    subjects: list[str]
+    words: str
+
+    def read(self, files: _Files, value: Any) -> Any:
+        """Return a value of its type."""
+        if self.type == "file":
+            if self.kind == "a specification":
+                return files.of_table(self.keyword, value, self.kind)
+            return _checks.file(value, self.keyword, self.kind)
+        if self.type == "number":
+            return _arguments.number(value, self.keyword, above=0)
+        if self.type == "whole":
+            return _arguments.whole(value, self.keyword, least=1)
+        return (_checks.texts if self.type == "texts"
+                else _checks.wholes)(value, self.keyword)
+
+    def parameter(self) -> inspect.Parameter:
+        """Return it as a part of a signature."""
+        types = {"file": Union[Path, Mapping[str, Any], None]
+                 if self.kind == "a specification" else Optional[Path],
+                 "number": Optional[float], "whole": Optional[int],
+                 "texts": Iterable[str], "wholes": Iterable[int]}
+        return inspect.Parameter(
+            self.keyword, inspect.Parameter.KEYWORD_ONLY,
+            default=() if self.type in ("texts", "wholes") else None,
+            annotation=types[self.type])
+
+
+_OPTIONS = {row[0]: _Option(*row) for row in _core.validation_members()}
+
+
+def _describe_options() -> None:
+    """Show the options of `validate` in its help and its signature."""
+    signature = inspect.signature(validate)
+    named = [one for one in signature.parameters.values()
+             if one.kind is not inspect.Parameter.VAR_KEYWORD]
+    setattr(validate, "__signature__", signature.replace(
+        parameters=named + [one.parameter() for one in _OPTIONS.values()]))
+    lines = [f"        {one.keyword}: {one.words[:1].lower()}{one.words[1:]}; "
+             f"with {' or '.join(one.subjects)}." for one in _OPTIONS.values()]
+    text = validate.__doc__ or ""
+    validate.__doc__ = text.replace(
+        "\n    Returns:", "\n    Options:\n" + "\n".join(lines)
+        + "\n\n    Returns:", 1)
+
+
+_describe_options()
 
 
 def _judged(compensator: Any, options: dict[str, Any],
             function: Any) -> tuple[str, str, list[str], str]:
     is_model = _checks.is_table(compensator) or (
         isinstance(compensator, (str, os.PathLike))
-        and os.fsdecode(compensator).endswith(".toml"))
+        and _core.source_kind(os.fsdecode(compensator)) == "model")
     if is_model:
         return _core.validate_model(model_of(compensator), options, function)
     return _core.validate(compensator_of(compensator)._native, options,

@@ -167,8 +167,6 @@ def _opened(source: Path, stall_s: float) -> _core.RateCompensator:
     argument = (_checks.command(text, "compensator")
                 if isinstance(text, str) and text.startswith("cmd:")
                 else _checks.file(source, "compensator", "a compensator"))
-    if argument.endswith(".json"):
-        return _core.Compensator.read(argument)
     return _core.open_compensator(argument, program(), stall_s)
 
 

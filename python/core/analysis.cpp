@@ -6,10 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,12 +20,14 @@
 #include "include/beamgyro/allan.h"
 #include "include/beamgyro/campaign.h"
 #include "include/beamgyro/export.h"
+#include "include/beamgyro/option_error.h"
 #include "include/beamgyro/sensitivity.h"
 #include "include/beamgyro/validate.h"
 #include "python/core/bindings.h"
 #include "python/core/given_options.h"
 #include "python/core/long_call.h"
 #include "python/core/recording.h"
+#include "validation/external/compensator_source.h"
 
 namespace beamgyro::python {
 namespace {
@@ -92,13 +97,16 @@ ValidationOptions validation_options(const py::dict& given) {
   return options;
 }
 
-/// Returns (keyword, member, type, subjects, what it is) of each option.
+/// Returns (keyword, member, type, kind of its file, subjects, what it is) of
+/// each option.
 std::vector<py::tuple> validation_members() {
   std::vector<py::tuple> rows;
   for (const internal::ValidationMember& row : internal::validation_members())
-    rows.push_back(py::make_tuple(row.python, row.name,
-                                  internal::type_name(row),
-                                  internal::subject_names(row), row.help));
+    if (!row.help.empty())
+      rows.push_back(py::make_tuple(
+          row.python, row.name, internal::type_name(row),
+          row.kind ? internal::kind_name(*row.kind) : std::string_view(),
+          internal::subject_names(row), row.help));
   return rows;
 }
 
@@ -107,25 +115,38 @@ py::tuple outcome_of(const ValidationOutcome& outcome) {
                         outcome.page);
 }
 
+/// Runs a validation; errors about options name the keywords of Python.
+py::tuple validated(
+    const py::object& on_progress, const py::dict& given,
+    const std::function<ValidationOutcome(const ValidationOptions&)>& run) try {
+  return outcome_of(
+      long_call(on_progress, [run, options = validation_options(given)](
+                                 const Progress& progress) mutable {
+        options.progress = progress;
+        return run(options);
+      }));
+} catch (const OptionError& error) {
+  throw std::invalid_argument(
+      error.words([](std::string_view name, std::string_view) {
+        return std::string(internal::member_named(name).python);
+      }));
+}
+
 py::tuple validate_compensator(
     const std::shared_ptr<RateCompensator>& compensator, const py::dict& given,
     const py::object& on_progress) {
-  return outcome_of(
-      long_call(on_progress, [compensator, options = validation_options(given)](
-                                 const Progress& progress) mutable {
-        options.progress = progress;
-        return validate(*compensator, options);
-      }));
+  return validated(on_progress, given,
+                   [compensator](const ValidationOptions& options) {
+                     return validate(*compensator, options);
+                   });
 }
 
 py::tuple validate_model(const Model& model, const py::dict& given,
                          const py::object& on_progress) {
-  return outcome_of(
-      long_call(on_progress, [model, options = validation_options(given)](
-                                 const Progress& progress) mutable {
-        options.progress = progress;
-        return validate(model, options);
-      }));
+  return validated(on_progress, given,
+                   [model](const ValidationOptions& options) {
+                     return validate(model, options);
+                   });
 }
 
 py::tuple study_sensitivity(const Campaign& campaign, const py::dict& given,
@@ -188,6 +209,12 @@ void bind_analysis(py::module_& core) {
   core.def("validate", &validate_compensator, py::arg("compensator"),
            py::arg("options"), py::arg("progress"));
   core.def("validation_members", &validation_members);
+  core.def(
+      "source_kind",
+      [](const std::string& argument) {
+        return internal::kind_name(internal::source_kind(argument));
+      },
+      py::arg("argument"));
   core.def("validate_model", &validate_model, py::arg("model"),
            py::arg("options"), py::arg("progress"));
   core.def("sensitivity", &study_sensitivity, py::arg("campaign"),
