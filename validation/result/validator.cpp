@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "compensation/compensator/compensator_file.h"
+#include "config/option_message.h"
 #include "dataset/files/sha256.h"
 #include "dataset/set/manifest.h"
 #include "sim/scenario/run_warnings.h"
@@ -151,10 +152,10 @@ struct Validator::State {
 
   void require_device_of_model() const {
     if (request.device) return;
-    throw std::invalid_argument(fmt::format(
-        "{}: a model is trained on simulated runs; expected --device "
-        "DEVICE.toml, or a compensator that was trained",
-        request.compensator));
+    throw option_error(
+        "{}: a model is trained on simulated runs; expected {}, or a "
+        "compensator that was trained",
+        request.compensator, NamedOption{"device", "DEVICE.toml"});
   }
 
   void require_training_runs() const {
