@@ -15,6 +15,7 @@
 #include "api/reported_progress.h"
 #include "compensation/scoring/allan_deviation.h"
 #include "compensation/scoring/noise_coefficients.h"
+#include "config/option_message.h"
 #include "config/range.h"
 #include "dataset/files/json_text.h"
 #include "dataset/files/text_file.h"
@@ -58,9 +59,9 @@ std::string csv_column(const AllanQuestion& asked, const CsvTable& csv) {
   std::erase_if(signals, is_time);
   if (signals.size() == 1) return signals.front();
   if (std::ranges::count(signals, "rate") == 1) return "rate";
-  throw std::invalid_argument(
-      fmt::format("{}: has {} columns; expected --dataset NAME to choose one",
-                  asked.file, csv.columns.size()));
+  throw option_error("{}: has {} columns; expected {} to choose one",
+                     asked.file, csv.columns.size(),
+                     NamedOption{"column", "NAME"});
 }
 
 /// The same for a signal in memory.
@@ -108,10 +109,10 @@ std::vector<double> csv_time(const AllanQuestion& asked, const CsvTable& csv,
         asked, csv, *name,
         units[static_cast<std::size_t>(name - csv.names.begin())]);
   if (!asked.about.rate_Hz)
-    throw std::invalid_argument(
-        fmt::format("{}: a CSV series without a column \"time\" [s] has no "
-                    "sample rate; expected --rate-Hz",
-                    asked.file));
+    throw option_error(
+        "{}: a CSV series without a column \"time\" [s] has no sample rate; "
+        "expected {}",
+        asked.file, NamedOption{"rate_Hz"});
   std::vector<double> time(csv.columns.front().size());
   for (std::size_t k = 0; k < time.size(); ++k)
     time[k] = static_cast<double>(k) / *asked.about.rate_Hz;
@@ -166,7 +167,7 @@ AllanSignal csv_signal(const AllanQuestion& asked, std::string_view text) {
       {signal.column, signal.unit, "", Role::kMeasured, std::move(values)});
   if (!is_stated)
     signal.warnings.push_back(fmt::format(
-        "{}: a CSV states no unit; taken as {}; --unit names another",
+        "{}: a CSV states no unit; taken as {}, since none is given",
         asked.file, kRateUnit));
   return signal;
 }
@@ -180,9 +181,9 @@ AllanSignal signal_of_recording(const AllanQuestion& asked,
   if (column != nullptr)
     signal.unit = column->units == "degree/s" ? kRateUnit : column->units;
   if (asked.about.unit)
-    throw std::invalid_argument(
-        fmt::format("--unit {}: is for a CSV only; {} states its unit, {}",
-                    *asked.about.unit, asked.file, signal.unit));
+    throw option_error("{}: is for a CSV only; {} states its unit, {}",
+                       NamedOption{"unit", *asked.about.unit}, asked.file,
+                       signal.unit);
   return signal;
 }
 
@@ -203,18 +204,20 @@ AllanSignal signal_of(const AllanQuestion& asked) {
 
 TimeWindow window_of(const AllanOptions& options) {
   if (!(options.from_s < options.to_s))
-    throw std::invalid_argument(
-        fmt::format("--from {} --to {}: empty; expected --from below --to",
-                    options.from_s, options.to_s));
+    throw option_error("{} {}: empty; expected {} below {}",
+                       NamedOption{"from_s", fmt::to_string(options.from_s)},
+                       NamedOption{"to_s", fmt::to_string(options.to_s)},
+                       NamedOption{"from_s"}, NamedOption{"to_s"});
   return {options.from_s, options.to_s};
 }
 
 void check_rate(const AllanQuestion& asked, const EvenSeries& series) {
   if (asked.about.rate_Hz &&
       std::abs(*asked.about.rate_Hz * series.interval - 1.0) > kSameRate)
-    throw std::invalid_argument(fmt::format(
-        "--rate-Hz {}: the times of {} say {:g} Hz; expected no --rate-Hz",
-        *asked.about.rate_Hz, asked.file, 1.0 / series.interval));
+    throw option_error(
+        "{}: the times of {} say {:g} Hz; expected no {}",
+        NamedOption{"rate_Hz", fmt::to_string(*asked.about.rate_Hz)},
+        asked.file, 1.0 / series.interval, NamedOption{"rate_Hz"});
 }
 
 void require_even(const AllanQuestion& asked, const EvenSeries& series) {

@@ -4,19 +4,20 @@
 #include <fmt/format.h>
 
 #include <optional>
-#include <stdexcept>
 
+#include "config/option_message.h"
 #include "config/range.h"
 
 namespace beamgyro::internal {
 
-/// Throws std::invalid_argument for an option called `what` that is beyond its
-/// range or not finite.
-inline void check_number(const char* what, std::optional<double> value,
+/// Throws OptionError for an option called `name` that is beyond its range or
+/// not finite.
+inline void check_number(const char* name, std::optional<double> value,
                          const Range& range) {
   if (value && !range.contains(*value))
-    throw std::invalid_argument(
-        fmt::format("{} {:g}; expected {}", what, *value, text_of(range)));
+    throw option_error("{}; expected {}",
+                       NamedOption{name, fmt::format("{:g}", *value)},
+                       text_of(range));
 }
 
 }  // namespace beamgyro::internal

@@ -22,6 +22,7 @@
 #include "compensation/export/export_ekf.h"
 #include "compensation/export/export_parameters.h"
 #include "compensation/firmware/c_text.h"
+#include "config/option_message.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/made_directories.h"
 #include "dataset/files/sha256.h"
@@ -52,7 +53,7 @@ auto of_file(const std::string& file, Work work) {
   try {
     return work();
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
+    throw OptionError(file + ": ", error);
   }
 }
 
@@ -64,16 +65,15 @@ std::vector<char> axes_of(const ExportRequest& asked) {
   if (axes.empty() && count == 1) axes = {'z'};
   if (axes.empty() && count == 3) axes = {'x', 'y', 'z'};
   if (axes.size() != count)
-    throw std::invalid_argument(
-        fmt::format("--axis: {} axes for {} compensators; one each, such as "
-                    "--axis x,y",
-                    axes.size(), count));
+    throw option_error("{}: {} axes for {} compensators; one each, such as {}",
+                       NamedOption{"axes"}, axes.size(), count,
+                       NamedOption{"axes", "x,y"});
   for (std::size_t k = 1; k < count; ++k)
     if (std::find(axes.begin(), axes.begin() + static_cast<std::ptrdiff_t>(k),
                   axes[k]) != axes.begin() + static_cast<std::ptrdiff_t>(k))
-      throw std::invalid_argument(fmt::format(
-          "--axis: {} twice; each compensator has an axis of its own",
-          axes[k]));
+      throw option_error(
+          "{}: {} twice; each compensator has an axis of its own",
+          NamedOption{"axes"}, axes[k]);
   return axes;
 }
 
@@ -119,7 +119,7 @@ void parameter_texts(const ExportRequest& asked, const std::string& name,
   if (px4 && gyro_id == 0)
     result.warnings.emplace_back(
         "TC_Gn_ID is 0: PX4 applies the parameters to the sensor with this id "
-        "only; pass --device-id");
+        "only; expected its device id");
 }
 
 void c_texts(const ExportRequest& asked, const std::string& name,
@@ -149,9 +149,10 @@ void ekf_files(const ExportRequest& asked, const std::string& name,
                ExportResult& result) {
   const ExportOptions& options = asked.options;
   if (!options.rest)
-    throw std::invalid_argument(
-        "--rest is missing; expected a recording at rest, from which the noise "
-        "is taken");
+    throw option_error(
+        "{} is missing; expected a recording at rest, from which the noise is "
+        "taken",
+        NamedOption{"rest"});
   const beamgyro::Compensator& own = asked.compensators[0];
   const Compensator& compensator = own.state().compensator;
   EkfExport given{.name = name,
@@ -182,34 +183,36 @@ void ekf_files(const ExportRequest& asked, const std::string& name,
 }
 
 void require_options(const ExportRequest& asked) {
-  check_number("--ramp-K-per-min", asked.options.ramp_K_per_min, {0.0, 1000.0});
-  check_number("--correlation-K", asked.options.correlation_K, positive());
-  check_number("--temperature-degC", asked.options.temperature_degC,
+  check_number("ramp_K_per_min", asked.options.ramp_K_per_min, {0.0, 1000.0});
+  check_number("correlation_K", asked.options.correlation_K, positive());
+  check_number("temperature_degC", asked.options.temperature_degC,
                {-273.15, 1000.0});
   const auto refuse = [&](bool given, const char* option, const char* formats) {
     if (given)
-      throw std::invalid_argument(
-          fmt::format("{}: is for the formats {}, not for {}", option, formats,
-                      asked.format));
+      throw option_error("{}: is for the formats {}, not for {}",
+                         NamedOption{option}, formats, asked.format);
   };
   const std::string& format = asked.format;
   if (format != "px4")
-    refuse(asked.options.device_id.has_value(), "--device-id", "px4");
-  if (format != "c") refuse(asked.options.force, "--force", "c");
+    refuse(asked.options.device_id.has_value(), "device_id", "px4");
+  if (format != "c") refuse(asked.options.force, "force", "c");
   if (format != "ekf") {
-    refuse(asked.options.rest.has_value(), "--rest", "ekf");
-    refuse(asked.options.ramp_K_per_min.has_value(), "--ramp-K-per-min", "ekf");
-    refuse(asked.options.correlation_K.has_value(), "--correlation-K", "ekf");
-    refuse(asked.options.temperature_degC.has_value(), "--temperature-degC",
+    refuse(asked.options.rest.has_value(), "rest", "ekf");
+    refuse(asked.options.ramp_K_per_min.has_value(), "ramp_K_per_min", "ekf");
+    refuse(asked.options.correlation_K.has_value(), "correlation_K", "ekf");
+    refuse(asked.options.temperature_degC.has_value(), "temperature_degC",
            "ekf");
   }
   if (format == "px4" || format == "ardupilot") return;
   if (format == "c")
-    refuse(!asked.options.axes.empty(), "--axis", "px4, ardupilot and ekf");
-  refuse(asked.options.instance.has_value(), "--instance", "px4 and ardupilot");
-  refuse(asked.options.fit_cubic, "--fit-cubic", "px4 and ardupilot");
-  refuse(asked.compensators.size() > 1, "several compensators",
-         "px4 and ardupilot");
+    refuse(!asked.options.axes.empty(), "axes", "px4, ardupilot and ekf");
+  refuse(asked.options.instance.has_value(), "instance", "px4 and ardupilot");
+  refuse(asked.options.fit_cubic, "fit_cubic", "px4 and ardupilot");
+  if (asked.compensators.size() > 1)
+    throw std::invalid_argument(fmt::format(
+        "several compensators: is for the formats px4 and ardupilot, not for "
+        "{}",
+        format));
 }
 
 void require_words(const ExportRequest& asked) {

@@ -43,8 +43,8 @@ void require_nothing_lost(const std::filesystem::path& directory,
   for (std::uint32_t index = 0; index < state.planned; ++index) {
     if (task.makes(index) && !state.entries.contains(index))
       throw std::runtime_error(fmt::format(
-          "{}: {} has vanished or changed since it was made; --resume makes it "
-          "again",
+          "{}: {} has vanished or changed since it was made; resuming the "
+          "generation makes it again",
           directory.string(), expected_entry(head, index).file));
   }
 }

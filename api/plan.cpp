@@ -13,6 +13,7 @@
 #include "api/compensator_state.h"
 #include "api/device_state.h"
 #include "api/soak_plan.h"
+#include "config/option_message.h"
 #include "config/units.h"
 #include "dataset/files/json_text.h"
 #include "planning/chamber_view.h"
@@ -79,16 +80,18 @@ TemperatureRange chamber_of(const PlanOptions& options,
   const TemperatureRange chamber =
       checked_range("chamber", *options.chamber_degC);
   if (chamber.lowest > range.lowest || chamber.highest < range.highest)
-    throw std::invalid_argument(fmt::format(
-        "--chamber {:g}:{:g}: narrower than the range {:g}:{:g}; expected a "
-        "chamber that reaches both ends, or a narrower --range",
-        chamber.lowest, chamber.highest, range.lowest, range.highest));
+    throw option_error(
+        "{}: narrower than the range {:g}:{:g}; expected a chamber that "
+        "reaches both ends, or a narrower {}",
+        NamedOption{"chamber_degC",
+                    fmt::format("{:g}:{:g}", chamber.lowest, chamber.highest)},
+        range.lowest, range.highest, NamedOption{"range_degC"});
   return chamber;
 }
 
 ChamberTime time_of(const PlanOptions& options) {
-  check_number("ramp", options.ramp_K_per_min, {0, 100, true, false});
-  check_number("start", options.start_degC, kChamberTemperatures);
+  check_number("ramp_K_per_min", options.ramp_K_per_min, {0, 100, true, false});
+  check_number("start_degC", options.start_degC, kChamberTemperatures);
   ChamberTime time;
   time.start = options.start_degC.value_or(time.start);
   time.ramp = options.ramp_K_per_min.value_or(time.ramp);
@@ -144,10 +147,9 @@ void check_goal(const PlanOptions& options) {
   const int goals = (options.soaks ? 1 : 0) + (options.hours ? 1 : 0) +
                     (options.residual_deg_per_s ? 1 : 0);
   if (goals != 1)
-    throw std::invalid_argument(fmt::format(
-        "{} goals given; expected one of --soaks N, --hours H and --residual "
-        "R",
-        goals));
+    throw option_error("{} goals given; expected one of {}, {} and {}", goals,
+                       NamedOption{"soaks", "N"}, NamedOption{"hours", "H"},
+                       NamedOption{"residual_deg_per_s", "R"});
 }
 
 struct PlanStudy::State {
@@ -179,9 +181,9 @@ struct PlanStudy::State {
                                      kResidualDigits);
     const std::size_t count = *options.soaks;
     if (count < 1 || count > planner.most_soaks())
-      throw std::invalid_argument(fmt::format(
-          "--soaks {}: soaks are {:g} K apart or more; expected 1 to {}", count,
-          kLeastDistance, planner.most_soaks()));
+      throw option_error("{}: soaks are {:g} K apart or more; expected 1 to {}",
+                         NamedOption{"soaks", std::to_string(count)},
+                         kLeastDistance, planner.most_soaks());
     return planner.with_soaks(count);
   }
 
@@ -200,7 +202,7 @@ PlanStudy::PlanStudy(const beamgyro::Compensator& population,
   check_goal(options);
   population_of(population);
   check_number("hours", options.hours, positive());
-  check_number("residual", options.residual_deg_per_s, positive());
+  check_number("residual_deg_per_s", options.residual_deg_per_s, positive());
   state_ = std::make_unique<State>(population, device, options);
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "include/beamgyro/scenario.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -10,6 +8,7 @@
 #include "api/device_state.h"
 #include "api/key_overrides.h"
 #include "api/scenario_state.h"
+#include "config/overrides.h"
 #include "dataset/files/text_file.h"
 #include "sim/scenario/carrier_run.h"
 
@@ -20,8 +19,8 @@ namespace {
 void require_no_device_key(const std::vector<std::string>& overrides) {
   for (const std::string& text : overrides)
     if (internal::key_of_override(text) == "device")
-      throw std::invalid_argument(fmt::format(
-          "--set {}: the device is in memory; expected it as a Device", text));
+      internal::reject_override(
+          text, "the device is in memory; expected it as a Device");
 }
 
 Scenario scenario_of(internal::InputText scenario, internal::InputText device,

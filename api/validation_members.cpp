@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "compensation/rows/recorded_runs.h"
-#include "include/beamgyro/option_error.h"
+#include "config/option_message.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -31,35 +31,34 @@ constexpr std::array kMembers{
                      "", "", "Devices of the set, by number",
                      "the test devices", kSetHeading, ""},
     ValidationMember{"full_scale", &Options::full_scale, kOnRecordings | kOnSet,
-                     "", "full_scale", "--full-scale", "DEG_PER_S",
+                     "", "full_scale", "full-scale", "DEG_PER_S",
                      "Largest rate that is replayed",
                      "that of the recording's device file, or 150 for a log",
                      kJudgedHeading, "full_scale_deg_per_s"},
     ValidationMember{"specification", &Options::specification, kOnAny, "",
-                     "spec", "--spec", "SPEC.toml",
-                     "Limits that have to be met",
+                     "spec", "spec", "SPEC.toml", "Limits that have to be met",
                      "better than a constant (specs/default.toml)",
                      kJudgedHeading, "specification", FileKind::kSpecification},
     ValidationMember{"workbench", &Options::workbench, kOnAny, "", "workbench",
-                     "--workbench", "COMPENSATOR.json",
+                     "workbench", "COMPENSATOR.json",
                      "Also tells the difference from this compensator, that "
                      "firmware was exported from",
                      "no comparison", kJudgedHeading, "workbench",
                      FileKind::kCompensator},
     ValidationMember{"qualification", &Options::qualification, kOnDevice, "",
-                     "qualification", "--qualification", "FILE.toml",
+                     "qualification", "qualification", "FILE.toml",
                      "Runs that the device goes through",
                      "the shipped scenarios/qualification.toml", kDeviceHeading,
                      "qualification", FileKind::kQualification},
     ValidationMember{
-        "campaign", &Options::campaign, kOnDevice, "", "campaign", "--campaign",
+        "campaign", &Options::campaign, kOnDevice, "", "campaign", "campaign",
         "CAMPAIGN.toml", "Also reports how many devices of a population pass",
         "one device alone", kDeviceHeading, "campaign", FileKind::kCampaign},
     ValidationMember{"campaign_devices", &Options::campaign_devices, kOnDevice,
-                     "campaign", "devices", "--devices", "N",
+                     "campaign", "devices", "devices", "N",
                      "Number of these devices", "that of the campaign",
                      kDeviceHeading, "devices"},
-    ValidationMember{"runs", &Options::runs, kOnSet, "", "set_runs", "--run",
+    ValidationMember{"runs", &Options::runs, kOnSet, "", "set_runs", "run",
                      "NAME", "Run to judge; may be repeated", "all runs",
                      kSetHeading, ""}};
 
@@ -138,17 +137,13 @@ void require_sound(const ValidationOptions& options) {
   for (const ValidationMember& row : kMembers) {
     if (!is_given(row, options)) continue;
     if ((row.subjects & subject) == 0)
-      throw OptionError([&row, subject](const OptionSpelling& spelled) {
-        return fmt::format("{} is for {}; this validation is on {}",
-                           spelled(row.name, ""), words_of(row.subjects),
-                           words_of(subject));
-      });
+      throw option_error("{} is for {}; this validation is on {}",
+                         NamedOption{std::string(row.name)},
+                         words_of(row.subjects), words_of(subject));
     for (const ValidationMember& other : kMembers)
       if (other.name == row.needs && !is_given(other, options))
-        throw OptionError([&row](const OptionSpelling& spelled) {
-          return fmt::format("{} needs {}", spelled(row.name, ""),
-                             spelled(row.needs, ""));
-        });
+        throw option_error("{} needs {}", NamedOption{std::string(row.name)},
+                           NamedOption{std::string(row.needs)});
   }
   if (options.device && !options.qualification)
     throw std::invalid_argument(

@@ -37,8 +37,8 @@ struct ValidationMember {
   unsigned subjects;        // that it goes with
   std::string_view needs;   // another member, or empty
   std::string_view python;  // keyword
-  // Of the command: "--full-scale", "DEG_PER_S", the help, what holds without
-  // it. Without an option it is an argument, or read by hand.
+  // Of the command: "full-scale", "DEG_PER_S", the help, what holds without it.
+  // Without an option it is an argument, or read by hand.
   std::string_view option, value, help, without;
   std::string_view heading;     // of the help
   std::string_view bundle_key;  // of the request; empty: not in bundles

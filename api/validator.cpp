@@ -15,7 +15,7 @@
 #include "api/validation_members.h"
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/rows/set_runs.h"
-#include "config/range.h"
+#include "config/option_message.h"
 #include "dataset/files/json_node.h"
 #include "dataset/files/sha256.h"
 #include "dataset/files/text_file.h"
@@ -159,10 +159,10 @@ struct Validator::State {
   void require_model_can_be_trained() const {
     if (!source.model) return;
     if (!options.device)
-      throw std::invalid_argument(fmt::format(
-          "{}: a model is trained on simulated runs; expected a device, or a "
+      throw option_error(
+          "{}: a model is trained on simulated runs; expected {}, or a "
           "compensator that was trained",
-          source.argument));
+          source.argument, NamedOption{"device", "DEVICE.toml"});
     if (qualification.training.empty())
       throw std::invalid_argument(
           fmt::format("{}: has no [[training]], on which {} would be trained",

@@ -34,10 +34,6 @@ AllanOptions allan_options(const AllanArguments& arguments) {
   options.taus = arguments.taus;
   options.from_s = arguments.from.value_or(options.from_s);
   options.to_s = arguments.to.value_or(options.to_s);
-  if (!(options.from_s < options.to_s))
-    throw std::invalid_argument(
-        fmt::format("--from {} --to {}: empty; expected --from below --to",
-                    options.from_s, options.to_s));
   return options;
 }
 

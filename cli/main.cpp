@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/commands.h"
@@ -11,12 +16,30 @@
 #include "cli/terminal.h"
 #include "cli/version.h"
 #include "dataset/netcdf/hdf5_exit.h"
+#include "include/beamgyro/option_error.h"
 #include "validation/external/plugin_host.h"
 
 namespace beamgyro::internal {
 namespace {
 
 constexpr int kWorkFailed = 1, kWrongInput = 2;
+
+/// Options whose names on the command line are not those of the library.
+constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
+    {"axes", "axis"},        {"chamber_degC", "chamber"},
+    {"column", "dataset"},   {"cross_validation", "cv"},
+    {"from_s", "from"},      {"hold_min", "hold"},
+    {"range_degC", "range"}, {"residual_deg_per_s", "residual"},
+    {"to_s", "to"}};
+
+/// Returns "--name value" for the option that the library calls `name`.
+std::string on_command_line(std::string_view name, std::string_view value) {
+  const auto* const other = std::ranges::find(
+      kOtherNames, name, &std::pair<std::string_view, std::string_view>::first);
+  std::string option(other == std::end(kOtherNames) ? name : other->second);
+  std::ranges::replace(option, '_', '-');
+  return fmt::format("--{}{}{}", option, value.empty() ? "" : " ", value);
+}
 
 int run_program(const std::vector<std::string>& words) {
   if (!words.empty() && words[0] == kPluginHostWord)
@@ -55,6 +78,9 @@ int main(int argc, char** argv) {
   try {
     keep_hdf5_open_at_exit();
     return run_program({argv + std::min(argc, 1), argv + argc});
+  } catch (const beamgyro::OptionError& error) {
+    print_error(error.words(on_command_line));
+    return kWrongInput;
   } catch (const std::invalid_argument& error) {
     print_error(error.what());
     return kWrongInput;

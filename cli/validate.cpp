@@ -83,7 +83,7 @@ void set_member(const ValidationMember& row, const OptionWords& words,
 
 void add_member(const ValidationMember& row, Command& command,
                 OptionWords& words) {
-  const OptionText text{std::string(row.option), std::string(row.value),
+  const OptionText text{"--" + std::string(row.option), std::string(row.value),
                         std::string(row.help), std::string(row.without)};
   command.group(std::string(row.heading));
   std::visit(

@@ -32,10 +32,14 @@ constexpr int kBundleDiffers = 1;
 
 // Options of the table are spelled as its rows say; the subjects by their
 // words.
-std::string spelled_option(std::string_view name, std::string_view) {
+std::string spelled_option(std::string_view name, std::string_view value) {
   const ValidationMember& row = member_named(name);
-  if (!row.option.empty()) return std::string(row.option);
-  return name == "device" || name == "devices" ? "--device" : std::string(name);
+  if (row.option.empty() && name != "device" && name != "devices")
+    return std::string(name);
+  std::string words =
+      "--" + std::string(row.option.empty() ? "device" : row.option);
+  if (!value.empty()) words.append(" ").append(value);
+  return words;
 }
 
 // A validation as files and the terminal show it.

@@ -85,9 +85,19 @@ std::string DocumentState::place(const ConfigNode& node,
                                  FilePosition position) const {
   if (node.origin) {
     const Override& set = overrides->overrides[*node.origin];
-    return set.place.empty() ? "--set " + printable(set.argument) : set.place;
+    return set.place.empty() ? "set " + printable(set.argument) : set.place;
   }
   return fmt::format("{}:{}:{}", name, position.line, position.column);
+}
+
+void DocumentState::fail(const ConfigNode& node, FilePosition position,
+                         const std::string& message) const {
+  if (node.origin) {
+    const Override& set = overrides->overrides[*node.origin];
+    if (set.place.empty()) reject_override(set.argument, message);
+  }
+  throw std::invalid_argument(
+      fmt::format("{}: {}", place(node, position), message));
 }
 
 std::vector<std::string> DocumentState::known_keys_in(
@@ -108,16 +118,12 @@ void DocumentState::reject_unknown_keys() const {
   if (first.node == nullptr) return;
   const ConfigNode& node = *first.node;
   const std::string key_path = joined(first.table, node.key);
-  const std::string at = place(node, node.key_position);
-  if (known_keys.contains(key_path)) {
-    throw std::invalid_argument(
-        fmt::format("{}: {}: not used together with the other keys given here; "
-                    "remove it",
-                    at, key_path));
-  }
-  throw std::invalid_argument(
-      fmt::format("{}: {}: unknown key; {}", at, printable(key_path),
-                  advice(*this, first.table, node.key)));
+  fail(node, node.key_position,
+       known_keys.contains(key_path)
+           ? key_path +
+                 ": not used together with the other keys given here; remove it"
+           : fmt::format("{}: unknown key; {}", printable(key_path),
+                         advice(*this, first.table, node.key)));
 }
 
 }  // namespace beamgyro::internal

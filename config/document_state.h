@@ -27,9 +27,13 @@ struct DocumentState {
   void note_known(const std::string& path);
   /// Records that `node` was read.
   void mark_read(const ConfigNode& node) const;
-  /// Returns "file:line:column", or "--set KEY=VALUE" for a value that came
-  /// from an override.
+  /// Returns "file:line:column", or "set KEY=VALUE" for a value that came from
+  /// an override.
   std::string place(const ConfigNode& node, FilePosition position) const;
+  /// Throws std::invalid_argument "place: message", an OptionError for a value
+  /// that came from an override.
+  [[noreturn]] void fail(const ConfigNode& node, FilePosition position,
+                         const std::string& message) const;
   /// Returns the keys asked for in the table `path`, without the path.
   std::vector<std::string> known_keys_in(const std::string& path) const;
   /// Throws std::invalid_argument for the first key in file order that was not

@@ -14,7 +14,7 @@ struct Override {
   std::string argument;           // KEY=VALUE as given
   std::vector<std::string> path;  // KEY split at its dots
   ConfigNode value;
-  std::string place;  // for messages; empty: --set and the argument
+  std::string place;  // for messages; empty: the argument
   mutable bool used = false;
 };
 

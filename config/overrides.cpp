@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
 #include <string_view>
 
+#include "config/option_message.h"
 #include "config/override_set.h"
 #include "config/suggestion.h"
 #include "config/toml_parser.h"
@@ -16,8 +16,8 @@ namespace {
 
 [[noreturn]] void reject(std::string_view argument,
                          const std::string& message) {
-  throw std::invalid_argument(
-      fmt::format("--set {}: {}", printable(argument), message));
+  throw option_error("{} {}: {}", NamedOption{"set"}, printable(argument),
+                     message);
 }
 
 bool is_bare(char c) {
@@ -126,12 +126,12 @@ bool begins_with(const std::vector<std::string>& path,
 
 void check_against_earlier(const Override& set, const Override& earlier) {
   if (set.path == earlier.path) {
-    reject(set.argument, fmt::format("the key was set before, by --set {}",
+    reject(set.argument, fmt::format("the key was set before, by {}",
                                      printable(earlier.argument)));
   }
   if (begins_with(earlier.path, set.path)) {
     reject(set.argument,
-           fmt::format("would replace the earlier --set {}; give the whole "
+           fmt::format("would replace the earlier {}; give the whole "
                        "table first",
                        printable(earlier.argument)));
   }
@@ -147,6 +147,10 @@ std::string last_part(const std::string& path) {
 }
 
 }  // namespace
+
+void reject_override(const std::string& argument, const std::string& message) {
+  reject(argument, message);
+}
 
 void insert_override(const Override& set, std::size_t origin,
                      const std::string& document, ConfigNode& root) {
@@ -182,17 +186,18 @@ Overrides::Overrides(const std::vector<std::string>& arguments) : Overrides() {
     Override set = parse_override(argument);
     for (const Override& earlier : state_->overrides)
       check_against_earlier(set, earlier);
-    insert_override(set, state_->overrides.size(), "an earlier --set",
-                    together);
+    insert_override(set, state_->overrides.size(), "an earlier one", together);
     state_->overrides.push_back(std::move(set));
   }
 }
 
 void Overrides::add(const std::vector<std::string>& path,
                     const ConfigNode& value, const std::string& place) {
+  const std::string argument =
+      fmt::format("{}={}", fmt::join(path, "."), toml_text(value));
   state_->overrides.push_back(
-      {fmt::format("{}={}", fmt::join(path, "."), toml_text(value)), path,
-       value, place});
+      {argument, path, value,
+       place.empty() ? "--set " + printable(argument) : place});
 }
 
 bool Overrides::all_used() const {

@@ -10,14 +10,18 @@ namespace beamgyro::internal {
 struct ConfigNode;
 struct OverrideSet;
 
-/// The `--set KEY=VALUE` arguments of one command, shared by its documents. KEY
-/// is a dotted path of bare keys, VALUE any TOML value on one line. Every
-/// document puts all of them into its own tree. The document that reads a value
-/// marks the override as used.
+/// Throws OptionError "set KEY=VALUE: message".
+[[noreturn]] void reject_override(const std::string& argument,
+                                  const std::string& message);
+
+/// The KEY=VALUE arguments of one command, shared by its documents. KEY is a
+/// dotted path of bare keys, VALUE any TOML value on one line. Every document
+/// puts all of them into its own tree. The document that reads a value marks
+/// the override as used.
 class Overrides {
  public:
   Overrides();
-  /// Throws std::invalid_argument for
+  /// Throws OptionError for
   /// - an argument without '=' or without a key;
   /// - a value that is not TOML;
   /// - a key that is given twice, or that a later argument would replace;
@@ -25,12 +29,13 @@ class Overrides {
   explicit Overrides(const std::vector<std::string>& arguments);
 
   /// Adds `value` for the key `path` without checking it against the others.
-  /// Messages name `place`, or `--set KEY=VALUE` if it is empty.
+  /// Messages name `place`, or "--set KEY=VALUE" if it is empty, by which files
+  /// of sets name the value that a device failed with.
   void add(const std::vector<std::string>& path, const ConfigNode& value,
            const std::string& place = "");
 
-  /// Throws std::invalid_argument for the first override that no document asked
-  /// for, with a suggestion among the keys that were asked for.
+  /// Throws OptionError for the first override that no document asked for,
+  /// with a suggestion among the keys that were asked for.
   void check_all_used() const;
 
   /// Returns whether every override was read by some document.

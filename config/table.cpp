@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
 
 #include "config/config_node.h"
@@ -289,7 +288,19 @@ std::string ConfigTable::place(std::string_view key, std::size_t index) const {
 }
 
 void ConfigTable::fail(std::string_view key, const std::string& message) const {
-  throw std::invalid_argument(place(key) + ": " + message);
+  const ConfigNode* value = peek(key);
+  const ConfigNode& node = value != nullptr ? *value : *node_;
+  document_->fail(node, node.position,
+                  fmt::format("{}: {}", path_of(key), message));
+}
+
+void ConfigTable::fail(std::string_view key, std::size_t index,
+                       const std::string& message) const {
+  const ConfigNode* value = peek(key);
+  if (value == nullptr || index >= value->children.size()) fail(key, message);
+  const ConfigNode& element = value->children[index];
+  document_->fail(element, element.position,
+                  fmt::format("{}[{}]: {}", path_of(key), index, message));
 }
 
 }  // namespace beamgyro::internal

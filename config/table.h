@@ -20,7 +20,8 @@ struct DocumentState;
 /// ConfigDocument::reject_unknown_keys() rejects the others. A table keeps its
 /// document alive. Every error is a std::invalid_argument "file:line:column:
 /// table.key: value met, what is wrong; what would be right". For a value that
-/// came from an override the place is "--set KEY=VALUE".
+/// came from an override the place is "set KEY=VALUE", spelled as in
+/// OptionError.
 class ConfigTable {
  public:
   /// Returns whether the key is there. This does not count as reading it, so a
@@ -85,6 +86,8 @@ class ConfigTable {
   std::string place(std::string_view key, std::size_t index) const;
   /// Throws std::invalid_argument "place(key): message".
   [[noreturn]] void fail(std::string_view key,
+                         const std::string& message) const;
+  [[noreturn]] void fail(std::string_view key, std::size_t index,
                          const std::string& message) const;
 
  private:

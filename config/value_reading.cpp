@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <string_view>
 
 namespace beamgyro::internal {
@@ -54,8 +53,7 @@ ConfigValue ConfigValue::element(std::size_t index) const {
 }
 
 void ConfigValue::fail(const std::string& message) const {
-  throw std::invalid_argument(fmt::format(
-      "{}: {}: {}", document.place(node, node.position), path, message));
+  document.fail(node, node.position, fmt::format("{}: {}", path, message));
 }
 
 double read_number(const ConfigValue& value, const Range& range) {

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "config/option_message.h"
+
 namespace beamgyro::internal {
 namespace {
 
@@ -44,9 +46,10 @@ Planner::Planner(const SoakModel& model, TemperatureRange chamber,
         rows.size()));
   if (behaviour_.minutes &&
       (*behaviour_.minutes < shortest_ || *behaviour_.minutes > rows.size()))
-    throw std::invalid_argument(fmt::format(
-        "--hold {}: soaks of {} min or more have settled; expected {} to {}",
-        *behaviour_.minutes, shortest_, shortest_, rows.size()));
+    throw option_error(
+        "{}: soaks of {} min or more have settled; expected {} to {}",
+        NamedOption{"hold_min", std::to_string(*behaviour_.minutes)}, shortest_,
+        shortest_, rows.size());
   if (behaviour_.start_row && !model.reaches(behaviour_.start_row->temperature))
     behaviour_.start_row.reset();
   limits_.start = time.start;

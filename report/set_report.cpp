@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "config/option_message.h"
 #include "dataset/set/set_writer.h"
 #include "dataset/set/shard/shard_reader.h"
 #include "sim/campaign/campaign.h"
@@ -155,9 +156,9 @@ std::string info_on_set(const fs::path& path) {
 std::string info_on_device(const fs::path& path, std::uint32_t device) {
   const ManifestHead head = set_contents(path).head;
   if (device >= head.devices)
-    throw std::invalid_argument(
-        fmt::format("--device {}: {} has devices 0 to {}", device,
-                    path.string(), head.devices - 1));
+    throw option_error("{}: {} has devices 0 to {}",
+                       NamedOption{"device", std::to_string(device)},
+                       path.string(), head.devices - 1);
   const CampaignPlan campaign =
       CampaignPlan::of_copies(read_copies(path, head), head.devices);
   const VirtualDevice drawn = campaign.device(device);

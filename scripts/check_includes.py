@@ -38,7 +38,7 @@ ALL = [*BASE, *DATASET, *SIM, *COMPENSATION]
 
 # What each room may include besides itself.
 MAY_INCLUDE = {
-    "config": set(), "linear_algebra": set(), "statistics": set(),
+    "config": {"include"}, "linear_algebra": set(), "statistics": set(),
     "random": set(),
     "parallel": set(), "include": set(),
     **in_order(DATASET, ["config", "include"]),
@@ -101,6 +101,19 @@ FRONT_END_ONLY = re.compile(
     r"\bstd::(?:cout|cerr|clog|exit|quick_exit|abort|getenv)\b"
     r"|\b(?:printf|fprintf|vprintf|puts|fputs|exit|_exit|abort|getenv)\s*\("
     r"|\bfmt::print\b")
+OPTION = re.compile(r"(?<![\w-])--[a-z][\w-]*")
+# A library names what is wrong and leaves dashes to the program (OptionError).
+# These may name options of the command line, and why:
+NAMED_OPTIONS = {
+    # which commands take files of a kind
+    "api/file_kind.cpp": {"--model", "--qualification", "--spec", "--map",
+                          "--json"},
+    # why a device of a set failed: bytes of the set
+    "config/overrides.cpp": {"--set"},
+    # import is a command of the program alone
+    "report/import_report.cpp": {"--join"},
+    "validation/bundle/bundle.cpp": {"--bundle"},
+}
 PUBLIC = "include/beamgyro/"
 FRONT_ENDS = ("cli/", "bench/", "tests/")
 
@@ -148,6 +161,10 @@ def offences(path, text):
         if target.startswith("tests/") or other not in allowed:
             yield f'must not include "{target}"'
     if not path.startswith(FRONT_ENDS):
+        for part in COMMENT_OR_TEXT.findall(text):
+            for option in OPTION.findall(part) if part[0] == '"' else []:
+                if option not in NAMED_OPTIONS.get(path, ()):
+                    yield f"only cli/ knows options of the program: {option}"
         code = COMMENT_OR_TEXT.sub('""', text)
         for call in sorted(set(FRONT_END_ONLY.findall(code))):
             yield f"only cli/ prints, exits or reads the environment: {call}"

@@ -13,6 +13,7 @@
 #include "compensation/export/firmware_model.h"
 #include "compensation/firmware/c_text.h"
 #include "compensation/firmware/runtime.h"
+#include "config/option_message.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -272,8 +273,8 @@ ExportedC export_c(const Compensator& compensator, const std::string& name,
   const FirmwareModel model(compensator);
   const ExportFindings found = findings_of(compensator);
   if (!force && !found.objections.empty())
-    throw std::invalid_argument(fmt::format(
-        "{}; --force exports it with this warning", found.objections[0]));
+    throw option_error("{}; {} exports it with this warning",
+                       found.objections[0], NamedOption{"force"});
   const Writer writer(compensator, name, model);
   return {header_text(compensator, name, model, found),
           writer.source(found.objections), self_test_source(compensator, name),

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compensation/methods/autopilot_fits.h"
+#include "config/option_message.h"
 #include "config/units.h"
 
 namespace beamgyro::internal {
@@ -77,15 +78,14 @@ BiasModel autopilot_cubic(const Compensator& c, bool fit_cubic) {
   if (fit_cubic) return c.baseline;
   const Provenance& p = c.provenance;
   const bool both = p.held_out_rms && p.baseline_held_out_rms;
-  throw std::invalid_argument(fmt::format(
+  throw option_error(
       "the format holds a cubic of the temperature, and of this compensator "
-      "{}; "
-      "a cubic fitted to the same rows has {:.4g} deg/s rms in-sample{} where "
-      "this one has {:.4g}{}; --fit-cubic exports it",
+      "{}; a cubic fitted to the same rows has {:.4g} deg/s rms in-sample{} "
+      "where this one has {:.4g}{}; {} exports it",
       reason, p.baseline_in_sample_rms,
       both ? fmt::format(" and {:.4g} held-out", *p.baseline_held_out_rms) : "",
-      p.in_sample_rms,
-      both ? fmt::format(" and {:.4g}", *p.held_out_rms) : ""));
+      p.in_sample_rms, both ? fmt::format(" and {:.4g}", *p.held_out_rms) : "",
+      NamedOption{"fit_cubic"});
 }
 
 TemperatureRange common_range(const std::vector<AutopilotAxis>& axes) {

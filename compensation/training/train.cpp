@@ -14,6 +14,7 @@
 #include "compensation/training/scale_factor_table.h"
 #include "compensation/training/selection.h"
 #include "compensation/training/sigma_fit.h"
+#include "config/option_message.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -30,9 +31,11 @@ void check_runs(const ModelSpec& spec, const RunSource& runs,
   if (runs.count == 0)
     throw std::invalid_argument("training needs at least one recording");
   if (has_network(spec) && held_out.count == 0 && !cross_validation)
-    throw std::invalid_argument(
-        "a bp network needs held-out recordings to stop early on: pass "
-        "--held-out RUN.h5, or --cv run|cycle|leg");
+    throw option_error(
+        "a bp network needs held-out recordings to stop early on: pass {}, or "
+        "{}",
+        NamedOption{"held_out", "RUN.h5"},
+        NamedOption{"cross_validation", "run|cycle|leg"});
 }
 
 // Facts about the runs that are kept besides their rows.

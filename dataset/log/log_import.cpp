@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "config/option_message.h"
 #include "dataset/log/log_advice.h"
 #include "dataset/log/log_clock.h"
 #include "dataset/log/log_drift.h"
@@ -301,14 +302,14 @@ ImportedLog import_log(std::string_view text, const std::filesystem::path& path,
                        const LogMap& map,
                        const std::optional<SecondLog>& joined) {
   if (map.join && !joined) {
-    throw std::invalid_argument(fmt::format(
-        "{}: needs a second log; expected --join LOG.csv", map.join->place));
+    throw option_error("{}: needs a second log; expected {}", map.join->place,
+                       NamedOption{"join", "LOG.csv"});
   }
   if (joined && !map.join) {
-    throw std::invalid_argument(
-        fmt::format("--join {}: the map has no table [join]; expected one "
-                    "that states what the second log holds",
-                    joined->path.string()));
+    throw option_error(
+        "{}: the map has no table [join]; expected one that states what the "
+        "second log holds",
+        NamedOption{"join", joined->path.string()});
   }
   if (!joined) return LogReader(text, path, map).read();
   LogReader reader(joined->text, joined->path, *map.join->map);

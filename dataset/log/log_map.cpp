@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "config/option_message.h"
 #include "dataset/recording/units.h"
 
 namespace beamgyro::internal {
@@ -74,23 +75,23 @@ LogQuantity read_gyro(const ConfigTable& root, const std::string& axis) {
   }
   if (axes.empty()) {
     if (!axis.empty()) {
-      throw std::invalid_argument(
-          fmt::format("--axis {}: {}: has no axes; expected no --axis", axis,
-                      root.place("gyro")));
+      throw option_error("{}: {}: has no axes; expected no {}",
+                         NamedOption{"axis", axis}, root.place("gyro"),
+                         NamedOption{"axis"});
     }
     return read_rate(gyro);
   }
   if (axis.empty() && axes.size() > 1) {
-    root.fail("gyro", fmt::format("has the axes {}; expected --axis to choose "
-                                  "one",
-                                  fmt::join(axes, ", ")));
+    throw option_error(
+        "{}: has the axes {}; expected {} to choose one", root.place("gyro"),
+        fmt::to_string(fmt::join(axes, ", ")), NamedOption{"axis"});
   }
   if (axis.empty()) return rates.front();
   const auto found = std::find(axes.begin(), axes.end(), axis);
   if (found == axes.end()) {
-    throw std::invalid_argument(
-        fmt::format("--axis {}: {}: has no such axis; expected one of {}", axis,
-                    root.place("gyro"), fmt::join(axes, ", ")));
+    throw option_error("{}: {}: has no such axis; expected one of {}",
+                       NamedOption{"axis", axis}, root.place("gyro"),
+                       fmt::to_string(fmt::join(axes, ", ")));
   }
   return rates[static_cast<std::size_t>(found - axes.begin())];
 }
@@ -241,9 +242,10 @@ std::vector<std::array<double, 2>> read_powered(const ConfigTable& root) {
   double last = -kEver;
   for (const std::vector<double>& row : root.rows(kKey, 2)) {
     if (!(row[0] >= last && row[1] > row[0])) {
-      throw std::invalid_argument(fmt::format(
-          "{}: [{}, {}] is out of order; expected [on, off] times that rise",
-          root.place(kKey, powered.size()), row[0], row[1]));
+      root.fail(kKey, powered.size(),
+                fmt::format("[{}, {}] is out of order; expected [on, off] "
+                            "times that rise",
+                            row[0], row[1]));
     }
     powered.push_back({row[0], row[1]});
     last = row[1];

@@ -16,6 +16,7 @@
 #include <system_error>
 
 #include "config/file_error.h"
+#include "config/option_message.h"
 #include "dataset/files/json_node.h"
 #include "dataset/files/publish.h"
 #include "dataset/files/set_files.h"
@@ -296,9 +297,9 @@ Manifest read_manifest(const std::filesystem::path& directory,
 Manifest finished_manifest(const std::filesystem::path& directory) {
   Manifest manifest = read_manifest(directory, kManifestName);
   if (!manifest.head || !manifest.is_finished)
-    throw std::invalid_argument(fmt::format(
-        "{}: the set is not finished; generate --resume finishes it",
-        directory.string()));
+    throw option_error(
+        "{}: the set is not finished; generate with {} finishes it",
+        directory.string(), NamedOption{"resume"});
   if (!manifest.damaged_lines.empty() ||
       manifest.entries.size() != file_count(*manifest.head))
     throw std::invalid_argument(
@@ -346,7 +347,7 @@ void append_entry(const std::filesystem::path& directory,
     if (facts.st_nlink > 1)
       throw std::runtime_error(fmt::format(
           "{}: has another name, too, and may be somebody else's file; "
-          "expected a manifest of its own, which --resume makes",
+          "expected a manifest of its own, which resuming the generation makes",
           path.string()));
     std::string line = line_of(json_of(entry));
     // A line that a dead process cut short must not swallow this one.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "config/file_error.h"
+#include "config/option_message.h"
 #include "dataset/files/publish.h"
 #include "dataset/files/set_files.h"
 #include "dataset/files/sha256.h"
@@ -77,15 +78,16 @@ void require_same(const fs::path& directory, const ManifestHead& met,
         "another directory",
         directory.string(), met.program_version, met.git_revision,
         head.program_version, head.git_revision));
-  throw std::invalid_argument(fmt::format(
-      "{}: holds a set of another campaign ({}, {} devices{}); expected the "
-      "same "
-      "campaign, with the same scenarios, device and number of devices, or "
-      "another directory",
-      directory.string(), met.campaign, met.devices,
-      met.devices == head.devices
-          ? ""
-          : fmt::format(", here {}; --devices sets them", head.devices)));
+  const std::string what =
+      fmt::format("{}: holds a set of another campaign ({}, {} devices",
+                  directory.string(), met.campaign, met.devices);
+  constexpr const char* kExpected =
+      "expected the same campaign, with the same scenarios, device and number "
+      "of devices, or another directory";
+  if (met.devices == head.devices)
+    throw std::invalid_argument(fmt::format("{}); {}", what, kExpected));
+  throw option_error("{}, here {}; {} sets them); {}", what, head.devices,
+                     NamedOption{"devices"}, kExpected);
 }
 
 bool holds_files_of_a_set(const fs::path& directory) {
@@ -244,10 +246,10 @@ void SetWriter::enter(std::span<const SourceText> sources, bool resume) {
                     ? std::string()
                     : fmt::format("{}-of-{}", task_.number, task_.of));
   if (task_.is_whole() && !resume && holds_files_of_a_set(directory_))
-    throw std::invalid_argument(
-        fmt::format("{}: holds a set, or files of one; expected --resume to go "
-                    "on with it, or another directory",
-                    directory_.string()));
+    throw option_error(
+        "{}: holds a set, or files of one; expected {} to go on with it, or "
+        "another directory",
+        directory_.string(), NamedOption{"resume"});
   const std::optional<SetContents> contents = find_set(directory_);
   if (contents) {
     require_same(directory_, contents->head, head_);

@@ -26,7 +26,7 @@ class Device {
   /// Reads a device file. `overrides` replace keys of it: KEY=VALUE with a
   /// dotted key and any TOML value, as "beam.length_m=0.041". Throws
   /// std::invalid_argument "file:line:column: key: ..." for what is wrong in
-  /// the file, and "--set KEY=VALUE: ..." for an override.
+  /// the file, and OptionError "set KEY=VALUE: ..." for an override.
   static Device read(const std::filesystem::path& file,
                      const std::vector<std::string>& overrides = {});
 

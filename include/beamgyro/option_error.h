@@ -26,6 +26,13 @@ class OptionError : public std::invalid_argument {
   explicit OptionError(Words words)
       : std::invalid_argument(words(in_cpp)), words_(std::move(words)) {}
 
+  /// Puts words before those of an error, such as the name of a file.
+  OptionError(const std::string& before, const std::invalid_argument& error)
+      : OptionError(Words(
+            [before, after = words_of(error)](const OptionSpelling& spelled) {
+              return before + after(spelled);
+            })) {}
+
   /// Returns the message for a reader who spells options in this way.
   std::string words(const OptionSpelling& spelled) const {
     return words_(spelled);
@@ -39,6 +46,14 @@ class OptionError : public std::invalid_argument {
   }
 
  private:
+  static Words words_of(const std::invalid_argument& error) {
+    const auto* of_options = dynamic_cast<const OptionError*>(&error);
+    if (of_options != nullptr) return of_options->words_;
+    return [text = std::string(error.what())](const OptionSpelling&) {
+      return text;
+    };
+  }
+
   Words words_;
 };
 

@@ -25,7 +25,7 @@ class Scenario {
   /// either: KEY=VALUE with a dotted key and any TOML value, as "seed=2",
   /// "fidelity=\"carrier\"" or "beam.length_m=0.041". Throws
   /// std::invalid_argument "file:line:column: key: ..." for what is wrong in a
-  /// file, and "--set KEY=VALUE: ..." for an override.
+  /// file, and OptionError "set KEY=VALUE: ..." for an override.
   static Scenario read(const std::filesystem::path& file,
                        const std::vector<std::string>& overrides = {});
 

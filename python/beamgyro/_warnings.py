@@ -8,8 +8,6 @@ import sys
 import warnings
 from collections.abc import Iterable
 
-from beamgyro import _core
-
 _HERE = os.path.dirname(__file__) + os.sep
 
 
@@ -25,5 +23,4 @@ def warn(texts: Iterable[str]) -> None:
         frame = frame.f_back
         level += 1
     for text in texts:
-        warnings.warn(_core.in_words_of_python(text), BeamgyroWarning,
-                      stacklevel=level)
+        warnings.warn(text, BeamgyroWarning, stacklevel=level)

@@ -127,8 +127,9 @@ py::tuple validated(
       }));
 } catch (const OptionError& error) {
   throw std::invalid_argument(
-      error.words([](std::string_view name, std::string_view) {
-        return std::string(internal::member_named(name).python);
+      error.words([](std::string_view name, std::string_view value) {
+        const std::string keyword(internal::member_named(name).python);
+        return value.empty() ? keyword : keyword + "=" + std::string(value);
       }));
 }
 

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "config/file_error.h"
+#include "config/option_message.h"
 #include "dataset/files/text_file.h"
 #include "dataset/set/manifest.h"
 #include "sim/campaign/draw_plan_file.h"
@@ -68,10 +69,9 @@ class CampaignReader {
     root_.text_or("description", "");
     state_.text = document_.text();
     if (devices_ && (*devices_ < 1 || *devices_ > kMostDevices)) {
-      throw std::invalid_argument(
-          fmt::format("--devices {}: out of range; expected an integer in "
-                      "[1, {}]",
-                      *devices_, kMostDevices));
+      throw option_error("{}: out of range; expected an integer in [1, {}]",
+                         NamedOption{"devices", std::to_string(*devices_)},
+                         kMostDevices);
     }
     const long devices = devices_
                              ? root_.integer_or("devices", 1, 1, kMostDevices)

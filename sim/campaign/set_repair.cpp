@@ -23,8 +23,7 @@ ManifestHead repairable_head(const fs::path& directory,
   if (!manifest.head || manifest.head->sources.empty())
     throw std::runtime_error(
         fmt::format("{}: the manifest has lost the line that names the "
-                    "campaign; run generate "
-                    "--resume with the campaign",
+                    "campaign; resume the generation with the campaign",
                     directory.string()));
   if (manifest.head->program_version != program.version ||
       manifest.head->git_revision != program.git_revision)
@@ -48,7 +47,7 @@ CampaignPlan campaign_of(const fs::path& directory,
 } catch (const std::exception& error) {
   // A file that cannot be read counts as damaged.
   throw std::runtime_error(
-      fmt::format("{}; run generate --resume with the campaign that the set "
+      fmt::format("{}; resume the generation with the campaign that the set "
                   "was made of",
                   error.what()));
 }
@@ -88,7 +87,7 @@ SetRepair::SetRepair(const fs::path& directory, const Manifest& manifest,
   if (plan_.manifest_head() != head_)
     throw std::runtime_error(
         fmt::format("{}: the manifest is not that of the campaign beside it; "
-                    "run generate --resume with the campaign that the set was "
+                    "resume the generation with the campaign that the set was "
                     "made of",
                     directory.string()));
   std::set<std::uint32_t> files;

@@ -25,14 +25,15 @@ Knots read_rows(const ConfigTable& table, std::string_view key,
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double t = rows[i][0], value = rows[i][1];
     if (!knots.time.empty() && t <= knots.time.back()) {
-      throw std::invalid_argument(fmt::format(
-          "{}: time {} s does not come after {} s; expected increasing times",
-          table.place(key, i), t, knots.time.back()));
+      table.fail(key, i,
+                 fmt::format("time {} s does not come after {} s; expected "
+                             "increasing times",
+                             t, knots.time.back()));
     }
     if (!unit.range.contains(value)) {
-      throw std::invalid_argument(
-          fmt::format("{}: {} is out of range; expected {}",
-                      table.place(key, i), value, text_of(unit.range)));
+      table.fail(key, i,
+                 fmt::format("{} is out of range; expected {}", value,
+                             text_of(unit.range)));
     }
     knots.time.push_back(t);
     knots.value.push_back(value * unit.factor + unit.offset);
@@ -70,10 +71,12 @@ std::string only_form(const ConfigTable& table,
   if (present.size() == 1) return present.front();
   if (present.empty()) {
     const std::vector<std::string> keys = table.keys();
-    throw std::invalid_argument(fmt::format(
-        "{}: missing{}; expected one of {}", table.place(forms[0]),
-        keys.empty() ? "" : fmt::format(", beside {}", fmt::join(keys, ", ")),
-        fmt::join(forms, ", ")));
+    table.fail(forms[0],
+               fmt::format("missing{}; expected one of {}",
+                           keys.empty() ? ""
+                                        : fmt::format(", beside {}",
+                                                      fmt::join(keys, ", ")),
+                           fmt::join(forms, ", ")));
   }
   table.fail(present[1], fmt::format("given beside {}; expected only one of {}",
                                      present[0], fmt::join(forms, ", ")));

@@ -66,16 +66,16 @@ std::vector<PowerInterval> read_power(const ConfigTable& power) {
   std::vector<PowerInterval> intervals;
   for (std::size_t i = 0; i < on.size(); ++i) {
     if (i > 0 && !is_after(on[i], off[i - 1])) {
-      throw std::invalid_argument(fmt::format(
-          "{}: {} s does not come after off_s = {} s; expected on and off in "
-          "turn",
-          power.place("on_s", i), on[i], off[i - 1]));
+      power.fail("on_s", i,
+                 fmt::format("{} s does not come after off_s = {} s; expected "
+                             "on and off in turn",
+                             on[i], off[i - 1]));
     }
     if (i < off.size() && !is_after(off[i], on[i])) {
-      throw std::invalid_argument(fmt::format(
-          "{}: {} s does not come after on_s = {} s; expected on and off in "
-          "turn",
-          power.place("off_s", i), off[i], on[i]));
+      power.fail("off_s", i,
+                 fmt::format("{} s does not come after on_s = {} s; expected "
+                             "on and off in turn",
+                             off[i], on[i]));
     }
     intervals.push_back({on[i], i < off.size()
                                     ? off[i]

@@ -90,82 +90,80 @@ TEST(Overrides, ReplaceWholeTables) {
 
 TEST(Overrides, PassTheSameChecksAndNameThemselvesAsThePlace) {
   EXPECT_EQ(rejection_of({"beam.length_m=-1"}),
-            "--set beam.length_m=-1: beam.length_m: -1 is out of range; "
+            "set beam.length_m=-1: beam.length_m: -1 is out of range; "
             "expected a number > 0");
   EXPECT_EQ(rejection_of({"duration_s=nan"}),
-            "--set duration_s=nan: duration_s: nan is not finite; expected a "
+            "set duration_s=nan: duration_s: nan is not finite; expected a "
             "number > 0");
   EXPECT_EQ(rejection_of({"duration_s=\"long\""}),
-            "--set duration_s=\"long\": duration_s: \"long\" is wrong here; "
+            "set duration_s=\"long\": duration_s: \"long\" is wrong here; "
             "expected a number > 0");
   EXPECT_EQ(rejection_of({"rate.points=[1, true]"}),
-            "--set rate.points=[1, true]: rate.points[1]: true is wrong here; "
+            "set rate.points=[1, true]: rate.points[1]: true is wrong here; "
             "expected a finite number");
 }
 
 TEST(Overrides, AKeyNobodyAsksForIsRejectedWithASuggestion) {
   EXPECT_EQ(rejection_of({"beam.lenght_m=1"}),
-            "--set beam.lenght_m=1: no file of this command has a key "
+            "set beam.lenght_m=1: no file of this command has a key "
             "'beam.lenght_m'; did you mean 'beam.length_m'?");
   EXPECT_EQ(rejection_of({"length_m=1"}),
-            "--set length_m=1: no file of this command has a key 'length_m'; "
+            "set length_m=1: no file of this command has a key 'length_m'; "
             "did you mean 'beam.length_m'?");
   EXPECT_EQ(rejection_of({"zzz.yyy=1"}),
-            "--set zzz.yyy=1: no file of this command has a key 'zzz.yyy'; "
+            "set zzz.yyy=1: no file of this command has a key 'zzz.yyy'; "
             "expected a key of the scenario or the device");
 }
 
 TEST(Overrides, AnUnknownKeyInAGivenTableIsRejected) {
   EXPECT_EQ(rejection_of({"rate={points=[3], pionts=[4]}"}),
-            "--set rate={points=[3], pionts=[4]}: rate.pionts: unknown key; "
+            "set rate={points=[3], pionts=[4]}: rate.pionts: unknown key; "
             "did you mean 'points'?");
 }
 
 TEST(Overrides, AWordWithoutQuotesIsExplained) {
   EXPECT_EQ(rejection_of({"readout.mode=open_loop"}),
-            "--set readout.mode=open_loop: 'open_loop' is not TOML; a text "
+            "set readout.mode=open_loop: 'open_loop' is not TOML; a text "
             "needs quotes: readout.mode=\"open_loop\"");
   EXPECT_EQ(rejection_of({"noise.enabled=True"}),
-            "--set noise.enabled=True: 'True' is not TOML; write "
+            "set noise.enabled=True: 'True' is not TOML; write "
             "noise.enabled=true");
 }
 
 TEST(Overrides, BadSyntaxIsRejected) {
   EXPECT_EQ(rejection_of({"beam.length_m"}),
-            "--set beam.length_m: no '=' in it; expected KEY=VALUE such as "
+            "set beam.length_m: no '=' in it; expected KEY=VALUE such as "
             "beam.length_m=0.038");
-  EXPECT_EQ(rejection_of({"=1"}), "--set =1: the key before '=' is missing");
-  EXPECT_EQ(
-      rejection_of({"beam..x=1"}),
-      "--set beam..x=1: the key 'beam..x' has an empty part beside a dot");
+  EXPECT_EQ(rejection_of({"=1"}), "set =1: the key before '=' is missing");
+  EXPECT_EQ(rejection_of({"beam..x=1"}),
+            "set beam..x=1: the key 'beam..x' has an empty part beside a dot");
   EXPECT_EQ(rejection_of({"be am.x=1"}),
-            "--set be am.x=1: 'be am.x' is not a key; expected letters, "
+            "set be am.x=1: 'be am.x' is not a key; expected letters, "
             "digits, '_' and '-' joined by dots, such as beam.length_m");
   EXPECT_EQ(rejection_of({"beam.x="}),
-            "--set beam.x=: no value after '='; expected one in TOML syntax");
+            "set beam.x=: no value after '='; expected one in TOML syntax");
   EXPECT_TRUE(rejection_of({"beam.x=[1, 2"})
-                  .starts_with("--set beam.x=[1, 2: '[1, 2' is not TOML"));
+                  .starts_with("set beam.x=[1, 2: '[1, 2' is not TOML"));
   EXPECT_TRUE(rejection_of({"beam.x=1 2"})
-                  .starts_with("--set beam.x=1 2: '1 2' is not TOML"));
+                  .starts_with("set beam.x=1 2: '1 2' is not TOML"));
   EXPECT_TRUE(rejection_of({"a=1\nb=2"})
-                  .starts_with("--set a=1\\x0ab=2: an override is one line"));
+                  .starts_with("set a=1\\x0ab=2: an override is one line"));
 }
 
 TEST(Overrides, APathThroughAValueIsRejected) {
-  EXPECT_EQ(
-      rejection_of({"duration_s.x=1"}),
-      "--set duration_s.x=1: 'duration_s' is 60 in scn.toml, not a table");
+  EXPECT_EQ(rejection_of({"duration_s.x=1"}),
+            "set duration_s.x=1: 'duration_s' is 60 in scn.toml, not a table");
   EXPECT_EQ(rejection_of({"rate=1", "rate.points=[1]"}),
-            "--set rate.points=[1]: 'rate' is 1 in an earlier --set, not a "
+            "set rate.points=[1]: 'rate' is 1 in an earlier one, not a "
             "table");
 }
 
 TEST(Overrides, TheSameKeyTwiceIsRejected) {
   EXPECT_EQ(rejection_of({"duration_s=1", "duration_s=1"}),
-            "--set duration_s=1: the key was set before, by --set "
+            "set duration_s=1: the key was set before, by "
             "duration_s=1");
   EXPECT_EQ(rejection_of({"beam.length_m=1", "beam={length_m=2}"}),
-            "--set beam={length_m=2}: would replace the earlier --set "
+            "set beam={length_m=2}: would replace the earlier "
             "beam.length_m=1; give the whole table first");
 }
 

@@ -130,7 +130,7 @@ class ExportParameters(ExportTest):
         answer = self.beamgyro("export", self.train("cubic"), "--format", "px4",
                                "-o", "out")
         self.assertEqual(answer.returncode, 0)
-        self.assertIn("--device-id", answer.stderr)
+        self.assertIn("expected its device id", answer.stderr)
         answer = self.beamgyro("export", "cubic.json", "--format", "px4", "-o",
                                "out", "--device-id", 5)
         self.assertEqual(answer.stderr, "")

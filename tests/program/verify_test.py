@@ -116,7 +116,7 @@ class Verify(Set):
         answer = self.beamgyro("verify", "other", "--repair")
         self.assertEqual(answer.returncode, 1)
         self.assertIn("source/log.csv", answer.stderr)
-        self.assertIn("--resume", answer.stderr)
+        self.assertIn("resume the generation", answer.stderr)
         self.generate("other", "--resume")
         self.assertIn("whole", self.ok("verify", "other"))
 

@@ -77,6 +77,14 @@ class CheckIncludes(unittest.TestCase):
                           '// std::cout\nconst char* a = "exit(1)";\n'
                           "snprintf(a, 1, a);\n")
 
+    def test_the_library_names_no_options_of_the_program(self):
+        for text in ['"--soaks 3"', '"or a narrower --range"', 'x + "--set " + y']:
+            self.assert_offends("api/a.cpp", f"auto a = {text};\n", "options of the program")
+            self.assert_clean("cli/a.cpp", f"auto a = {text};\n")
+        self.assert_clean("api/a.cpp", "// --soaks\n--soaks;\nauto a = \"a --- b\", b = \"a--b\";\n")
+        self.assert_clean("config/overrides.cpp", 'auto a = "--set ";\n')
+        self.assert_offends("config/overrides.cpp", 'auto a = "--range";\n', "--range")
+
     def test_unknown_rooms_and_relative_includes(self):
         self.assert_offends("sim/other/a.h", "", "belongs to no room")
         self.assert_offends("sim/device/a.h", '#include "device.h"\n',

@@ -84,7 +84,7 @@ std::string rms_words(const Comparison& comparison) {
 // What stands against a compensator, and what is open.
 struct Reasons {
   std::vector<std::string> against, open;  // names of limits and checks
-  const Comparison* no_better = nullptr;
+  std::string no_use;
   const CheckResult* failed = nullptr;  // the first
   std::vector<const CheckResult*> untested;
 };
@@ -115,11 +115,7 @@ Reasons reasons_of(const SpecificationFile& specification,
     if (decision.result == Conformity::kUndecided)
       add_name(reasons.open, limit.metric);
   }
-  for (const Comparison& comparison : result.comparisons)
-    if (comparison.is_required && !comparison.found.is_better() &&
-        (reasons.no_better == nullptr ||
-         comparison.found.other_rms < reasons.no_better->found.other_rms))
-      reasons.no_better = &comparison;
+  reasons.no_use = words_of_no_use(result.comparisons);
   for (const CheckResult& check : result.checks) {
     if (check.outcome == CheckOutcome::kFailed) {
       add_name(reasons.against, check.name);
@@ -146,14 +142,10 @@ std::string as_good_words(const std::vector<Comparison>& comparisons) {
 }
 
 std::string failure_words(const Reasons& reasons) {
-  std::string words;
-  if (reasons.no_better != nullptr)
-    words =
-        fmt::format("Not better than {}: {}.", plain_name(*reasons.no_better),
-                    rms_words(*reasons.no_better));
-  if (reasons.against.empty()) return words;
-  words += fmt::format("{}Not met: {}.", words.empty() ? "" : " ",
-                       fmt::join(reasons.against, ", "));
+  if (reasons.against.empty()) return reasons.no_use;
+  std::string words = fmt::format("{}{}Not met: {}.", reasons.no_use,
+                                  reasons.no_use.empty() ? "" : " ",
+                                  fmt::join(reasons.against, ", "));
   if (reasons.failed != nullptr) words += " " + reasons.failed->words;
   return words;
 }
@@ -193,7 +185,7 @@ std::string pass_words(const ValidationResult& result, const Reasons& reasons) {
 std::string next_after_failure(const Reasons& reasons) {
   if (reasons.failed != nullptr)
     return std::string(definition_of(*reasons.failed).mend);
-  if (reasons.no_better != nullptr)
+  if (!reasons.no_use.empty())
     return "train over the temperatures of these runs, and look whether their "
            "temperature is that of this gyro";
   return "see what each limit that is not met was compared with";
@@ -297,10 +289,21 @@ std::vector<Comparison> comparisons_of(const SpecificationFile& specification,
   return all;
 }
 
+std::string words_of_no_use(const std::vector<Comparison>& comparisons) {
+  const Comparison* least = nullptr;
+  for (const Comparison& one : comparisons)
+    if (one.is_required && !one.found.is_better() &&
+        (least == nullptr || one.found.other_rms < least->found.other_rms))
+      least = &one;
+  return least == nullptr
+             ? ""
+             : fmt::format("Of no use on these runs: {}.", rms_words(*least));
+}
+
 void decide_on(const SpecificationFile& specification,
                ValidationResult& result) {
   const Reasons reasons = reasons_of(specification, result);
-  if (reasons.no_better != nullptr || !reasons.against.empty()) {
+  if (!reasons.no_use.empty() || !reasons.against.empty()) {
     result.verdict = Conformity::kFail;
     result.words = failure_words(reasons);
     result.next = next_after_failure(reasons);

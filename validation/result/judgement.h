@@ -34,6 +34,10 @@ constexpr double kLeastTemperatures = 10.0;  // [K]
 std::vector<Comparison> comparisons_of(const SpecificationFile& specification,
                                        const DeviceEvidence& found);
 
+/// Returns a sentence on the least of the rates that the compensator has to be
+/// better than and is not; empty where there is none.
+std::string words_of_no_use(const std::vector<Comparison>& comparisons);
+
 /// Writes the verdict, its reason and the next step into `result`, from its
 /// limits, checks and comparisons: kFail when one of them fails, else
 /// kUndecided when a limit is, or when a check was not tested that the

@@ -68,6 +68,8 @@ class PopulationJudge {
       if (!limit.relative_to.empty() && limit.relative_to != "before")
         needs_baselines_ = true;
     }
+    if (!task.specification->better_than.empty())
+      names.insert("residual_rms_deg_per_s");
     for (const Metric& metric : metrics())
       if (names.contains(std::string(metric.name)))
         names_.emplace_back(metric.name);
@@ -109,6 +111,9 @@ class PopulationJudge {
         metric_results(found, qualification_.metric_runs, names_, 1);
     outcome.verdict =
         verdict_on(decided_limits(*task_.specification, outcome.metrics));
+    const std::string no_use =
+        words_of_no_use(comparisons_of(*task_.specification, found));
+    if (!no_use.empty()) outcome.verdict = failed(no_use);
     return outcome;
   }
 

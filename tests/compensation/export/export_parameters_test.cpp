@@ -273,7 +273,7 @@ TEST(AutopilotCubic, RefusalNamesTheReasonAndWhatACubicWouldLeave) {
               "compensator " +
                   reason +
                   "; a cubic fitted to the same rows has 0.4 deg/s rms "
-                  "in-sample where this one has 0.1429; --fit-cubic "
+                  "in-sample where this one has 0.1429; fit_cubic "
                   "exports it");
 }
 

@@ -208,7 +208,7 @@ TEST(Train, RefusesWhatCannotBeTrainedOn) {
     return rejection([&] { train(spec, training, held_out, 1); });
   };
   EXPECT_NE(message(network, kSoaks, std::vector<TrainingRun>{})
-                .find("pass --held-out"),
+                .find("pass held_out = RUN.h5"),
             std::string::npos);
   EXPECT_NE(message(network, std::vector<TrainingRun>{}, kOffGrid)
                 .find("at least one recording"),

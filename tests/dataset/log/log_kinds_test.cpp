@@ -238,7 +238,7 @@ TEST(LogKinds, JoinsThatCannotBe) {
                     slow = "s,T,r\n0,20,0\n1,21,0\n";
   expect_says(rejection_by(kJoin, rows), "map.toml:7:1: join: needs a second");
   expect_says(rejection_by(kJoin.substr(0, kJoin.find("[join]")), rows, slow),
-              "--join second.csv: the map has no table [join]");
+              "join = second.csv: the map has no table [join]");
   expect_says(rejection_by(kJoin, rows, "s,T,r\n50,20,0\n51,21,0\n"),
               "from 0.900000 to 1.000000 s");
   expect_says(rejection_by(kJoin, rows, "s,T,r\n0,20,0\n1,x,0\n"),

@@ -183,13 +183,13 @@ TEST(LogMap, AxesAreChosenAndAllAreRead) {
   EXPECT_EQ(quantity(map_of(axes, "x"), "rate").column.name, "p");
   EXPECT_EQ(quantity(map_of(axes, "z"), "rate").column.name, "r");
   EXPECT_EQ(rejection_of(axes),
-            "map.toml:5:1: gyro: has the axes x, z; expected --axis to choose "
+            "map.toml:5:1: gyro: has the axes x, z; expected axis to choose "
             "one");
   EXPECT_EQ(rejection_of(axes, "y"),
-            "--axis y: map.toml:5:1: gyro: has no such axis; expected one of "
+            "axis = y: map.toml:5:1: gyro: has no such axis; expected one of "
             "x, z");
   EXPECT_EQ(rejection_of(kMap, "z"),
-            "--axis z: map.toml:5:1: gyro: has no axes; expected no --axis");
+            "axis = z: map.toml:5:1: gyro: has no axes; expected no axis");
 }
 
 TEST(LogMap, UnitsAreNeverGuessed) {

@@ -78,7 +78,7 @@ TEST(CampaignFile, DevicesOfTheCommandReplaceThoseOfTheFile) {
   EXPECT_EQ(CampaignPlan::read(folder.path() / "c.toml", 3).devices(), 3u);
   EXPECT_NE(rejection([&] {
               CampaignPlan::read(folder.path() / "c.toml", 0);
-            }).find("--devices 0: out of range"),
+            }).find("devices = 0: out of range"),
             std::string::npos);
 }
 
