@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "compensation/scoring/allan_deviation.h"
 #include "compensation/scoring/noise_coefficients.h"
-#include "compensation/scoring/score.h"
+#include "validation/metrics/allan_ratio.h"
 #include "validation/metrics/evaluations.h"
 #include "validation/metrics/segments.h"
 
@@ -14,7 +13,9 @@ namespace {
 
 constexpr double kHour = 3600.0;  // [s]
 constexpr std::size_t kLeastRestSamples = 64;
-constexpr double kPieces = 20.0;  // of a run, for the interval of a ratio
+// Of a residual whose deviation falls from 1 s to 4 s as that of white noise.
+constexpr double kWhiteNoiseFall = 0.75;  // [-]
+constexpr std::size_t kLeastSeconds = 10;
 
 /// Residual [deg/s] of the longest gapless stretch at rest, evenly sampled.
 struct RestSeries {
@@ -63,60 +64,6 @@ std::optional<Estimate> coefficient(
       Interval{per_hour * found.interval.low, per_hour * found.interval.high}};
 }
 
-/// Sums of squared differences of neighbouring means of 1 s, of each piece.
-struct DifferenceSums {
-  std::vector<double> judged, recorded;
-};
-
-DifferenceSums difference_sums(const EvidenceRun& run) {
-  const Recording& recording = *run.recording;
-  const SampleRange range = longest_gapless_range(recording, run.rate);
-  const auto second =
-      static_cast<std::size_t>(std::round(1.0 / usual_step(recording)));
-  const auto& raw = column_values(recording, "rate");
-  const auto& truth = column_values(recording, "true_rate");
-  const std::size_t seconds = range.size() / second;
-  DifferenceSums sums{std::vector<double>(static_cast<std::size_t>(kPieces)),
-                      std::vector<double>(static_cast<std::size_t>(kPieces))};
-  std::array<double, 2> last{};
-  for (std::size_t i = 0; i < seconds; ++i) {
-    std::array<double, 2> mean{};
-    for (std::size_t j = 0; j < second; ++j) {
-      const std::size_t k = range.begin + i * second + j;
-      mean[0] += (run.rate[k] - truth[k]) / static_cast<double>(second);
-      mean[1] += (raw[k] - truth[k]) / static_cast<double>(second);
-    }
-    const std::size_t piece = i * sums.judged.size() / seconds;
-    if (i > 0) {
-      sums.judged[piece] += std::pow(mean[0] - last[0], 2);
-      sums.recorded[piece] += std::pow(mean[1] - last[1], 2);
-    }
-    last = mean;
-  }
-  return sums;
-}
-
-/// 95 % interval of the logarithm of the root of a ratio of sums, as half its
-/// width: the jackknife over pieces with Student's t.
-double half_interval_of_ratio(const DifferenceSums& sums) {
-  const auto ratio = [&](std::size_t without) {
-    double judged = 0.0, recorded = 0.0;
-    for (std::size_t i = 0; i < sums.judged.size(); ++i) {
-      if (i == without) continue;
-      judged += sums.judged[i];
-      recorded += sums.recorded[i];
-    }
-    return 0.5 * std::log(judged / recorded);
-  };
-  double mean = 0.0, squares = 0.0;
-  for (std::size_t i = 0; i < sums.judged.size(); ++i)
-    mean += ratio(i) / kPieces;
-  for (std::size_t i = 0; i < sums.judged.size(); ++i)
-    squares += std::pow(ratio(i) - mean, 2);
-  return student_half_width(kPieces - 1.0) *
-         std::sqrt(squares * (kPieces - 1.0) / kPieces);
-}
-
 }  // namespace
 
 std::optional<Estimate> angle_random_walk(const Evidence& evidence) {
@@ -155,16 +102,14 @@ std::optional<Estimate> lowest_allan_deviation(const Evidence& evidence) {
 std::optional<Estimate> white_noise_ratio(const Evidence& evidence) {
   std::optional<Estimate> farthest;
   for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kRest})) {
-    const AnsweredRun answered{run->name, run->recording, run->rate, {}, {}};
-    const std::optional<double> ratio = internal::white_noise_ratio(answered);
-    if (!ratio) continue;
-    const bool farther = !farthest || std::abs(std::log(*ratio)) >
-                                          std::abs(std::log(farthest->value));
-    if (!farther) continue;
-    const double factor =
-        *ratio > 0.0 ? std::exp(half_interval_of_ratio(difference_sums(*run)))
-                     : 1.0;
-    farthest = Estimate{*ratio, Interval{*ratio / factor, *ratio * factor}};
+    const std::optional<AllanRatio> found =
+        allan_ratio(*run->recording, run->rate);
+    if (!found || found->seconds < kLeastSeconds ||
+        !(found->fall <= kWhiteNoiseFall))
+      continue;
+    if (!farthest ||
+        std::abs(std::log(found->ratio)) >= std::abs(std::log(farthest->value)))
+      farthest = Estimate{found->ratio, found->interval};
   }
   return farthest;
 }
