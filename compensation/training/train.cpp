@@ -173,11 +173,12 @@ std::string cause_of_few_rows(const TrainingRows& rows,
 }
 
 // Adds the 1-sigma of the bias, and that of devices adapted from a population.
-void fit_sigma(Compensator& c, const SigmaTask& task) {
+void fit_sigma(Compensator& c, const SigmaTask& task,
+               std::vector<std::string>& remarks) {
   if (c.population)
     c.population->sigma = fit_adaptation_sigma(
-        *c.population, c.scale_factor ? &*c.scale_factor : nullptr, task);
-  c.sigma = fit_bias_sigma(c, task);
+        *c.population, c.scale_factor ? &*c.scale_factor : nullptr, task, remarks);
+  c.sigma = fit_bias_sigma(c, task, remarks);
 }
 
 void add_sigma_caution(const BiasSigma& sigma, const TrainingRows& rows,
@@ -258,8 +259,13 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
     const std::vector<Input>& inputs = selected.candidate.inputs;
     const TrainingRows fitted = with_columns(rows, spec.inputs, inputs);
     const TrainingRows others = with_columns(unseen, spec.inputs, inputs);
-    fit_sigma(c, {selected.candidate.kind, inputs, spec.rows, fitted, others,
-                  runs, held_out, seed});
+    fit_sigma(c,
+              {selected.candidate.kind, inputs, spec.rows, fitted, others, runs,
+               held_out, seed},
+              result.sigma_remarks);
+  } else {
+    result.sigma_remarks.emplace_back(
+        "no sigma: the curve is averaged with a constant");
   }
   if (groups) p.cross_validated = summary_of(*groups, selected);
   p.warnings =

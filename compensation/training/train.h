@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "compensation/compensator/compensator.h"
@@ -20,6 +21,7 @@ struct TrainResult {
   std::size_t chosen = 0;              // the restart kept
   Eigen::Index rows = 0;
   Eigen::Index held_out_rows = 0;
+  std::vector<std::string> sigma_remarks;  // why there is no sigma, and so on
 
   const TrainSummary& summary() const { return restarts[chosen]; }
 };
