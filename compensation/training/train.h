@@ -39,7 +39,8 @@ struct TrainResult {
 ///   held-out runs, or else by folds_of() the rows.
 ///
 /// Throws as training_rows(), and std::invalid_argument when
-/// - there is no run, or a run is both trained on and held out;
+/// - there is no run, or one that is another or a part of it
+///   (require_different_runs());
 /// - a network has neither held-out runs nor cross-validation;
 /// - the temperatures are too few or too close together, or an input never
 ///   varies.
