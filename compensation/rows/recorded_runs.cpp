@@ -38,7 +38,8 @@ void require_different_runs(const std::vector<std::string>& paths) {
       const auto [same, is_new] = of_hash.emplace(sha256_of_file(name), name);
       if (!is_new)
         throw std::invalid_argument(
-            fmt::format("{}: is the same recording as {}; expected each once",
+            fmt::format("{}: is the same recording as {}; expected each once: "
+                        "leave one of them out",
                         name, same->second));
     }
   }
