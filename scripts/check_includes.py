@@ -52,8 +52,8 @@ MAY_INCLUDE = {
     # The commands: the public library, and what it has no door to: writing
     # and watching files and processes, logs, sets in the making.
     "cli": {"include", "api", "report", "config", "dataset/files",
-            "dataset/netcdf", "dataset/log", "dataset/set/shard",
-            "dataset/set", "sim/campaign", "validation/external",
+            "dataset/netcdf", "dataset/log", "dataset/set", "sim/campaign",
+            "validation/external",
             # of validate alone
             "parallel", "compensation/compensator", "compensation/rows",
             "compensation/scoring", "validation/metrics", "validation/result",
