@@ -168,10 +168,9 @@ struct PlanStudy::State {
   // A goal counts as met within the digits that are printed.
   SoakPlan chosen() const {
     constexpr double kHourDigits = 0.005, kResidualDigits = 0.0005;
-    if (options.hours)
-      return planner.within_hours(*options.hours + kHourDigits);
+    if (options.hours) return planner.within_hours(*options.hours, kHourDigits);
     if (options.residual_deg_per_s)
-      return planner.within_residual(*options.residual_deg_per_s +
+      return planner.within_residual(*options.residual_deg_per_s,
                                      kResidualDigits);
     const std::size_t count = *options.soaks;
     if (count < 1 || count > planner.most_soaks())
