@@ -45,15 +45,4 @@ void require_different_runs(const std::vector<std::string>& paths) {
   }
 }
 
-bool is_set(const std::vector<std::string>& paths) {
-  for (const std::string& path : paths)
-    if (std::filesystem::is_directory(status_of(path))) {
-      if (paths.size() == 1) return true;
-      throw std::invalid_argument(path +
-                                  ": a directory among recordings; expected "
-                                  "recordings, or the directory of one set");
-    }
-  return false;
-}
-
 }  // namespace beamgyro::internal
