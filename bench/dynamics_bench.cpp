@@ -9,7 +9,6 @@
 #include "bench/shipped_device.h"
 #include "sim/scenario/carrier_run.h"
 #include "sim/scenario/envelope_run.h"
-#include "sim/scenario/envelope_trajectory.h"
 
 namespace beamgyro::internal {
 namespace {

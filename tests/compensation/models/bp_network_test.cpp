@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "compensation/network/random_purposes.h"
+#include "random/random_stream.h"
 #include "tests/config/rejection.h"
 
 namespace beamgyro::internal::bp_network_test {

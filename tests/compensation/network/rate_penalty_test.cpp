@@ -6,10 +6,10 @@
 #include <cmath>
 #include <iterator>
 
-#include "compensation/network/random_purposes.h"
 #include "compensation/scoring/rate_injection.h"
 #include "compensation/scoring/validation.h"
 #include "compensation/training/train.h"
+#include "random/random_stream.h"
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/recorded_run.h"
 #include "tests/config/rejection.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/training/scale_factor_table.h"
 
 #include <gtest/gtest.h>
 

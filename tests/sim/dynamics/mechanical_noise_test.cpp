@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "random/random_stream.h"
 #include "sim/dynamics/complex_form.h"
 #include "sim/dynamics/loop_noise.h"
-#include "sim/scenario/random_purposes.h"
 #include "sim/signal/linear_noise.h"
 #include "tests/linear_algebra/reference_algebra.h"
 #include "tests/sim/device/nominal_device.h"

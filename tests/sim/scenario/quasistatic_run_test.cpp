@@ -204,7 +204,7 @@ TEST(QuasistaticRun, RefusesAScenarioOfAnotherFidelity) {
   for (const Fidelity other : {Fidelity::kEnvelope, Fidelity::kCarrier}) {
     scenario.fidelity = other;
     try {
-      simulate_quasistatic(scenario, device, {}, [](Recording&&) {});
+      simulate_quasistatic(scenario, make_gyro(device), {}, [](Recording&&) {});
       FAIL() << "accepted";
     } catch (const std::invalid_argument& error) {
       EXPECT_NE(std::string(error.what()).find("fidelity"), std::string::npos);

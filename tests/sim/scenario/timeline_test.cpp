@@ -12,8 +12,8 @@
 #include <variant>
 #include <vector>
 
+#include "random/random_stream.h"
 #include "sim/scenario/aligned_borders.h"
-#include "sim/scenario/random_purposes.h"
 #include "sim/scenario/simulation.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/scenario/random_purposes.h"
+#include "random/random_stream.h"
 #include "tests/linear_algebra/reference_algebra.h"
 
 namespace beamgyro::internal::linear_noise_test {

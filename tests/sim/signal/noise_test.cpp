@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "sim/scenario/random_purposes.h"
+#include "random/random_stream.h"
 #include "sim/signal/readout.h"
 #include "tests/sim/signal/allan_deviation.h"
 

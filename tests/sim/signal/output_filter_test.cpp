@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "random/random_stream.h"
-#include "sim/scenario/random_purposes.h"
 
 namespace beamgyro::internal::output_filter_test {
 namespace {

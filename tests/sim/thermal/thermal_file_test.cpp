@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "sim/thermal/thermal_file.h"
-
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -8,6 +6,7 @@
 
 #include "config/document.h"
 #include "sim/thermal/thermal_network.h"
+#include "sim/thermal/thermal_parameters.h"
 
 namespace beamgyro::internal::thermal_file_test {
 namespace {
