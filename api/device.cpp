@@ -11,6 +11,7 @@
 
 #include "api/device_state.h"
 #include "api/key_overrides.h"
+#include "config/option_message.h"
 #include "sim/dynamics/characteristic.h"
 #include "sim/scenario/simulation_input.h"
 #include "sim/thermal/material_range.h"
@@ -36,10 +37,11 @@ void require_material_temperatures(std::span<const double> temperatures) {
     throw std::invalid_argument("no temperatures; expected at least one");
   for (const double celsius : temperatures)
     if (!internal::kMaterialTemperatures.contains(celsius))
-      throw std::invalid_argument(fmt::format(
-          "{} degC is beyond {:g} to {:g} degC, {}", celsius,
+      throw internal::option_error(
+          "{}: {} degC is beyond {:g} to {:g} degC, {}",
+          internal::NamedOption{"beam_temperature"}, celsius,
           internal::kMaterialTemperatures.low,
-          internal::kMaterialTemperatures.high, internal::kMaterialReason));
+          internal::kMaterialTemperatures.high, internal::kMaterialReason);
 }
 
 }  // namespace

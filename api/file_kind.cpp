@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "config/document.h"
+#include "config/file_error.h"
 #include "dataset/files/open_file.h"
 #include "dataset/log/recording_csv.h"
 #include "dataset/netcdf/recording_reader.h"
@@ -150,6 +151,17 @@ std::string_view kind_name(FileKind kind) { return known(kind).name; }
 
 bool is_of_kind(const fs::path& path, FileKind kind) {
   return std::ranges::count(kinds_of(path), kind) != 0;
+}
+
+bool is_set(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths)
+    if (fs::is_directory(status_of(path))) {
+      if (paths.size() == 1) return true;
+      throw std::invalid_argument(path +
+                                  ": a directory among recordings; expected "
+                                  "recordings, or the directory of one set");
+    }
+  return false;
 }
 
 void require_kind(const fs::path& path, const ExpectedKinds& expected) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -40,6 +41,10 @@ std::string_view kind_name(FileKind kind);
 
 /// Returns whether the file is of that kind.
 bool is_of_kind(const std::filesystem::path& path, FileKind kind);
+
+/// Returns whether the paths are a single directory, that of a set. Throws
+/// std::invalid_argument when one of several paths is a directory.
+bool is_set(const std::vector<std::string>& paths);
 
 /// Throws std::invalid_argument when the file is of a kind that is known but
 /// not expected. The message says what it is and which command takes it. A

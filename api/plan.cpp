@@ -30,16 +30,11 @@ namespace internal {
 namespace {
 
 constexpr std::size_t kLeastTable = 7;  // soaks in the table of trade-offs
+constexpr Range kChamberTemperatures{-100.0, 200.0};  // [degC]
 
-TemperatureRange checked_range(const char* what, const ChamberRange& range) {
-  if (range.first < range.second &&
-      kChamberTemperatures.contains(range.first) &&
-      kChamberTemperatures.contains(range.second))
-    return {range.first, range.second};
-  throw std::invalid_argument(fmt::format(
-      "{} {:g} to {:g} degC; expected the lower one first, within {:g} to {:g}",
-      what, range.first, range.second, kChamberTemperatures.low,
-      kChamberTemperatures.high));
+TemperatureRange checked_range(const char* name, const ChamberRange& range) {
+  check_range(name, range.first, range.second, kChamberTemperatures);
+  return {range.first, range.second};
 }
 
 // Of its file, in messages.
@@ -78,7 +73,7 @@ TemperatureRange chamber_of(const PlanOptions& options,
                             const TemperatureRange& range) {
   if (!options.chamber_degC) return range;
   const TemperatureRange chamber =
-      checked_range("chamber", *options.chamber_degC);
+      checked_range("chamber_degC", *options.chamber_degC);
   if (chamber.lowest > range.lowest || chamber.highest < range.highest)
     throw option_error(
         "{}: narrower than the range {:g}:{:g}; expected a chamber that "
@@ -159,7 +154,7 @@ struct PlanStudy::State {
         file(name_of_file(population)),
         device(unit),
         view(view_of(unit)),
-        range(asked.range_degC ? checked_range("range", *asked.range_degC)
+        range(asked.range_degC ? checked_range("range_degC", *asked.range_degC)
                                : known_range(population_of(population), view)),
         chamber(chamber_of(asked, range)),
         time(time_of(asked)),
@@ -174,10 +169,9 @@ struct PlanStudy::State {
   // A goal counts as met within the digits that are printed.
   SoakPlan chosen() const {
     constexpr double kHourDigits = 0.005, kResidualDigits = 0.0005;
-    if (options.hours)
-      return planner.within_hours(*options.hours + kHourDigits);
+    if (options.hours) return planner.within_hours(*options.hours, kHourDigits);
     if (options.residual_deg_per_s)
-      return planner.within_residual(*options.residual_deg_per_s +
+      return planner.within_residual(*options.residual_deg_per_s,
                                      kResidualDigits);
     const std::size_t count = *options.soaks;
     if (count < 1 || count > planner.most_soaks())

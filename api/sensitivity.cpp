@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "api/campaign_state.h"
+#include "api/checked_number.h"
 #include "api/compensator_state.h"
 #include "api/reported_progress.h"
 #include "api/sensitivity_study.h"
@@ -27,11 +28,7 @@ namespace {
 
 CurveGrid grid_of(const SensitivityOptions& options) {
   const double low = options.lowest_degC, high = options.highest_degC;
-  if (!kMaterialTemperatures.contains(low) ||
-      !kMaterialTemperatures.contains(high))
-    throw std::invalid_argument(fmt::format(
-        "{:g} to {:g} degC; expected temperatures from {:g} to {:g}", low, high,
-        kMaterialTemperatures.low, kMaterialTemperatures.high));
+  check_range("range_degC", low, high, kMaterialTemperatures);
   if (!(high - low >= 1))
     throw std::invalid_argument(fmt::format(
         "temperatures from {:g} to {:g} degC span {:g} K; expected 1 K or more",

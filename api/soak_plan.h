@@ -6,13 +6,9 @@
 #include <vector>
 
 #include "compensation/inputs/features.h"
-#include "config/range.h"
 #include "include/beamgyro/plan.h"
 
 namespace beamgyro::internal {
-
-/// Temperatures that a chamber may be asked for [degC].
-inline constexpr Range kChamberTemperatures{-100.0, 200.0};
 
 /// Throws std::invalid_argument unless there is one goal.
 void check_goal(const PlanOptions& options);

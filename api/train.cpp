@@ -137,6 +137,8 @@ TrainedCompensator train(const Model& model,
                          const TrainingOptions& options) {
   const std::vector<std::string> fitted = names_of(files);
   const std::vector<std::string> kept = names_of(held_out);
+  internal::require_different_runs(fitted);
+  internal::require_different_runs(kept);
   FileWarnings of_files;
   const auto read = [&](const std::filesystem::path& path) {
     return of_files.read(path);

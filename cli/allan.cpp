@@ -13,8 +13,6 @@
 #include "cli/inputs.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
-#include "compensation/scoring/allan_deviation.h"
-#include "compensation/scoring/deviation_kind.h"
 #include "dataset/files/atomic_file.h"
 
 namespace beamgyro::internal {
@@ -81,12 +79,13 @@ void add_allan(CommandLine& program) {
                    "Deviations to compute, between commas or repeated: adev, "
                    "oadev, mdev, hdev, ohdev, totdev",
                    "adev,oadev"},
-                  arguments->kinds, deviation_names());
+                  arguments->kinds,
+                  {"adev", "oadev", "mdev", "hdev", "ohdev", "totdev"});
   command.choice({"--taus", "octave|decade|all",
                   "Averaging times: 1, 2, 4, 8 samples and so on; 1, 2, 4, 10, "
                   "20, 40; or 1, 2, 3",
                   "octave"},
-                 arguments->taus, tau_spacing_names());
+                 arguments->taus, {"octave", "decade", "all"});
   command.text({"--json", "FILE",
                 "Writes the curve, the coefficients and the samples used to "
                 "FILE",

@@ -14,7 +14,6 @@
 #include "cli/terminal.h"
 #include "dataset/files/atomic_file.h"
 #include "include/beamgyro/device.h"
-#include "sim/thermal/material_range.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -43,11 +42,6 @@ std::vector<double> temperature_grid(const std::string& text) {
     const auto [stop, error] = std::from_chars(at, end, value);
     if (error != std::errc() || !std::isfinite(value))
       fail_temperatures(text, "not a number");
-    if (!kMaterialTemperatures.contains(value))
-      fail_temperatures(
-          text, fmt::format("{} degC is beyond {:g} to {:g} degC, {}", value,
-                            kMaterialTemperatures.low,
-                            kMaterialTemperatures.high, kMaterialReason));
     parts.push_back(value);
     if (stop == end) break;
     if (*stop != ':') fail_temperatures(text, "not a number");

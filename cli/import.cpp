@@ -15,7 +15,6 @@
 #include "config/document.h"
 #include "dataset/files/text_file.h"
 #include "dataset/log/log_import.h"
-#include "dataset/netcdf/recording_file.h"
 #include "report/import_report.h"
 
 namespace beamgyro::internal {

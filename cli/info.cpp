@@ -10,7 +10,6 @@
 #include "cli/inputs.h"
 #include "cli/terminal.h"
 #include "config/file_error.h"
-#include "dataset/set/shard/shard_reader.h"
 #include "report/recording_report.h"
 #include "report/set_report.h"
 
@@ -30,9 +29,9 @@ int info(const std::string& path, std::optional<long> device) {
     throw std::invalid_argument(
         fmt::format("--device {}: {} is no directory; expected that of a set",
                     *device, path));
-  if (is_listed_in_set(path) || is_shard_file(path)) {
-    std::vector<std::string> warnings;
-    print_result(info_on_shard(path, warnings));
+  std::vector<std::string> warnings;
+  if (const auto of_shard = info_on_shard(path, warnings)) {
+    print_result(*of_shard);
     for (const std::string& warning : warnings) print_warning(warning);
     return 0;
   }

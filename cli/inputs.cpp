@@ -15,14 +15,11 @@
 #include <utility>
 
 #include "cli/terminal.h"
-#include "config/document.h"
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/directory.h"
 #include "dataset/files/made_directories.h"
 #include "dataset/files/sha256.h"
-#include "sim/device/device_file.h"
-#include "sim/scenario/scenario_file.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -7,11 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "dataset/recording/recording.h"
 #include "dataset/set/manifest.h"
 #include "dataset/set/source_copies.h"
-#include "sim/device/device.h"
-#include "sim/scenario/scenario.h"
+#include "include/beamgyro/recording.h"
 
 namespace beamgyro::internal {
 

@@ -30,7 +30,7 @@ constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
     {"column", "dataset"},   {"cross_validation", "cv"},
     {"from_s", "from"},      {"hold_min", "hold"},
     {"range_degC", "range"}, {"residual_deg_per_s", "residual"},
-    {"to_s", "to"}};
+    {"start_degC", "start"}, {"to_s", "to"}};
 
 /// Returns "--name value" for the option that the library calls `name`.
 std::string on_command_line(std::string_view name, std::string_view value) {

@@ -16,8 +16,6 @@
 #include "cli/schedule_options.h"
 #include "cli/terminal.h"
 #include "dataset/files/atomic_file.h"
-#include "planning/planner.h"
-#include "planning/soak_length.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -59,12 +57,6 @@ std::string device_name(const PlanArguments& arguments) {
       .generic_string();
 }
 
-ChamberRange chamber_range(const char* option, const std::string& text) {
-  const TemperatureRange range =
-      temperature_range(option, text, kChamberTemperatures);
-  return {range.lowest, range.highest};
-}
-
 PlanOptions plan_options(const PlanArguments& arguments) {
   PlanOptions options;
   if (arguments.soaks)
@@ -72,9 +64,9 @@ PlanOptions plan_options(const PlanArguments& arguments) {
   options.hours = arguments.hours;
   options.residual_deg_per_s = arguments.residual;
   if (!arguments.range.empty())
-    options.range_degC = chamber_range("--range", arguments.range);
+    options.range_degC = temperature_range("--range", arguments.range);
   if (!arguments.chamber.empty())
-    options.chamber_degC = chamber_range("--chamber", arguments.chamber);
+    options.chamber_degC = temperature_range("--chamber", arguments.chamber);
   options.ramp_K_per_min = arguments.ramp;
   options.start_degC = arguments.start;
   if (arguments.hold)
@@ -131,10 +123,10 @@ void add_chamber_options(Command& command, PlanArguments& arguments) {
                  arguments.ramp, {0, 100, true, false});
   command.integer({"--hold", "MIN", "Length of a soak in whole minutes",
                    "the shortest that leaves at most 5 % more than the best"},
-                  arguments.hold, {1, kLongestSoak});
+                  arguments.hold, {1});
   command.number({"--start", "DEGC",
                   "Temperature at which chamber and device begin", "25"},
-                 arguments.start, kChamberTemperatures);
+                 arguments.start);
 }
 
 void add_plan_options(Command& command, PlanArguments& arguments) {
@@ -144,7 +136,7 @@ void add_plan_options(Command& command, PlanArguments& arguments) {
   command.reads({{FileKind::kCompensator}});
   command.group("Goal, one of them");
   command.integer({"--soaks", "N", "Number of soaks", "no such goal"},
-                  arguments.soaks, {1, static_cast<long>(kMostSoaks)});
+                  arguments.soaks, {1});
   command.number(
       {"--hours", "H", "Hours in the chamber at most", "no such goal"},
       arguments.hours, positive());

@@ -10,7 +10,7 @@
 #include "cli/figure_pictures.h"
 #include "cli/inputs.h"
 #include "cli/progress.h"
-#include "compensation/compensator/compensator_file.h"
+#include "include/beamgyro/compensator.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -26,7 +26,7 @@ void require_whole(const std::string& file) {
   if (is_of_kind(file, FileKind::kRecording))
     load_recording(file);
   else if (is_of_kind(file, FileKind::kCompensator))
-    read_compensator(file);
+    beamgyro::Compensator::read(file);
 }
 
 int plot(const PlotArguments& arguments) {

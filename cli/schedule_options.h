@@ -2,18 +2,17 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "compensation/inputs/features.h"
-#include "config/range.h"
+#include "api/soak_plan.h"
 
 namespace beamgyro::internal {
 
-/// Reads LOW:HIGH in degC, both `allowed`. Throws std::invalid_argument
-/// "--option TEXT: what is wrong; what would be right".
-TemperatureRange temperature_range(const std::string& option,
-                                   const std::string& text,
-                                   const Range& allowed);
+/// Reads LOW:HIGH in degC. Throws std::invalid_argument "--option TEXT: what is
+/// wrong; what would be right".
+std::pair<double, double> temperature_range(const std::string& option,
+                                            const std::string& text);
 
 /// Reads the schedules that --candidates names: each word is a list of
 /// temperatures between commas, or a file with such a list on each line, where

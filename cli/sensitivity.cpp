@@ -11,6 +11,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "api/campaign_state.h"
@@ -22,10 +23,8 @@
 #include "cli/progress.h"
 #include "cli/schedule_options.h"
 #include "cli/terminal.h"
-#include "compensation/inputs/features.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/made_directories.h"
-#include "sim/thermal/material_range.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -89,13 +88,11 @@ void require_places(const SensitivityArguments& arguments,
 }
 
 SensitivityOptions options_of(const SensitivityArguments& arguments) {
-  const TemperatureRange range =
-      temperature_range("--range", arguments.range, kMaterialTemperatures);
   SensitivityOptions options{.figures = arguments.figures};
   if (!arguments.compensator.empty())
     options.compensator = beamgyro::Compensator::read(arguments.compensator);
-  options.lowest_degC = range.lowest;
-  options.highest_degC = range.highest;
+  std::tie(options.lowest_degC, options.highest_degC) =
+      temperature_range("--range", arguments.range);
   options.linear = arguments.linear;
   options.limits = limits_of(arguments);
   if (arguments.samples)

@@ -17,7 +17,6 @@
 #include "cli/inputs.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
-#include "compensation/rows/recorded_runs.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -206,13 +206,19 @@ SoakPlan Planner::with_soaks(std::size_t count) const {
   return known->second;
 }
 
-SoakPlan Planner::within_hours(double hours) const {
+SoakPlan Planner::within_hours(double hours, double rounding) const {
+  if (most_soaks() < 2)
+    throw std::invalid_argument(fmt::format(
+        "the temperatures hold one soak, and hours choose from two on: soaks "
+        "are {:g} K apart or more; expected a wider range",
+        kLeastDistance));
+  const double most = hours + rounding;
   std::optional<SoakPlan> chosen;
   for (std::size_t count = 2; count <= most_soaks(); ++count) {
-    if (longest_way(count, hours, static_cast<double>(shortest_) * 60.0) < 0.0)
+    if (longest_way(count, most, static_cast<double>(shortest_) * 60.0) < 0.0)
       break;
     const double hold = with_soaks(count).hold;
-    const auto soaks = best(count, longest_way(count, hours, hold));
+    const auto soaks = best(count, longest_way(count, most, hold));
     if (!soaks) continue;
     const SoakPlan plan = judged_with(*soaks, hold);
     if (!chosen || plan.expected.median < chosen->expected.median)
@@ -244,7 +250,8 @@ SoakPlan Planner::shortened(const SoakPlan& plan, double residual) const {
   return shortest;
 }
 
-SoakPlan Planner::within_residual(double residual) const {
+SoakPlan Planner::within_residual(double residual, double rounding) const {
+  const double most = residual + rounding;
   std::optional<SoakPlan> fewest;
   SoakPlan last;
   for (std::size_t count = 1; count <= most_soaks(); ++count) {
@@ -252,8 +259,8 @@ SoakPlan Planner::within_residual(double residual) const {
         static_cast<double>(count * shortest_) / 60.0;  // [h], at least
     if (fewest && holds >= fewest->hours) break;
     last = with_soaks(count);
-    if (last.expected.median > residual) continue;
-    const SoakPlan tried = shortened(last, residual);
+    if (last.expected.median > most) continue;
+    const SoakPlan tried = shortened(last, most);
     if (!fewest || tried.hours < fewest->hours) fewest = tried;
   }
   if (!fewest)

@@ -66,14 +66,15 @@ class Planner {
   /// soaks; the best end is kept.
   SoakPlan with_soaks(std::size_t count) const;
 
-  /// The plan of least mean variance that takes no more than `hours`. Throws
-  /// std::invalid_argument when these are too few for two soaks.
-  SoakPlan within_hours(double hours) const;
+  /// The plan of least mean variance that takes no more than `hours` and a
+  /// rounding. Throws std::invalid_argument when these are too few for two
+  /// soaks, or when the limits hold only one.
+  SoakPlan within_hours(double hours, double rounding = 0.0) const;
 
   /// Of the plans of least mean variance that of fewest hours whose median
-  /// residual is no more than `residual` [deg/s]. Throws std::invalid_argument
-  /// when no plan is that good.
-  SoakPlan within_residual(double residual) const;
+  /// residual is no more than `residual` and a rounding [deg/s]. Throws
+  /// std::invalid_argument when no plan is that good.
+  SoakPlan within_residual(double residual, double rounding = 0.0) const;
 
   SoakPlan even(std::size_t count) const;
 

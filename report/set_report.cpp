@@ -89,13 +89,10 @@ std::string failures_of(const SetState& state) {
 
 }  // namespace
 
-bool is_listed_in_set(const fs::path& path) {
-  return entry_of(path).has_value();
-}
-
-std::string info_on_shard(const fs::path& path,
-                          std::vector<std::string>& warnings) {
+std::optional<std::string> info_on_shard(const fs::path& path,
+                                         std::vector<std::string>& warnings) {
   const std::optional<ManifestEntry> entry = entry_of(path);
+  if (!entry && !is_shard_file(path)) return {};
   if (!entry)
     warnings.push_back(fmt::format(
         "{}: is in no set whose manifest tells its bytes: damage in it would "

@@ -3,21 +3,18 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "dataset/set/set_writer.h"
-
 namespace beamgyro::internal {
 
-/// Returns whether the manifest in the directory of a file lists it.
-bool is_listed_in_set(const std::filesystem::path& path);
-
-/// Describes the contents of a file of a set, or of the directory of a set.
-/// Adds a warning to `warnings` for a file that no manifest knows. Throws
-/// std::invalid_argument for anything else.
-std::string info_on_shard(const std::filesystem::path& path,
-                          std::vector<std::string>& warnings);
+/// Describes the contents of a file of a set; nothing for any other file. Adds
+/// a warning to `warnings` for one that no manifest knows.
+std::optional<std::string> info_on_shard(const std::filesystem::path& path,
+                                         std::vector<std::string>& warnings);
+/// Describes the directory of a set. Throws std::invalid_argument for any
+/// other.
 std::string info_on_set(const std::filesystem::path& path);
 
 /// Returns the KEY=VALUE lines that turn the base device into device number

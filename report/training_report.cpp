@@ -20,6 +20,10 @@ void print_equation_one(const BiasModel& model, const char* label,
   auto out = std::back_inserter(text);
   fmt::format_to(out, "{}: F({:g} degC) = {:.6g} deg/s", label,
                  kReferenceTemperature, equation.bias_at_reference);
+  if (equation.bias_at_reference == 0.0) {
+    text += ", relative to which equation (1) has no coefficients\n";
+    return;
+  }
   for (std::size_t i = 0; i < equation.coefficients.size(); ++i) {
     fmt::format_to(out, ", a{} = {:.6g} K^-{}", i + 1, equation.coefficients[i],
                    i + 1);
@@ -78,6 +82,8 @@ std::string training_report(const TrainResult& result, bool every_group) {
                  source.constant_in_sample_rms,
                  shown(source.constant_held_out_rms));
   print_equation_one(result.compensator.baseline, "cubic", text);
+  for (const std::string& remark : result.sigma_remarks)
+    fmt::format_to(out, "{}\n", remark);
   return text;
 }
 

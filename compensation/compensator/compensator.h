@@ -25,6 +25,7 @@ struct SourceFile {
   // measured_sha256() of the recording; empty in files of older programs.
   std::string measured_sha256 = {};
   MeasuredSketch sketch = {};  // measured_sketch(); empty in these, too
+  std::optional<std::uint64_t> seed = {};  // noise_seed()
 
   bool operator==(const SourceFile&) const = default;
 };

@@ -56,11 +56,13 @@ MeasuredSketch read_sketch(const JsonNode& node) {
 
 Json json_of(const std::vector<SourceFile>& files) {
   Json array = Json::array();
-  for (const SourceFile& file : files)
+  for (const SourceFile& file : files) {
     array.push_back({{"name", file.name},
                      {"sha256", file.sha256},
                      {"measured_sha256", file.measured_sha256},
                      {"measured_sketch", sketch_text(file.sketch)}});
+    if (file.seed) array.back()["seed"] = *file.seed;
+  }
   return array;
 }
 
@@ -130,6 +132,8 @@ std::vector<SourceFile> read_files(const JsonNode& node) {
       files.back().measured_sha256 = file.at("measured_sha256").text();
     if (file.has("measured_sketch"))
       files.back().sketch = read_sketch(file.at("measured_sketch"));
+    if (file.has("seed"))
+      files.back().seed = file.at("seed").unsigned_integer();
   }
   return files;
 }

@@ -15,7 +15,6 @@ namespace {
 
 constexpr std::size_t kStretch = 32;  // samples
 constexpr std::size_t kLeastChanges = kStretch / 2;
-constexpr std::size_t kSketch = 32;  // hashes
 constexpr std::ptrdiff_t kLeastFound = kSketch / 4;
 
 /// The finaliser of SplitMix64 (Steele, Lea, Flood 2014): a bijection.
@@ -83,12 +82,12 @@ void for_each_stretch(const Recording& recording, const Take& take) {
 
 }  // namespace
 
-MeasuredSketch measured_sketch(const Recording& recording) {
+MeasuredSketch measured_sketch(const Recording& recording, std::size_t most) {
   std::set<std::uint64_t> least;
-  for_each_stretch(recording, [&least](std::uint64_t hash) {
-    if (least.size() == kSketch && hash >= *least.rbegin()) return;
+  for_each_stretch(recording, [&least, most](std::uint64_t hash) {
+    if (least.size() == most && hash >= *least.rbegin()) return;
     least.insert(hash);
-    if (least.size() > kSketch) least.erase(std::prev(least.end()));
+    if (least.size() > most) least.erase(std::prev(least.end()));
   });
   if (least.size() < kSketch) return {};
   return {least.begin(), least.end()};

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "compensation/models/undetermined_fit.h"
+
 namespace beamgyro::internal {
 namespace {
 
@@ -28,7 +30,7 @@ Scale scale_to_unit(const Eigen::Ref<const Eigen::ArrayXd>& values,
                     const std::string& what) {
   const double low = values.minCoeff(), high = values.maxCoeff();
   if (!(high > low))
-    throw std::invalid_argument(
+    throw UndeterminedFit(
         fmt::format("{} is {} in all {} training rows; the model needs rows "
                     "where it varies",
                     what, low, values.size()));

@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
+
+#include "compensation/models/undetermined_fit.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -30,7 +31,7 @@ int distinct_temperatures(const Eigen::ArrayXd& temperature) {
 void check_temperatures(const Eigen::ArrayXd& temperature, int degree) {
   const int distinct = distinct_temperatures(temperature);
   if (distinct < degree + 1)
-    throw std::invalid_argument(fmt::format(
+    throw UndeterminedFit(fmt::format(
         "temperature is between {:.2f} and {:.2f} degC in the training rows, "
         "{} values {} K apart; a polynomial of degree {} needs {}",
         temperature.minCoeff(), temperature.maxCoeff(), distinct,

@@ -4,8 +4,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <stdexcept>
 #include <utility>
+
+#include "compensation/models/undetermined_fit.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -116,7 +117,7 @@ void add_own_residuals(const TrainingRows& own, double grid_K,
   }
 }
 
-// Of what is left of a device's own curve on its soaks, which is no lag.
+// RMS of a device's soaks about its own spline: noise without lag.
 double soak_rms(const ResidualRows& rows) {
   const RowMask soaks = soak_rows(rows);
   if (!soaks.any()) return 0.0;
@@ -126,13 +127,22 @@ double soak_rms(const ResidualRows& rows) {
 
 }  // namespace
 
-ResidualRows own_curve_residuals(const TrainingRows& rows, double grid_K) {
+ResidualRows own_curve_residuals(const TrainingRows& rows, double grid_K,
+                                 std::vector<std::string>& remarks) {
   ResidualCollector found;
+  int left_out = 0;
+  std::string reason;
   for (int device = 0; device < device_count(rows); ++device) try {
       add_own_residuals(rows_of_device(rows, device), grid_K, found);
-    } catch (const std::invalid_argument&) {
-      continue;  // its soaks determine no spline
+    } catch (const UndeterminedFit& error) {
+      ++left_out;
+      reason = error.what();
     }
+  if (left_out > 0)
+    remarks.push_back(fmt::format(
+        "sigma on ramps and in warm-ups: {} of {} held-out devices are left "
+        "out, the last because {}",
+        left_out, device_count(rows), reason));
   return found.rows();
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "compensation/inputs/input.h"
@@ -14,8 +15,9 @@ namespace beamgyro::internal {
 /// residuals of the spline through the soaks of each device itself: what lags
 /// on ramps and in warm-ups. `rows` has their temperature, then the channels;
 /// the last two columns are since_power_on and temperature_rate. A device whose
-/// soaks determine no spline is left out.
-ResidualRows own_curve_residuals(const TrainingRows& rows, double grid_K);
+/// soaks determine no spline is left out, with a line in `remarks`.
+ResidualRows own_curve_residuals(const TrainingRows& rows, double grid_K,
+                                 std::vector<std::string>& remarks);
 
 /// Returns the calibration of devices adapted from `population`, on devices it
 /// was not learned from. Each is adapted from few soaks of its `soaks`, evenly

@@ -11,6 +11,7 @@
 #include "compensation/firmware/runtime.h"
 #include "compensation/models/array_view.h"
 #include "compensation/models/parameter_json.h"
+#include "compensation/models/undetermined_fit.h"
 #include "linear_algebra/least_squares.h"
 #include "linear_algebra/linear_systems.h"
 
@@ -62,7 +63,7 @@ MatrixXd second_derivative_operator(const ArrayXd& knots, SplineEnd end) {
 
 void check_knots(const ArrayXd& knots) {
   if (knots.size() < 4)
-    throw std::invalid_argument(
+    throw UndeterminedFit(
         fmt::format("cubic spline: {} knots from the data, at least 4 are "
                     "needed (a smaller knot_spacing_K or a wider temperature "
                     "range)",
@@ -101,7 +102,7 @@ CubicSpline fit_cubic_spline(const Eigen::Ref<const ArrayXd>& x,
   }
   const auto [values, rank] = least_squares(design, y.matrix());
   if (rank < knots.size())
-    throw std::invalid_argument(
+    throw UndeterminedFit(
         fmt::format("cubic spline: the {} rows determine the values at only "
                     "{} of the {} knots; a larger knot_spacing_K is needed",
                     x.size(), rank, knots.size()));

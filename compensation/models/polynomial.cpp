@@ -7,6 +7,7 @@
 
 #include "compensation/firmware/runtime.h"
 #include "compensation/models/parameter_json.h"
+#include "compensation/models/undetermined_fit.h"
 #include "linear_algebra/cholesky.h"
 #include "linear_algebra/least_squares.h"
 
@@ -28,7 +29,7 @@ Eigen::MatrixXd terms(const Eigen::Ref<const ArrayXXd>& x, int degree) {
 
 [[noreturn]] void fail_degree(int degree, Index rows, Index rank,
                               Index needed) {
-  throw std::invalid_argument(
+  throw UndeterminedFit(
       fmt::format("polynomial of degree {}: the {} rows determine only {} of "
                   "its {} coefficients",
                   degree, rows, rank, needed));
@@ -65,7 +66,7 @@ Polynomial fit_polynomial_by_normal_equations(
   const Eigen::MatrixXd columns = terms(x, degree);
   const Cholesky normal(columns.transpose() * columns);
   if (!normal.is_positive_definite())
-    throw std::invalid_argument(fmt::format(
+    throw UndeterminedFit(fmt::format(
         "polynomial of degree {}: the normal equations of {} rows cannot be "
         "solved in double precision; normalised = true needs none",
         degree, x.rows()));

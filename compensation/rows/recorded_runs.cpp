@@ -38,21 +38,11 @@ void require_different_runs(const std::vector<std::string>& paths) {
       const auto [same, is_new] = of_hash.emplace(sha256_of_file(name), name);
       if (!is_new)
         throw std::invalid_argument(
-            fmt::format("{}: is the same recording as {}; expected each once",
+            fmt::format("{}: is the same recording as {}; expected each once: "
+                        "leave one of them out",
                         name, same->second));
     }
   }
-}
-
-bool is_set(const std::vector<std::string>& paths) {
-  for (const std::string& path : paths)
-    if (std::filesystem::is_directory(status_of(path))) {
-      if (paths.size() == 1) return true;
-      throw std::invalid_argument(path +
-                                  ": a directory among recordings; expected "
-                                  "recordings, or the directory of one set");
-    }
-  return false;
 }
 
 }  // namespace beamgyro::internal

@@ -20,8 +20,4 @@ RunSource runs_of_files(
 /// name: it would count twice.
 void require_different_runs(const std::vector<std::string>& paths);
 
-/// Returns whether the paths are a single directory, that of a set. Throws
-/// std::invalid_argument when one of several paths is a directory.
-bool is_set(const std::vector<std::string>& paths);
-
 }  // namespace beamgyro::internal

@@ -259,24 +259,29 @@ std::vector<AllanPoint> oadev(std::span<const double> rates, double interval,
   return allan_curve(whole_series(rates, interval), taus).overlapping;
 }
 
-SampleRange longest_gapless_range(const Recording& recording,
-                                  std::span<const double> values) {
+std::vector<SampleRange> gapless_ranges(const Recording& recording,
+                                        std::span<const double> values) {
   const auto& time = recording.time;
   const double longest_step = kLongestStep * usual_step(recording);
-  SampleRange longest{0, 0};
+  std::vector<SampleRange> ranges;
   for (const SampleRange& stretch : powered_stretches(recording)) {
-    std::size_t begin = stretch.begin;
+    bool continues = false;
     for (std::size_t k = stretch.begin; k < stretch.end; ++k) {
-      if (!std::isfinite(values[k])) {
-        begin = k + 1;
-      } else if (k > begin && time[k] - time[k - 1] > longest_step) {
-        begin = k;
-      }
-      if (k + 1 > begin + longest.size()) {
-        longest = {begin, k + 1};
-      }
+      const bool is_finite = std::isfinite(values[k]);
+      continues = continues && time[k] - time[k - 1] <= longest_step;
+      if (is_finite && !continues) ranges.push_back({k, k});
+      if (is_finite) ranges.back().end = k + 1;
+      continues = is_finite;
     }
   }
+  return ranges;
+}
+
+SampleRange longest_gapless_range(const Recording& recording,
+                                  std::span<const double> values) {
+  SampleRange longest{0, 0};
+  for (const SampleRange& range : gapless_ranges(recording, values))
+    if (range.size() > longest.size()) longest = range;
   return longest;
 }
 

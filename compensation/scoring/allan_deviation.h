@@ -103,8 +103,12 @@ std::vector<AllanPoint> adev(std::span<const double> rates, double interval,
 std::vector<AllanPoint> oadev(std::span<const double> rates, double interval,
                               std::span<const double> taus);
 
-/// Returns the longest range of samples that is powered, finite in `values`
-/// (one per time) and without a gap. It is empty when there is none.
+/// Returns the ranges of samples that are powered, finite in `values` (one per
+/// time) and without a gap.
+std::vector<SampleRange> gapless_ranges(const Recording& recording,
+                                        std::span<const double> values);
+
+/// Returns the first of the longest of them. It is empty when there is none.
 SampleRange longest_gapless_range(const Recording& recording,
                                   std::span<const double> values);
 

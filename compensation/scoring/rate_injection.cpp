@@ -13,7 +13,7 @@
 
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/scale_factor.h"
-#include "compensation/scoring/stated_values.h"
+#include "dataset/recording/stated_values.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "compensation/models/undetermined_fit.h"
 #include "parallel/work_queue.h"
 
 namespace beamgyro::internal {
@@ -111,15 +112,19 @@ Predictions predict_unseen(const FitSpec& kind,
   const FitSpec cheap = as_in_fold(kind, static_cast<int>(cores / at_once));
   for_each_task(folds, at_once, [&](std::size_t k, std::size_t) {
     const auto group = static_cast<int>(k);
+    const auto without = [&](const std::exception& error) {
+      return fmt::format("without {} {}: {}", grouping_name(groups.by),
+                         group + 1, error.what());
+    };
     try {
       const Fold fold = fold_without(group, rows, groups);
       const Fit fit = fit_model(cheap, inputs, fold.rows, {}, seed);
       of_group[static_cast<std::size_t>(group)] = fit.model.predict(
           clamped(fold.unseen, inputs, fold.rows.range).inputs);
+    } catch (const UndeterminedFit& error) {
+      throw UndeterminedFit(without(error));
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(fmt::format("without {} {}: {}",
-                                              grouping_name(groups.by),
-                                              group + 1, error.what()));
+      throw std::invalid_argument(without(error));
     }
   });
   Predictions predictions{ArrayXd(rows.size()),

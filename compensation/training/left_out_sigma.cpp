@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "compensation/training/left_out_sigma.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "compensation/methods/fit.h"
 #include "compensation/methods/population.h"
 #include "compensation/models/array_view.h"
+#include "compensation/models/undetermined_fit.h"
 #include "compensation/training/cross_validation.h"
 
 namespace beamgyro::internal {
@@ -73,6 +75,14 @@ ArrayXd leverage(const FitSpec& kind, const std::vector<Input>& inputs,
   return sum;
 }
 
+template <class Count>
+[[noreturn]] void fail_soaks(Count found, const char* where) {
+  throw UndeterminedFit(fmt::format(
+      "the rows have {} soaks{}; expected {} or more, each to be predicted by "
+      "the others",
+      found, where, kLeastLeftOut));
+}
+
 }  // namespace
 
 ArrayXd local_rms(const Eigen::Ref<const ArrayXd>& T,
@@ -105,13 +115,12 @@ RowGroups soak_groups(const TrainingRows& rows) {
   return groups;
 }
 
-std::optional<LeftOutSigma> left_out_sigma(const FitSpec& kind,
-                                           const std::vector<Input>& inputs,
-                                           const TrainingRows& rows,
-                                           const ArrayXd& at,
-                                           std::uint64_t seed) try {
+LeftOutSigma left_out_sigma(const FitSpec& kind,
+                            const std::vector<Input>& inputs,
+                            const TrainingRows& rows, const ArrayXd& at,
+                            std::uint64_t seed) {
   const RowGroups groups = soak_groups(rows);
-  if (groups.count < kLeastLeftOut) return std::nullopt;
+  if (groups.count < kLeastLeftOut) fail_soaks(groups.count, "");
   RowGroups folds = groups;
   folds.count = std::min(groups.count, kMostLeftOut);
   folds.of_row =
@@ -119,7 +128,8 @@ std::optional<LeftOutSigma> left_out_sigma(const FitSpec& kind,
   const Predictions unseen = predict_unseen(kind, inputs, rows, folds, seed);
   const LeftOutGroups left =
       left_out_groups(rows, groups, rows.bias - unseen.bias);
-  if (left.square.size() < kLeastLeftOut) return std::nullopt;
+  if (left.square.size() < kLeastLeftOut)
+    fail_soaks(left.square.size(), " between the temperatures of the others");
   const ArrayXd T = array_view(left.temperature);
   ArrayXd sigma = local_rms(T, array_view(left.square), at);
   if (groups.count <= kMostLeftOut) {
@@ -128,9 +138,7 @@ std::optional<LeftOutSigma> left_out_sigma(const FitSpec& kind,
         ((1.0 + leverage(kind, inputs, rows, groups, at, seed)) / (1.0 + usual))
             .sqrt();
   }
-  return LeftOutSigma{{at, sigma}, static_cast<int>(left.square.size())};
-} catch (const std::invalid_argument&) {
-  return std::nullopt;  // the others do not determine the fit
+  return {{at, sigma}, static_cast<int>(left.square.size())};
 }
 
 }  // namespace beamgyro::internal

@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "compensation/inputs/input.h"
@@ -40,12 +39,11 @@ struct LeftOutSigma {
 /// the covariance of the fit to groups of equal and independent noise. Groups
 /// beyond the temperatures of the others do not count. With more than
 /// kMostLeftOut groups, every kMostLeftOut-th is left out together, and h is 0.
-/// Nothing where three groups cannot be predicted by the others.
+/// Throws UndeterminedFit where three groups cannot be predicted by the others.
 constexpr int kMostLeftOut = 40;
-std::optional<LeftOutSigma> left_out_sigma(const FitSpec& kind,
-                                           const std::vector<Input>& inputs,
-                                           const TrainingRows& rows,
-                                           const Eigen::ArrayXd& at,
-                                           std::uint64_t seed);
+LeftOutSigma left_out_sigma(const FitSpec& kind,
+                            const std::vector<Input>& inputs,
+                            const TrainingRows& rows, const Eigen::ArrayXd& at,
+                            std::uint64_t seed);
 
 }  // namespace beamgyro::internal

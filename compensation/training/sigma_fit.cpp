@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 #include <variant>
 
 #include "compensation/methods/fit.h"
 #include "compensation/methods/population_sigma.h"
+#include "compensation/models/undetermined_fit.h"
 #include "compensation/rows/row_groups.h"
 #include "compensation/training/left_out_sigma.h"
 #include "compensation/uncertainty/sigma_calibration.h"
@@ -140,9 +140,9 @@ bool has_several_devices(const SigmaTask& task) {
   return task.runs.set && (task.rows.device != task.rows.device(0)).any();
 }
 
-// What is known before any calibration.
-std::optional<BiasSigma> uncalibrated(const Compensator& trained,
-                                      const SigmaTask& task) {
+// What is known before any calibration. Throws UndeterminedFit where nothing
+// is.
+BiasSigma uncalibrated(const Compensator& trained, const SigmaTask& task) {
   if (trained.population) return population_sigma(*trained.population);
   if (const auto* adapted = std::get_if<AdaptedSpec>(&task.kind))
     return adapted_sigma(adapted->population,
@@ -152,17 +152,17 @@ std::optional<BiasSigma> uncalibrated(const Compensator& trained,
                          adapted->noise);
   if (!is_one_of<PolynomialSpec, SplineSpec>(task.kind) ||
       has_several_devices(task))
-    return std::nullopt;
-  auto curve = left_out_sigma(task.kind, task.inputs, task.rows,
-                              sigma_grid(trained.temperature_range), task.seed);
-  if (!curve) return std::nullopt;
+    throw UndeterminedFit("it takes residuals of held-out runs");
+  LeftOutSigma curve =
+      left_out_sigma(task.kind, task.inputs, task.rows,
+                     sigma_grid(trained.temperature_range), task.seed);
   BiasSigma sigma;
   sigma.source = SigmaSource::kCovariance;
-  sigma.curve = std::move(curve->sigma);
+  sigma.curve = std::move(curve.sigma);
   sigma.calibration = {
       "none: residuals of groups of training rows that were "
       "left out in turn",
-      kLeftOutGroup, static_cast<std::size_t>(curve->groups)};
+      kLeftOutGroup, static_cast<std::size_t>(curve.groups)};
   return sigma;
 }
 
@@ -177,30 +177,43 @@ bool is_calibrated_by_population(const SigmaTask& task,
 }  // namespace
 
 std::optional<BiasSigma> fit_bias_sigma(const Compensator& trained,
-                                        const SigmaTask& task) {
+                                        const SigmaTask& task,
+                                        std::vector<std::string>& remarks) {
   if (is_one_of<NoneSpec, ConstantSpec, ThermistorSpec, Px4Spec, ArduPilotSpec>(
           task.kind))
     return std::nullopt;
-  std::optional<BiasSigma> sigma = uncalibrated(trained, task);
+  std::optional<BiasSigma> sigma;
+  std::string why_none;
+  try {
+    sigma = uncalibrated(trained, task);
+  } catch (const UndeterminedFit& error) {
+    why_none = error.what();
+  }
   const bool any_held_out = task.held_out_runs.count > 0;
   if (any_held_out) {
     const ResidualRows rows = residuals_of(trained, task.held_out_runs, task);
-    if (rows.size() == 0) return sigma;
-    if (!sigma) {
+    if (rows.size() == 0 && sigma) return sigma;
+    if (rows.size() == 0)
+      why_none += "; held-out runs have no row within the temperatures";
+    if (rows.size() > 0 && !sigma) {
       sigma.emplace();
       sigma->curve = residual_curve(rows, trained.temperature_range);
     }
-    if (!is_calibrated_by_population(task, rows)) calibrate(*sigma, rows);
+    if (sigma && !is_calibrated_by_population(task, rows))
+      calibrate(*sigma, rows);
   } else if (sigma && sigma->source == SigmaSource::kCovariance) {
     calibrate_terms(*sigma, residuals_of(trained, task.runs, task));
   }
-  if (sigma) sigma->growth = growth_of(trained, task.kind, *sigma);
+  if (sigma)
+    sigma->growth = growth_of(trained, task.kind, *sigma);
+  else
+    remarks.push_back("no sigma: " + why_none);
   return sigma;
 }
 
 std::optional<AdaptationSigma> fit_adaptation_sigma(
     const Population& population, const LookupTable* scale_factor,
-    const SigmaTask& task) {
+    const SigmaTask& task, std::vector<std::string>& remarks) {
   const auto* spec = std::get_if<PopulationSpec>(&task.kind);
   if (spec == nullptr || !task.held_out_runs.set ||
       task.held_out_runs.count == 0)
@@ -209,7 +222,7 @@ std::optional<AdaptationSigma> fit_adaptation_sigma(
       population, task.inputs, task.held_out,
       own_curve_residuals(
           all_rows(task.held_out_runs, task.inputs, task, {}, scale_factor),
-          spec->grid_K));
+          spec->grid_K, remarks));
 }
 
 }  // namespace beamgyro::internal

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "compensation/compensator/compensator.h"
@@ -30,8 +31,8 @@ struct SigmaTask {
   std::uint64_t seed;
 };
 
-/// Returns the sigma of `trained`, or nothing where its method or the data
-/// cannot tell one. s(T) is
+/// Returns the sigma of `trained`, or nothing where its method cannot tell one,
+/// nor where the data cannot, with a line in `remarks` that says why. s(T) is
 /// - of a population and of an adapted device the posterior deviation
 ///   (population_sigma(), adapted_sigma());
 /// - of a polynomial and a spline of one gyro the root mean square near T of
@@ -47,12 +48,14 @@ struct SigmaTask {
 /// held-out runs, polynomials and splines take a_on and a_rate from the
 /// training runs by leg. The runs concerned are visited once more.
 std::optional<BiasSigma> fit_bias_sigma(const Compensator& trained,
-                                        const SigmaTask& task);
+                                        const SigmaTask& task,
+                                        std::vector<std::string>& remarks);
 
 /// Returns adaptation_sigma() of a population that was just learned, on the
-/// held-out devices, or nothing without a set of these.
+/// held-out devices, or nothing without a set of these. Devices that it leaves
+/// out are told in `remarks`.
 std::optional<AdaptationSigma> fit_adaptation_sigma(
     const Population& population, const LookupTable* scale_factor,
-    const SigmaTask& task);
+    const SigmaTask& task, std::vector<std::string>& remarks);
 
 }  // namespace beamgyro::internal

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "compensation/compensator/training_use.h"
+#include "compensation/compensator/run_comparison.h"
 #include "compensation/methods/fit.h"
 #include "compensation/training/cautions.h"
 #include "compensation/training/scale_factor_table.h"
@@ -40,7 +40,7 @@ void check_runs(const ModelSpec& spec, const RunSource& runs,
 
 // Facts about the runs that are kept besides their rows.
 struct RunFacts {
-  std::vector<SourceFile> files;
+  std::vector<RunMark> runs;
   double coarsest_resolution = 0.0;  // [K], of the temperature
 };
 
@@ -49,10 +49,7 @@ RunSource noting(const RunSource& runs, RunFacts& facts) {
   return {runs.count, [&](const RunSource::Visitor& visit) {
             runs.for_each([&](const TrainingRun& run) {
               visit(run);  // whose errors name the run
-              if (!run.sha256.empty())
-                facts.files.push_back({run.name, run.sha256,
-                                       measured_sha256(run.recording),
-                                       measured_sketch(run.recording)});
+              if (!run.sha256.empty()) facts.runs.push_back(mark_of(run));
               facts.coarsest_resolution =
                   std::max(facts.coarsest_resolution,
                            temperature_resolution(run.recording));
@@ -60,16 +57,15 @@ RunSource noting(const RunSource& runs, RunFacts& facts) {
           }};
 }
 
-void check_held_out(const std::vector<SourceFile>& held_out,
-                    const std::vector<SourceFile>& training) {
-  for (const SourceFile& run : held_out)
-    for (const SourceFile& other : training)
-      if (run.sha256 == other.sha256 ||
-          run.measured_sha256 == other.measured_sha256)
-        throw std::invalid_argument(
-            fmt::format("{} is held out but equals {}, which is trained on; a "
-                        "held-out recording must be another run",
-                        run.name, other.name));
+// Returns the files as a compensator keeps them.
+std::vector<SourceFile> files_of(const RunFacts& facts) {
+  std::vector<SourceFile> files;
+  for (const RunMark& run : facts.runs) {
+    files.push_back(run.file);
+    MeasuredSketch& sketch = files.back().sketch;
+    sketch.resize(std::min(sketch.size(), kSketch));
+  }
+  return files;
 }
 
 // Returns the groups of rows for cross-validation, if there is one.
@@ -176,11 +172,13 @@ std::string cause_of_few_rows(const TrainingRows& rows,
 }
 
 // Adds the 1-sigma of the bias, and that of devices adapted from a population.
-void fit_sigma(Compensator& c, const SigmaTask& task) {
+void fit_sigma(Compensator& c, const SigmaTask& task,
+               std::vector<std::string>& remarks) {
   if (c.population)
     c.population->sigma = fit_adaptation_sigma(
-        *c.population, c.scale_factor ? &*c.scale_factor : nullptr, task);
-  c.sigma = fit_bias_sigma(c, task);
+        *c.population, c.scale_factor ? &*c.scale_factor : nullptr, task,
+        remarks);
+  c.sigma = fit_bias_sigma(c, task, remarks);
 }
 
 void add_sigma_caution(const BiasSigma& sigma, const TrainingRows& rows,
@@ -214,7 +212,7 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
   if (held_out.count > 0)
     unseen = training_rows(noting(held_out, unseen_facts), spec.inputs,
                            spec.rows, rows.range, scale_factor);
-  check_held_out(unseen_facts.files, facts.files);
+  require_different_runs(facts.runs, unseen_facts.runs);
   result.rows = rows.size();
   result.held_out_rows = unseen.size();
 
@@ -246,8 +244,8 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
   if (selected.weight < 1.0)
     p.method +=
         fmt::format(" of weight {:.2f} beside a constant", selected.weight);
-  p.training = std::move(facts.files);
-  p.held_out = std::move(unseen_facts.files);
+  p.training = files_of(facts);
+  p.held_out = files_of(unseen_facts);
   p.training_set = runs.set;
   p.held_out_set = held_out.set;
   p.model_text = spec.text;
@@ -261,16 +259,23 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
     const std::vector<Input>& inputs = selected.candidate.inputs;
     const TrainingRows fitted = with_columns(rows, spec.inputs, inputs);
     const TrainingRows others = with_columns(unseen, spec.inputs, inputs);
-    fit_sigma(c, {selected.candidate.kind, inputs, spec.rows, fitted, others,
-                  runs, held_out, seed});
+    fit_sigma(c,
+              {selected.candidate.kind, inputs, spec.rows, fitted, others, runs,
+               held_out, seed},
+              result.sigma_remarks);
+  } else {
+    result.sigma_remarks.emplace_back(
+        "no sigma: the curve is averaged with a constant");
   }
   if (groups) p.cross_validated = summary_of(*groups, selected);
   p.warnings =
       cautions({c.inputs, c.bias, c.baseline, own, own_unseen,
                 facts.coarsest_resolution, known != TemperatureRange{}});
   if (c.sigma) add_sigma_caution(*c.sigma, own, p.warnings);
-  const std::string objection = why_no_claim(spec, groups, selected);
-  if (!objection.empty()) p.warnings.push_back(objection);
+  for (const std::string& warning :
+       {warning_of_shared_seeds(p.training, p.held_out, groups.has_value()),
+        why_no_claim(spec, groups, selected)})
+    if (!warning.empty()) p.warnings.push_back(warning);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "compensation/compensator/compensator.h"
@@ -20,6 +21,7 @@ struct TrainResult {
   std::size_t chosen = 0;              // the restart kept
   Eigen::Index rows = 0;
   Eigen::Index held_out_rows = 0;
+  std::vector<std::string> sigma_remarks;  // why there is no sigma, and so on
 
   const TrainSummary& summary() const { return restarts[chosen]; }
 };
@@ -37,7 +39,8 @@ struct TrainResult {
 ///   held-out runs, or else by folds_of() the rows.
 ///
 /// Throws as training_rows(), and std::invalid_argument when
-/// - there is no run, or a run is both trained on and held out;
+/// - there is no run, or one that is another or a part of it
+///   (require_different_runs());
 /// - a network has neither held-out runs nor cross-validation;
 /// - the temperatures are too few or too close together, or an input never
 ///   varies.

@@ -295,6 +295,11 @@ Manifest read_manifest(const std::filesystem::path& directory,
 }
 
 Manifest finished_manifest(const std::filesystem::path& directory) {
+  if (!find_in_set(directory, kManifestName))
+    throw std::invalid_argument(fmt::format(
+        "{}: holds no set, or none that is finished; expected a directory that "
+        "generate made",
+        directory.string()));
   Manifest manifest = read_manifest(directory, kManifestName);
   if (!manifest.head || !manifest.is_finished)
     throw option_error(

@@ -247,8 +247,8 @@ void SetWriter::enter(std::span<const SourceText> sources, bool resume) {
                     : fmt::format("{}-of-{}", task_.number, task_.of));
   if (task_.is_whole() && !resume && holds_files_of_a_set(directory_))
     throw option_error(
-        "{}: holds a set, or files of one; expected {} to go on with it, or "
-        "another directory",
+        "{}: holds a set, or other .h5 files; expected {} to go on with a set, "
+        "or another directory",
         directory_.string(), NamedOption{"resume"});
   const std::optional<SetContents> contents = find_set(directory_);
   if (contents) {

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import os
+import zlib
 from collections.abc import Mapping
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
@@ -22,6 +23,34 @@ Path = Union[str, "os.PathLike[str]"]
 # along in the encoding of a dataset.
 _META = {"scenario": "scenario_text", "device": "device_text",
          "overrides": "overrides_text"}
+
+
+def _checksums(recording: _core.Recording) -> dict[str, int]:
+    """Return the checksum of each variable but the answers of compensators."""
+    roles = recording.variable_attributes()
+    return {name: zlib.crc32(values.data)
+            for name, values in recording.arrays().items()
+            if roles[name]["role"] != "compensated"}
+
+
+def _note_changes(recording: _core.Recording,
+                  checksums: Optional[Mapping[str, int]]) -> None:
+    """Add a line to the history of a recording with other values.
+
+    They are compared with the checksums of what the program returned, which
+    the encoding of a dataset keeps until xarray drops it. Variables that are
+    left out are no change.
+    """
+    is_simulated = recording.fidelity not in ("imported", "csv")
+    if not is_simulated and not recording.history:
+        return  # claims to come from nowhere
+    if checksums and _checksums(recording).items() <= checksums.items():
+        return
+    lines = recording.history.splitlines()
+    line = (f"{'' if checksums else 'not known to be un'}changed after "
+            f"{'simulation' if is_simulated else 'import'}")
+    if lines[-1:] != [line]:
+        recording.history = "\n".join([*lines, line])
 
 
 def dataset_of(recording: _core.Recording) -> xr.Dataset:
@@ -43,8 +72,9 @@ def dataset_of(recording: _core.Recording) -> xr.Dataset:
         variables, attrs=recording.file_attributes())
     dataset.encoding = {
         "unlimited_dims": set(),
-        "beamgyro": {name: getattr(recording, member)
-                     for name, member in _META.items()}}
+        "beamgyro": {"checksums": _checksums(recording),
+                     **{name: getattr(recording, member)
+                        for name, member in _META.items()}}}
     return dataset
 
 
@@ -121,6 +151,7 @@ def recording_of(dataset: xr.Dataset, argument: str = "recording", *,
     texts = dataset.encoding.get("beamgyro", {})
     for name, member in _META.items():
         setattr(recording, member, _checks.text(texts.get(name, ""), name))
+    _note_changes(recording, texts.get("checksums"))
     if is_sound:
         recording.require_sound()
     return recording
@@ -161,8 +192,9 @@ def recording_name(path: Path) -> str:
 def save_recording(dataset: xr.Dataset, path: Path) -> None:
     """Write a recording, as HDF5 to FILE.h5 or as CSV to FILE.csv.
 
-    A dataset of `run` gives the bytes that ``beamgyro run`` writes. The file
-    appears under its name when it is complete.
+    A dataset of `run` gives the bytes that ``beamgyro run`` writes. If its
+    values were changed, its history says so: "changed after simulation". The
+    file appears under its name when it is complete.
 
     Raises:
         ValueError: the dataset is no recording, or the name cannot be written.

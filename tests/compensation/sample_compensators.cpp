@@ -15,7 +15,7 @@ Provenance some_provenance() {
   Provenance p;
   p.method = "BP network 6-4";
   p.training = {{"a \"b\".h5", std::string(64, 'a')}};
-  p.held_out = {{"held.h5", std::string(64, 'b')}};
+  p.held_out = {{"held.h5", std::string(64, 'b'), "", {}, 0}};
   p.model_text = "# model\nkind = \"bp\"\n";
   p.seed = 18446744073709551615u;
   p.stop_reason = "the gradient vanished";

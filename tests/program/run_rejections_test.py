@@ -181,7 +181,7 @@ class Devices(Rejections):
              'readout.mode="whole_angle"'], "mode", "open_loop"),
         row("characterise device.toml -o nowhere/out.csv", "nowhere"),
         row("characterise device.toml -o c.csv --beam-temperature 20:200:10",
-            "200 degC", "-100 to 150 degC"),
+            "--beam-temperature: 160 degC", "-100 to 150 degC"),
         *[row(f"characterise device.toml -o x.csv --beam-temperature={text}", text)
           for text in ["60:-40:1", "-40:60:0", "-40:60", "a:b:c", "nan", "-300",
                        "-40:60:-1"]],

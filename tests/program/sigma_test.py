@@ -87,6 +87,19 @@ class OfOneGyro(ProgramTest):
         self.assertGreater(sigma[-1],
                            2 * lowest * self.compensator["sigma"]["factor"])
 
+    def test_training_says_why_there_is_none(self):
+        self.run_scenario("two", text=SOAKS.replace(
+            "[-35, -20, -5, 10, 25, 40]", "[10, 14]").replace(
+            "= 16000", "= 5000"))
+        self.write("line.toml", SPLINE.replace("spline", "polynomial")
+                   + "[polynomial]\ndegree = 1\n")
+        text = self.ok("train", "two.h5", "--model", "line.toml", "-o",
+                       "none.json")
+        self.assertIn("\nno sigma: the rows have 2 soaks; expected 3 or more",
+                      text)
+        self.assertNotIn("sigma", json.loads(
+            (self.dir / "none.json").read_text()))
+
     def test_a_file_without_one_gives_the_same_rate_and_no_sigma(self):
         self.ok("compensate", "c.json", "soaks.h5", "-o", "with.h5")
         del self.compensator["sigma"]

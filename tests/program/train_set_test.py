@@ -333,7 +333,7 @@ class Refused(TrainSet):
     def test_a_set_that_is_not_finished(self):
         shutil.rmtree(self.dir / "set")
         self.ok("generate", "campaign.toml", "-o", "set", "--shard", "1/2")
-        self.refused(says=["set", "manifest.jsonl"])
+        self.refused(says=["set: holds no set, or none that is finished"])
         shutil.rmtree(self.dir / "set")
         self.ok("generate", "campaign.toml", "-o", "set", "--jobs", 1)
         path = self.dir / "set/manifest.jsonl"

@@ -85,6 +85,12 @@ class CheckIncludes(unittest.TestCase):
         self.assert_clean("config/overrides.cpp", 'auto a = "--set ";\n')
         self.assert_offends("config/overrides.cpp", 'auto a = "--range";\n', "--range")
 
+    def test_commands_use_the_public_library(self):
+        self.assert_clean("cli/a.cpp", '#include "include/beamgyro/plan.h"\n')
+        for inner in ["planning/planner.h", "sim/device/device.h",
+                      "compensation/inputs/features.h", "sensitivity/study/factor.h"]:
+            self.assert_offends("cli/a.cpp", f'#include "{inner}"\n', f'include "{inner}"')
+
     def test_unknown_rooms_and_relative_includes(self):
         self.assert_offends("sim/other/a.h", "", "belongs to no room")
         self.assert_offends("sim/device/a.h", '#include "device.h"\n',

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "compensation/compensator/run_comparison.h"
 #include "compensation/compensator/training_use.h"
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/rate_injection.h"
@@ -79,11 +80,8 @@ bool was_used(const CheckedCompensator& checked, const CheckedRun& run) {
 std::optional<std::string> leak(const Provenance& provenance) {
   for (const SourceFile& held : provenance.held_out)
     for (const SourceFile& fitted : provenance.training)
-      if ((!held.sha256.empty() && held.sha256 == fitted.sha256) ||
-          (!held.measured_sha256.empty() &&
-           held.measured_sha256 == fitted.measured_sha256) ||
-          shares_stretches(held.sketch, fitted.sketch) ||
-          shares_stretches(fitted.sketch, held.sketch))
+      if (is_same_recording(held, fitted) || is_part_of(held, fitted) ||
+          is_part_of(fitted, held))
         return held.name;
   return std::nullopt;
 }
@@ -95,13 +93,21 @@ CheckResult check_hold_out(const CheckContext& context) {
   if (provenance == nullptr || !warning_of_no_training(*provenance).empty())
     return not_tested(
         "The compensator names no recording that it was trained on.");
-  std::vector<std::string> used;
-  for (const CheckedRun& run : context.checked.runs)
-    if (was_used(context.checked, run)) used.push_back(run.name);
+  std::vector<std::string> used, sharing;
+  for (const CheckedRun& run : context.checked.runs) {
+    if (was_used(context.checked, run)) {
+      used.push_back(run.name);
+    } else if (run.device.empty()) {
+      const std::string text =
+          shared_seed(*provenance, run.name, *run.recording);
+      if (!text.empty()) sharing.push_back(text);
+    }
+  }
   return count_result(
       used.size(),
-      fmt::format("Training saw none of the {} runs.",
-                  context.checked.runs.size()),
+      fmt::format("Training saw none of the {} runs{}{}.",
+                  context.checked.runs.size(), sharing.empty() ? "" : ", but ",
+                  fmt::join(sharing, "; ")),
       fmt::format("Training saw {} of the {} runs, so they prove nothing: {}.",
                   used.size(), context.checked.runs.size(),
                   fmt::join(used, ", ")));

@@ -13,6 +13,7 @@
 #include "validation/checks/check_context.h"
 #include "validation/checks/gain_judge.h"
 #include "validation/checks/white_number.h"
+#include "validation/metrics/allan_ratio.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -85,87 +86,7 @@ CheckResult check_true_rate(const CheckContext& context) {
 namespace {
 
 constexpr double kAllanTolerance = 0.02;  // [-]
-constexpr std::size_t kAllanBlock = 20;   // clusters
-constexpr std::size_t kLeastClusters = 200;
-constexpr double kConfidence = 1.96;  // [-], 95 %
-
-/// Means over 1 s of the residuals before and after, from stretches without a
-/// gap; a stretch ends with NaN.
-struct ClusterMeans {
-  std::vector<double> before, after;
-};
-
-/// Returns the sample `lag` later, within the stretch.
-std::size_t later_sample(std::size_t k, std::ptrdiff_t lag,
-                         const SampleRange& stretch) {
-  const auto at = static_cast<std::ptrdiff_t>(k) + lag;
-  return static_cast<std::size_t>(
-      std::clamp(at, static_cast<std::ptrdiff_t>(stretch.begin),
-                 static_cast<std::ptrdiff_t>(stretch.end) - 1));
-}
-
-/// Returns nothing for a run that is not sampled a whole number of times a
-/// second.
-std::optional<ClusterMeans> cluster_means(const Recording& run,
-                                          const std::vector<double>& answers,
-                                          std::ptrdiff_t lag) {
-  const double step = usual_step(run);
-  const double samples = step > 0.0 ? std::round(1.0 / step) : 0.0;
-  if (samples < 1.0 || std::abs(samples * step - 1.0) > 1e-6)
-    return std::nullopt;
-  const auto& rate = column_values(run, "rate");
-  const auto& truth = column_values(run, "true_rate");
-  const auto size = static_cast<std::size_t>(samples);
-  ClusterMeans means;
-  for (const SampleRange& stretch : powered_stretches(run)) {
-    for (std::size_t k = stretch.begin; k + size <= stretch.end; k += size) {
-      double before = 0.0, after = 0.0;
-      for (std::size_t i = k; i < k + size; ++i) {
-        before += rate[i] - truth[i];
-        after += answers[later_sample(i, lag, stretch)] - truth[i];
-      }
-      means.before.push_back(before / samples);
-      means.after.push_back(after / samples);
-    }
-    means.before.push_back(std::nan(""));
-    means.after.push_back(std::nan(""));
-  }
-  return means;
-}
-
-/// Ratio of two Allan deviations at 1 s of the same clusters, with its 95 %
-/// interval from blocks of clusters.
-struct AllanRatio {
-  double ratio, low, high;  // [-]
-};
-
-std::optional<AllanRatio> allan_ratio(const ClusterMeans& means) {
-  std::vector<double> before, after;  // sums over a block
-  std::size_t count = 0;
-  for (std::size_t k = 1; k < means.before.size(); ++k) {
-    const double b = means.before[k] - means.before[k - 1];
-    const double a = means.after[k] - means.after[k - 1];
-    if (std::isnan(a) || std::isnan(b)) continue;
-    if (count++ % kAllanBlock == 0) {
-      before.push_back(0.0);
-      after.push_back(0.0);
-    }
-    before.back() += b * b;
-    after.back() += a * a;
-  }
-  if (count < kLeastClusters) return std::nullopt;
-  double above = 0.0, below = 0.0, squares = 0.0;
-  for (const double value : after) above += value;
-  for (const double value : before) below += value;
-  if (!(below > 0.0)) return std::nullopt;
-  const double variance = above / below;
-  for (std::size_t k = 0; k < before.size(); ++k)
-    squares += std::pow(after[k] - variance * before[k], 2);
-  const double half = kConfidence * std::sqrt(squares) / below;
-  return AllanRatio{std::sqrt(variance),
-                    std::sqrt(std::max(variance - half, 0.0)),
-                    std::sqrt(variance + half)};
-}
+constexpr std::size_t kLeastRestSeconds = 200;
 
 bool is_at_rest(const Recording& run) {
   const auto& truth = column_values(run, "true_rate");
@@ -173,13 +94,9 @@ bool is_at_rest(const Recording& run) {
                              [&](double rate) { return rate == truth[0]; });
 }
 
-}  // namespace
-
-namespace {
-
 /// The run at rest whose ratio departs most from 1.
 struct WorstAllan {
-  AllanRatio ratio;
+  AllanRatio found;
   std::size_t run;
 };
 
@@ -188,11 +105,11 @@ std::optional<WorstAllan> worst_allan(const CheckContext& context) {
   for (const std::size_t k : context.runs_of({RunPurpose::kRest})) {
     const Recording& run = *context.checked.runs[k].recording;
     if (!is_at_rest(run)) continue;
-    const auto means =
-        cluster_means(run, context.answers[k], context.lag_in(run));
-    const auto found = means ? allan_ratio(*means) : std::nullopt;
-    if (found && (!worst || std::abs(found->ratio - 1.0) >
-                                std::abs(worst->ratio.ratio - 1.0)))
+    const auto found =
+        allan_ratio(run, context.answers[k], context.lag_in(run));
+    if (found && found->seconds >= kLeastRestSeconds &&
+        (!worst ||
+         std::abs(found->ratio - 1.0) > std::abs(worst->found.ratio - 1.0)))
       worst = WorstAllan{*found, k};
   }
   return worst;
@@ -200,18 +117,11 @@ std::optional<WorstAllan> worst_allan(const CheckContext& context) {
 
 /// Returns the share of a random rate as large as the noise and as fast, a new
 /// one each second, that the answers show.
-double noise_like_rate_kept(const CheckContext& context, std::size_t number) {
-  const Recording& run = *context.checked.runs[number].recording;
-  const auto& answers = context.answers[number];
-  const auto means = cluster_means(run, answers, 0);
-  double squares = 0.0, count = 0.0;
-  for (std::size_t k = 1; k < means->before.size(); ++k) {
-    const double change = means->before[k] - means->before[k - 1];
-    if (std::isnan(change)) continue;
-    squares += 0.5 * change * change;
-    count += 1.0;
-  }
-  const double size = std::sqrt(3.0 * squares / count);
+double noise_like_rate_kept(const CheckContext& context,
+                            const WorstAllan& worst) {
+  const Recording& run = *context.checked.runs[worst.run].recording;
+  const auto& answers = context.answers[worst.run];
+  const double size = std::sqrt(3.0) * worst.found.recorded;
   std::vector<double> added;
   for (const double t : run.time)
     added.push_back(size * white_number(static_cast<std::size_t>(
@@ -232,7 +142,8 @@ CheckResult allan_result(const CheckContext& context, const WorstAllan& worst) {
   const auto within = [](double ratio) {
     return std::abs(ratio - 1.0) <= kAllanTolerance;
   };
-  const auto& [ratio, low, high] = worst.ratio;
+  const double ratio = worst.found.ratio;
+  const auto [low, high] = worst.found.interval;
   CheckResult result{.value = std::abs(ratio - 1.0), .limit = kAllanTolerance};
   const std::string found = fmt::format(
       "The Allan deviation at 1 s is {:.4f} ({:.4f} to {:.4f}) of the recorded "
@@ -249,7 +160,7 @@ CheckResult allan_result(const CheckContext& context, const WorstAllan& worst) {
   } else if (ratio > 1.0) {
     result.outcome = CheckOutcome::kFailed;
     result.words = found + ": the compensator adds noise.";
-  } else if (within(noise_like_rate_kept(context, worst.run))) {
+  } else if (within(noise_like_rate_kept(context, worst))) {
     result.outcome = CheckOutcome::kPassed;
     result.words = found +
                    ", and a rate as small and as fast as the noise comes out "

@@ -34,9 +34,10 @@ CheckResult check_extrapolation(const CheckContext& context) {
 
 namespace {
 
-constexpr double kLeastSpread = 2.0;  // [K], less may be a constant temperature
-constexpr double kMostNoise = 0.5;    // [-], of the variance
-constexpr double kClearDrift = 6.0;   // standard deviations
+constexpr double kLeastTemperatureSpread =
+    2.0;                             // [K], less may be a constant temperature
+constexpr double kMostNoise = 0.5;   // [-], of the variance
+constexpr double kClearDrift = 6.0;  // standard deviations
 
 // Sums over the powered samples of all runs.
 struct TemperatureSums {
@@ -126,14 +127,15 @@ CheckResult check_temperature_input(const CheckContext& context) {
         "The temperature is {:g} degC at every sample while the drift changes: "
         "its sensor is stuck, and the runs carry no information about it.",
         all.lowest);
-  } else if (spread > kLeastSpread && all.noise_share() > kMostNoise) {
+  } else if (spread > kLeastTemperatureSpread &&
+             all.noise_share() > kMostNoise) {
     result.outcome = CheckOutcome::kFailed;
     result.words = fmt::format(
         "The temperature is noise: {:.3g} of its variance ({:.3g} K rms) is "
         "between neighbouring samples, so the runs carry no information about "
         "it.",
         all.noise_share(), spread);
-  } else if (all.highest - all.lowest < kLeastSpread) {
+  } else if (all.highest - all.lowest < kLeastTemperatureSpread) {
     return not_tested(fmt::format(
         "The temperatures of the runs differ by no more than {:.3g} K.",
         all.highest - all.lowest));

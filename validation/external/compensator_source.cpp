@@ -47,7 +47,7 @@ bool has_kind(std::string_view text) {
   return false;
 }
 
-std::string plain_name(const std::string& argument) {
+std::string without_folder(const std::string& argument) {
   return std::filesystem::path(argument).filename().string();
 }
 
@@ -92,7 +92,7 @@ CompensatorSource open_source(const std::string& argument,
     case SourceKind::kCommand:
       return {kind, argument, argument, open_command(argument, limits)};
     case SourceKind::kLibrary: {
-      CompensatorSource source{kind, argument, plain_name(argument),
+      CompensatorSource source{kind, argument, without_folder(argument),
                                open_library(argument, limits)};
       source.files.push_back({argument, read_text_file(argument)});
       return source;
@@ -112,7 +112,7 @@ CompensatorSource open_source(const std::string& argument,
 
 CompensatorSource source_of(Compensator compensator, const std::string& name,
                             const std::string& text) {
-  CompensatorSource source{SourceKind::kFile, name, plain_name(name),
+  CompensatorSource source{SourceKind::kFile, name, without_folder(name),
                            tested(compensator), std::move(compensator)};
   source.files.push_back({name, text});
   return source;
@@ -120,7 +120,7 @@ CompensatorSource source_of(Compensator compensator, const std::string& name,
 
 CompensatorSource source_of(ModelSpec model, const std::string& name,
                             const std::string& text) {
-  CompensatorSource source{SourceKind::kModel, name, plain_name(name)};
+  CompensatorSource source{SourceKind::kModel, name, without_folder(name)};
   source.files.push_back({name, text});
   for (std::size_t k = 1; k < model.files.size(); ++k)  // the first is its own
     source.files.push_back({model.files[k], read_text_file(model.files[k])});

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "compensation/scoring/allan_deviation.h"
 #include "compensation/scoring/noise_coefficients.h"
+#include "validation/metrics/allan_ratio.h"
 #include "validation/metrics/evaluations.h"
 #include "validation/metrics/segments.h"
 
@@ -13,7 +13,9 @@ namespace {
 
 constexpr double kHour = 3600.0;  // [s]
 constexpr std::size_t kLeastRestSamples = 64;
-constexpr double kPieces = 20.0;  // of a run, for the interval of a ratio
+// Of a residual whose deviation falls from 1 s to 4 s as that of white noise.
+constexpr double kWhiteNoiseFall = 0.75;  // [-]
+constexpr std::size_t kLeastSeconds = 10;
 
 /// Residual [deg/s] of the longest gapless stretch at rest, evenly sampled.
 struct RestSeries {
@@ -62,90 +64,6 @@ std::optional<Estimate> coefficient(
       Interval{per_hour * found.interval.low, per_hour * found.interval.high}};
 }
 
-/// Sums of squared differences of neighbouring means of 1 s, of each piece.
-struct DifferenceSums {
-  std::vector<double> judged, recorded;
-};
-
-DifferenceSums difference_sums(const EvidenceRun& run) {
-  const Recording& recording = *run.recording;
-  const SampleRange range = longest_gapless_range(recording, run.rate);
-  const auto second =
-      static_cast<std::size_t>(std::round(1.0 / usual_step(recording)));
-  const auto& raw = column_values(recording, "rate");
-  const auto& truth = column_values(recording, "true_rate");
-  const std::size_t seconds = range.size() / second;
-  DifferenceSums sums{std::vector<double>(static_cast<std::size_t>(kPieces)),
-                      std::vector<double>(static_cast<std::size_t>(kPieces))};
-  std::array<double, 2> last{};
-  for (std::size_t i = 0; i < seconds; ++i) {
-    std::array<double, 2> mean{};
-    for (std::size_t j = 0; j < second; ++j) {
-      const std::size_t k = range.begin + i * second + j;
-      mean[0] += (run.rate[k] - truth[k]) / static_cast<double>(second);
-      mean[1] += (raw[k] - truth[k]) / static_cast<double>(second);
-    }
-    const std::size_t piece = i * sums.judged.size() / seconds;
-    if (i > 0) {
-      sums.judged[piece] += std::pow(mean[0] - last[0], 2);
-      sums.recorded[piece] += std::pow(mean[1] - last[1], 2);
-    }
-    last = mean;
-  }
-  return sums;
-}
-
-/// 95 % interval of the logarithm of the root of a ratio of sums, as half its
-/// width: the jackknife over pieces with Student's t.
-double half_interval_of_ratio(const DifferenceSums& sums) {
-  const auto ratio = [&](std::size_t without) {
-    double judged = 0.0, recorded = 0.0;
-    for (std::size_t i = 0; i < sums.judged.size(); ++i) {
-      if (i == without) continue;
-      judged += sums.judged[i];
-      recorded += sums.recorded[i];
-    }
-    return 0.5 * std::log(judged / recorded);
-  };
-  double mean = 0.0, squares = 0.0;
-  for (std::size_t i = 0; i < sums.judged.size(); ++i)
-    mean += ratio(i) / kPieces;
-  for (std::size_t i = 0; i < sums.judged.size(); ++i)
-    squares += std::pow(ratio(i) - mean, 2);
-  return student_half_width(kPieces - 1.0) *
-         std::sqrt(squares * (kPieces - 1.0) / kPieces);
-}
-
-constexpr double kWhiteNoiseFall = 0.75;  // [-], deviation at 4 s over 1 s
-constexpr double kShortestSeries = 10.0;  // [s]
-constexpr double kStepTolerance = 1e-3;   // [-]
-
-// The Allan deviation at 1 s of the judged residual over that of the recorded
-// one, in the longest gapless stretch. Returns nothing where the recorded one
-// has no white noise at 1 s (its deviation falls to 0.5 at 4 s), where 1 s is
-// no multiple of the step, and for less than kShortestSeries.
-std::optional<double> ratio_at_1_s(const EvidenceRun& run) {
-  const auto& rate = column_values(*run.recording, "rate");
-  const auto& truth = column_values(*run.recording, "true_rate");
-  const SampleRange range = longest_gapless_range(*run.recording, run.rate);
-  std::vector<double> before, after;
-  for (std::size_t k = range.begin; k < range.end; ++k) {
-    before.push_back(rate[k] - truth[k]);
-    after.push_back(run.rate[k] - truth[k]);
-  }
-  const double step = usual_step(*run.recording);
-  const double samples = step > 0.0 ? std::round(1.0 / step) : 0.0;
-  const bool whole = std::abs(samples * step - 1.0) < kStepTolerance;
-  if (samples < 1.0 || !whole ||
-      static_cast<double>(range.size()) < samples * kShortestSeries)
-    return std::nullopt;
-  const std::array taus{1.0, 4.0};
-  const auto raw = oadev(before, 1.0 / samples, taus);
-  if (!(raw[1].deviation <= kWhiteNoiseFall * raw[0].deviation))
-    return std::nullopt;
-  return oadev(after, 1.0 / samples, taus)[0].deviation / raw[0].deviation;
-}
-
 }  // namespace
 
 std::optional<Estimate> angle_random_walk(const Evidence& evidence) {
@@ -184,15 +102,14 @@ std::optional<Estimate> lowest_allan_deviation(const Evidence& evidence) {
 std::optional<Estimate> white_noise_ratio(const Evidence& evidence) {
   std::optional<Estimate> farthest;
   for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kRest})) {
-    const std::optional<double> ratio = ratio_at_1_s(*run);
-    if (!ratio) continue;
-    const bool farther = !farthest || std::abs(std::log(*ratio)) >
-                                          std::abs(std::log(farthest->value));
-    if (!farther) continue;
-    const double factor =
-        *ratio > 0.0 ? std::exp(half_interval_of_ratio(difference_sums(*run)))
-                     : 1.0;
-    farthest = Estimate{*ratio, Interval{*ratio / factor, *ratio * factor}};
+    const std::optional<AllanRatio> found =
+        allan_ratio(*run->recording, run->rate);
+    if (!found || found->seconds < kLeastSeconds ||
+        !(found->fall <= kWhiteNoiseFall))
+      continue;
+    if (!farthest ||
+        std::abs(std::log(found->ratio)) >= std::abs(std::log(farthest->value)))
+      farthest = Estimate{found->ratio, found->interval};
   }
   return farthest;
 }

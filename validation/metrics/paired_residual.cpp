@@ -15,12 +15,12 @@ namespace {
 
 constexpr std::size_t kClustersOfRun = 8;
 
-double mean_of(const std::vector<double>& values) {
+double mean_of_drift(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) /
          static_cast<double>(values.size());
 }
 
-double rms_of(const std::vector<double>& values) {
+double rms_of_drift(const std::vector<double>& values) {
   return std::sqrt(
       std::inner_product(values.begin(), values.end(), values.begin(), 0.0) /
       static_cast<double>(values.size()));
@@ -52,7 +52,7 @@ LeftDrift left_drift(const Evidence& evidence) {
 
 LeftDrift without_mean(LeftDrift drift) {
   if (drift.means.empty()) return drift;
-  const double mean = mean_of(drift.means);
+  const double mean = mean_of_drift(drift.means);
   for (double& value : drift.means) value -= mean;
   return drift;
 }
@@ -61,7 +61,7 @@ std::optional<PairedResidual> paired_residual(const LeftDrift& drift,
                                               const LeftDrift& other) {
   const std::size_t count = drift.means.size();
   if (count == 0) return std::nullopt;
-  PairedResidual found{rms_of(drift.means), rms_of(other.means)};
+  PairedResidual found{rms_of_drift(drift.means), rms_of_drift(other.means)};
   if (!std::isfinite(found.rms) || !std::isfinite(found.other_rms))
     return std::nullopt;
   std::vector<double> sums(drift.clusters.back() + 1, 0.0);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "compensation/scoring/stated_values.h"
+#include "dataset/recording/stated_values.h"
 #include "sim/signal/flicker.h"
 
 namespace beamgyro::internal {

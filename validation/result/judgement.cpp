@@ -67,7 +67,7 @@ bool is_required(const SpecificationFile& specification,
   return std::ranges::count(specification.better_than, asked) > 0;
 }
 
-std::string plain_name(const Comparison& comparison) {
+std::string words_of_other(const ResidualComparison& comparison) {
   if (comparison.with == "before") return "no compensator";
   if (comparison.with == kConstantOfRuns)
     return "a constant fitted to these runs";
@@ -75,9 +75,9 @@ std::string plain_name(const Comparison& comparison) {
   return fmt::format("a {} trained on the same data", comparison.with);
 }
 
-std::string rms_words(const Comparison& comparison) {
+std::string rms_words(const ResidualComparison& comparison) {
   return fmt::format("{} leaves {:.3g} deg/s rms, the compensator {:.3g}",
-                     plain_name(comparison), comparison.found.other_rms,
+                     words_of_other(comparison), comparison.found.other_rms,
                      comparison.found.rms);
 }
 
@@ -130,9 +130,9 @@ Reasons reasons_of(const SpecificationFile& specification,
 }
 
 // Which simple methods are as good: a reader has to know that first.
-std::string as_good_words(const std::vector<Comparison>& comparisons) {
+std::string as_good_words(const std::vector<ResidualComparison>& comparisons) {
   std::vector<std::string> words;
-  for (const Comparison& comparison : comparisons)
+  for (const ResidualComparison& comparison : comparisons)
     if ((comparison.with == "cubic" || comparison.with == "table") &&
         !comparison.is_same && !comparison.found.is_better())
       words.push_back(rms_words(comparison));
@@ -156,7 +156,7 @@ std::string names_of(const std::vector<const CheckResult*>& checks) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string counted(std::size_t count, const char* what) {
+std::string number_words(std::size_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
@@ -164,15 +164,16 @@ std::string pass_words(const ValidationResult& result, const Reasons& reasons) {
   const auto passed = static_cast<std::size_t>(
       std::ranges::count_if(result.checks, &CheckResult::passed));
   std::vector<std::string> parts;
-  for (const Comparison& comparison : result.comparisons)
+  for (const ResidualComparison& comparison : result.comparisons)
     if (comparison.is_required) {
       parts.push_back(fmt::format("better than {} ({:.3g} of {:.3g} deg/s rms)",
-                                  plain_name(comparison), comparison.found.rms,
+                                  words_of_other(comparison),
+                                  comparison.found.rms,
                                   comparison.found.other_rms));
     }
   if (!result.limits.empty())
-    parts.push_back(counted(result.limits.size(), "limit") + " met");
-  parts.push_back(counted(passed, "check") + " passed");
+    parts.push_back(number_words(result.limits.size(), "limit") + " met");
+  parts.push_back(number_words(passed, "check") + " passed");
   std::string words =
       fmt::format("{}The compensator passes: {}",
                   as_good_words(result.comparisons), fmt::join(parts, ", "));
@@ -267,11 +268,11 @@ std::vector<DecidedLimit> decided_limits(
   return decided;
 }
 
-std::vector<Comparison> comparisons_of(const SpecificationFile& specification,
-                                       const DeviceEvidence& found) {
+std::vector<ResidualComparison> comparisons_of(
+    const SpecificationFile& specification, const DeviceEvidence& found) {
   const LeftDrift own = left_drift(found.after);
   const LeftDrift before = left_drift(found.before);
-  std::vector<Comparison> all;
+  std::vector<ResidualComparison> all;
   const auto add = [&](const std::string& name, const LeftDrift& other) {
     const auto compared = paired_residual(own, other);
     if (!compared) return;
@@ -284,14 +285,15 @@ std::vector<Comparison> comparisons_of(const SpecificationFile& specification,
   for (const Baseline& baseline : found.baselines)
     if (baseline.name != "none" && baseline.name != "spline")
       add(baseline.name, left_drift(baseline.evidence));
-  if (temperature_span(found.runs) >= kLeastTemperatures)
+  if (temperature_span(found.runs) >= kLeastSpanOfRuns)
     add(kConstantOfRuns, without_mean(before));
   return all;
 }
 
-std::string words_of_no_use(const std::vector<Comparison>& comparisons) {
-  const Comparison* least = nullptr;
-  for (const Comparison& one : comparisons)
+std::string words_of_no_use(
+    const std::vector<ResidualComparison>& comparisons) {
+  const ResidualComparison* least = nullptr;
+  for (const ResidualComparison& one : comparisons)
     if (one.is_required && !one.found.is_better() &&
         (least == nullptr || one.found.other_rms < least->found.other_rms))
       least = &one;

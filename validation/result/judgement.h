@@ -28,15 +28,15 @@ std::vector<DecidedLimit> decided_limits(
 
 /// Compares what the compensator leaves with what the recorded rate, the
 /// baselines and a constant of the runs themselves leave. The last is only
-/// there where the runs differ by kLeastTemperatures or more, because at one
+/// there where the runs differ by kLeastSpanOfRuns or more, because at one
 /// temperature no correction can be better than it.
-constexpr double kLeastTemperatures = 10.0;  // [K]
-std::vector<Comparison> comparisons_of(const SpecificationFile& specification,
-                                       const DeviceEvidence& found);
+constexpr double kLeastSpanOfRuns = 10.0;  // [K]
+std::vector<ResidualComparison> comparisons_of(
+    const SpecificationFile& specification, const DeviceEvidence& found);
 
 /// Returns a sentence on the least of the rates that the compensator has to be
 /// better than and is not; empty where there is none.
-std::string words_of_no_use(const std::vector<Comparison>& comparisons);
+std::string words_of_no_use(const std::vector<ResidualComparison>& comparisons);
 
 /// Writes the verdict, its reason and the next step into `result`, from its
 /// limits, checks and comparisons: kFail when one of them fails, else

@@ -97,7 +97,7 @@ Json check_json(const CheckResult& check) {
 }
 
 // Mean squares [(deg/s)^2]: of the other less that of the compensator.
-Json comparison_json(const Comparison& comparison) {
+Json comparison_json(const ResidualComparison& comparison) {
   const PairedResidual& found = comparison.found;
   return {{"with", comparison.with},
           {"rms_deg_per_s", found.other_rms},
@@ -204,7 +204,7 @@ nlohmann::ordered_json to_json(const ValidationResult& result) {
     compensator["workbench_difference_rms_deg_per_s"] = workbench->rms;
   }
   Json& compared = json["compared_with"] = Json::array();
-  for (const Comparison& one : result.comparisons)
+  for (const ResidualComparison& one : result.comparisons)
     compared.push_back(comparison_json(one));
   Json& runs = json["runs"] = Json::array();
   for (const RunResidual& run : result.runs)

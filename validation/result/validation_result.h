@@ -39,7 +39,7 @@ struct DecidedLimit {
 };
 
 /// The compensated rate beside another one, on the same runs.
-struct Comparison {
+struct ResidualComparison {
   // "before", a baseline, or "constant_of_runs", fitted to the runs themselves.
   std::string with;
   PairedResidual found;
@@ -135,7 +135,7 @@ struct ValidationResult {
   std::string words;  // the reason for it, in a sentence or two
   std::string next;   // what to do next, in a sentence
   JudgedCompensator compensator;
-  std::vector<Comparison> comparisons;
+  std::vector<ResidualComparison> comparisons;
   std::vector<RunResidual> runs;      // of one device, in their order
   std::vector<MetricResult> metrics;  // in the order of metrics()
   std::vector<DecidedLimit> limits;   // in the order of the specification

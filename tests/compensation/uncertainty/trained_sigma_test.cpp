@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compensation/methods/population_sigma.h"
+#include "compensation/models/undetermined_fit.h"
 #include "compensation/training/left_out_sigma.h"
 #include "compensation/training/train.h"
 #include "compensation/uncertainty/sigma_calibration.h"
@@ -18,6 +19,8 @@ namespace {
 
 using Eigen::ArrayXd;
 using Eigen::Index;
+
+using Names = std::vector<std::string>;
 
 constexpr double kNormalHalfWidth = 1.645;  // of 90 %
 
@@ -120,7 +123,10 @@ TEST(TrainedSigma, ConstantsAndThermistorsHaveNone) {
 TEST(TrainedSigma, ATableHasOneFromHeldOutRunsOnly) {
   ModelSpec spec = line_spec();
   spec.kind = TableSpec{};
-  EXPECT_FALSE(train(spec, soak_runs(1, 90), {}, 1).compensator.sigma);
+  const TrainResult alone = train(spec, soak_runs(1, 90), {}, 1);
+  EXPECT_FALSE(alone.compensator.sigma);
+  EXPECT_EQ(alone.sigma_remarks,
+            Names{"no sigma: it takes residuals of held-out runs"});
   const Compensator c =
       train(spec, soak_runs(1, 90), soak_runs(2, 91), 1).compensator;
   ASSERT_TRUE(c.sigma);
@@ -139,6 +145,30 @@ TEST(TrainedSigma, OfACurveTellsOfOneDeviceOfASetAndNotOfSeveral) {
   runs[1].device = "8";
   EXPECT_FALSE(
       train(line_spec(), source, source_of(none), 1).compensator.sigma);
+}
+
+// Too few rows of the others are a cause, and any other failure is a failure.
+TEST(LeftOutSigma, SaysWhyThereIsNone) {
+  const auto sigma = [](const FitSpec& kind, const TrainingRows& rows) {
+    return left_out_sigma(kind, kTemperatureInput, rows,
+                          ArrayXd::Constant(1, 20.0), 1);
+  };
+  const auto bias = [](double T, int) { return 0.1 * T; };
+  const TrainingRows two =
+      rows_of({{0, 0, 20.0, 20.0, 9}, {0, 0, 30.0, 30.0, 9}}, bias);
+  EXPECT_THROW(sigma(PolynomialSpec{1}, two), UndeterminedFit);
+  const TrainingRows three = rows_of(
+      {{0, 0, 20.0, 20.0, 9}, {0, 0, 25.0, 25.0, 9}, {0, 0, 29.0, 29.0, 9}},
+      bias);
+  EXPECT_THROW(sigma(PolynomialSpec{2}, three), UndeterminedFit);
+  try {
+    sigma(ArduPilotSpec{}, three);
+    ADD_FAILURE() << "a calibration of 9 K was accepted";
+  } catch (const UndeterminedFit& error) {
+    ADD_FAILURE() << error.what();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("ArduPilot"), std::string::npos);
+  }
 }
 
 TEST(TrainedSigma, IsTheSameForTheSameRuns) {
@@ -243,6 +273,29 @@ TEST(AdaptationSigma, IsOneForDevicesOfThePopulation) {
   EXPECT_LT(learned->half_width, 1.7);
   EXPECT_FALSE(learned->power_on);
   EXPECT_FALSE(learned->temperature_rate);
+}
+
+TEST(AdaptationSigma, TellsOfDevicesWhoseSoaksDetermineNoCurve) {
+  const auto soaks = [](int device, double last) {
+    TrainingRows rows = rows_of({{device, device, -40.0, -40.0, 2},
+                                 {device, device, -10.0, -10.0, 2},
+                                 {device, device, 20.0, 20.0, 2},
+                                 {device, device, last, last, 2}},
+                                [](double T, int) { return 0.01 * T; });
+    rows.inputs = Eigen::ArrayXXd::Zero(rows.size(), 3);
+    rows.inputs.col(0) = rows.temperature;
+    return rows;
+  };
+  Names remarks;
+  EXPECT_EQ(own_curve_residuals(soaks(0, 50.0), 5.0, remarks).size(), 8);
+  EXPECT_EQ(remarks, Names{});
+  EXPECT_EQ(own_curve_residuals(soaks(0, 20.0), 5.0, remarks).size(), 0);
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_EQ(remarks[0].find("sigma on ramps and in warm-ups: 1 of 1 held-out "
+                            "devices are left out, the last because cubic "
+                            "spline: 3 knots"),
+            0U)
+      << remarks[0];
 }
 
 TEST(AdaptationSigma, IsWideWhereDevicesDifferMoreThanThePopulation) {

@@ -245,6 +245,29 @@ TEST(PlantedFaults, TrainedOnTheTestRun) {
   EXPECT_TRUE(run_checks(all)[6].passed()) << run_checks(all)[6].words;
 }
 
+TEST(PlantedFaults, TheNoiseOfTheTrainingIsNoFaultButIsSaid) {
+  const FunctionCompensator compensator(sound);
+  CheckedCompensator all = checked(compensator);
+  Recording run = *all.runs[0].recording;
+  run.fidelity = "quasistatic";
+  run.title = "title";
+  run.seed = 7;
+  all.runs[0].recording = &run;
+  Provenance provenance;
+  provenance.training = {{"train.h5", std::string(64, '0'), "", {}, 7}};
+  all.provenance = &provenance;
+  const CheckResult said = run_checks(all)[6];
+  EXPECT_TRUE(said.passed());
+  const std::string none =
+      fmt::format("Training saw none of the {} runs", all.runs.size());
+  EXPECT_EQ(said.words,
+            none + ", but " + all.runs[0].name +
+                " shares its seed of noise with the training run train.h5: "
+                "turn-on offset and noise are the same.");
+  all.runs[0].device = "5";  // of a set, whose devices have noise of their own
+  EXPECT_EQ(run_checks(all)[6].words, none + ".");
+}
+
 TEST(PlantedFaults, TrainedOnADeviceOfTheTestSet) {
   const FunctionCompensator compensator(sound);
   const TrainingSet set{.name = "set",

@@ -250,6 +250,25 @@ TEST(MetricValues, NoiseThatWasHalvedShows) {
   expect_exact("white_noise_ratio", scene, 0.5, 1e-12);
 }
 
+// Of one stretch alone the ratio is 0.5, of the other 1: that of their sums.
+TEST(MetricValues, TheNoiseOfEveryStretchCounts) {
+  Scene scene;
+  EvidenceRun& run = scene.add({kRest, {.duration = 2000, .step = 0.25}},
+                               {.angle_random_walk = 0.02}, 3);
+  const std::size_t gap = run.rate.size() / 2;
+  for (std::size_t k = 0; k < gap; ++k) run.rate[k] *= 0.5;
+  run.rate[gap] = std::nan("");
+  const Estimate found = evaluated("white_noise_ratio", scene.evidence);
+  EXPECT_NEAR(found.value, std::sqrt(0.625), 0.02);
+  EXPECT_LT(found.interval->low, found.value);
+}
+
+TEST(MetricValues, WithoutNoiseThereIsNoRatio) {
+  Scene scene;
+  scene.add({kRest, {.duration = 2000, .step = 0.25}});
+  EXPECT_FALSE(find_metric("white_noise_ratio")->evaluate(scene.evidence));
+}
+
 TEST(MetricValues, ShareOfSamplesExtrapolated) {
   Scene scene;
   scene.add({kRest, {}}).clamped = 300;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/scoring/stated_values.h"
+#include "dataset/recording/stated_values.h"
 
 #include <algorithm>
 #include <cstddef>
