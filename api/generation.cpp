@@ -11,7 +11,7 @@
 #include "api/campaign_state.h"
 #include "api/program_version.h"
 #include "api/reported_progress.h"
-#include "sim/campaign/generation.h"
+#include "sim/campaign/shard_making.h"
 
 namespace beamgyro {
 namespace internal {

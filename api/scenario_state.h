@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "api/unit_gyro.h"
+#include "api/device_state.h"
 #include "include/beamgyro/scenario.h"
 #include "sim/scenario/simulation_input.h"
 

@@ -6,13 +6,16 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
+#include <mutex>
 #include <stdexcept>
 #include <utility>
 
 #include "api/program_version.h"
 #include "api/reported_progress.h"
 #include "api/set_defects.h"
-#include "api/set_state.h"
+#include "dataset/set/manifest.h"
+#include "dataset/set/shard/shard_reader.h"
 #include "dataset/set/view_check.h"
 
 namespace beamgyro {
@@ -31,6 +34,31 @@ std::vector<FileDefect> set_defects(const std::filesystem::path& directory,
 }
 
 }  // namespace internal
+
+struct Set::State {
+  /// Place of a device in a file.
+  struct Place {
+    std::shared_ptr<const internal::ShardFile> file;
+    std::uint32_t position;
+  };
+
+  std::filesystem::path directory;
+  internal::Manifest manifest;  // finished
+  std::vector<SetFailure> failures;
+
+  const internal::ManifestHead& head() const { return *manifest.head; }
+
+  /// Opens the file, compares its bytes with the manifest, and keeps the few
+  /// that were used last open. Throws as Set::part().
+  Place place_of(std::string_view run, std::uint32_t device) const;
+
+ private:
+  std::shared_ptr<const internal::ShardFile> file_of(std::uint32_t index) const;
+
+  mutable std::mutex mutex_;
+  mutable std::map<std::uint32_t, std::shared_ptr<const internal::ShardFile>>
+      open_;
+};
 
 namespace {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "sim/signal/random_purposes.h"
+#include "random/random_stream.h"
 
 namespace beamgyro::internal {
 

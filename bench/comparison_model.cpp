@@ -17,7 +17,7 @@
 #include "sim/device/device_file.h"
 #include "sim/dynamics/carrier.h"
 #include "sim/numerics/explicit_rk.h"
-#include "sim/scenario/envelope_trajectory.h"
+#include "sim/scenario/envelope_run.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bench/bias_rows.h"
-#include "compensation/network/random_purposes.h"
+#include "random/random_stream.h"
 
 namespace beamgyro::internal {
 namespace {

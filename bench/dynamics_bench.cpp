@@ -9,7 +9,6 @@
 #include "bench/shipped_device.h"
 #include "sim/scenario/carrier_run.h"
 #include "sim/scenario/envelope_run.h"
-#include "sim/scenario/envelope_trajectory.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -75,7 +74,7 @@ void carrier(benchmark::State& state, const RateProfile& rate) {
   }();
   const DeviceParameters device = shipped_device();
   for (auto _ : state)
-    simulate_carrier(scenario, device, {}, [](Recording&& block) {
+    simulate_carrier(scenario, make_gyro(device), {}, [](Recording&& block) {
       benchmark::DoNotOptimize(block);
     });
 }
@@ -89,7 +88,7 @@ void envelope_day(benchmark::State& state) {
   scenario.noise_enabled = true;
   const DeviceParameters device = shipped_device();
   for (auto _ : state)
-    simulate_envelope(scenario, device, {}, [](Recording&& block) {
+    simulate_envelope(scenario, make_gyro(device), {}, [](Recording&& block) {
       benchmark::DoNotOptimize(block);
     });
 }

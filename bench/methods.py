@@ -9,9 +9,7 @@ all its training runs, scores on its test runs with noise off and prints a
 table; DIR/methods.json gets every figure.
 """
 
-import argparse
 import json
-import os
 import pathlib
 import resource
 import sys
@@ -94,13 +92,7 @@ def study(job, name):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--program", type=pathlib.Path,
-                        default=ROOT / "build/release/beamgyro")
-    parser.add_argument("--out", type=pathlib.Path,
-                        default=ROOT / "out/methods")
-    parser.add_argument("--jobs", type=int,
-                        default=len(os.sched_getaffinity(0)))
+    parser = demo.options("methods")
     parser.add_argument("models", nargs="*",
                         help="names of scenarios/models; all without")
     arguments = parser.parse_args()

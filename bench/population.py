@@ -14,11 +14,9 @@ see that all works; its figures mean little and go to devices_quick.jsonl.
 Remove the lines of devices after a change of studies, models or program.
 """
 
-import argparse
 import collections
 import csv
 import json
-import os
 import pathlib
 import shutil
 import subprocess
@@ -371,14 +369,8 @@ class Population(demo.Demo):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--program", type=pathlib.Path,
-                        default=ROOT / "build/release/beamgyro")
-    parser.add_argument("--out", type=pathlib.Path,
-                        default=ROOT / "out/population")
+    parser = demo.options("population")
     parser.add_argument("--devices", type=int, default=DEVICES)
-    parser.add_argument("--jobs", type=int,
-                        default=len(os.sched_getaffinity(0)))
     parser.add_argument("--studies", nargs="+", choices=STUDIES,
                         default=list(STUDIES))
     parser.add_argument("--quick", action="store_true")

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "bench/bias_rows.h"
-#include "compensation/network/random_purposes.h"
+#include "random/random_stream.h"
 
 namespace beamgyro::internal {
 namespace {

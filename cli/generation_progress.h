@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dataset/set/set_writer.h"
-#include "sim/campaign/generation.h"
+#include "sim/campaign/shard_making.h"
 
 namespace beamgyro::internal {
 

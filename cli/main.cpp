@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <iterator>
 #include <new>
@@ -12,15 +14,50 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/signals.h"
 #include "cli/terminal.h"
 #include "cli/version.h"
+#include "dataset/files/atomic_file.h"
 #include "dataset/netcdf/hdf5_exit.h"
 #include "include/beamgyro/option_error.h"
+#include "validation/external/child_process.h"
 #include "validation/external/plugin_host.h"
 
 namespace beamgyro::internal {
 namespace {
+
+// Dies by the signal, so that a loop of the shell ends, too.
+extern "C" void end_process(int signal) {
+  kill_child_processes();
+  remove_partial_files();
+  print_interrupted();
+  std::signal(signal, SIG_DFL);
+  raise(signal);
+  sigset_t mask;
+  sigemptyset(&mask);
+  sigaddset(&mask, signal);
+  sigprocmask(SIG_UNBLOCK, &mask, nullptr);  // here it ends
+  _exit(128 + signal);
+}
+
+/// Makes SIGINT, SIGTERM and SIGHUP remove the unfinished files of this
+/// process, print what is kept, and end it by the same signal; a shell sees
+/// status 130, 143 or 129. One that was ignored stays so.
+void handle_interrupts() {
+  struct sigaction action {};
+  action.sa_handler = end_process;
+  sigfillset(&action.sa_mask);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    // nohup ignores SIGHUP, a script SIGINT in what it starts in its
+    // background.
+    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
+  // A closed pipe and a limit on the size of files are reported by the failed
+  // write instead.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
 
 constexpr int kWorkFailed = 1, kWrongInput = 2;
 

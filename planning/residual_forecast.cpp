@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "linear_algebra/cholesky.h"
-#include "planning/random_purposes.h"
 #include "random/random_stream.h"
 #include "statistics/intervals.h"
 

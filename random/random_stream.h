@@ -9,8 +9,35 @@
 namespace beamgyro::internal {
 
 /// What a stream of random numbers is for: a number that is part of the data
-/// format. Who draws from a stream names its purpose (random_purposes.h).
-enum class RandomPurpose : std::uint32_t {};
+/// format. A new purpose takes the next number, at the end; none is changed.
+enum RandomPurpose : std::uint32_t {
+  kWhiteNoiseStream,
+  kFlickerStream,
+  kRateRandomWalkStream,
+  kTurnOnStream,
+  kTemperatureSensorStream,
+  kRateProfileStream,
+  kInitialWeightsStream,
+  kSampleOrderStream,
+  kDeviceDrawStream,
+  kMechanicalNoiseStream,
+  kCrossRateXStream,
+  kCrossRateYStream,
+  kAccelerationXStream,
+  kAccelerationYStream,
+  kAccelerationZStream,
+  kSobolScrambleStream,
+  kIntervalStream,
+  kWalkSinceTrimStream,
+  kTurnOnTransientStream,
+  kQuadratureNoiseStream,
+  kDriveFrequencyNoiseStream,
+  kDriveVoltageNoiseStream,
+  kIndexResampleStream,
+  kRankResampleStream,
+  kRankSampleStream,
+  kResidualForecastStream,
+};
 
 /// Returns the inverse of the normal distribution function. Throws
 /// std::invalid_argument for a probability outside (0, 1). Method: Wichura,

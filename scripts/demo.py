@@ -210,15 +210,20 @@ def table(rows):
     return "\n".join(lines)
 
 
-def main():
+def options(study):
+    """A parser of the options that every study has; writes to out/STUDY."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--program", type=pathlib.Path,
                         default=ROOT / "build/release/beamgyro")
     parser.add_argument("--out", type=pathlib.Path,
-                        default=ROOT / "out/demo")
+                        default=ROOT / "out" / study)
     parser.add_argument("--jobs", type=int,
                         default=len(os.sched_getaffinity(0)))
-    arguments = parser.parse_args()
+    return parser
+
+
+def main():
+    arguments = options("demo").parse_args()
     demo = Demo(arguments.program.resolve(), arguments.out.resolve(),
                 arguments.jobs)
     start = time.monotonic()

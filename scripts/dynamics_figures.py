@@ -7,11 +7,8 @@ out/dynamics. Beside the pictures, PNG and SVG, numbers.json holds the
 differences they show.
 """
 
-import argparse
 import csv
 import json
-import os
-import pathlib
 import subprocess
 import sys
 import tomllib
@@ -19,7 +16,7 @@ import tomllib
 import h5py
 import numpy as np
 
-from demo import NOISE_OFF, ROOT, SCENARIOS, Demo
+from demo import NOISE_OFF, SCENARIOS, Demo, options
 from figures import BLUE, GREY, ORANGE, pyplot, save, style
 
 DEVICES = {"nominal": BLUE, "rebalance": ORANGE, "matched": GREY}
@@ -252,14 +249,7 @@ def fidelities(work):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--program", type=pathlib.Path,
-                        default=ROOT / "build/release/beamgyro")
-    parser.add_argument("--out", type=pathlib.Path,
-                        default=ROOT / "out/dynamics")
-    parser.add_argument("--jobs", type=int,
-                        default=len(os.sched_getaffinity(0)))
-    arguments = parser.parse_args()
+    arguments = options("dynamics").parse_args()
     work = Dynamics(arguments.program.resolve(), arguments.out.resolve(),
                     arguments.jobs)
     print(f"{work.simulate()} runs simulated; drawing ...", file=sys.stderr)

@@ -112,8 +112,7 @@ std::string warning_of_shared_seeds(const std::vector<SourceFile>& training,
   if (found.empty()) return "";
   return fmt::format(
       "{}: turn-on offset and noise are the same in them, so scores on unseen "
-      "runs are too good; run all but one again with other seeds (--set "
-      "seed=N)",
+      "runs are too good; run all but one again with other seeds",
       fmt::join(found, "; "));
 }
 

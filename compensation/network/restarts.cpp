@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "compensation/network/random_purposes.h"
 #include "compensation/network/rate_penalty.h"
 #include "parallel/work_queue.h"
+#include "random/random_stream.h"
 
 namespace beamgyro::internal {
 

@@ -7,10 +7,19 @@
 #include <vector>
 
 #include "compensation/methods/fit.h"
+#include "compensation/rows/training_rows.h"
 #include "compensation/training/cross_validation.h"
 #include "compensation/training/model_file.h"
 
 namespace beamgyro::internal {
+
+/// Returns whether the bias moves more than slow noise would: its variance is
+/// above n s^2 / 20, with n rows and s^2 half the mean square second difference
+/// within a cycle. White noise alone gives s^2 / 3, a random walk alone n s^2 /
+/// 6. This serves for a single leg of temperature. There the temperature is a
+/// function of time, like a random walk, and no group can be held out to
+/// distinguish them.
+bool moves_more_than_noise(const TrainingRows& rows);
 
 /// The data that models are fitted to and judged on.
 struct SelectionData {

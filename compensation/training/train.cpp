@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
 #include "compensation/compensator/run_comparison.h"
 #include "compensation/methods/fit.h"
+#include "compensation/scoring/scale_factor.h"
 #include "compensation/training/cautions.h"
-#include "compensation/training/scale_factor_table.h"
 #include "compensation/training/selection.h"
 #include "compensation/training/sigma_fit.h"
 #include "config/option_message.h"
@@ -193,6 +194,35 @@ void add_sigma_caution(const BiasSigma& sigma, const TrainingRows& rows,
 }
 
 }  // namespace
+
+LookupTable fit_scale_factor(const RunSource& runs, double bin_width) {
+  struct Bin {
+    double temperature = 0.0, raw = 0.0, truth = 0.0;
+  };
+  std::map<double, Bin> bins;
+  runs.for_each([&](const TrainingRun& run) {
+    for (const PlateauSlope& slope :
+         plateau_slopes(run.recording, kTableRate)) {
+      Bin& bin = bins[std::floor(slope.temperature / bin_width)];
+      bin.temperature += slope.truth * slope.temperature;
+      bin.raw += slope.raw;
+      bin.truth += slope.truth;
+    }
+  });
+  if (bins.empty())
+    throw std::invalid_argument(fmt::format(
+        "a scale-factor table needs recordings whose true rate varies by {} "
+        "deg/s at a steady temperature; none of the {} does",
+        kTableRate, runs.count));
+  LookupTable table{Eigen::ArrayXd(static_cast<Eigen::Index>(bins.size())),
+                    Eigen::ArrayXd(static_cast<Eigen::Index>(bins.size()))};
+  Eigen::Index k = 0;
+  for (const auto& [number, bin] : bins) {
+    table.temperatures(k) = bin.temperature / bin.truth;
+    table.values(k++) = bin.raw / bin.truth;
+  }
+  return table;
+}
 
 TrainResult train(const ModelSpec& spec, const RunSource& runs,
                   const RunSource& held_out, std::uint64_t seed,

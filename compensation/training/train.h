@@ -8,12 +8,21 @@
 #include <vector>
 
 #include "compensation/compensator/compensator.h"
+#include "compensation/models/lookup_table.h"
 #include "compensation/network/network_training.h"
 #include "compensation/rows/row_groups.h"
+#include "compensation/rows/run_source.h"
 #include "compensation/rows/training_rows.h"
 #include "compensation/training/model_file.h"
 
 namespace beamgyro::internal {
+
+/// Fits the scale factor of the gyro over temperature, relative to the nominal
+/// one [-]: the slope of rate over true_rate on every plateau at which the true
+/// rate varies by kTableRate or more, pooled in bins of `bin_width` [K]. The
+/// runs are visited once. Throws std::invalid_argument when there is no such
+/// plateau.
+LookupTable fit_scale_factor(const RunSource& runs, double bin_width);
 
 struct TrainResult {
   Compensator compensator;

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "random/random_stream.h"
-#include "sensitivity/indices/random_purposes.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -6,7 +6,6 @@
 
 #include "parallel/work_queue.h"
 #include "random/random_stream.h"
-#include "sensitivity/indices/random_purposes.h"
 #include "sim/campaign/scrambled_sobol.h"
 #include "sim/numerics/simulation_failure.h"
 

@@ -9,7 +9,6 @@
 #include "config/units.h"
 #include "random/random_stream.h"
 #include "sim/campaign/campaign_file.h"
-#include "sim/campaign/random_purposes.h"
 #include "sim/device/device_file.h"
 #include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/scenario_file.h"

@@ -4,7 +4,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <stdexcept>
 #include <utility>
+
+#include "linear_algebra/cholesky.h"
+#include "random/random_stream.h"
+#include "sim/campaign/distribution.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -28,6 +34,51 @@ ConfigNode drawn_element(const Draw& draw, double uniform,
 }
 
 }  // namespace
+
+Eigen::MatrixXd correlation_factor(const Eigen::MatrixXd& correlation) {
+  if (correlation != correlation.transpose() ||
+      (correlation.diagonal().array() != 1).any()) {
+    throw std::invalid_argument(
+        "not symmetric with ones on the diagonal; expected a correlation "
+        "matrix");
+  }
+  const Cholesky factor(correlation);
+  if (!factor.is_positive_definite() ||
+      (factor.lower().diagonal().array() < 1e-6).any()) {
+    throw std::invalid_argument(
+        "not positive definite; no numbers are correlated so");
+  }
+  return factor.lower();
+}
+
+void correlate(const CorrelatedGroup& group, std::span<double> numbers) {
+  Eigen::VectorXd z(group.factor.rows());
+  for (Eigen::Index i = 0; i < z.size(); ++i) {
+    z(i) = normal_quantile(numbers[group.members[static_cast<std::size_t>(i)]]);
+  }
+  const Eigen::VectorXd correlated = group.factor * z;
+  for (Eigen::Index i = 0; i < z.size(); ++i) {
+    numbers[group.members[static_cast<std::size_t>(i)]] =
+        std::clamp(normal_cumulative(correlated(i)), 0x1p-53, 1 - 0x1p-53);
+  }
+}
+
+std::uint32_t stream_number(std::string_view name) {
+  constexpr std::uint32_t kPolynomial = 0xEDB88320;
+  std::uint32_t crc = 0xFFFFFFFF;
+  for (const char c : name) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit)
+      crc = crc >> 1 ^ ((crc & 1) != 0 ? kPolynomial : 0);
+  }
+  return ~crc;
+}
+
+double UniformSource::number(std::uint32_t device, std::uint32_t stream,
+                             std::size_t dimension) const {
+  if (sobol) return sobol->at(device, dimension);
+  return RandomStream(seed, device, stream, kDeviceDrawStream).uniform();
+}
 
 std::string key_of(const Draw& draw) {
   return fmt::format("{}", fmt::join(draw.path, "."));

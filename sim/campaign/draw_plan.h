@@ -1,19 +1,53 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/config_node.h"
 #include "config/overrides.h"
 #include "dataset/set/shard/shard.h"
-#include "sim/campaign/copula.h"
 #include "sim/campaign/distribution.h"
-#include "sim/campaign/uniform_source.h"
+#include "sim/campaign/scrambled_sobol.h"
 
 namespace beamgyro::internal {
+
+/// Numbers of one draw that are correlated by a Gaussian copula: z = L z',
+/// correlation = L L^T, where each z is the normal quantile of a number.
+struct CorrelatedGroup {
+  std::vector<std::size_t> members;  // indices of the numbers
+  Eigen::MatrixXd factor;            // L, lower
+};
+
+/// Returns the lower factor L of a correlation matrix. Throws
+/// std::invalid_argument when it is not symmetric with ones on its diagonal and
+/// positive definite.
+Eigen::MatrixXd correlation_factor(const Eigen::MatrixXd& correlation);
+
+/// Correlates the independent uniform numbers of the members of the group. Each
+/// stays uniform.
+void correlate(const CorrelatedGroup& group, std::span<double> numbers);
+
+/// Returns the number of the stream called `name` (CRC-32 of ISO 3309).
+std::uint32_t stream_number(std::string_view name);
+
+/// The source of the uniform numbers of a campaign: a random stream for each
+/// name, or the coordinates of Sobol' points.
+struct UniformSource {
+  std::uint64_t seed = 0;
+  std::optional<ScrambledSobol> sobol;
+
+  /// Returns a number in (0, 1). It depends on seed, device and stream alone,
+  /// or on seed, device and dimension.
+  double number(std::uint32_t device, std::uint32_t stream,
+                std::size_t dimension) const;
+};
 
 /// One key of a device or scenario file that differs between devices.
 struct Draw {

@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "random/random_stream.h"
-#include "sim/campaign/random_purposes.h"
 
 namespace beamgyro::internal {
 

@@ -11,7 +11,7 @@
 #include "dataset/set/manifest.h"
 #include "dataset/set/set_check.h"
 #include "dataset/set/set_writer.h"
-#include "sim/campaign/generation.h"
+#include "sim/campaign/shard_making.h"
 
 namespace beamgyro::internal {
 

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "parallel/work_queue.h"
 #include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/simulation.h"
 
@@ -134,6 +136,20 @@ MadeShard ShardMaker::make(std::uint32_t file, GenerationCounts& counts) {
   }
   made.bytes = made.file->finish();
   return made;
+}
+
+void generate_shards(const ShardPlan& plan,
+                     const std::vector<std::uint32_t>& files, unsigned jobs,
+                     GenerationCounts& counts, const ShardSink& publish) {
+  const std::size_t threads =
+      std::min<std::size_t>(thread_count(jobs), files.size());
+  std::vector<std::optional<ShardMaker>> makers(threads);  // one per thread
+  for_each_task(files.size(), threads,
+                [&](std::size_t index, std::size_t worker) {
+                  std::optional<ShardMaker>& maker = makers[worker];
+                  if (!maker) maker.emplace(plan);
+                  publish(files[index], maker->make(files[index], counts));
+                });
 }
 
 }  // namespace beamgyro::internal

@@ -16,7 +16,6 @@
 #include "sim/scenario/aligned_borders.h"
 #include "sim/scenario/drive_lock.h"
 #include "sim/scenario/motion.h"
-#include "sim/scenario/run_memory.h"
 #include "sim/scenario/run_temperatures.h"
 #include "sim/scenario/sensing_noise.h"
 #include "sim/scenario/unpowered_bias.h"
@@ -211,12 +210,6 @@ double carrier_cost(const ScenarioPlan& scenario) {
         std::max(0.0, std::min(interval.off, scenario.duration) - interval.on);
   }
   return powered * kCostPerSecond * (moves(scenario.rate) ? 2 : 1);
-}
-
-void simulate_carrier(const ScenarioPlan& scenario,
-                      const DeviceParameters& device, const RunKey& key,
-                      const BlockSink& on_block) {
-  simulate_carrier(scenario, make_gyro(device), key, on_block);
 }
 
 void simulate_carrier(const ScenarioPlan& given, const Gyro& gyro,

@@ -15,9 +15,6 @@ namespace beamgyro::internal {
 /// frequency.
 void simulate_carrier(const ScenarioPlan& scenario, const Gyro& gyro,
                       const RunKey& key, const BlockSink& on_block);
-void simulate_carrier(const ScenarioPlan& scenario,
-                      const DeviceParameters& device, const RunKey& key,
-                      const BlockSink& on_block);
 
 inline constexpr double kCarrierTick = 1e-3;  // [s]
 

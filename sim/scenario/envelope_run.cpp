@@ -2,24 +2,246 @@
 #include "sim/scenario/envelope_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "sim/scenario/aligned_borders.h"
-#include "sim/scenario/envelope_trajectory.h"
+#include "sim/scenario/drive_lock.h"
 #include "sim/scenario/motion.h"
-#include "sim/scenario/run_memory.h"
+#include "sim/scenario/run_temperatures.h"
 #include "sim/scenario/sensing_noise.h"
 #include "sim/scenario/unpowered_bias.h"
 
 namespace beamgyro::internal {
+namespace {
 
-void simulate_envelope(const ScenarioPlan& scenario,
-                       const DeviceParameters& device, const RunKey& key,
-                       const BlockSink& on_block) {
-  simulate_envelope(scenario, make_gyro(device), key, on_block);
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// Local error of each state that matters as much as one of 1 rad/s in the
+// output: 1e-6 of the drive amplitude moves the output of a unit with a
+// quadrature of some 100 deg/s by 2e-6 rad/s, and so on.
+VectorXd error_weights(Index size) {
+  VectorXd weights = VectorXd::Ones(size);
+  weights.segment<2>(kAmplitude).setConstant(0.3);
+  weights.segment<2>(kAmplitude + 2).setConstant(2e-3);
+  weights.segment<4>(kFeedback1).setConstant(0.3);
+  weights(kPllIntegral) = 100;
+  weights(kAgcIntegral) = 0.3;
+  weights.tail(size - kEnvelopeNodes).setConstant(50);
+  return weights;
+}
+
+// States that a sample needs.
+constexpr std::array<Index, 12> kStoredStates = {
+    kFeedback2,         kFeedback2 + 1,     kPllIntegral,
+    kAgcIntegral,       kOutput2,           kOutput2 + 1,
+    kEnvelopeNodes + 0, kEnvelopeNodes + 1, kEnvelopeNodes + 2,
+    kEnvelopeNodes + 3, kEnvelopeNodes + 4, kEnvelopeNodes + 5};
+constexpr std::size_t kFirstNode = 6;
+
+RunSamples samples_of_states(
+    const std::array<std::vector<double>, kStoredStates.size()>& c,
+    const LoopElectronics& loops, const Gyro& gyro) {
+  const std::size_t count = c[0].size();
+  RunSamples s;
+  s.output.resize(count);
+  s.quadrature.resize(count);
+  s.drive_frequency.resize(count);
+  s.drive_voltage.resize(count);
+  s.locked.resize(count);
+  for (std::size_t node = 0; node < kThermalNodeCount; ++node)
+    s.temperature[node] = c[kFirstNode + node];
+  for (std::size_t k = 0; k < count; ++k) {
+    const DriveSignals drive =
+        drive_signals(loops, c[0][k], c[1][k], c[2][k], c[3][k]);
+    s.output[k] =
+        c[4][k] + electronics_at(gyro, s.temperature[kBoard][k]).offset;
+    s.quadrature[k] = -c[5][k];
+    s.drive_frequency[k] = drive.frequency / (2 * std::numbers::pi);
+    s.drive_voltage[k] = drive.voltage;
+    s.locked[k] = is_locked(drive);
+  }
+  return s;
+}
+
+NodeVector nodes_of(const VectorXd& y) {
+  return y.segment<kThermalNodeCount>(kEnvelopeNodes);
+}
+
+// Whether the motion bends so often that an explicit method is the faster one.
+bool needs_explicit_method(const ScenarioPlan& scenario, const Motion& motion) {
+  constexpr double kBends = 50;  // [1/s]
+  const std::size_t pieces =
+      pieces_until(scenario.duration, motion.borders()).size();
+  return static_cast<double>(pieces - 1) > kBends * scenario.duration;
+}
+
+// Where any input bends or jumps, or the start-up has ended.
+std::vector<Border> borders_of(const ScenarioPlan& scenario,
+                               const Motion& motion) {
+  std::vector<Border> borders = motion.borders();
+  for (const auto& more : {power_borders(scenario), scenario.ambient.borders()})
+    borders.insert(borders.end(), more.begin(), more.end());
+  return borders;
+}
+
+}  // namespace
+
+// The shown states at the sample times, filled in order of time.
+class EnvelopeTrajectory::Sampler {
+ public:
+  explicit Sampler(std::span<const double> times) : times_(times) {
+    for (auto& column : columns_) column.resize(times.size());
+  }
+
+  double next_time() const { return times_[next_]; }
+  bool complete() const { return next_ == times_.size(); }
+
+  // Without the end of the step: an input may jump there.
+  void take(const OdeStep& step) {
+    const auto begin = times_.begin() + static_cast<std::ptrdiff_t>(next_);
+    const auto count = static_cast<std::size_t>(
+        std::lower_bound(begin, times_.end(), step.end) - begin);
+    for (std::size_t i = 0; i < kStoredStates.size() && count > 0; ++i) {
+      step.sample(kStoredStates[i], times_.subspan(next_, count),
+                  std::span(columns_[i]).subspan(next_, count));
+    }
+    next_ += count;
+  }
+
+  void take_until(double t, const VectorXd& y) {
+    for (; next_ < times_.size() && times_[next_] <= t; ++next_) {
+      for (std::size_t i = 0; i < kStoredStates.size(); ++i)
+        columns_[i][next_] = y(kStoredStates[i]);
+    }
+  }
+
+  const std::array<std::vector<double>, kStoredStates.size()>& columns() const {
+    return columns_;
+  }
+
+ private:
+  std::span<const double> times_;
+  std::array<std::vector<double>, kStoredStates.size()> columns_;
+  std::size_t next_ = 0;
+};
+
+EnvelopeTrajectory::EnvelopeTrajectory(const ScenarioPlan& scenario,
+                                       const Gyro& gyro, const Motion& motion,
+                                       bool at_rest, const ModalMemory* memory,
+                                       double tolerance)
+    : scenario_(scenario),
+      gyro_(gyro),
+      motion_(motion),
+      at_rest_(at_rest),
+      limits_(scenario, gyro.device.thermal),
+      ode_(gyro, drive_heating(gyro), memory),
+      pieces_(pieces_until(scenario.duration, borders_of(scenario, motion))) {
+  const auto rhs = [this](double t, const auto& y, auto dydt) {
+    ode_.rate(inputs(t), y, dydt);
+  };
+  const VectorXd start = ode_.at_rest(scenario.ambient.value(0));
+  const VectorXd absolute = tolerance * error_weights(ode_.size());
+  if (needs_explicit_method(scenario, motion)) {
+    ExplicitRkOptions options;
+    options.table = RkTable::kDormandPrince;
+    options.absolute_tolerance = absolute;
+    explicit_ = std::make_unique<ExplicitRk>(rhs, 0.0, start, options);
+  } else {
+    CvodeOptions options;
+    options.relative_tolerance = 0;
+    options.absolute_tolerance = absolute;
+    options.stability_limit_detection = true;
+    options.max_steps_per_advance = 100'000'000;
+    options.jacobian = [this](double t, const auto& y, auto slope) {
+      ode_.jacobian(inputs(t), y, slope);
+    };
+    multistep_ = std::make_unique<Cvode>(rhs, 0.0, start, options);
+  }
+  begin(0);
+}
+
+EnvelopeInputs EnvelopeTrajectory::inputs(double t) const {
+  return {.motion = at_rest_ ? segment_->at_rest(t) : segment_->at(t),
+          .surroundings = {ambient_.at(t), scenario_.stirred},
+          .powered = powered_,
+          .time = t};
+}
+
+void EnvelopeTrajectory::begin(std::size_t piece) {
+  const bool was_powered = powered_;
+  const Piece& p = pieces_[piece];
+  piece_ = piece;
+  powered_ = powered_at(scenario_.powered, p.start);
+  ambient_ = scenario_.ambient.stretch(p.start, p.end);
+  segment_ = motion_.segment(p.start, p.end);
+  if (!p.jump && piece > 0) return;
+  VectorXd y = state();
+  if (powered_ != was_powered) {
+    // Vibration decays within a second after power-off, and the loops and an
+    // oven start from zero.
+    y.head<kEnvelopeNodes>().setZero();
+    y.tail(y.size() - kEnvelopeNodes - kThermalNodeCount).setZero();
+  }
+  if (explicit_) {
+    explicit_->restart(p.start, y);
+  } else {
+    multistep_->restart(p.start, y);
+  }
+}
+
+double EnvelopeTrajectory::time() const {
+  return explicit_ ? explicit_->time() : multistep_->time();
+}
+
+const VectorXd& EnvelopeTrajectory::state() const {
+  return explicit_ ? explicit_->state() : multistep_->state();
+}
+
+long EnvelopeTrajectory::steps() const {
+  return explicit_ ? explicit_->steps() : multistep_->statistics().steps;
+}
+
+long EnvelopeTrajectory::rhs_evaluations() const {
+  return explicit_ ? explicit_->rhs_evaluations()
+                   : multistep_->statistics().rhs_evaluations;
+}
+
+void EnvelopeTrajectory::advance_to(double t_end, Sampler& sampler) {
+  if (multistep_) {
+    multistep_->advance_to(t_end, [&](const OdeStep& step) {
+      limits_.check(step.end, nodes_of(step.at(step.end)));
+      sampler.take(step);
+    });
+    return;
+  }
+  while (!sampler.complete() && sampler.next_time() < t_end) {
+    const double t = sampler.next_time();
+    const VectorXd& y = explicit_->advance_to(t);
+    limits_.check(t, nodes_of(y));
+    sampler.take_until(t, y);
+  }
+  explicit_->advance_to(t_end);
+}
+
+RunSamples EnvelopeTrajectory::advance(std::span<const double> times) {
+  Sampler sampler(times);
+  while (!sampler.complete()) {
+    const Piece& piece = pieces_[piece_];
+    const double end = std::min(piece.end, times.back());
+    advance_to(end, sampler);
+    if (end == piece.end && piece_ + 1 < pieces_.size()) begin(piece_ + 1);
+    sampler.take_until(time(), state());
+  }
+  RunSamples samples =
+      samples_of_states(sampler.columns(), ode_.loops(), gyro_);
+  samples.time.assign(times.begin(), times.end());
+  return samples;
 }
 
 void simulate_envelope(const ScenarioPlan& given, const Gyro& gyro,

@@ -1,9 +1,133 @@
 // SPDX-License-Identifier: MIT
 #include "sim/scenario/filtered_motion.h"
 
-#include "sim/scenario/square_acceleration.h"
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <variant>
 
 namespace beamgyro::internal {
+namespace {
+
+using Samples = std::vector<double>;
+
+// y_1' = w (u - y_1), y_2' = w (y_1 - y_2)
+class TwoPoles {
+ public:
+  TwoPoles(double corner, double settled)
+      : w_(corner), y1_(settled), y2_(settled) {}
+
+  double output() const { return y2_; }
+
+  // Over `time` [s] of u = (a + b t)^2, exactly. p_n and q_n are what the first
+  // and the second pole make of x^(n-1)/(n-1)!, x = w t: p_n+1 = x^n/n! - p_n,
+  // q_n+1 = p_n+1 - q_n.
+  void advance(double a, double b, double time) {
+    const double x = w_ * time, decay = std::exp(-x);
+    const double p1 = -std::expm1(-x), p2 = x - p1, p3 = x * x / 2 - p2;
+    const double q1 = p1 - x * decay, q2 = p2 - q1, q3 = p3 - q2;
+    const double c1 = a * a, c2 = 2 * a * b / w_, c3 = 2 * b * b / (w_ * w_);
+    y2_ = decay * (y2_ + x * y1_) + c1 * q1 + c2 * q2 + c3 * q3;
+    y1_ = decay * y1_ + c1 * p1 + c2 * p2 + c3 * p3;
+  }
+
+ private:
+  double w_;  // [rad/s]
+  double y1_, y2_;
+};
+
+// Of a profile, from sample to sample.
+class ProfileSquare {
+ public:
+  ProfileSquare(const PiecewiseLinear& profile, double corner,
+                double output_rate)
+      : profile_(&profile),
+        output_rate_(output_rate),
+        value_(profile.value(0)),
+        filter_(corner, value_ * value_) {
+    const std::vector<double>& times = profile.times();
+    next_ = static_cast<std::size_t>(
+        std::upper_bound(times.begin(), times.end(), 0.0) - times.begin());
+    find_slope();
+  }
+
+  void operator()(std::span<double> output) {
+    const std::vector<double>& times = profile_->times();
+    for (double& shown : output) {
+      const double sample = static_cast<double>(sample_++) / output_rate_;
+      for (; next_ < times.size() && times[next_] <= sample; find_slope()) {
+        advance_to(times[next_]);
+        start_ = now_;
+        while (next_ + 1 < times.size() && times[next_ + 1] == now_) ++next_;
+        value_ = profile_->values()[next_++];
+      }
+      advance_to(sample);
+      shown = filter_.output();
+    }
+  }
+
+ private:
+  void find_slope() {
+    slope_ = next_ == profile_->times().size()
+                 ? 0
+                 : (profile_->values()[next_] - value_) /
+                       (profile_->times()[next_] - start_);
+  }
+
+  void advance_to(double end) {
+    filter_.advance(value_ + slope_ * (now_ - start_), slope_, end - now_);
+    now_ = end;
+  }
+
+  const PiecewiseLinear* profile_;
+  double output_rate_;  // [Hz]
+  std::size_t sample_ = 0;
+  std::size_t next_ = 0;  // first point after now
+  double now_ = 0;        // [s]
+  // Of the piece: where it starts [s], its value there and its slope.
+  double start_ = 0, value_, slope_ = 0;
+  TwoPoles filter_;
+};
+
+// (o + A sin p)^2 = o^2 + A^2/2 + 2 o A sin p + A^2/2 sin(2 p - 90 deg)
+std::array<Signal, 2> square_of(const SineSignal& sine) {
+  const double o = sine.offset, A = sine.amplitude;
+  return {SineSignal{.offset = o * o + A * A / 2,
+                     .amplitude = 2 * o * A,
+                     .frequency = sine.frequency,
+                     .phase = sine.phase},
+          SineSignal{.amplitude = A * A / 2,
+                     .frequency = 2 * sine.frequency,
+                     .phase = 2 * sine.phase - std::numbers::pi / 2}};
+}
+
+}  // namespace
+
+SampleStream filtered_square_acceleration(const std::array<Signal, 3>& axes,
+                                          double corner, double output_rate) {
+  std::vector<SampleStream> parts;
+  const OutputFilter filter(corner);
+  for (const Signal& axis : axes) {
+    if (!moves(axis)) continue;
+    if (const auto* sine = std::get_if<SineSignal>(&axis)) {
+      for (const Signal& part : square_of(*sine))
+        parts.push_back(filter.responses(part, output_rate));
+    } else {
+      parts.push_back(
+          ProfileSquare(std::get<PiecewiseLinear>(axis), corner, output_rate));
+    }
+  }
+  return [parts = std::move(parts),
+          part = Samples()](std::span<double> sum) mutable {
+    std::fill(sum.begin(), sum.end(), 0.0);
+    part.resize(sum.size());
+    for (SampleStream& stream : parts) {
+      stream(part);
+      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += part[k];
+    }
+  };
+}
 
 FilteredMotion::FilteredMotion(const Gyro& gyro, const Motion& motion,
                                double output_rate)

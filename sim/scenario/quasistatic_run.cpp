@@ -19,7 +19,6 @@
 #include "sim/scenario/filtered_motion.h"
 #include "sim/scenario/material_limits.h"
 #include "sim/scenario/motion.h"
-#include "sim/scenario/run_memory.h"
 #include "sim/scenario/run_temperatures.h"
 #include "sim/scenario/sensing_noise.h"
 #include "sim/signal/readout.h"
@@ -219,12 +218,6 @@ double sensing_noise(const Gyro& gyro) {
 }
 
 }  // namespace
-
-void simulate_quasistatic(const ScenarioPlan& scenario,
-                          const DeviceParameters& device, const RunKey& key,
-                          const BlockSink& on_block) {
-  simulate_quasistatic(scenario, make_gyro(device), key, on_block);
-}
 
 void simulate_quasistatic(const ScenarioPlan& given, const Gyro& gyro,
                           const RunKey& key, const BlockSink& on_block,

@@ -19,8 +19,5 @@ namespace beamgyro::internal {
 void simulate_quasistatic(const ScenarioPlan& scenario, const Gyro& gyro,
                           const RunKey& key, const BlockSink& on_block,
                           std::size_t block_samples = kBlockSamples);
-void simulate_quasistatic(const ScenarioPlan& scenario,
-                          const DeviceParameters& device, const RunKey& key,
-                          const BlockSink& on_block);
 
 }  // namespace beamgyro::internal

@@ -9,7 +9,6 @@
 
 #include "random/random_stream.h"
 #include "sim/numerics/piecewise_linear.h"
-#include "sim/scenario/random_purposes.h"
 #include "sim/signal/output_filter.h"
 
 namespace beamgyro::internal {

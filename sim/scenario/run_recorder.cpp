@@ -13,8 +13,8 @@
 
 #include "config/units.h"
 #include "dataset/recording/signals.h"
+#include "random/random_stream.h"
 #include "sim/memory/bond_relaxation.h"
-#include "sim/signal/random_purposes.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
+
 #include "sim/dynamics/gyro.h"
+#include "sim/memory/memory_trajectory.h"
 #include "sim/scenario/scenario.h"
 
 namespace beamgyro::internal {
@@ -22,5 +25,14 @@ class RunTemperatures {
   double step_;  // [s]
   ThermalHistory history_;
 };
+
+/// Returns the memory of a unit at the start of a scenario, to be driven by its
+/// thermal solution, or null for a unit without memory effects.
+std::unique_ptr<MemoryTrajectory> memory_at_start(const ScenarioPlan& scenario,
+                                                  const Gyro& gyro);
+
+/// The same, driven over the whole scenario.
+std::unique_ptr<MemoryTrajectory> memory_of_run(const ScenarioPlan& scenario,
+                                                const Gyro& gyro);
 
 }  // namespace beamgyro::internal

@@ -5,14 +5,203 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "config/units.h"
-#include "sim/scenario/aliasing.h"
+#include "sim/scenario/aligned_borders.h"
 #include "sim/scenario/drive_lock.h"
+#include "sim/scenario/scenario.h"
 #include "sim/thermal/material_range.h"
 
 namespace beamgyro::internal {
 namespace {
+
+constexpr double kSmallestSwing = 0.05;  // [-], of the range of a profile
+constexpr double kSeenShare = 0.5;       // [-], of a swing that counts as seen
+constexpr double kSameFrequency = 1e-9;  // [-]
+
+struct ProfilePoint {
+  double time, value;
+};
+
+/// The points of a profile within [0, duration], with both ends.
+std::vector<ProfilePoint> points_within(const PiecewiseLinear& profile,
+                                        double duration) {
+  std::vector<ProfilePoint> points = {{0, profile.value(0)}};
+  for (std::size_t i = 0; i < profile.times().size(); ++i)
+    if (profile.times()[i] > 0 && profile.times()[i] < duration)
+      points.push_back({profile.times()[i], profile.values()[i]});
+  points.push_back({duration, profile.value_before(duration)});
+  return points;
+}
+
+/// The numbers of the points between which a profile swings by `smallest` or
+/// more, the first and the last of them included.
+std::vector<std::size_t> turns_of(const std::vector<ProfilePoint>& points,
+                                  double smallest) {
+  std::vector<std::size_t> turns;
+  std::size_t low = 0, high = 0;  // since the last turn
+  double direction = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double value = points[i].value;
+    if (value < points[low].value) low = i;
+    if (value > points[high].value) high = i;
+    if (direction <= 0 && value - points[low].value >= smallest) {
+      turns.push_back(low);
+      direction = 1;
+      high = i;
+    } else if (direction >= 0 && points[high].value - value >= smallest) {
+      turns.push_back(high);
+      direction = -1;
+      low = i;
+    }
+  }
+  if (direction != 0) turns.push_back(direction > 0 ? high : low);
+  return turns;
+}
+
+/// The sampled value next to a turn that is nearest to it: the greatest or the
+/// least one from the turn before it to the turn after it. None without
+/// samples.
+std::optional<double> seen_extreme(const PiecewiseLinear& profile,
+                                   const std::vector<ProfilePoint>& points,
+                                   std::size_t first, std::size_t last,
+                                   bool is_high, const SampleGrid& grid) {
+  std::optional<double> seen;
+  // Between points the extremes are beside the points.
+  for (std::size_t i = first; i <= last; ++i) {
+    const std::size_t after = grid.first_from(points[i].time);
+    for (const std::size_t k : {after - (after > 0 ? 1 : 0), after}) {
+      if (k >= grid.count || grid.time(k) < points[first].time ||
+          grid.time(k) > points[last].time)
+        continue;
+      const double value = profile.value(grid.time(k));
+      if (!seen || (is_high ? value > *seen : value < *seen)) seen = value;
+    }
+  }
+  return seen;
+}
+
+/// How many swings a profile makes, and how many of them are lost.
+struct SwingCount {
+  std::size_t all = 0, lost = 0;
+};
+
+SwingCount swings_of(const PiecewiseLinear& profile, double duration,
+                     const SampleGrid& grid) {
+  const std::vector<ProfilePoint> points = points_within(profile, duration);
+  const auto [least, greatest] =
+      std::ranges::minmax(points, {}, &ProfilePoint::value);
+  const double range = greatest.value - least.value;
+  if (range == 0) return {};
+  const std::vector<std::size_t> turns =
+      turns_of(points, kSmallestSwing * range);
+  SwingCount count;
+  std::optional<double> before;
+  for (std::size_t j = 0; j < turns.size(); ++j) {
+    const std::size_t other = turns[j > 0 ? j - 1 : 1];
+    const bool is_high = points[turns[j]].value > points[other].value;
+    const std::optional<double> seen = seen_extreme(
+        profile, points, j > 0 ? turns[j - 1] : 0,
+        j + 1 < turns.size() ? turns[j + 1] : points.size() - 1, is_high, grid);
+    if (j > 0) {
+      const double swing =
+          std::abs(points[turns[j]].value - points[other].value);
+      const double shown =
+          seen && before ? (is_high ? *seen - *before : *before - *seen) : 0;
+      ++count.all;
+      // A rounding below half is half.
+      if (shown < (kSeenShare - 1e-9) * swing) ++count.lost;
+    }
+    before = seen;
+  }
+  return count;
+}
+
+/// A motion of one axis, as files name it.
+struct NamedMotion {
+  std::string key;
+  const RateProfile& profile;
+};
+
+std::vector<NamedMotion> motions_of(const ScenarioPlan& scenario) {
+  std::vector<NamedMotion> motions = {{"rate", scenario.rate}};
+  constexpr std::string_view kAxisNames[] = {"x", "y", "z"};
+  for (std::size_t i = 0; i < scenario.cross_rate.size(); ++i)
+    motions.push_back(
+        {fmt::format("cross_rate.{}", kAxisNames[i]), scenario.cross_rate[i]});
+  for (std::size_t i = 0; i < scenario.acceleration.size(); ++i)
+    motions.push_back({fmt::format("acceleration.{}", kAxisNames[i]),
+                       scenario.acceleration[i]});
+  return motions;
+}
+
+std::string sine_text(const std::string& key, const SineSignal& sine,
+                      const SampleGrid& grid) {
+  const double half = grid.rate / 2;
+  if (sine.amplitude == 0 || sine.frequency < half * (1 - kSameFrequency))
+    return {};
+  if (sine.frequency <= half * (1 + kSameFrequency))
+    return fmt::format(
+        "{}.sine.frequency_Hz = {:g} is half of output_rate_Hz = {:g}: "
+        "the {} samples show {:.3g} % of its amplitude, by its phase",
+        key, sine.frequency, grid.rate, grid.count,
+        100 * std::abs(std::sin(sine.phase)));
+  return fmt::format(
+      "{}.sine.frequency_Hz = {:.11g} is above half of output_rate_Hz = "
+      "{:.11g}: the {} samples show it as {:.4g} Hz",
+      key, sine.frequency, grid.rate, grid.count,
+      std::abs(sine.frequency -
+               grid.rate * std::round(sine.frequency / grid.rate)));
+}
+
+std::string random_text(const std::string& key, const RandomRate& random,
+                        const SampleGrid& grid) {
+  if (random.bandwidth < grid.rate / 2 * (1 - kSameFrequency)) return {};
+  return fmt::format(
+      "{}.random.bandwidth_Hz = {:.11g} is not below half of output_rate_Hz = "
+      "{:.11g}: the {} samples show what is faster as slower",
+      key, random.bandwidth, grid.rate, grid.count);
+}
+
+std::string aliasing_text(const NamedMotion& motion,
+                          const ScenarioPlan& scenario) {
+  const SampleGrid grid = sample_grid(scenario);
+  if (!moves(motion.profile)) return {};
+  if (const auto* sine = std::get_if<SineSignal>(&motion.profile))
+    return sine_text(motion.key, *sine, grid);
+  if (const auto* random = std::get_if<RandomRate>(&motion.profile))
+    return random_text(motion.key, *random, grid);
+  const SwingCount swings = swings_of(std::get<PiecewiseLinear>(motion.profile),
+                                      scenario.duration, grid);
+  if (swings.lost == 0) return {};
+  return fmt::format(
+      "{}: {} of {} swings of the profile are lost, wholly or by more than "
+      "half, between samples {:g} s apart; output_rate_Hz = {:.11g}",
+      motion.key, swings.lost, swings.all, 1 / grid.rate, grid.rate);
+}
+
+/// Returns one warning for each motion that the samples do not show:
+/// - a sine of half the output rate or more;
+/// - a random motion whose bandwidth is half the output rate or more;
+/// - a profile with swings of which the samples show less than half. A swing
+///   goes from one turn of the profile to the next; one of less than 5 % of the
+///   range of the profile counts as noise.
+std::vector<std::string> aliasing_warnings(const ScenarioPlan& scenario) {
+  const ScenarioPlan aligned = with_aligned_borders(scenario);
+  std::vector<std::string> texts;
+  for (const NamedMotion& motion : motions_of(aligned)) {
+    std::string text = aliasing_text(motion, aligned);
+    if (!text.empty()) texts.push_back(std::move(text));
+  }
+  return texts;
+}
 
 std::string soaks_text(const ScenarioPlan& scenario) {
   constexpr double kRoundoff = 1e-9;  // as for the number of samples

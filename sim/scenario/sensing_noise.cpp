@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstddef>
 
+#include "random/random_stream.h"
 #include "sim/dynamics/loop_noise.h"
 #include "sim/scenario/drive_lock.h"
-#include "sim/scenario/random_purposes.h"
 
 namespace beamgyro::internal {
 

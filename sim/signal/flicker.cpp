@@ -8,7 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "sim/signal/random_purposes.h"
+#include "random/random_stream.h"
 
 namespace beamgyro::internal {
 namespace {

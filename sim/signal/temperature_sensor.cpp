@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "config/units.h"
-#include "sim/signal/random_purposes.h"
+#include "random/random_stream.h"
 #include "sim/signal/readout.h"
 
 namespace beamgyro::internal {

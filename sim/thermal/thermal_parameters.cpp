@@ -4,14 +4,26 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 
+#include "config/table.h"
 #include "config/units.h"
 #include "sim/thermal/material_range.h"
 
 namespace beamgyro::internal {
 namespace {
+
+template <class Parameters>
+void read_fields(const ConfigTable& table,
+                 std::span<const ThermalField<Parameters>> fields,
+                 Parameters& parameters) {
+  for (const ThermalField<Parameters>& field : fields) {
+    parameters.*field.value =
+        table.number(field.key, field.range) + field.file_offset;
+  }
+}
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr Range kPositive{0, kNoLimit, true};
@@ -101,6 +113,16 @@ void require_joined(const ThermalParameters& p) {
 }
 
 }  // namespace
+
+ThermalParameters read_thermal(const ConfigTable& thermal) {
+  ThermalParameters parameters;
+  read_fields(thermal, thermal_fields(), parameters);
+  if (const auto oven = thermal.optional_table("oven")) {
+    read_fields(*oven, oven_fields(), parameters.oven.emplace());
+  }
+  require_valid(parameters);
+  return parameters;
+}
 
 std::span<const ThermalField<ThermalParameters>> thermal_fields() {
   return kThermalFields;

@@ -8,6 +8,8 @@
 
 namespace beamgyro::internal {
 
+class ConfigTable;
+
 /// Heater and controller of an oven around beam and mount; equation (4.3) in
 /// thermal_oven.h. Its can and insulation are conductances of the network.
 struct ThermalOven {
@@ -61,5 +63,10 @@ std::span<const ThermalField<ThermalOven>> oven_fields();
 /// Throws std::invalid_argument naming the first field that is not a finite
 /// number in its range, or the node no conductance joins to the housing.
 void require_valid(const ThermalParameters& parameters);
+
+/// The table [thermal] of a device file: every key of thermal_fields(), and
+/// every key of oven_fields() if there is a table `oven`. Throws
+/// std::invalid_argument as ConfigTable and require_valid() do.
+ThermalParameters read_thermal(const ConfigTable& thermal);
 
 }  // namespace beamgyro::internal

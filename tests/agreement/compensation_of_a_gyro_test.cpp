@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "compensation/training/train.h"
+#include "random/random_stream.h"
 #include "sim/dynamics/gyro.h"
 #include "sim/scenario/simulation.h"
-#include "sim/signal/random_purposes.h"
 #include "tests/compensation/injected_scale_factor.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"

@@ -21,6 +21,7 @@
 #include "include/beamgyro/simulate.h"
 #include "include/beamgyro/train.h"
 #include "include/beamgyro/validate.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::untrusted_recording_test {
 namespace {
@@ -51,8 +52,7 @@ void expect_refused(const char* words, const std::function<void()>& call) {
     call();
     ADD_FAILURE() << "accepted: " << words;
   } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find(words), std::string::npos)
-        << error.what();
+    EXPECT_TRUE(holds(error.what(), words));
   }
 }
 
@@ -133,9 +133,7 @@ TEST_F(UntrustedRecording, FaultsThatAClassReportsEndTheCompensation) {
   OfAUser mine;
   const CompensatedRun answered = compensate(mine, run_);
   ASSERT_EQ(answered.warnings.size(), 1U);
-  EXPECT_NE(answered.warnings[0].find("3 of 3000 samples were clamped"),
-            std::string::npos)
-      << answered.warnings[0];
+  EXPECT_TRUE(holds(answered.warnings[0], "3 of 3000 samples were clamped"));
   mine.is_broken = true;
   try {
     compensate(mine, run_);
@@ -154,15 +152,15 @@ TEST_F(UntrustedRecording, FaultsThatAClassReportsFailTheValidation) {
     options.recordings = {path};
     return validate(mine, options).json;
   };
-  EXPECT_EQ(json().find("the table is empty"), std::string::npos);
+  EXPECT_FALSE(holds(json(), "the table is empty"));
   mine.is_broken = true;
   const std::string found = json();
   const std::size_t check = found.find("\"name\": \"answers\"");
   ASSERT_NE(check, std::string::npos) << found;
   const std::string answers =
       found.substr(check, found.find('}', check) - check);
-  EXPECT_NE(answers.find("\"passed\": false"), std::string::npos) << answers;
-  EXPECT_NE(answers.find("the table is empty"), std::string::npos) << answers;
+  EXPECT_TRUE(holds(answers, "\"passed\": false"));
+  EXPECT_TRUE(holds(answers, "the table is empty"));
 }
 
 TEST_F(UntrustedRecording, ATruthThatCallsItselfMeasuredIsRefused) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/compensation/sample_compensators.h"
 
-#include "compensation/network/random_purposes.h"
+#include "random/random_stream.h"
 #include "tests/compensation/bias_curve.h"
 
 namespace beamgyro::internal {

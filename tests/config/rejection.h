@@ -21,4 +21,12 @@ std::string rejection(const Work& work) {
   return {};
 }
 
+/// Succeeds when `text` holds `part`; the failure prints the text.
+inline testing::AssertionResult holds(const std::string& text,
+                                      const std::string& part) {
+  if (text.find(part) != text.npos)
+    return testing::AssertionSuccess() << "holds \"" << part << "\": " << text;
+  return testing::AssertionFailure() << "no \"" << part << "\" in: " << text;
+}
+
 }  // namespace beamgyro::internal

@@ -70,7 +70,7 @@ TEST(TomlText, DeepNestingIsRejectedBeforeItOverflowsTheStack) {
            "x = " + repeated(100000, "["),
        }) {
     const std::string message = rejection_of(text);
-    EXPECT_NE(message.find(reason), std::string::npos) << message;
+    EXPECT_TRUE(holds(message, reason));
   }
   EXPECT_TRUE(rejection_of("\n[a" + repeated(300, ".a") + "]\n")
                   .starts_with("scn.toml:2:513: not TOML: "));
@@ -79,10 +79,8 @@ TEST(TomlText, DeepNestingIsRejectedBeforeItOverflowsTheStack) {
 TEST(TomlText, DeepNestingBySetIsRejected) {
   const std::string value = repeated(250, "{a" + repeated(200, ".a") + " = ") +
                             "1" + repeated(250, "}");
-  EXPECT_NE(rejection([&] {
-              Overrides({"x=" + value});
-            }).find("nest deeper than 256"),
-            std::string::npos);
+  EXPECT_TRUE(holds(rejection([&] { Overrides({"x=" + value}); }),
+                    "nest deeper than 256"));
 }
 
 TEST(TomlText, NestingUpToTheLimitIsRead) {
@@ -98,13 +96,11 @@ TEST(TomlText, MoreValuesThanMemoryShouldHoldAreRejected) {
   for (const char* value : {"1,", "{},", "[],\n", "{a.b=1},"}) {
     const std::string message =
         rejection_of("x = [" + repeated(1000000, value) + "1]");
-    EXPECT_NE(message.find("more than 500000 keys and values"),
-              std::string::npos)
-        << message;
+    EXPECT_TRUE(holds(message, "more than 500000 keys and values"));
   }
-  EXPECT_NE(rejection_of("# " + std::string(std::size_t{17} << 20, 'x'))
-                .find("bytes; expected at most 16777216"),
-            std::string::npos);
+  EXPECT_TRUE(
+      holds(rejection_of("# " + std::string(std::size_t{17} << 20, 'x')),
+            "bytes; expected at most 16777216"));
 }
 
 TEST(TomlText, LongTextsWithDotsAreNoDeepKeys) {
@@ -132,8 +128,8 @@ TEST(TomlText, ANulInATextIsRejected) {
 TEST(TomlText, LongAndStrangeValuesAreShownOnOneLine) {
   const ConfigDocument document = ConfigDocument::parse(
       "a = \"x\\ny\"\nb = \"" + std::string(1000, 'b') + "\"", "scn.toml");
-  EXPECT_NE(rejection([&] { document.root().number("a"); }).find("x\\x0ay"),
-            std::string::npos);
+  EXPECT_TRUE(
+      holds(rejection([&] { document.root().number("a"); }), "x\\x0ay"));
   EXPECT_LT(rejection([&] { document.root().number("b"); }).size(), 250u);
 }
 

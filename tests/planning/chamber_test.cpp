@@ -13,6 +13,7 @@
 #include "planning/schedule_file.h"
 #include "planning/soak_length.h"
 #include "sim/thermal/thermal_parameters.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::chamber_test {
 namespace {
@@ -130,9 +131,9 @@ TEST(SoakLength, LagDecaysToTheSettledBeam) {
 TEST(ScheduleText, NamesTheDeviceInTomlAndEndsWithTheLastSoak) {
   const std::string text =
       schedule_text({-9, -23}, {25, 2, 1800}, {0.2, 7.5}, "a \"b\"\\c.toml");
-  EXPECT_NE(text.find("device = \"a \\\"b\\\"\\\\c.toml\"\n"), text.npos);
-  EXPECT_NE(text.find("duration_s = 5040\n"), text.npos);  // 48 K and an hour
-  EXPECT_NE(text.find("#    0:17 to  0:47  hold -9 degC\n"), text.npos);
+  EXPECT_TRUE(holds(text, "device = \"a \\\"b\\\"\\\\c.toml\"\n"));
+  EXPECT_TRUE(holds(text, "duration_s = 5040\n"));  // 48 K and an hour
+  EXPECT_TRUE(holds(text, "#    0:17 to  0:47  hold -9 degC\n"));
 }
 
 }  // namespace

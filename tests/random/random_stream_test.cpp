@@ -139,5 +139,17 @@ TEST(RandomStream, EveryWordOfItsNameGivesAnIndependentStream) {
   }
 }
 
+// They are part of the data: a number put in between moves those after it.
+TEST(RandomPurpose, EachKeepsItsNumber) {
+  EXPECT_EQ(kWhiteNoiseStream, 0);
+  EXPECT_EQ(kInitialWeightsStream, 6);
+  EXPECT_EQ(kDeviceDrawStream, 8);
+  EXPECT_EQ(kSobolScrambleStream, 15);
+  EXPECT_EQ(kIntervalStream, 16);
+  EXPECT_EQ(kWalkSinceTrimStream, 17);
+  EXPECT_EQ(kIndexResampleStream, 22);
+  EXPECT_EQ(kResidualForecastStream, 25);
+}
+
 }  // namespace
 }  // namespace beamgyro::internal::random_stream_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "validation/metrics/random_purposes.h"
+#include "random/random_stream.h"
 
 namespace beamgyro::internal {
 namespace {

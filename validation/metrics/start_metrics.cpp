@@ -3,9 +3,9 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
+#include "random/random_stream.h"
 #include "validation/metrics/evaluations.h"
 #include "validation/metrics/noisy_means.h"
-#include "validation/metrics/random_purposes.h"
 
 namespace beamgyro::internal::evaluation {
 namespace {

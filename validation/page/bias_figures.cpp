@@ -6,14 +6,44 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <vector>
 
+#include "compensation/inputs/sample_ranges.h"
+#include "validation/evidence/evidence.h"
 #include "validation/metrics/segments.h"
 #include "validation/metrics/soaks.h"
 #include "validation/page/figure_makers.h"
-#include "validation/page/residual_means.h"
+#include "validation/page/figures.h"
 
 namespace beamgyro::internal {
 namespace {
+
+/// Means over a block of samples of a run.
+struct ResidualMean {
+  double since_power_on;  // [s]
+  double temperature;     // [degC], measured; NaN without
+  double residual;        // [deg/s], judged less true rate
+};
+
+/// Returns the means over blocks of `least` [s], or of so many more that there
+/// are about kFigurePoints at most. A block with a sample without a rate is
+/// left out.
+std::vector<ResidualMean> residual_means(const EvidenceRun& run, double least) {
+  const auto& time = run.recording->time;
+  if (time.empty()) return {};
+  const double length =
+      std::max(least, std::ceil((time.back() - time.front()) /
+                                static_cast<double>(kFigurePoints)));
+  const auto segments =
+      segments_of(*run.recording, score_blocks(*run.recording, length));
+  const std::vector<double> values = means_over(segments, residual_of(run));
+  std::vector<ResidualMean> means;
+  for (std::size_t k = 0; k < segments.size(); ++k)
+    if (std::isfinite(values[k]))
+      means.push_back(
+          {segments[k].powered, segments[k].temperature, values[k]});
+  return means;
+}
 
 constexpr double kMinute = 60.0;                 // [s]
 constexpr double kWarmUpBlock = 30.0;            // [s]

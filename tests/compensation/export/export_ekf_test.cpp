@@ -145,8 +145,8 @@ TEST(ExportEkf, AValueThatAFilterDoesNotTakeIsCutOffAndSaid) {
   EXPECT_EQ(warnings[1],
             "EKF2_GYR_B_NOISE: 0.03491 rad/s^2 lies outside 0 to 0.01, which "
             "PX4 EKF2 documents; 0.01 is written");
-  EXPECT_NE(ekf_texts(given)[1].second.find("1\t1\tEKF2_GYR_B_NOISE\t0.01\t9"),
-            std::string::npos);
+  EXPECT_TRUE(
+      holds(ekf_texts(given)[1].second, "1\t1\tEKF2_GYR_B_NOISE\t0.01\t9"));
   given.figures.bias_walk = 1e-3;
   given.figures.noise_density = 0.01;
   given.figures.power_on_sigma = 1.0;
@@ -156,16 +156,13 @@ TEST(ExportEkf, AValueThatAFilterDoesNotTakeIsCutOffAndSaid) {
 // Element [vyaw, vyaw] of 15 x 15 is number 11 16 = 176, [vroll, vroll] 144.
 TEST(ExportEkf, RobotLocalizationIsToldTheElementOfTheAxis) {
   EkfExport given = given_export();
-  EXPECT_NE(
-      ekf_texts(given)[4].second.find(
-          "process_noise_covariance: index 176 (from 0) of 225, [vyaw, vyaw]"),
-      std::string::npos);
+  EXPECT_TRUE(holds(
+      ekf_texts(given)[4].second,
+      "process_noise_covariance: index 176 (from 0) of 225, [vyaw, vyaw]"));
   given.axis = 'x';
   const std::string text = ekf_texts(given)[4].second;
-  EXPECT_NE(text.find("index 144 (from 0) of 225, [vroll, vroll]"),
-            std::string::npos);
-  EXPECT_NE(text.find(", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]"),
-            std::string::npos);
+  EXPECT_TRUE(holds(text, "index 144 (from 0) of 225, [vroll, vroll]"));
+  EXPECT_TRUE(holds(text, ", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]"));
 }
 
 Recording noisy_rest(double duration) {
@@ -193,10 +190,8 @@ TEST(RestNoise, FindsTheWhiteNoiseAndBoundsTheWalk) {
 
 TEST(RestNoise, RefusesWhatIsNoRest) {
   const Compensator c = spline_compensator();
-  EXPECT_NE(rejection([&] {
-              rest_noise(c, noisy_rest(3.0));
-            }).find("samples show too little"),
-            std::string::npos);
+  EXPECT_TRUE(holds(rejection([&] { rest_noise(c, noisy_rest(3.0)); }),
+                    "samples show too little"));
   const Recording turning = RecordedRun{.true_rate = [](double t) {
                               return t > 300.0 ? 1.0 : 0.0;
                             }}.recording();

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <stdexcept>
 
 #include "compensation/firmware/runtime.h"
 #include "compensation/inputs/features.h"
@@ -335,8 +334,8 @@ TEST(Crc32, CoversEveryParameter) {
 
 TEST(FirmwareRuntime, SectionsAreFoundByName) {
   const std::string tanh = runtime_text("tanh");
-  EXPECT_NE(tanh.find("static float tanh_of(float x)"), std::string::npos);
-  EXPECT_EQ(tanh.find("polynomial_of"), std::string::npos);
+  EXPECT_TRUE(holds(tanh, "static float tanh_of(float x)"));
+  EXPECT_FALSE(holds(tanh, "polynomial_of"));
   EXPECT_THROW(runtime_text("cosh"), std::logic_error);
 }
 

@@ -161,11 +161,12 @@ TEST(FitAsPx4, EqualsLeastSquaresOverTheBinsOfTheFilteredSamples) {
 }
 
 TEST(FitAsPx4, NeedsARangeOfTemperatures) {
-  EXPECT_NE(rejection([] {
-              fit_as_px4(samples_of(
-                  run_of(100.0, [](double) { return 25.0; }).recording()));
-            }).find("temperature is 25 degC throughout"),
-            std::string::npos);
+  EXPECT_TRUE(holds(rejection([] {
+                      fit_as_px4(samples_of(run_of(100.0, [](double) {
+                                              return 25.0;
+                                            }).recording()));
+                    }),
+                    "temperature is 25 degC throughout"));
 }
 
 TEST(FitAsArduPilot, IsTheCubicInKelvinsAbout35WithAConstantTerm) {
@@ -284,14 +285,13 @@ TEST(FitAsArduPilot, RefusesWhatItsCalibrationRefuses) {
   const auto message = [&](double span, double seconds, int least_samples) {
     return rejection([&] { fit(span, seconds, least_samples); });
   };
-  EXPECT_NE(message(9.9, 1000.0, 100).find("needs 10 K"), std::string::npos);
+  EXPECT_TRUE(holds(message(9.9, 1000.0, 100), "needs 10 K"));
   EXPECT_NO_THROW(fit(10.1, 1000.0, 100));
   // 10.1 K in 450 samples is one rise of 100 samples four times, in 350 three.
   EXPECT_NO_THROW(fit(10.1, 45.0, 100));
-  EXPECT_NE(message(10.1, 35.0, 100).find("over 100 samples 3 times"),
-            std::string::npos);
+  EXPECT_TRUE(holds(message(10.1, 35.0, 100), "over 100 samples 3 times"));
   // Cooling only.
-  EXPECT_NE(message(-40.0, 1000.0, 100).find("0 times"), std::string::npos);
+  EXPECT_TRUE(holds(message(-40.0, 1000.0, 100), "0 times"));
 }
 
 }  // namespace

@@ -117,21 +117,19 @@ TEST(CubicSpline, FitsARampOfNoisyPointsBelowTheirNoise) {
 
 TEST(CubicSpline, RejectsKnotsTheDataCannotDetermine) {
   const ArrayXd T = grid(0.0, 10.0, 5.0);
-  EXPECT_NE(rejection([&] {
-              fit_cubic_spline(T, T, T, SplineEnd::kNatural);
-            }).find("3 knots from the data, at least 4"),
-            std::string::npos);
+  EXPECT_TRUE(
+      holds(rejection([&] { fit_cubic_spline(T, T, T, SplineEnd::kNatural); }),
+            "3 knots from the data, at least 4"));
   const ArrayXd knots = grid(0.0, 30.0, 5.0);
-  EXPECT_NE(rejection([&] {
-              fit_cubic_spline(T, T, knots, SplineEnd::kNatural);
-            }).find("determine the values at only 3 of the 7 knots"),
-            std::string::npos);
+  EXPECT_TRUE(holds(
+      rejection([&] { fit_cubic_spline(T, T, knots, SplineEnd::kNatural); }),
+      "determine the values at only 3 of the 7 knots"));
   ArrayXd backwards(4);
   backwards << 0.0, 10.0, 5.0, 20.0;
-  EXPECT_NE(rejection([&] {
-              fit_cubic_spline(T, T, backwards, SplineEnd::kNatural);
-            }).find("knots must increase"),
-            std::string::npos);
+  EXPECT_TRUE(holds(rejection([&] {
+                      fit_cubic_spline(T, T, backwards, SplineEnd::kNatural);
+                    }),
+                    "knots must increase"));
 }
 
 }  // namespace

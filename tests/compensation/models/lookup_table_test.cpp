@@ -77,10 +77,8 @@ TEST(LookupTable, ErrorOfAParabolaFallsWithTheSquareOfTheWidth) {
 
 TEST(LookupTable, NeedsPointsAndAWidth) {
   const ArrayXd T = numbers({1.0, 2.0});
-  EXPECT_NE(rejection([&] {
-              fit_lookup_table(T, T, 0.0);
-            }).find("2 points in bins of 0 K"),
-            std::string::npos);
+  EXPECT_TRUE(holds(rejection([&] { fit_lookup_table(T, T, 0.0); }),
+                    "2 points in bins of 0 K"));
   EXPECT_THROW(fit_lookup_table(T, T, NAN), std::invalid_argument);
   EXPECT_THROW(fit_lookup_table(ArrayXd(), ArrayXd(), 5.0),
                std::invalid_argument);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "compensation/network/random_purposes.h"
+#include "random/random_stream.h"
 
 namespace beamgyro::internal::batch_network_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "compensation/network/random_purposes.h"
+#include "random/random_stream.h"
 #include "tests/compensation/bias_curve.h"
 
 namespace beamgyro::internal::gradient_trainer_test {

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "compensation/network/random_purposes.h"
 #include "compensation/network/restarts.h"
+#include "random/random_stream.h"
 #include "tests/compensation/bias_curve.h"
 
 namespace beamgyro::internal::levenberg_marquardt_test {

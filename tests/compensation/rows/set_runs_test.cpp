@@ -145,28 +145,25 @@ TEST_F(SetRuns, RefuseFilesThatAreNotWhatTheManifestSays) {
   std::filesystem::copy_file(folder_ / manifest_.entries[1].file,
                              folder_ / manifest_.entries[0].file,
                              std::filesystem::copy_options::overwrite_existing);
-  EXPECT_NE(message({{}, {"soaks"}}).find("other bytes than the manifest says"),
-            std::string::npos);
+  EXPECT_TRUE(
+      holds(message({{}, {"soaks"}}), "other bytes than the manifest says"));
   EXPECT_EQ(biases({{}, {"ramp"}, {0}}), std::vector<double>{0.5});
   manifest_.entries.pop_back();
   write_manifest(folder_, kManifestName, manifest_);
-  EXPECT_NE(message({{}, {"ramp"}}).find("the manifest is damaged"),
-            std::string::npos);
+  EXPECT_TRUE(holds(message({{}, {"ramp"}}), "the manifest is damaged"));
 }
 
 TEST_F(SetRuns, RefuseWhatTheSetDoesNotHave) {
   const auto message = [&](const SetSelection& selection) {
     return rejection([&] { runs_of_set(folder_, selection); });
   };
-  EXPECT_NE(message({{}, {"warm_up"}})
-                .find("no run \"warm_up\"; its runs are soaks, ramp"),
-            std::string::npos);
-  EXPECT_NE(message({{}, {}, {6}}).find("the set has devices 0 to 5"),
-            std::string::npos);
+  EXPECT_TRUE(holds(message({{}, {"warm_up"}}),
+                    "no run \"warm_up\"; its runs are soaks, ramp"));
+  EXPECT_TRUE(holds(message({{}, {}, {6}}), "the set has devices 0 to 5"));
   start_manifest(folder_, kManifestName, *manifest_.head);
-  EXPECT_NE(message({}).find("the set is not finished"), std::string::npos);
+  EXPECT_TRUE(holds(message({}), "the set is not finished"));
   std::filesystem::remove(folder_ / kManifestName);
-  EXPECT_NE(message({}).find("No such file or directory"), std::string::npos);
+  EXPECT_TRUE(holds(message({}), "No such file or directory"));
 }
 
 }  // namespace

@@ -102,8 +102,8 @@ TEST(TrainingRows, BadRunsAreNamedWithWhatIsWrong) {
   };
   Recording no_truth = good;
   no_truth.columns.pop_back();
-  EXPECT_NE(message(no_truth).find("run.h5: "), std::string::npos);
-  EXPECT_NE(message(no_truth).find("true_rate"), std::string::npos);
+  EXPECT_TRUE(holds(message(no_truth), "run.h5: "));
+  EXPECT_TRUE(holds(message(no_truth), "true_rate"));
 
   RecordedRun off = drifting_run();
   off.powered = [](double) { return false; };
@@ -112,18 +112,17 @@ TEST(TrainingRows, BadRunsAreNamedWithWhatIsWrong) {
 
   Recording nan = good;
   nan.columns[1].values[5] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(message(nan).find("rate - true_rate is nan at t = 2.5 s"),
-            std::string::npos);
+  EXPECT_TRUE(holds(message(nan), "rate - true_rate is nan at t = 2.5 s"));
 }
 
 TEST(TrainingRows, NoSteadyRowIsAnError) {
   RowOptions options;
   options.steady_K_per_min = 0.1;
-  EXPECT_NE(rejection([&] {
-              training_rows(one(drifting_run().recording()), kTemperature,
-                            options);
-            }).find("no row whose temperature changes by 0.1 K/min or less"),
-            std::string::npos);
+  EXPECT_TRUE(holds(rejection([&] {
+                      training_rows(one(drifting_run().recording()),
+                                    kTemperature, options);
+                    }),
+                    "no row whose temperature changes by 0.1 K/min or less"));
 }
 
 std::vector<int> numbers(const Eigen::ArrayXi& values) {

@@ -112,7 +112,7 @@ TEST_F(AdaptedModel, ThreeSoaksOfAnUnseenUnitTellItsCurve) {
       "population: population.json, 20 devices, sha256 "))
       << p.choices[0];
   for (const std::string& warning : p.warnings)
-    EXPECT_EQ(warning.find("apart"), std::string::npos) << warning;
+    EXPECT_FALSE(holds(warning, "apart"));
   EXPECT_EQ(compensator_text(parse_compensator(compensator_text(c), "c.json")),
             compensator_text(c));
 }
@@ -142,7 +142,7 @@ TEST_F(AdaptedModel, RefusesWhatIsNoPopulation) {
     return rejection([&] { model(text); });
   };
   const auto says = [&](const std::string& text, const std::string& what) {
-    EXPECT_NE(message(text).find(what), std::string::npos) << message(text);
+    EXPECT_TRUE(holds(message(text), what));
   };
   says("kind = \"adapted\"\n", "population");
   says("kind = \"adapted\"\npopulation = \"none.json\"\n", "none.json");
@@ -165,10 +165,8 @@ TEST_F(AdaptedModel, RefusesADamagedPopulation) {
   std::string text = compensator_text(population());
   const auto at = text.find("\"modes\"");
   text.insert(text.find('[', text.find('[', at) + 1) + 1, "1.0, ");
-  EXPECT_NE(rejection([&] {
-              parse_compensator(text, "c.json");
-            }).find("c.json: population.modes[0]: 39 numbers, must be 38"),
-            std::string::npos);
+  EXPECT_TRUE(holds(rejection([&] { parse_compensator(text, "c.json"); }),
+                    "c.json: population.modes[0]: 39 numbers, must be 38"));
 }
 
 }  // namespace

@@ -103,8 +103,8 @@ TEST(ModelFile, WrongFilesAreAnsweredWithPlaceAndCure) {
                  "seconds"},
        }) {
     const std::string message = error_of(wrong.text);
-    EXPECT_NE(message.find("model.toml"), std::string::npos) << message;
-    EXPECT_NE(message.find(wrong.message), std::string::npos) << message;
+    EXPECT_TRUE(holds(message, "model.toml"));
+    EXPECT_TRUE(holds(message, wrong.message));
   }
   for (const Wrong& wrong : {
            Wrong{"", "hidden"},
@@ -120,12 +120,11 @@ TEST(ModelFile, WrongFilesAreAnsweredWithPlaceAndCure) {
            Wrong{"hidden = [6]\ntrainer = \"adam\"\n", "incremental"},
        }) {
     const std::string message = error_of(bp + wrong.text);
-    EXPECT_NE(message.find(wrong.message), std::string::npos) << message;
+    EXPECT_TRUE(holds(message, wrong.message));
   }
-  EXPECT_NE(error_of("kind = \"polynomial\"\n"
-                     "inputs = [\"output\", \"output\"]\n")
-                .find("\"output\" is there twice"),
-            std::string::npos);
+  EXPECT_TRUE(holds(error_of("kind = \"polynomial\"\n"
+                             "inputs = [\"output\", \"output\"]\n"),
+                    "\"output\" is there twice"));
 }
 
 TEST(ModelFile, ShippedModelsAreReadAndStartWithASentence) {
@@ -314,8 +313,8 @@ TEST(ModelFile, WhatAKindCannotTakeIsRefused) {
                  "feels the rate"},
        }) {
     const std::string message = error_of(wrong.text);
-    EXPECT_NE(message.find("model.toml"), std::string::npos) << message;
-    EXPECT_NE(message.find(wrong.message), std::string::npos) << message;
+    EXPECT_TRUE(holds(message, "model.toml"));
+    EXPECT_TRUE(holds(message, wrong.message));
   }
 }
 
@@ -326,17 +325,15 @@ TEST(ModelFile, CandidatesThatAreNoneAreRefused) {
         error_of(fmt::format("kind = \"auto\"\ninputs = [\"temperature\"]\n"
                              "[auto]\ncandidates = [\"{}\"]\n",
                              name));
-    EXPECT_NE(message.find("candidates are none, constant"), std::string::npos)
+    EXPECT_TRUE(holds(message, "candidates are none, constant"))
         << name << ": " << message;
   }
-  EXPECT_NE(error_of("kind = \"auto\"\ninputs = [\"temperature\"]\n"
-                     "[auto]\ncandidates = [\"qubic\"]\n")
-                .find("did you mean \"cubic\"?"),
-            std::string::npos);
-  EXPECT_NE(error_of("kind = \"auto\"\ninputs = [\"temperature\"]\n"
-                     "[auto]\ncandidates = []\n")
-                .find("at least one candidate"),
-            std::string::npos);
+  EXPECT_TRUE(holds(error_of("kind = \"auto\"\ninputs = [\"temperature\"]\n"
+                             "[auto]\ncandidates = [\"qubic\"]\n"),
+                    "did you mean \"cubic\"?"));
+  EXPECT_TRUE(holds(error_of("kind = \"auto\"\ninputs = [\"temperature\"]\n"
+                             "[auto]\ncandidates = []\n"),
+                    "at least one candidate"));
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/training/temperature_effect.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "compensation/training/selection.h"
 #include "tests/compensation/rows_of.h"
 
 namespace beamgyro::internal::temperature_effect_test {

@@ -44,7 +44,7 @@ TEST(BiasSigmaJson, ReadsWhatItWroteWithTheSameBits) {
 
 TEST(BiasSigmaJson, AFileWithoutASigmaHasNoMemberOfThatName) {
   const std::string text = compensator_text(spline_compensator());
-  EXPECT_EQ(text.find("sigma"), std::string::npos);
+  EXPECT_FALSE(holds(text, "sigma"));
   EXPECT_FALSE(parse_compensator(text, "mine.json").sigma);
 }
 
@@ -112,9 +112,9 @@ TEST(BiasSigmaJson, EveryBrokenMemberIsNamed) {
   for (const Broken& one : all) {
     SCOPED_TRACE(one.patch);
     const std::string error = error_with(one.patch);
-    EXPECT_NE(error.find("mine.json: sigma"), std::string::npos) << error;
-    EXPECT_NE(error.find(one.place), std::string::npos) << error;
-    EXPECT_NE(error.find(one.words), std::string::npos) << error;
+    EXPECT_TRUE(holds(error, "mine.json: sigma"));
+    EXPECT_TRUE(holds(error, one.place));
+    EXPECT_TRUE(holds(error, one.words));
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
   }
 }
@@ -123,10 +123,9 @@ TEST(BiasSigmaJson, ASigmaThatIsNoObjectIsNamed) {
   Json json = Json::parse(compensator_text(with_sigma(spline_compensator())));
   for (const char* value : {"[]", "null", "0.1", "\"small\""}) {
     json["sigma"] = Json::parse(value);
-    EXPECT_NE(rejection([&] {
-                parse_compensator(json.dump(), "mine.json");
-              }).find("mine.json: sigma: "),
-              std::string::npos)
+    EXPECT_TRUE(
+        holds(rejection([&] { parse_compensator(json.dump(), "mine.json"); }),
+              "mine.json: sigma: "))
         << value;
   }
 }
@@ -137,10 +136,8 @@ TEST(BiasSigmaJson, NumbersBeyondDoubleAreNamed) {
   const std::size_t place = text.find(good);
   ASSERT_NE(place, std::string::npos);
   text.replace(place, good.size(), "\"factor\": 1e999");
-  EXPECT_NE(rejection([&] {
-              parse_compensator(text, "mine.json");
-            }).find("mine.json"),
-            std::string::npos);
+  EXPECT_TRUE(holds(rejection([&] { parse_compensator(text, "mine.json"); }),
+                    "mine.json"));
 }
 
 }  // namespace

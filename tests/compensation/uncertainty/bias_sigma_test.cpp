@@ -104,10 +104,8 @@ TEST(BiasSigma, StreamGivesTheSameBitsSampleBySample) {
 TEST(BiasSigma, RefusesATemperatureThatIsNotFinite) {
   BiasSigmaStream stream(every_term());
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(rejection([&] {
-              stream.step(3.0, 0, nan);
-            }).find("temperature is nan at t = 3 s"),
-            std::string::npos);
+  EXPECT_TRUE(holds(rejection([&] { stream.step(3.0, 0, nan); }),
+                    "temperature is nan at t = 3 s"));
 }
 
 TEST(CompensatedRateSigma, IsEmptyWithoutOneAndOverTheScaleFactor) {

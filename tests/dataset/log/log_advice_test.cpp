@@ -20,12 +20,11 @@ std::string refusal(const std::string& map, const std::string& log) {
 void expect_advice(const std::string& message,
                    const std::vector<std::string>& parts) {
   for (const std::string& part : parts)
-    EXPECT_NE(message.find(part), std::string::npos)
-        << part << " in: " << message;
+    EXPECT_TRUE(holds(message, part)) << part << " in: " << message;
 }
 
 void expect_no_advice(const std::string& message, const std::string& part) {
-  EXPECT_EQ(message.find(part), std::string::npos) << message;
+  EXPECT_FALSE(holds(message, part));
 }
 
 TEST(LogAdvice, AColumnOfDatesHasAFormat) {

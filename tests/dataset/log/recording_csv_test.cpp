@@ -46,18 +46,15 @@ TEST(RecordingCsv, UnitsInBracketsAreConverted) {
 }
 
 TEST(RecordingCsv, SaysWhatIsWrong) {
-  EXPECT_NE(message_for("time,rate\n0,1\n").find("no column 'status'"),
-            std::string::npos);
-  EXPECT_NE(message_for("rate,status\n0,1\n").find("no column 'time'"),
-            std::string::npos);
-  EXPECT_NE(message_for("time,status\n0,8\n").find("run.csv:2: status 8"),
-            std::string::npos);
-  EXPECT_NE(message_for("time,rate [furlong],status\n0,1,0\n").find("furlong"),
-            std::string::npos);
-  EXPECT_NE(message_for("time,rate,status\n0,nan,0\n").find("while powered"),
-            std::string::npos);
-  EXPECT_NE(message_for("time,rate,status\n0,1,0\n0,1,0\n").find("not after"),
-            std::string::npos);
+  EXPECT_TRUE(holds(message_for("time,rate\n0,1\n"), "no column 'status'"));
+  EXPECT_TRUE(holds(message_for("rate,status\n0,1\n"), "no column 'time'"));
+  EXPECT_TRUE(holds(message_for("time,status\n0,8\n"), "run.csv:2: status 8"));
+  EXPECT_TRUE(
+      holds(message_for("time,rate [furlong],status\n0,1,0\n"), "furlong"));
+  EXPECT_TRUE(
+      holds(message_for("time,rate,status\n0,nan,0\n"), "while powered"));
+  EXPECT_TRUE(
+      holds(message_for("time,rate,status\n0,1,0\n0,1,0\n"), "not after"));
 }
 
 TEST(RecordingCsv, OnlyANameOfTimeAndStatusMakesARecording) {

@@ -78,10 +78,8 @@ TEST_P(RecordingFileOf, NothingAppearsBeforeItsEndAndNothingWithoutIt) {
     RecordingFile file(whole, 1000, named("run"));
     file.append(cut(whole, 0, 500));
     EXPECT_FALSE(fs::exists(named("run")));
-    EXPECT_NE(rejection<std::runtime_error>([&] {
-                file.finish();
-              }).find("500 samples; expected 1000"),
-              std::string::npos);
+    EXPECT_TRUE(holds(rejection<std::runtime_error>([&] { file.finish(); }),
+                      "500 samples; expected 1000"));
   }
   EXPECT_EQ(files_there(), 0u);
 }
@@ -92,11 +90,10 @@ TEST_P(RecordingFileOf, DefectsAreNamedWithTheirPlaceInTheWhole) {
   const auto says = [&](const Recording& block) {
     return rejection<std::runtime_error>([&] { file.append(block); });
   };
-  EXPECT_NE(says(cut(whole, 400, 500)).find("time: sample 500 is"),
-            std::string::npos);
+  EXPECT_TRUE(holds(says(cut(whole, 400, 500)), "time: sample 500 is"));
   Recording broken = cut(whole, 500, 600);
   broken.columns[7].values[3] = std::nan("");
-  EXPECT_NE(says(broken).find("sample 503 is nan"), std::string::npos);
+  EXPECT_TRUE(holds(says(broken), "sample 503 is nan"));
 }
 
 TEST_P(RecordingFileOf, ABlockHasTheColumnsOfTheHeadInTheirOrder) {
@@ -109,29 +106,26 @@ TEST_P(RecordingFileOf, ABlockHasTheColumnsOfTheHeadInTheirOrder) {
   EXPECT_EQ(says(block),
             named("run").string() + ": not written: 15 columns; expected 16");
   block.columns.push_back(block.columns.back());
-  EXPECT_NE(says(block).find("column 15 is true_ambient_temperature [degC], "
-                             "truth; expected compensated_rate [degree/s], "
-                             "compensated"),
-            std::string::npos);
+  EXPECT_TRUE(holds(says(block),
+                    "column 15 is true_ambient_temperature [degC], "
+                    "truth; expected compensated_rate [degree/s], "
+                    "compensated"));
   block = cut(whole, 0, 10);
   block.columns[6].role = Role::kMeasured;
-  EXPECT_NE(says(block).find("column 6 is true_rate"), std::string::npos);
+  EXPECT_TRUE(holds(says(block), "column 6 is true_rate"));
 }
 
 TEST_P(RecordingFileOf, SamplesAreAsManyAsAnnounced) {
-  EXPECT_NE(rejection<std::runtime_error>([&] {
-              RecordingFile(whole, 0, named("run"));
-            }).find("no samples; expected at least one"),
-            std::string::npos);
+  EXPECT_TRUE(holds(rejection<std::runtime_error>(
+                        [&] { RecordingFile(whole, 0, named("run")); }),
+                    "no samples; expected at least one"));
   RecordingFile file(whole, 500, named("run"));
-  EXPECT_NE(rejection<std::runtime_error>([&] {
-              file.append(cut(whole, 0, 501));
-            }).find("501 samples; expected 500"),
-            std::string::npos);
-  EXPECT_NE(rejection<std::runtime_error>([&] {
-              file.append(cut(whole, 0, 0));
-            }).find("no samples; expected at least one"),
-            std::string::npos);
+  EXPECT_TRUE(holds(
+      rejection<std::runtime_error>([&] { file.append(cut(whole, 0, 501)); }),
+      "501 samples; expected 500"));
+  EXPECT_TRUE(holds(
+      rejection<std::runtime_error>([&] { file.append(cut(whole, 0, 0)); }),
+      "no samples; expected at least one"));
   file.append(cut(whole, 0, 500));
   file.finish();
   write_recording(cut(whole, 0, 500), named("whole"));

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <stdexcept>
-
 #include "tests/config/rejection.h"
 #include "tests/dataset/sample_recording.h"
 

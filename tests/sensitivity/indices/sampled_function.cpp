@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "random/random_stream.h"
-#include "sensitivity/indices/random_purposes.h"
 #include "sim/campaign/scrambled_sobol.h"
 
 namespace beamgyro::internal {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "sim/campaign/as_built.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "sim/campaign/campaign_file.h"
 #include "tests/sim/device/nominal_device.h"
 
 namespace beamgyro::internal::as_built_test {

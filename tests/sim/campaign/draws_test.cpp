@@ -10,6 +10,7 @@
 
 #include "sim/campaign/campaign.h"
 #include "sim/dynamics/gyro.h"
+#include "tests/config/rejection.h"
 #include "tests/sim/campaign/campaign_folder.h"
 #include "tests/sim/campaign/kolmogorov_smirnov.h"
 #include "tests/sim/device/nominal_device.h"
@@ -143,9 +144,7 @@ TEST(Draws, WhatAFileWouldRefuseIsAFailureOfTheDevice) {
     EXPECT_EQ(unit.failure.empty(), allowed);
     if (allowed) continue;
     ++failures;
-    EXPECT_NE(unit.failure.find("is out of range; expected a number in"),
-              std::string::npos)
-        << unit.failure;
+    EXPECT_TRUE(holds(unit.failure, "is out of range; expected a number in"));
     EXPECT_EQ(unit.failure.find('\n'), std::string::npos);
   }
   EXPECT_GT(failures, 4);  // 31 % of 40
@@ -169,8 +168,8 @@ TEST(Draws, FailuresNameFilesWithoutTheirFolder) {
     const std::string unit = c.device(i).failure, run = c.run(0, i).failure;
     if (!unit.empty()) ++devices;
     if (!run.empty()) ++runs;
-    EXPECT_EQ(unit.find(folder.path().string()), std::string::npos) << unit;
-    EXPECT_EQ(run.find(folder.path().string()), std::string::npos) << run;
+    EXPECT_FALSE(holds(unit, folder.path().string()));
+    EXPECT_FALSE(holds(run, folder.path().string()));
     if (!run.empty()) {
       EXPECT_EQ(run,
                 "hot.csv:2: temperature_degC 140 is out of range; expected " +

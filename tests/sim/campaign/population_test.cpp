@@ -11,7 +11,6 @@
 
 #include "random/random_stream.h"
 #include "sim/campaign/campaign.h"
-#include "sim/campaign/random_purposes.h"
 #include "sim/dynamics/gyro.h"
 #include "tests/sim/campaign/kolmogorov_smirnov.h"
 #include "tests/sim/device/nominal_device.h"

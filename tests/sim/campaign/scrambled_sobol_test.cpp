@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "random/random_stream.h"
-#include "sim/campaign/random_purposes.h"
 
 namespace beamgyro::internal::scrambled_sobol_test {
 namespace {

@@ -7,14 +7,14 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "random/random_stream.h"
 #include "sim/dynamics/complex_form.h"
 #include "sim/dynamics/loop_noise.h"
-#include "sim/scenario/random_purposes.h"
 #include "sim/signal/linear_noise.h"
+#include "tests/config/rejection.h"
 #include "tests/linear_algebra/reference_algebra.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/signal/allan_deviation.h"
@@ -283,16 +283,6 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values("readout.mode=\"open_loop\"",
                     "readout.mode=\"force_rebalance\"",
                     "readout.quadrature_trim_deg_per_s=4000"));
-
-template <class Call>
-std::string rejection(Call call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
-}
 
 TEST(MechanicalNoise, RejectsBadInput) {
   const Modes modes;

@@ -6,25 +6,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "tests/config/rejection.h"
+
 namespace beamgyro::internal::piecewise_linear_test {
 namespace {
 
-std::string rejection(std::vector<double> time, std::vector<double> value) {
-  try {
-    const PiecewiseLinear profile(std::move(time), std::move(value));
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
+std::string rejection_of(std::vector<double> time, std::vector<double> value) {
+  return rejection([&] { PiecewiseLinear(std::move(time), std::move(value)); });
 }
 
 TEST(PiecewiseLinear, IsLinearBetweenItsPointsAndHeldOutside) {
@@ -87,12 +79,12 @@ TEST(PiecewiseLinear, NamesEachBorderOnceAndWhetherTheValueJumps) {
 
 TEST(PiecewiseLinear, RejectsWhatIsNoProfile) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(contains(rejection({}, {}), "at least one point"));
-  EXPECT_TRUE(contains(rejection({0, 1}, {0}), "2 times and 1 values"));
-  EXPECT_TRUE(contains(rejection({0, nan}, {0, 1}), "point 2"));
-  EXPECT_TRUE(contains(rejection({0, 1}, {INFINITY, 1}), "point 1"));
-  EXPECT_TRUE(contains(rejection({0, 2, 1}, {0, 1, 2}), "1 s at point 3"));
-  EXPECT_TRUE(contains(rejection({0, 2, 2, 2}, {0, 1, 2, 3}), "three points"));
+  EXPECT_TRUE(holds(rejection_of({}, {}), "at least one point"));
+  EXPECT_TRUE(holds(rejection_of({0, 1}, {0}), "2 times and 1 values"));
+  EXPECT_TRUE(holds(rejection_of({0, nan}, {0, 1}), "point 2"));
+  EXPECT_TRUE(holds(rejection_of({0, 1}, {INFINITY, 1}), "point 1"));
+  EXPECT_TRUE(holds(rejection_of({0, 2, 1}, {0, 1, 2}), "1 s at point 3"));
+  EXPECT_TRUE(holds(rejection_of({0, 2, 2, 2}, {0, 1, 2, 3}), "three points"));
 }
 
 }  // namespace

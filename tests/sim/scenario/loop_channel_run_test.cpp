@@ -13,6 +13,7 @@
 #include "sim/dynamics/mechanical_noise.h"
 #include "sim/scenario/simulation.h"
 #include "sim/signal/readout.h"
+#include "tests/config/rejection.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
@@ -233,9 +234,7 @@ TEST(LoopChannelRun, SaysWhereNoiseHidesBehindTheResolution) {
   const ScenarioPlan scenario = scenario_from("");
   const Recording on = simulated(scenario, nominal_device(kNoise));
   const std::string comment = find_column(on, "drive_frequency")->comment;
-  EXPECT_NE(comment.find("is below the resolution of 0.001 Hz"),
-            std::string::npos)
-      << comment;
+  EXPECT_TRUE(holds(comment, "is below the resolution of 0.001 Hz"));
   EXPECT_NE(find_column(on, "drive_voltage")->comment, "");
   // 0.01 deg/s x sqrt(10 Hz) is above 0.01 deg/s.
   EXPECT_EQ(find_column(on, "quadrature")->comment, "");

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "sim/scenario/square_acceleration.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
+
+#include "sim/scenario/filtered_motion.h"
 
 namespace beamgyro::internal::square_acceleration_test {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 
+#include "tests/config/rejection.h"
 #include "tests/sim/signal/allan_deviation.h"
 
 namespace beamgyro::internal::flicker_test {
@@ -165,13 +165,8 @@ TEST(FlickerNoise, DoesNotDependOnHowTheRunIsCut) {
 }
 
 TEST(FlickerFilter, RejectsBadParameters) {
-  const auto message = [](double instability, double rate) -> std::string {
-    try {
-      flicker_filter(instability, rate);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+  const auto message = [](double instability, double rate) {
+    return rejection([&] { flicker_filter(instability, rate); });
   };
   EXPECT_EQ(message(-0.5, 10.0),
             "bias instability is -0.5 rad/s, must be 0 or more");

@@ -6,11 +6,11 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "sim/scenario/random_purposes.h"
+#include "random/random_stream.h"
+#include "tests/config/rejection.h"
 #include "tests/linear_algebra/reference_algebra.h"
 
 namespace beamgyro::internal::linear_noise_test {
@@ -285,56 +285,47 @@ TEST(LinearNoise, RefreshedCoefficientsLeaveTheStateWhereItIs) {
       1e-13);
 }
 
-std::string rejection(const NoiseSystem& system, double interval = 0.1) {
-  try {
-    LinearNoise(system, interval, stream());
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+std::string rejection_of(const NoiseSystem& system, double interval = 0.1) {
+  return rejection([&] { LinearNoise(system, interval, stream()); });
 }
 
 TEST(LinearNoise, RejectsBadInput) {
   const MatrixXd one = MatrixXd::Ones(1, 1), two = MatrixXd::Identity(2, 2);
   MatrixXd hole = -two;
   hole(0, 1) = NAN;
-  EXPECT_EQ(rejection({MatrixXd::Zero(2, 3), two}),
+  EXPECT_EQ(rejection_of({MatrixXd::Zero(2, 3), two}),
             "noise system: A is 2 x 3, must be square and not empty");
-  EXPECT_EQ(rejection({MatrixXd(), MatrixXd()}),
+  EXPECT_EQ(rejection_of({MatrixXd(), MatrixXd()}),
             "noise system: A is 0 x 0, must be square and not empty");
-  EXPECT_EQ(rejection({-two, one}),
+  EXPECT_EQ(rejection_of({-two, one}),
             "noise system: B is 1 x 1, must have 2 rows as A, and a column for "
             "every noise");
-  EXPECT_EQ(rejection({-two, MatrixXd(2, 0)}),
+  EXPECT_EQ(rejection_of({-two, MatrixXd(2, 0)}),
             "noise system: B is 2 x 0, must have 2 rows as A, and a column for "
             "every noise");
-  EXPECT_EQ(rejection({hole, two}),
+  EXPECT_EQ(rejection_of({hole, two}),
             "noise system: A(0, 1) is nan, must be finite");
-  EXPECT_EQ(rejection({-two, INFINITY * MatrixXd::Ones(2, 1)}),
+  EXPECT_EQ(rejection_of({-two, INFINITY * MatrixXd::Ones(2, 1)}),
             "noise system: B(0, 0) is inf, must be finite");
-  EXPECT_EQ(rejection({-one, one}, 0.0),
+  EXPECT_EQ(rejection_of({-one, one}, 0.0),
             "sampling interval is 0 s, must be above 0");
-  EXPECT_EQ(rejection({-one, one}, NAN),
+  EXPECT_EQ(rejection_of({-one, one}, NAN),
             "sampling interval is nan s, must be above 0");
-  EXPECT_EQ(rejection({-one, one}, 0.1), "");
-  EXPECT_EQ(rejection({0.25 * one, one}),
+  EXPECT_NO_THROW(LinearNoise({-one, one}, 0.1, stream()));
+  EXPECT_EQ(rejection_of({0.25 * one, one}),
             "noise system has no stationary state: an eigenvalue of A has real "
             "part 0.25 1/s, must be below 0");
-  EXPECT_EQ(rejection({2e3 * one, one}, 10.0),
+  EXPECT_EQ(rejection_of({2e3 * one, one}, 10.0),
             "noise system grows beyond all numbers within the sampling "
             "interval of 10 s");
-  EXPECT_EQ(rejection({-1e300 * one, one}, 1e10),
+  EXPECT_EQ(rejection_of({-1e300 * one, one}, 1e10),
             "noise system: A times the sampling interval of 10000000000 s is "
             "not finite");
   LinearNoise noise({-one, one}, 0.1, stream());
-  try {
-    noise.refresh({-two, two});
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(),
-                 "refreshed noise system has 2 states, must have "
-                 "1");
-  }
+  EXPECT_EQ(rejection([&] {
+              noise.refresh({-two, two});
+            }),
+            "refreshed noise system has 2 states, must have 1");
 }
 
 }  // namespace

@@ -8,8 +8,9 @@
 #include <string>
 #include <thread>
 
-#include "sim/scenario/random_purposes.h"
+#include "random/random_stream.h"
 #include "sim/signal/readout.h"
+#include "tests/config/rejection.h"
 #include "tests/sim/signal/allan_deviation.h"
 
 namespace beamgyro::internal::noise_test {
@@ -245,26 +246,22 @@ TEST(TurnOnTransients, HaveTheirSigma) {
   EXPECT_NEAR(variance / (kOn * kOn), 1.0, 3.0 * std::sqrt(2.0 / 20000));
 }
 
-std::string rejection(const NoiseParameters& parameters, double output_rate) {
-  try {
-    RateNoise(parameters, output_rate, 0, 0, 0);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+std::string rejection_of(const NoiseParameters& parameters,
+                         double output_rate) {
+  return rejection([&] { RateNoise(parameters, output_rate, 0, 0, 0); });
 }
 
 TEST(RateNoise, RejectsBadParameters) {
-  EXPECT_EQ(rejection({.angle_random_walk = -1.0}, 10.0),
+  EXPECT_EQ(rejection_of({.angle_random_walk = -1.0}, 10.0),
             "angle random walk is -1 rad/sqrt(s), must be 0 or more");
-  EXPECT_EQ(rejection({.bias_instability = INFINITY}, 10.0),
+  EXPECT_EQ(rejection_of({.bias_instability = INFINITY}, 10.0),
             "bias instability is inf rad/s, must be 0 or more");
-  EXPECT_EQ(rejection({.rate_random_walk = NAN}, 10.0),
+  EXPECT_EQ(rejection_of({.rate_random_walk = NAN}, 10.0),
             "rate random walk is nan rad/s/sqrt(s), must be 0 or more");
-  EXPECT_EQ(rejection({.turn_on = -2.0}, 10.0),
+  EXPECT_EQ(rejection_of({.turn_on = -2.0}, 10.0),
             "turn-on offset is -2 rad/s, must be 0 or more");
-  EXPECT_EQ(rejection({}, -10.0), "output rate is -10 Hz, must be above 0");
-  EXPECT_EQ(rejection({}, NAN), "output rate is nan Hz, must be above 0");
+  EXPECT_EQ(rejection_of({}, -10.0), "output rate is -10 Hz, must be above 0");
+  EXPECT_EQ(rejection_of({}, NAN), "output rate is nan Hz, must be above 0");
   EXPECT_THROW(turn_on_offsets({.turn_on = NAN}, 1, 0, 0, 0),
                std::invalid_argument);
 }

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/config/rejection.h"
+
 namespace beamgyro::internal::readout_test {
 namespace {
 
@@ -100,24 +102,20 @@ TEST(Readout, NeverRepairsNotANumber) {
   EXPECT_TRUE(std::isnan(Readout(1.0, 16, 1.0, 0.0).sample(NAN).voltage));
 }
 
-std::string rejection(double full_scale, int bits, double scale,
-                      double offset) {
-  try {
-    Readout(full_scale, bits, scale, offset);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+std::string rejection_of(double full_scale, int bits, double scale,
+                         double offset) {
+  return rejection([&] { Readout(full_scale, bits, scale, offset); });
 }
 
 TEST(Readout, RejectsBadParameters) {
-  EXPECT_EQ(rejection(0.0, 16, 1.0, 0.0),
+  EXPECT_EQ(rejection_of(0.0, 16, 1.0, 0.0),
             "full scale is 0 rad/s, must be above 0");
-  EXPECT_EQ(rejection(1.0, 0, 1.0, 0.0), "ADC has 0 bits, must be 1 to 32");
-  EXPECT_EQ(rejection(1.0, 33, 1.0, 0.0), "ADC has 33 bits, must be 1 to 32");
-  EXPECT_EQ(rejection(1.0, 16, 0.0, 0.0),
+  EXPECT_EQ(rejection_of(1.0, 0, 1.0, 0.0), "ADC has 0 bits, must be 1 to 32");
+  EXPECT_EQ(rejection_of(1.0, 33, 1.0, 0.0),
+            "ADC has 33 bits, must be 1 to 32");
+  EXPECT_EQ(rejection_of(1.0, 16, 0.0, 0.0),
             "scale factor is 0 V/(rad/s), must not be 0");
-  EXPECT_EQ(rejection(1.0, 16, 1.0, NAN),
+  EXPECT_EQ(rejection_of(1.0, 16, 1.0, NAN),
             "output offset is nan V, must be finite");
 }
 

@@ -4,8 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <stdexcept>
 #include <string>
+
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::temperature_sensor_test {
 namespace {
@@ -74,22 +75,19 @@ TEST(TemperatureSensor, EveryRunHasItsOwnNoise) {
             TemperatureSensor(noisy, true, 2, 0, 0).readings(temperature));
 }
 
-std::string rejection(const TemperatureSensorParameters& parameters) {
-  try {
-    const std::vector<double> temperature = {300.0};
+std::string rejection_of(const TemperatureSensorParameters& parameters) {
+  const std::vector<double> temperature = {300.0};
+  return rejection([&] {
     TemperatureSensor(parameters, true, 0, 0, 0).readings(temperature);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  });
 }
 
 TEST(TemperatureSensor, RejectsBadParameters) {
-  EXPECT_EQ(rejection({.noise = -1.0}),
+  EXPECT_EQ(rejection_of({.noise = -1.0}),
             "temperature sensor noise is -1 K, must be 0 or more");
-  EXPECT_EQ(rejection({.resolution = -1.0}),
+  EXPECT_EQ(rejection_of({.resolution = -1.0}),
             "resolution is -1, must be 0 or more");
-  EXPECT_EQ(rejection({.offset = NAN}),
+  EXPECT_EQ(rejection_of({.offset = NAN}),
             "temperature sensor offset is nan K, must be finite");
 }
 
