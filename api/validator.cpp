@@ -11,7 +11,6 @@
 
 #include "api/device_state.h"
 #include "api/program_version.h"
-#include "api/set_state.h"
 #include "api/validation_members.h"
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/rows/set_runs.h"

@@ -7,13 +7,13 @@
 #include <memory>
 #include <stdexcept>
 
+#include "api/file_kind.h"
 #include "cli/commands.h"
 #include "cli/figure_pictures.h"
 #include "cli/inputs.h"
 #include "cli/option_values.h"
 #include "cli/terminal.h"
 #include "cli/version.h"
-#include "compensation/rows/recorded_runs.h"
 #include "config/range.h"
 #include "validation/metrics/metric.h"
 

@@ -2,10 +2,7 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
-
-#include "dataset/recording/recording.h"
 
 namespace beamgyro::internal {
 
@@ -35,14 +32,5 @@ Linearity linearity_of(std::span<const HeldRate> table);
 /// Returns whether a table has kLeastRatesOfTable rates or more, two of them on
 /// each side of zero.
 bool is_rate_table(std::span<const HeldRate> table);
-
-/// Returns the plateau of worst nonlinearity among those with
-/// kLeastRatesOfTable held rates or more, two of them on each side of zero, or
-/// nothing when there is none. A rate counts from kSettlingTime after it was
-/// set; saturated samples are left out. Drift along the plateau counts as
-/// nonlinearity. Throws std::invalid_argument naming a column that is missing,
-/// or when `rate` has not one entry per time.
-std::optional<Linearity> linearity(const Recording& recording,
-                                   std::span<const double> rate);
 
 }  // namespace beamgyro::internal

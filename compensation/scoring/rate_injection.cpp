@@ -210,38 +210,4 @@ std::optional<std::vector<ReplayedBlock>> replay(
   return blocks;
 }
 
-bool is_worse(const ReplayedBlock& a, const ReplayedBlock& b) {
-  if (std::isnan(a.retained) || std::isnan(b.retained)) {
-    return std::isnan(a.retained) && !std::isnan(b.retained);
-  }
-  const bool a_cancels = a.retained < kCancelledBelow;
-  const bool b_cancels = b.retained < kCancelledBelow;
-  if (a_cancels || b_cancels) {
-    return a.retained < b.retained;
-  }
-  return std::abs(a.retained - 1.0) > std::abs(b.retained - 1.0);
-}
-
-void WorstBlocks::add(const ReplayedBlock& block) {
-  auto& worst = std::abs(block.rate) <= kSmallRate ? small : large;
-  if (!worst || is_worse(block, *worst)) {
-    worst = block;
-  }
-}
-
-void WorstBlocks::add(const WorstBlocks& other) {
-  for (const auto& block : {other.small, other.large}) {
-    if (block) {
-      add(*block);
-    }
-  }
-}
-
-std::optional<ReplayedBlock> WorstBlocks::worse() const {
-  if (!small || !large) {
-    return small ? small : large;
-  }
-  return is_worse(*small, *large) ? small : large;
-}
-
 }  // namespace beamgyro::internal

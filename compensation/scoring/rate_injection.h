@@ -65,20 +65,4 @@ std::optional<std::vector<ReplayedBlock>> replay(
     std::span<const double> answers, double full_scale,
     std::size_t first_hold = 0);
 
-/// Returns whether `a` is worse than `b`. The worst is NaN; then blocks that
-/// cancel the rate (retained below kCancelledBelow), the least first; then
-/// those that are farther from 1.
-bool is_worse(const ReplayedBlock& a, const ReplayedBlock& b);
-
-/// The worst blocks of replays, for small and for larger injected rates, which
-/// have different tolerances (ScaleFactorTolerance).
-struct WorstBlocks {
-  std::optional<ReplayedBlock> small;  // within kSmallRate
-  std::optional<ReplayedBlock> large;  // beyond
-
-  void add(const ReplayedBlock& block);
-  void add(const WorstBlocks& other);
-  std::optional<ReplayedBlock> worse() const;  // of the two
-};
-
 }  // namespace beamgyro::internal

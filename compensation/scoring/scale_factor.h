@@ -19,16 +19,6 @@ constexpr double kCancelledBelow = 0.5;      // [-], scale factor retained
 constexpr double kSettlingTime = 1.0;        // [s]
 constexpr double kEveryRate = std::numeric_limits<double>::infinity();
 
-/// |scale factor - 1| allowed.
-struct ScaleFactorTolerance {
-  double every_rate = 1e-3;   // [-]
-  double small_rates = 1e-2;  // [-], within kSmallRate
-
-  double at(double rate) const {  // [deg/s]
-    return std::abs(rate) <= kSmallRate ? small_rates : every_rate;
-  }
-};
-
 /// Sums for slopes over the true rate Omega, of one run or, by addition, of
 /// many. Within each temperature plateau, w is the rate without its part along
 /// the measured temperature, and v without temperature and drift

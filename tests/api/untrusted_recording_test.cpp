@@ -220,10 +220,10 @@ TEST_F(UntrustedRecording, OptionsThatDoNotApplyAreRefused) {
   const OfAUser mine;
   const auto device =
       beamgyro::Device::read(kScenarios / "devices/nominal.toml");
-  expect_refused("runs and devices", [&] {
+  expect_refused("runs is for a set", [&] {
     validate(mine, {.recordings = {"absent.h5"}, .runs = {"ramp"}});
   });
-  expect_refused("runs and devices", [&] {
+  expect_refused("devices is for a set", [&] {
     validate(mine, {.recordings = {"absent.h5"}, .devices = {1}});
   });
   expect_refused("full_scale is for recordings", [&] {

@@ -14,6 +14,7 @@
 #include "tests/validation/external/tested_run.h"
 #include "validation/external/answer_checks.h"
 #include "validation/external/answering.h"
+#include "validation/external/compensator_source.h"
 #include "validation/external/file_compensator.h"
 
 namespace beamgyro::internal::command_test {
@@ -40,7 +41,7 @@ class CommandCompensator : public ::testing::Test {
               fmt::format("beamgyro command {}.py", ::getpid())) {}
   ~CommandCompensator() override { std::filesystem::remove(file_); }
 
-  std::unique_ptr<TestedCompensator> program(
+  std::shared_ptr<const TestedCompensator> program(
       const std::string& answer = "print(repr(r))",
       const std::string& before = "", const std::string& at_end = "",
       const std::string& options = "") const {
@@ -49,7 +50,8 @@ class CommandCompensator : public ::testing::Test {
     return command(
         fmt::format("/usr/bin/python3 {} '{}'", options, file_.string()));
   }
-  static std::unique_ptr<TestedCompensator> command(const std::string& text) {
+  static std::shared_ptr<const TestedCompensator> command(
+      const std::string& text) {
     return open_tested_compensator("cmd:" + text, test_limits());
   }
 

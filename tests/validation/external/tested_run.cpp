@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "dataset/recording/signals.h"
+#include "validation/external/compensator_source.h"
 
 namespace beamgyro::internal {
 
@@ -30,7 +31,8 @@ ProcessLimits test_limits() {
   return limits;
 }
 
-std::unique_ptr<TestedCompensator> faulty_plugin(const std::string& fault) {
+std::shared_ptr<const TestedCompensator> faulty_plugin(
+    const std::string& fault) {
   return open_tested_compensator(
       std::string(BEAMGYRO_FAULTY_PLUGINS) + "/" + fault + ".so",
       test_limits());

@@ -16,7 +16,8 @@ Recording tested_run(double duration = 10.0);
 ProcessLimits test_limits();
 
 /// Opens a library of faulty_plugin.c by the name of its fault.
-std::unique_ptr<TestedCompensator> faulty_plugin(const std::string& fault);
+std::shared_ptr<const TestedCompensator> faulty_plugin(
+    const std::string& fault);
 
 /// Returns the only fault of the answers to a run; expects it to be the only
 /// one.

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "statistics/intervals.h"
+#include "tests/compensation/recorded_run.h"
 #include "validation/result/result_json.h"
 
 namespace beamgyro::internal::judgement_test {
@@ -19,68 +22,133 @@ DecidedLimit decided(const char* metric, Conformity result) {
 }
 
 CheckResult check(const char* name, CheckOutcome outcome) {
-  CheckResult one;
-  one.name = name;
-  one.outcome = outcome;
-  one.words = "Words.";
-  return one;
+  return {.name = name, .outcome = outcome, .words = "Words."};
 }
 
-}  // namespace
+constexpr Conformity kPass = Conformity::kPass;
+constexpr Conformity kFail = Conformity::kFail;
+constexpr Conformity kUndecided = Conformity::kUndecided;
+constexpr CheckOutcome kPassed = CheckOutcome::kPassed;
+constexpr CheckOutcome kNotTested = CheckOutcome::kNotTested;
 
-TEST(VerdictOf, OneFailureOutweighsEverythingElse) {
-  const WordedVerdict verdict = verdict_of(
-      {decided("a", Conformity::kPass), decided("b", Conformity::kUndecided),
-       decided("c", Conformity::kFail)},
-      {check("jacobian", CheckOutcome::kPassed)});
-  EXPECT_EQ(verdict.verdict, Conformity::kFail);
-  EXPECT_NE(verdict.words.find('c'), std::string::npos);
-  EXPECT_EQ(verdict.words.find("b,"), std::string::npos);
+ValidationResult decide_between(std::vector<DecidedLimit> limits,
+                                std::vector<CheckResult> checks,
+                                bool may_leave_untested = false) {
+  SpecificationFile specification;
+  specification.may_leave_untested = may_leave_untested;
+  ValidationResult result;
+  result.limits = std::move(limits);
+  result.checks = std::move(checks);
+  decide_on(specification, result);
+  return result;
 }
 
-TEST(VerdictOf, AFailedCheckFails) {
-  const WordedVerdict verdict =
-      verdict_of({decided("a", Conformity::kPass)},
-                 {check("jacobian", CheckOutcome::kPassed),
-                  check("injection", CheckOutcome::kFailed)});
-  EXPECT_EQ(verdict.verdict, Conformity::kFail);
-  EXPECT_NE(verdict.words.find("injection"), std::string::npos);
+TEST(DecideOn, OneFailureOutweighsEverythingElse) {
+  const ValidationResult of_limit =
+      decide_between({decided("a", kPass), decided("b", kUndecided),
+                      decided("c", kFail), decided("c", kFail)},
+                     {check("jacobian", kPassed)});
+  EXPECT_EQ(of_limit.verdict, kFail);
+  EXPECT_EQ(of_limit.words, "Not met: c.");
+  const ValidationResult of_check =
+      decide_between({decided("a", kPass)},
+                     {check("jacobian", kNotTested),
+                      check("injection", CheckOutcome::kFailed)},
+                     true);
+  EXPECT_EQ(of_check.verdict, kFail);
+  EXPECT_EQ(of_check.words, "Not met: injection. Words.");
+  EXPECT_EQ(of_check.next, definition_of(of_check.checks[1]).mend);
 }
 
-TEST(VerdictOf, WhatIsNotTestedIsUndecided) {
-  EXPECT_EQ(verdict_of({decided("a", Conformity::kPass)},
-                       {check("jacobian", CheckOutcome::kNotTested)})
-                .verdict,
-            Conformity::kUndecided);
-  EXPECT_EQ(verdict_of({decided("a", Conformity::kUndecided)},
-                       {check("jacobian", CheckOutcome::kPassed)})
-                .verdict,
-            Conformity::kUndecided);
-  EXPECT_EQ(verdict_of({decided("a", Conformity::kPass)},
-                       {check("jacobian", CheckOutcome::kPassed)})
-                .verdict,
-            Conformity::kPass);
+TEST(DecideOn, WhatIsNotTestedDecidesWhereItIsAskedFor) {
+  const std::vector<CheckResult> untested{check("jacobian", kNotTested),
+                                          check("injection", kPassed),
+                                          check("hold_out", kNotTested)};
+  const ValidationResult strict = decide_between({}, untested);
+  EXPECT_EQ(strict.verdict, kUndecided);
+  EXPECT_EQ(strict.words, "No run could decide on jacobian.");
+  const ValidationResult plain = decide_between({}, untested, true);
+  EXPECT_EQ(plain.verdict, kPass);
+  EXPECT_NE(plain.words.find("2 not tested (jacobian, hold_out)"),
+            std::string::npos);
+  EXPECT_EQ(decide_between({decided("a", kUndecided)}, {}, true).verdict,
+            kUndecided);
 }
 
-TEST(VerdictOf, NamesNoCheckThatMayBeUntested) {
-  const WordedVerdict verdict =
-      verdict_of({decided("a", Conformity::kPass)},
-                 {check("jacobian", CheckOutcome::kNotTested),
-                  check("hold_out", CheckOutcome::kNotTested)});
-  EXPECT_EQ(verdict.words, "The evidence does not tell: jacobian.");
+TEST(DecideOn, RatesMustBeSeenToComeOut) {
+  const auto verdict = [](CheckOutcome injection, CheckOutcome true_rate) {
+    return decide_between(
+               {},
+               {check("injection", injection), check("true_rate", true_rate)},
+               true)
+        .verdict;
+  };
+  EXPECT_EQ(verdict(kNotTested, kNotTested), kUndecided);
+  EXPECT_EQ(verdict(kNotTested, kPassed), kPass);
+  EXPECT_EQ(verdict(kPassed, kNotTested), kPass);
 }
 
-TEST(VerdictOf, CountsAndNamesOnce) {
-  EXPECT_EQ(verdict_of({decided("a", Conformity::kPass)},
-                       {check("jacobian", CheckOutcome::kPassed),
-                        check("hold_out", CheckOutcome::kNotTested)})
-                .words,
-            "The compensator passes: 1 limit met, 1 check passed.");
-  EXPECT_EQ(verdict_of({decided("a", Conformity::kFail),
-                        decided("a", Conformity::kFail)},
-                       {})
-                .words,
-            "Not met: a.");
+TEST(DecideOn, WhatHasToBeBetterAndIsNotFails) {
+  ValidationResult result;
+  result.comparisons = {
+      {"before", {.rms = 1.0, .other_rms = 3.0, .gain = 8.0}, true},
+      {"constant", {.rms = 1.0, .other_rms = 0.5}, true},
+      {"cubic", {.rms = 1.0, .other_rms = 0.2}}};
+  decide_on(default_specification(), result);
+  EXPECT_EQ(result.verdict, kFail);
+  EXPECT_EQ(result.words,
+            "Not better than a constant trained on the same data: a constant "
+            "trained on the same data leaves 0.5 deg/s rms, the compensator "
+            "1.");
+  result.comparisons.erase(result.comparisons.begin() + 1);
+  decide_on(default_specification(), result);
+  EXPECT_EQ(result.verdict, kPass);
+  EXPECT_TRUE(
+      result.words.starts_with("No better than a simple method: a "
+                               "cubic trained on the same data leaves"));
+}
+
+// Squares 9 and 1 of the other, 1 and 1 of the rate, one block to a cluster:
+// their differences 8 and 0 have mean 4 and standard error 4.
+TEST(PairedResidual, IsAPairedTestOfTheSquares) {
+  const LeftDrift own{{1.0, -1.0}, {0, 1}}, other{{3.0, 1.0}, {0, 1}};
+  const PairedResidual found = *paired_residual(own, other);
+  EXPECT_NEAR(found.rms, 1.0, 1e-15);
+  EXPECT_NEAR(found.other_rms, std::sqrt(5.0), 1e-15);
+  EXPECT_NEAR(found.gain, 4.0, 1e-14);
+  EXPECT_NEAR(found.half_width, 4.0 * student_half_width(1.0), 1e-12);
+  EXPECT_FALSE(found.is_better());
+  EXPECT_FALSE(paired_residual({}, {}));
+  EXPECT_FALSE(paired_residual({{std::nan("")}, {0}}, {{1.0}, {0}}));
+  EXPECT_EQ(without_mean(other).means, (std::vector<double>{1.0, -1.0}));
+}
+
+// A drift of 0.1 deg/s/K, of which the compensator leaves a tenth.
+TEST(ComparisonsOf, TheConstantOfTheRunsNeedsTenKelvin) {
+  const auto names = [](double kelvin) {
+    RecordedRun made{.duration = 3600.0, .step = 1.0};
+    made.temperature = [=](double t) { return kelvin * t / 3600.0; };
+    made.bias = [T = made.temperature](double t) { return 2.0 + 0.1 * T(t); };
+    DeviceEvidence found;
+    found.runs = {made.recording()};
+    const auto rate_with = [&](double share) {
+      std::vector<double> rate;
+      for (const double t : found.runs[0].time)
+        rate.push_back(share * made.bias(t));
+      return Evidence{{{"run", RunPurpose::kSoak, &found.runs[0], rate}},
+                      150.0};
+    };
+    found.before = rate_with(1.0);
+    found.after = rate_with(0.1);
+    found.baselines = {{"none", found.before}, {"cubic", rate_with(0.1)}};
+    std::string text;
+    for (const Comparison& one : comparisons_of(default_specification(), found))
+      text += one.with + (one.is_required ? "!" : "") +
+              (one.is_same ? "=" : "") + (one.found.is_better() ? "> " : " ");
+    return text;
+  };
+  EXPECT_EQ(names(30.0), "before!> cubic= constant_of_runs!> ");
+  EXPECT_EQ(names(9.0), "before!> cubic= ");
 }
 
 // JSON knows no NaN; a limit is in the unit of its metric or there is none.
@@ -89,11 +157,11 @@ TEST(ResultJson, SaysNullForWhatIsNotThere) {
   const Metric& metric = metrics()[0];
   const double none = std::nan("");
   result.metrics = {{&metric, Estimate{none}, {}, {}}};
-  DecidedLimit relative = decided("x", Conformity::kPass);
+  DecidedLimit relative = decided("x", kPass);
   relative.limit.metric = metric.name;
   relative.limit.relative_to = "cubic";
   result.limits = {relative};
-  result.checks = {check("jacobian", CheckOutcome::kNotTested)};
+  result.checks = {check("jacobian", kNotTested)};
   const nlohmann::ordered_json json = to_json(result);
   EXPECT_TRUE(json["metrics"][0]["before"]["value"].is_null());
   EXPECT_TRUE(json["metrics"][0]["after"].is_null());
@@ -103,4 +171,5 @@ TEST(ResultJson, SaysNullForWhatIsNotThere) {
   EXPECT_EQ(json["limits"][0]["relative_to"], "cubic");
 }
 
+}  // namespace
 }  // namespace beamgyro::internal::judgement_test

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "validation/external/compensator_source.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace beamgyro::internal::compensator_source_test {
+namespace {
+
+TEST(SourceKind, IsWhatTheBytesAreWhateverTheName) {
+  const auto folder = std::filesystem::temp_directory_path() /
+                      fmt::format("beamgyro sources {}", ::getpid());
+  std::filesystem::create_directory(folder);
+  const auto kind = [&](const std::string& name, const std::string& bytes) {
+    std::ofstream(folder / name) << bytes;
+    return source_kind(folder / name);
+  };
+  for (const char* name : {"x.json", "x.comp", "x.JSON", "x", "x.so", "x.toml"})
+    EXPECT_EQ(kind(name, " {\"filetype\": 1}"), SourceKind::kFile) << name;
+  for (const char* name : {"lib.json", "lib.so", "lib", "lib.toml"})
+    EXPECT_EQ(kind(name,
+                   "\x7f"
+                   "ELF..."),
+              SourceKind::kLibrary)
+        << name;
+  for (const char* name : {"m.toml", "m", "m.model"})
+    EXPECT_EQ(kind(name, "# mine\nkind = \"bp\"\n"), SourceKind::kModel)
+        << name;
+  EXPECT_EQ(kind("damaged.json", "kind = 3"), SourceKind::kFile);
+  EXPECT_EQ(kind("damaged.so", ""), SourceKind::kLibrary);
+  EXPECT_EQ(kind("kinds", "kinds = 3"), SourceKind::kFile);
+  EXPECT_EQ(source_kind("cmd:python3 mine.py x.json"), SourceKind::kCommand);
+  EXPECT_EQ(source_kind("cmd:./mine lib.so"), SourceKind::kCommand);
+  EXPECT_EQ(source_kind(folder), SourceKind::kFile);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace beamgyro::internal::compensator_source_test
