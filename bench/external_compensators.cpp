@@ -12,7 +12,7 @@
 #include <string>
 
 #include "dataset/recording/signals.h"
-#include "validation/external/tested_compensator.h"
+#include "validation/external/compensator_source.h"
 
 namespace {
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "compensation/compensator/run_comparison.h"
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/residual_scores.h"
 #include "parallel/work_queue.h"
@@ -302,8 +303,10 @@ std::string words_of_no_use(
              : fmt::format("Of no use on these runs: {}.", rms_words(*least));
 }
 
-void decide_on(const SpecificationFile& specification,
-               ValidationResult& result) {
+namespace {
+
+void decide_without_seeds(const SpecificationFile& specification,
+                          ValidationResult& result) {
   const Reasons reasons = reasons_of(specification, result);
   if (!reasons.no_use.empty() || !reasons.against.empty()) {
     result.verdict = Conformity::kFail;
@@ -332,6 +335,29 @@ void decide_on(const SpecificationFile& specification,
                     : "record the same runs with hardware";
 }
 
+// Runs of a set share the seed of their campaign and nothing else.
+std::vector<std::string> shared_seeds(const Compensator* trained,
+                                      const DeviceEvidence& found) {
+  std::vector<std::string> sentences;
+  if (trained == nullptr) return sentences;
+  for (std::size_t k = 0; k < found.runs.size(); ++k) {
+    if (!found.read[k].device.empty()) continue;
+    const std::string words =
+        shared_seed(trained->provenance, found.read[k].name, found.runs[k]);
+    if (!words.empty()) sentences.push_back(words);
+  }
+  return sentences;
+}
+
+}  // namespace
+
+void decide_on(const SpecificationFile& specification,
+               ValidationResult& result) {
+  decide_without_seeds(specification, result);
+  for (const std::string& words : result.shared_seeds)
+    result.words += " " + words;
+}
+
 CheckedCompensator checked_runs(const DeviceEvidence& found,
                                 const TestedCompensator& compensator) {
   CheckedCompensator checked;
@@ -358,6 +384,7 @@ void judge(const JudgedBy& by, const DeviceEvidence& found, std::size_t threads,
   if (by.trained != nullptr) checked.provenance = &by.trained->provenance;
   checked.set = by.set;
   result.checks = run_checks(checked, threads);
+  result.shared_seeds = shared_seeds(by.trained, found);
   decide_on(by.specification, result);
 }
 

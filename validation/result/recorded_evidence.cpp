@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "compensation/compensator/run_comparison.h"
 #include "compensation/scoring/rate_injection.h"
 #include "dataset/files/sha256.h"
 #include "dataset/files/text_file.h"
@@ -75,12 +76,18 @@ DeviceEvidence recorded_evidence(const std::vector<std::filesystem::path>& runs,
                                  std::size_t threads) {
   std::vector<ReadRun> read(runs.size());
   std::vector<Recording> recordings(runs.size());
+  std::vector<RunMark> marks(runs.size());
   for_each_task(runs.size(), threads, [&](std::size_t k, std::size_t) {
-    recordings[k] = read_any(runs[k]);
+    TrainingRun run{.name = runs[k].string(),
+                    .sha256 = sha256_of_file(runs[k]),
+                    .recording = read_any(runs[k])};
+    marks[k] = mark_of(run);
+    recordings[k] = std::move(run.recording);
     read[k] = named_run(runs[k].string(), recordings[k]);
     read[k].name = runs[k].filename().string();
-    read[k].sha256 = sha256_of_file(runs[k]);
+    read[k].sha256 = run.sha256;
   });
+  require_different_runs(marks);
   return evidence_of(std::move(read), std::move(recordings), answering,
                      threads);
 }

@@ -141,6 +141,8 @@ struct ValidationResult {
   std::vector<DecidedLimit> limits;   // in the order of the specification
   std::vector<CheckResult> checks;    // in the order of check_definitions()
   std::optional<PopulationYield> population = {};
+  // Sentences on runs that have their seed of noise from a training run.
+  std::vector<std::string> shared_seeds = {};
   // Where the compensator states a sigma; over all devices of a set.
   std::optional<SigmaReport> sigma = {};
   std::vector<std::string> warnings = {};

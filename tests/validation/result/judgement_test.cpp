@@ -142,7 +142,7 @@ TEST(ComparisonsOf, TheConstantOfTheRunsNeedsTenKelvin) {
     found.after = rate_with(0.1);
     found.baselines = {{"none", found.before}, {"cubic", rate_with(0.1)}};
     std::string text;
-    for (const Comparison& one : comparisons_of(default_specification(), found))
+    for (const ResidualComparison& one : comparisons_of(default_specification(), found))
       text += one.with + (one.is_required ? "!" : "") +
               (one.is_same ? "=" : "") + (one.found.is_better() ? "> " : " ");
     return text;
