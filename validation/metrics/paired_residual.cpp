@@ -64,22 +64,24 @@ std::optional<PairedResidual> paired_residual(const LeftDrift& drift,
   PairedResidual found{rms_of_drift(drift.means), rms_of_drift(other.means)};
   if (!std::isfinite(found.rms) || !std::isfinite(found.other_rms))
     return std::nullopt;
-  std::vector<double> sums(drift.clusters.back() + 1, 0.0);
-  std::vector<double> blocks(sums.size(), 0.0);
+  std::vector<double> own(drift.clusters.back() + 1, 0.0), others = own;
   for (std::size_t k = 0; k < count; ++k) {
-    sums[drift.clusters[k]] +=
-        other.means[k] * other.means[k] - drift.means[k] * drift.means[k];
-    blocks[drift.clusters[k]] += 1.0;
+    own[drift.clusters[k]] += drift.means[k] * drift.means[k];
+    others[drift.clusters[k]] += other.means[k] * other.means[k];
   }
-  const auto n = static_cast<double>(count);
-  found.gain = std::accumulate(sums.begin(), sums.end(), 0.0) / n;
-  const auto clusters = static_cast<double>(sums.size());
-  if (sums.size() < 2) return found;
+  const double sum = std::accumulate(own.begin(), own.end(), 0.0);
+  const double other_sum = std::accumulate(others.begin(), others.end(), 0.0);
+  if (!(sum > 0.0) || !(other_sum > 0.0)) {
+    found.gain = other_sum - sum;
+    return found;
+  }
+  found.gain = std::log(other_sum / sum);
+  const auto clusters = static_cast<double>(own.size());
+  if (own.size() < 2) return found;
   double squares = 0.0;
-  for (std::size_t k = 0; k < sums.size(); ++k)
-    squares += std::pow(sums[k] - blocks[k] * found.gain, 2);
-  const double error =
-      std::sqrt(squares * clusters / (clusters - 1.0)) / n;  // of the mean
+  for (std::size_t k = 0; k < own.size(); ++k)
+    squares += std::pow(own[k] / sum - others[k] / other_sum, 2);
+  const double error = std::sqrt(squares * clusters / (clusters - 1.0));
   found.half_width = student_half_width(clusters - 1.0) * error;
   return found;
 }

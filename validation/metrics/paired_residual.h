@@ -24,8 +24,9 @@ LeftDrift without_mean(LeftDrift drift);
 /// difference is known better than either.
 struct PairedResidual {
   double rms = 0.0, other_rms = 0.0;  // [deg/s]
-  // Mean square of the other less that of the rate, and the half-width of its
-  // 95 % interval (Student's t over clusters, eighths of runs) [(deg/s)^2].
+  // Logarithm of the mean square of the other over that of the rate, and the
+  // half-width of its 95 % interval (Student's t over clusters, eighths of
+  // runs) [-].
   double gain = 0.0, half_width = 0.0;
 
   bool is_better() const { return gain > half_width; }

@@ -96,7 +96,7 @@ Json check_json(const CheckResult& check) {
           {"words", check.words}};
 }
 
-// Mean squares [(deg/s)^2]: of the other less that of the compensator.
+// The gain is the logarithm of the quotient of the mean squares.
 Json comparison_json(const ResidualComparison& comparison) {
   const PairedResidual& found = comparison.found;
   return {{"with", comparison.with},
