@@ -108,10 +108,12 @@ std::vector<BaselineMethod> trained_baselines(const TrainingData& data,
     const ConfigDocument document =
         ConfigDocument::parse(kBaselineModels[k].model, name);
     try {
-      trained[k] = {name, [one = trained_on(data, read_model(document))](
-                              const Recording& run) {
-                      return compensated_rate(one, run);
-                    }};
+      trained[k] = {
+          name,
+          [one = trained_on(data, read_model(document))](const Recording& run) {
+            return compensated_rate(one, run);
+          },
+          kBaselineModels[k].has_metrics};
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fmt::format(
           "the baseline {} cannot be trained on the [[training]] runs of the "

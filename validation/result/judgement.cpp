@@ -77,9 +77,11 @@ std::string words_of_other(const ResidualComparison& comparison) {
 }
 
 std::string rms_words(const ResidualComparison& comparison) {
-  return fmt::format("{} leaves {:.3g} deg/s rms, the compensator {:.3g}",
-                     words_of_other(comparison), comparison.found.other_rms,
-                     comparison.found.rms);
+  return fmt::format(
+      "{} {:.3g} deg/s rms are left, with the compensator {:.3g}",
+      comparison.with == "before" ? "without it"
+                                  : "with " + words_of_other(comparison),
+      comparison.found.other_rms, comparison.found.rms);
 }
 
 // What stands against a compensator, and what is open.
@@ -190,7 +192,8 @@ std::string next_after_failure(const Reasons& reasons) {
   if (!reasons.no_use.empty())
     return "train over the temperatures of these runs, and look whether their "
            "temperature is that of this gyro";
-  return "see what each limit that is not met was compared with";
+  return "lower the figures of the limits that are not met: their lines above "
+         "say by how much";
 }
 
 std::string test_of(const CheckResult& check) {
