@@ -105,7 +105,7 @@ class SeenData(ProgramTest):
                 [line] = self.warned(*runs)
                 self.assertSays(line, [
                     "a.h5, shared.h5 share the seed of noise 3", "turn-on",
-                    "too good", "--set seed=N"])
+                    "too good", "other seeds"])
 
     def test_a_compensator_names_the_seeds_of_its_noise(self):
         self.ok(*self.train("a.h5", "quiet.h5", "--held-out", "third.h5"))

@@ -151,7 +151,7 @@ TEST(NoiseSeed, InCommonIsWarnedOfWhereRunsAreScoredAsUnseen) {
       warning_of_shared_seeds({a, c}, {b}, false),
       "a, b share the seed of noise 7: turn-on offset and noise are the same "
       "in them, so scores on unseen runs are too good; run all but one again "
-      "with other seeds (--set seed=N)");
+      "with other seeds");
   EXPECT_EQ(warning_of_shared_seeds({a, b}, {c}, true).find("a, b share"), 0U);
   EXPECT_EQ(warning_of_shared_seeds({a, c}, {b, c}, false)
                 .find("a, b share the seed of noise 7; c, c share"),
