@@ -108,14 +108,15 @@ TEST(DecideOn, WhatHasToBeBetterAndIsNotFails) {
 }
 
 // Squares 9 and 1 of the other, 1 and 1 of the rate, one block to a cluster:
-// their differences 8 and 0 have mean 4 and standard error 4.
-TEST(PairedResidual, IsAPairedTestOfTheSquares) {
+// the quotient of the sums is 5, and the shares of the clusters in them differ
+// by 0.4 each, so the standard error of its logarithm is sqrt(2 (2 0.4^2)).
+TEST(PairedResidual, IsAPairedTestOfTheQuotient) {
   const LeftDrift own{{1.0, -1.0}, {0, 1}}, other{{3.0, 1.0}, {0, 1}};
   const PairedResidual found = *paired_residual(own, other);
   EXPECT_NEAR(found.rms, 1.0, 1e-15);
   EXPECT_NEAR(found.other_rms, std::sqrt(5.0), 1e-15);
-  EXPECT_NEAR(found.gain, 4.0, 1e-14);
-  EXPECT_NEAR(found.half_width, 4.0 * student_half_width(1.0), 1e-12);
+  EXPECT_NEAR(found.gain, std::log(5.0), 1e-14);
+  EXPECT_NEAR(found.half_width, 0.8 * student_half_width(1.0), 1e-12);
   EXPECT_FALSE(found.is_better());
   EXPECT_FALSE(paired_residual({}, {}));
   EXPECT_FALSE(paired_residual({{std::nan("")}, {0}}, {{1.0}, {0}}));
@@ -141,7 +142,8 @@ TEST(ComparisonsOf, TheConstantOfTheRunsNeedsTenKelvin) {
     found.after = rate_with(0.1);
     found.baselines = {{"none", found.before}, {"cubic", rate_with(0.1)}};
     std::string text;
-    for (const ResidualComparison& one : comparisons_of(default_specification(), found))
+    for (const ResidualComparison& one :
+         comparisons_of(default_specification(), found))
       text += one.with + (one.is_required ? "!" : "") +
               (one.is_same ? "=" : "") + (one.found.is_better() ? "> " : " ");
     return text;
