@@ -70,11 +70,8 @@ def train(unit, names, model, name):
 
 def rms(unit, name, test):
     """Of a compensator over the runs together [deg/s]."""
-    file = unit.out / "scores.json"
-    unit.beamgyro("validate", unit.out / f"{name}.json",
-                  *map(unit.recording, test), "--json", file, allowed=(0, 3))
-    overall = json.loads(file.read_text())["overall"]
-    return overall["residual"]["rms_deg_per_s"]
+    judged = unit.judge(unit.out / f"{name}.json", test)
+    return judged["after"]["residual_rms_deg_per_s"]
 
 
 def automatic(unit):

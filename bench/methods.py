@@ -10,6 +10,7 @@ table; DIR/methods.json gets every figure.
 """
 
 import json
+import math
 import pathlib
 import resource
 import sys
@@ -66,28 +67,20 @@ def study(job, name):
                  "--model", MODELS / f"{name}.toml",
                  "--seed", demo.TRAINING_SEED, "-o", file)
     seconds = cpu_seconds() - start
-    scores = job.out / f"{name}_scores.json"
-    job.beamgyro("validate", file, *(job.recording(run)
-                                     for run, *_ in demo.TEST),
-                 "--json", scores, allowed=(0, 3))
-    validation = json.loads(scores.read_text())
-    runs = {run: score for (run, *_), score
-            in zip(demo.TEST, validation["runs"])}
-    (soak,) = (runs[run] for run in demo.SOAKS)
-    motion = demo.pooled([runs[run]["residual"] for run in demo.MOTION])
-    table = demo.pooled([runs[run]["residual"] for run in RATE_TABLES])
+    soak, motion, everything = job.judge_parts(file, demo.TEST, "", name)
+    squares = [everything["runs"][run] ** 2 for run in RATE_TABLES]
     compensator = json.loads(file.read_text())
     return {
         "model": name,
         "method": compensator["training"]["method"],
         "percent_of_cubic": soak["percent_of_cubic"],
-        "soak_sigma_deg_per_s": soak["residual"]["sigma_deg_per_s"],
-        "motion_rms_deg_per_s": motion["rms_deg_per_s"],
-        "motion_max_deg_per_s": motion["max_deg_per_s"],
-        "rate_table_rms_deg_per_s": table["rms_deg_per_s"],
+        "soak_sigma_deg_per_s": soak["after"]["residual_sigma_deg_per_s"],
+        "motion_rms_deg_per_s": motion["after"]["residual_rms_deg_per_s"],
+        "motion_max_deg_per_s": motion["after"]["residual_max_deg_per_s"],
+        "rate_table_rms_deg_per_s": math.sqrt(sum(squares) / len(squares)),
         "parameters": parameters_of(compensator),
         "train_cpu_s": seconds,
-        "verdict": validation["words"],
+        "verdict": everything["verdict"],
     }
 
 

@@ -166,15 +166,6 @@ class Unit(demo.Demo):
             "--model", SCENARIOS / f"models/{method}.toml",
             "--seed", TRAINING_SEED, "-o", self.out / f"{method}.json")
 
-    def scores(self, method, test, suffix):
-        """Scores by run, as validate reports them."""
-        file = self.out / "scores.json"
-        self.beamgyro("validate", self.out / f"{method}.json",
-                      *(self.recording(name + suffix) for name, *_ in test),
-                      "--json", file, allowed=(0, 3))
-        runs = json.loads(file.read_text())["runs"]
-        return {name: score for (name, *_), score in zip(test, runs)}
-
 
 def drift(unit):
     """How much there is to compensate: the bias over the beam's temperature."""
@@ -196,16 +187,16 @@ def soak(unit):
     for suffix, settings in NOISE:
         unit.simulate(SOAK_TEST, suffix, settings)
         for method in SOAK_METHODS:
-            (score,) = unit.scores(method, SOAK_TEST, suffix).values()
-            cubic = score["cubic"]["sigma_deg_per_s"]
+            judged = unit.judge(unit.out / f"{method}.json",
+                                [name + suffix for name, *_ in SOAK_TEST])
+            sigma = judged["metrics"]["residual_sigma_deg_per_s"]
             figures |= {
                 f"raw_peak_to_peak_deg_per_s{suffix}":
-                    score["raw"]["peak_to_peak_deg_per_s"],
-                f"cubic_sigma_deg_per_s{suffix}": cubic,
-                f"{method}_sigma_deg_per_s{suffix}":
-                    score["residual"]["sigma_deg_per_s"],
+                    judged["metrics"]["residual_pp_deg_per_s"]["before"],
+                f"cubic_sigma_deg_per_s{suffix}": sigma["cubic"],
+                f"{method}_sigma_deg_per_s{suffix}": sigma["after"],
                 f"{method}_percent_of_cubic{suffix}":
-                    score["percent_of_cubic"],
+                    judged["percent_of_cubic"],
             }
     return figures
 
@@ -218,16 +209,14 @@ def ramps_and_warm_ups(unit, methods, training, held_out, scored=NOISE):
     for suffix, settings in scored:
         unit.simulate(DYNAMIC_TEST, suffix, settings)
         for method in methods:
-            scores = {name: score["residual"] for name, score in
-                      unit.scores(method, DYNAMIC_TEST, suffix).items()}
-            pooled = demo.pooled(list(scores.values()))
+            judged = unit.judge(unit.out / f"{method}.json",
+                                [name + suffix for name, *_ in DYNAMIC_TEST])
             figures |= {f"{method}_{figure}_deg_per_s{suffix}":
-                        pooled[f"{figure}_deg_per_s"]
+                        judged["after"][f"residual_{figure}_deg_per_s"]
                         for figure in ["rms", "max"]}
             if not suffix:
-                figures |= {f"{method}_rms_deg_per_s_{name}":
-                            score["rms_deg_per_s"]
-                            for name, score in scores.items()}
+                figures |= {f"{method}_rms_deg_per_s_{name}": rms
+                            for name, rms in judged["runs"].items()}
     return figures
 
 

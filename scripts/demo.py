@@ -8,7 +8,6 @@ demo.py [--program FILE] [--out DIR] [--jobs N]; DIR is out/demo.
 import argparse
 import concurrent.futures
 import json
-import math
 import os
 import pathlib
 import subprocess
@@ -95,19 +94,66 @@ class Demo:
         # The longest first, so that the cores end together.
         self.all(fit, reversed(METHODS))
 
+    def judge(self, compensator, runs, file=None):
+        """What validate says of recordings; "metrics" has their values "before",
+        "after", and of each baseline."""
+        file = file or self.out / "scores.json"
+        self.beamgyro("validate", compensator, *map(self.recording, runs),
+                      "--json", file, allowed=(0, 3))
+        result = json.loads(file.read_text())
+        metrics = {
+            each["name"]: {
+                key: figure and figure["value"] for key, figure in
+                {"before": each["before"], "after": each["after"],
+                 **each["baselines"]}.items()}
+            for each in result["metrics"]}
+        sigma = metrics["residual_sigma_deg_per_s"]
+        return {
+            "verdict": "pass" if result["verdict"] == "pass" else
+                       result["words"].partition(". ")[0].rstrip("."),
+            "percent_of_cubic": sigma["after"] and
+                                100 * (sigma["after"] / sigma["cubic"]) ** 2,
+            "runs": {name: run["rms_deg_per_s"]["after"]
+                     for name, run in zip(runs, result["runs"])},
+            "after": {name: each["after"] for name, each in metrics.items()},
+            "metrics": metrics}
+
+    def judge_parts(self, compensator, test, suffix, scores):
+        """The same of the soaks, of what moves, and of all the runs."""
+        names = [name for name, *_ in test]
+        parts = {"_soaks": [n for n in names if n.endswith(tuple(SOAKS))],
+                 "_motion": [n for n in names if n.endswith(tuple(MOTION))],
+                 "": names}
+        return [self.judge(compensator, [name + suffix for name in part],
+                           self.out / f"scores/{scores}{suffix}{key}.json")
+                for key, part in parts.items()]
+
     def validate(self):
-        """Scores by method and by noise, as validate reports them."""
-        def score(item):
-            method, suffix = item
-            file = self.out / f"scores/{method}{suffix}.json"
-            self.beamgyro(
-                "validate", self.out / f"{method}.json",
-                *(self.recording(name + suffix) for name, *_ in TEST),
-                "--json", file, allowed=(0, 3))
-            return json.loads(file.read_text())
-        items = [(method, suffix) for suffix in ("", "_noise")
-                 for method in METHODS]
-        return dict(zip(items, self.all(score, items)))
+        """Rows of the table, by method and by noise."""
+        return self.all(lambda item: self.row(*item),
+                        [(method, suffix) for suffix in ("", "_noise")
+                         for method in METHODS])
+
+    def row(self, method, suffix):
+        soak, motion, everything = self.judge_parts(
+            self.out / f"{method}.json", TEST, suffix, method)
+        sigma = soak["after"]["residual_sigma_deg_per_s"]
+        kept = everything["after"]
+        return {
+            "method": method,
+            "noise": bool(suffix),
+            "variance_deg2_per_s2": sigma ** 2,
+            "sigma_deg_per_s": sigma,
+            "peak_to_peak_deg_per_s": soak["after"]["residual_pp_deg_per_s"],
+            "percent_of_cubic": soak["percent_of_cubic"],
+            "ramps_and_warm_ups": {
+                f"{key}_deg_per_s": motion["after"][f"residual_{key}_deg_per_s"]
+                for key in ("mean", "rms", "max")},
+            "scale_factor_within_2_deg_per_s":
+                kept["scale_factor_retained_small_rates"],
+            "scale_factor_within_120_deg_per_s": kept["scale_factor_retained"],
+            "verdict": everything["verdict"],
+        }
 
     def compensate(self):
         def answer(item):
@@ -140,41 +186,6 @@ class Demo:
              "compensated_rate")])
         for name in ["rest_recommended", "rest_output_and_temperature"]:
             self.recording(name).unlink()
-
-
-def pooled(residuals):
-    """Scores of the blocks of several runs together, from those of each."""
-    blocks = sum(r["blocks"] for r in residuals)
-
-    def mean(square):
-        return sum(r["blocks"] * square(r) for r in residuals) / blocks
-    average = mean(lambda r: r["mean_deg_per_s"])
-    power = mean(lambda r: r["rms_deg_per_s"] ** 2)
-    return {"mean_deg_per_s": average,
-            "rms_deg_per_s": math.sqrt(power),
-            "max_deg_per_s": max(r["max_deg_per_s"] for r in residuals)}
-
-
-def row(method, suffix, validation):
-    scores = {name: score for (name, *_), score
-              in zip(TEST, validation["runs"])}
-    (soak,) = (scores[name] for name in SOAKS)
-    scale = validation["overall"]["scale_factor"]
-
-    def kept(key):
-        return scale[key] and scale[key]["retained"]
-    return {
-        "method": method,
-        "noise": bool(suffix),
-        "variance_deg2_per_s2": soak["residual"]["variance_deg2_per_s2"],
-        "sigma_deg_per_s": soak["residual"]["sigma_deg_per_s"],
-        "peak_to_peak_deg_per_s": soak["residual"]["peak_to_peak_deg_per_s"],
-        "percent_of_cubic": soak["percent_of_cubic"],
-        "ramps_and_warm_ups": pooled([scores[n]["residual"] for n in MOTION]),
-        "scale_factor_within_2_deg_per_s": kept("within_2_deg_per_s"),
-        "scale_factor_within_120_deg_per_s": kept("every_rate"),
-        "verdict": validation["words"],
-    }
 
 
 def table(rows):
@@ -237,9 +248,7 @@ def main():
     note(f"{runs} runs simulated; training ...")
     demo.train()
     note(f"{len(METHODS)} compensators trained; scoring ...")
-    scores = demo.validate()
-    rows = [row(method, suffix, validation)
-            for (method, suffix), validation in scores.items()]
+    rows = demo.validate()
     note("scored; the same on a unit that remembers ...")
     lifelike = demo_lifelike.study(demo)
     (demo.out / "table.json").write_text(json.dumps(

@@ -6,8 +6,6 @@ trained on runs of it and scored on unseen ones, on the first and the tenth of
 ten thermal cycles, and before and after 1,000 h in a store.
 """
 
-import json
-
 import h5py
 import numpy as np
 
@@ -60,21 +58,15 @@ def parts(study, method, suffix):
 
 
 def score(study, method, suffix):
-    file = study.out / f"scores/lifelike_{method}{suffix}.json"
-    study.beamgyro("validate", study.out / f"lifelike/{method}.json",
-                   *(study.recording(name + suffix)
-                     for name, *_ in LIFELIKE_TEST),
-                   "--json", file, allowed=(0, 3))
-    validation = json.loads(file.read_text())
-    soak, *motion = validation["runs"]
-    blocks = [run["residual"]["blocks"] for run in motion]
-    power = [run["residual"]["rms_deg_per_s"] ** 2 for run in motion]
+    soak, motion, everything = study.judge_parts(
+        study.out / f"lifelike/{method}.json", LIFELIKE_TEST, suffix,
+        f"lifelike_{method}")
     return {"method": method, "noise": bool(suffix),
-            "soaks_rms_deg_per_s": soak["residual"]["rms_deg_per_s"],
+            "soaks_rms_deg_per_s": soak["after"]["residual_rms_deg_per_s"],
             "percent_of_cubic": soak["percent_of_cubic"],
             "ramps_and_warm_ups_rms_deg_per_s":
-                float(np.sqrt(np.average(power, weights=blocks))),
-            **parts(study, method, suffix), "verdict": validation["words"]}
+                motion["after"]["residual_rms_deg_per_s"],
+            **parts(study, method, suffix), "verdict": everything["verdict"]}
 
 
 def study(demo):

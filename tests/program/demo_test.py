@@ -67,18 +67,22 @@ class Demo(unittest.TestCase):
         self.assertGreaterEqual(cubic["rms_deg_per_s"],
                                 10 * motion["rms_deg_per_s"])
 
-    def test_bias_only_compensators_keep_the_rate(self):
+    def test_bias_only_compensators_pass_and_keep_the_rate(self):
         for method in METHODS - {"output_and_temperature"}:
             with self.subTest(method):
-                row = self.quiet[method]
-                self.assertEqual(row["verdict"], "keeps the rate")
-                self.assertLess(
-                    abs(row["scale_factor_within_120_deg_per_s"] - 1), 1e-3)
+                self.assertEqual(self.noisy[method]["verdict"], "pass")
+                # Without noise the resolution of the temperature is left.
+                self.assertIn(self.quiet[method]["verdict"],
+                              ["pass", "Not met: allan_fingerprint"])
+                for rows in (self.quiet, self.noisy):
+                    kept = rows[method]["scale_factor_within_120_deg_per_s"]
+                    self.assertLess(abs(kept - 1), 1e-3)
 
     def test_the_network_that_sees_the_output_at_rest_cancels_the_rate(self):
         for rows in (self.quiet, self.noisy):
             row = rows["output_and_temperature"]
-            self.assertEqual(row["verdict"], "cancels the rate")
+            self.assertTrue(row["verdict"].startswith(
+                "Not met: jacobian, injection, true_rate"), row["verdict"])
             self.assertLess(row["scale_factor_within_2_deg_per_s"], 0.1)
             self.assertGreater(row["scale_factor_within_120_deg_per_s"], 0.5)
 
