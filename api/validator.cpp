@@ -19,6 +19,7 @@
 #include "dataset/files/sha256.h"
 #include "dataset/files/text_file.h"
 #include "dataset/set/manifest.h"
+#include "include/beamgyro/recording.h"
 #include "sim/scenario/run_warnings.h"
 #include "validation/external/answer_checks.h"
 #include "validation/external/file_compensator.h"
@@ -286,9 +287,15 @@ CompletedValidation Validator::validate(std::size_t threads,
     result.population = std::move(found.devices);
     done.evidence = std::move(found.evidence);
   } else {
-    done.evidence = recorded_evidence(s.options.recordings, answering, threads);
+    done.evidence = recorded_evidence(
+        s.options.recordings, answering, threads,
+        [](const fs::path& path, std::vector<std::string>* warnings) {
+          return beamgyro::read_recording(path, warnings);
+        },
+        result.warnings);
     s.require_same_recordings();
-    result.warnings = warnings_about(done.evidence.before);
+    for (std::string& text : warnings_about(done.evidence.before))
+      result.warnings.push_back(std::move(text));
   }
   result.provenance = s.provenance();
   if (!s.set) {

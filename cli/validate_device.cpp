@@ -136,6 +136,8 @@ int judge_compensator(const ValidateArguments& arguments) try {
   std::vector<fs::path> inputs;
   for (const InputFile& input : validator.inputs())
     inputs.push_back(input.path);
+  // The directory of a set stands for everything below it.
+  inputs.insert(inputs.end(), arguments.runs.begin(), arguments.runs.end());
   require_outputs_of(arguments, inputs);
   if (!arguments.bundle.empty()) require_new_bundle(arguments.bundle, content);
   const ShownValidation shown = validated(validator, arguments.all_metrics);

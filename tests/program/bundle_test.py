@@ -82,7 +82,7 @@ class Bundles(Qualified):
                    "for line in sys.stdin:\n"
                    "    print(line.split(',')[rate].strip())\n")
         answer = self.bundle(model="cmd:/usr/bin/python3 same.py")
-        self.assertIn("Not better than", answer.stdout)
+        self.assertIn("Of no use", answer.stdout)
         self.check(0, "--run-code")
         told = self.beamgyro("validate", "--check", "bundle", "--run-code",
                              "--timeout-s", 9)

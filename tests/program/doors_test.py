@@ -154,7 +154,7 @@ class Doors(Judged):
                    '[training.overrides]\nseed = 21\n')
         said = self.judged("constant.toml", "--device", "device.toml",
                            "--qualification", "q.toml", status=3)
-        self.assertIn("Not better than", said["words"])
+        self.assertIn("Of no use", said["words"])
 
 
 class ChangedMeanwhile(Judged):

@@ -245,7 +245,7 @@ class Yardsticks(Validate):
                 said, answer = self.judged(compensator)
                 self.assertEqual(said["verdict"], "fail")
                 self.assertIn(than, self.failed(said)[1])
-                self.assertIn("Not better than", answer.stdout)
+                self.assertIn("Of no use", answer.stdout)
 
     def test_a_damaged_baseline_is_refused(self):
         baseline = {**self.cubic["baseline"], "parameters": {

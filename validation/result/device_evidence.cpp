@@ -157,6 +157,24 @@ std::string words_of(const ReadRun& run) {
   return run.device.empty() ? run.name : run.name + " of device " + run.device;
 }
 
+namespace {
+
+// Errors name the run.
+Answer answer_to(const TestedCompensator& compensator, const ReadRun& named,
+                 const Recording& run) {
+  const std::string called = words_of(named);
+  const AskedRun asked(called);
+  try {
+    return compensator.answer(run);
+  } catch (const std::invalid_argument& error) {
+    const std::string words = error.what();
+    if (words.find(named.name) != std::string::npos) throw;
+    throw std::invalid_argument(fmt::format("{}: {}", called, words));
+  }
+}
+
+}  // namespace
+
 DeviceEvidence answered_evidence(std::vector<ReadRun> read,
                                  std::vector<Recording> runs,
                                  const Answering& answering,
@@ -187,11 +205,7 @@ DeviceEvidence answered_evidence(std::vector<ReadRun> read,
     for (std::size_t b = 0; b < answering.baselines.size(); ++b)
       found.baselines[b + 1].evidence.runs[k] =
           evidence(answering.baselines[b].rate(run));
-    {
-      const std::string called = words_of(named);
-      const AskedRun asked(called);
-      found.answers[k] = answering.compensator.answer(run);
-    }
+    found.answers[k] = answer_to(answering.compensator, named, run);
     found.after.runs[k] = evidence(found.answers[k].rate,
                                    answering.reports_clamped
                                        ? std::optional(found.answers[k].clamped)

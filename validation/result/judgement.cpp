@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "compensation/compensator/run_comparison.h"
+#include "compensation/compensator/training_use.h"
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/residual_scores.h"
 #include "parallel/work_queue.h"
@@ -344,10 +345,13 @@ std::vector<std::string> shared_seeds(const Compensator* trained,
   std::vector<std::string> sentences;
   if (trained == nullptr) return sentences;
   for (std::size_t k = 0; k < found.runs.size(); ++k) {
-    if (!found.read[k].device.empty()) continue;
+    if (!found.read[k].device.empty() ||
+        was_used_in_training(trained->provenance, found.read[k].sha256,
+                             found.runs[k]))
+      continue;
     const std::string words =
         shared_seed(trained->provenance, found.read[k].name, found.runs[k]);
-    if (!words.empty()) sentences.push_back(words);
+    if (!words.empty()) sentences.push_back(words + ".");
   }
   return sentences;
 }

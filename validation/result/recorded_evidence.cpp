@@ -10,20 +10,11 @@
 #include "compensation/compensator/run_comparison.h"
 #include "compensation/scoring/rate_injection.h"
 #include "dataset/files/sha256.h"
-#include "dataset/files/text_file.h"
-#include "dataset/log/recording_csv.h"
-#include "dataset/netcdf/recording_reader.h"
 #include "parallel/work_queue.h"
 #include "validation/evidence/recorded_purpose.h"
 
 namespace beamgyro::internal {
 namespace {
-
-Recording read_any(const std::filesystem::path& path) {
-  return path.extension() == ".csv"
-             ? parse_recording_csv(read_text_file(path), path)
-             : read_recording(path);
-}
 
 // Returns what a recording shows, under a name.
 ReadRun named_run(const std::string& name, const Recording& recording) try {
@@ -73,14 +64,17 @@ DeviceEvidence evidence_of(std::vector<ReadRun> read,
 
 DeviceEvidence recorded_evidence(const std::vector<std::filesystem::path>& runs,
                                  const RecordedAnswering& answering,
-                                 std::size_t threads) {
+                                 std::size_t threads,
+                                 const RecordingReader& reader,
+                                 std::vector<std::string>& warnings) {
   std::vector<ReadRun> read(runs.size());
+  std::vector<std::vector<std::string>> warned(runs.size());
   std::vector<Recording> recordings(runs.size());
   std::vector<RunMark> marks(runs.size());
   for_each_task(runs.size(), threads, [&](std::size_t k, std::size_t) {
     TrainingRun run{.name = runs[k].string(),
                     .sha256 = sha256_of_file(runs[k]),
-                    .recording = read_any(runs[k])};
+                    .recording = reader(runs[k], &warned[k])};
     marks[k] = mark_of(run);
     recordings[k] = std::move(run.recording);
     read[k] = named_run(runs[k].string(), recordings[k]);
@@ -88,6 +82,8 @@ DeviceEvidence recorded_evidence(const std::vector<std::filesystem::path>& runs,
     read[k].sha256 = run.sha256;
   });
   require_different_runs(marks);
+  for (std::vector<std::string>& texts : warned)
+    warnings.insert(warnings.end(), texts.begin(), texts.end());
   return evidence_of(std::move(read), std::move(recordings), answering,
                      threads);
 }

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "compensation/compensator/compensator.h"
@@ -24,13 +26,19 @@ struct RecordedAnswering {
   std::optional<double> full_scale = {};
 };
 
-/// Reads recordings (.h5 or .csv) and answers them. Each shows its
+/// Reads a recording file, and adds what is to be warned of.
+using RecordingReader = std::function<Recording(
+    const std::filesystem::path& path, std::vector<std::string>* warnings)>;
+
+/// Reads recordings with `read` and answers them. Each shows its
 /// recorded_purpose(); one at rest is read from kRestBegins on. Throws
 /// std::invalid_argument that names a recording which cannot be read, or has no
 /// true_rate.
 DeviceEvidence recorded_evidence(const std::vector<std::filesystem::path>& runs,
                                  const RecordedAnswering& answering,
-                                 std::size_t threads);
+                                 std::size_t threads,
+                                 const RecordingReader& read,
+                                 std::vector<std::string>& warnings);
 
 /// The same of runs of one device of a set.
 DeviceEvidence recorded_evidence(std::vector<TrainingRun> runs,
