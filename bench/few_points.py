@@ -114,9 +114,9 @@ class Study:
             scores = self.out / f"scores_{device}.json"
             self.beamgyro("validate", file, self.set, "--run", scored,
                           "--device", device, "--json", scores, allowed=(0, 3))
-            (own,) = json.loads(scores.read_text())["devices"]
-            result[label] = own["residual_rms_deg_per_s"]
-            result["raw"] = own["raw_rms_deg_per_s"]
+            (run_of_device,) = json.loads(scores.read_text())["runs"]
+            rms = run_of_device["rms_deg_per_s"]
+            result[label], result["raw"] = rms["after"], rms["before"]
             if run is not None:
                 file.unlink()
         scores.unlink()

@@ -95,8 +95,8 @@ class Demo:
         self.all(fit, reversed(METHODS))
 
     def judge(self, compensator, runs, file=None):
-        """What validate says of recordings; "metrics" has their values "before",
-        "after", and of each baseline."""
+        """What validate says; a metric has its value "before", "after" and of
+        each baseline."""
         file = file or self.out / "scores.json"
         self.beamgyro("validate", compensator, *map(self.recording, runs),
                       "--json", file, allowed=(0, 3))
