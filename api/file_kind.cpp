@@ -97,12 +97,10 @@ std::vector<FileKind> kinds_of_json(std::string_view head) {
     return head.find(word) != head.npos;
   };
   if (holds("\"beamgyro-compensator\"")) return {FileKind::kCompensator};
-  // Of validate, its scores, allan, plan and sensitivity.
-  if (std::ranges::any_of(
-          std::array{"\"beamgyro-validation\"", "\"corrects_scale_factor\"",
-                     "\"manifest_sha256\"", "\"clusters\"", "\"trade_off\"",
-                     "\"indices\""},
-          holds))
+  // Of validate, allan, plan and sensitivity.
+  if (std::ranges::any_of(std::array{"\"beamgyro-validation\"", "\"clusters\"",
+                                     "\"trade_off\"", "\"indices\""},
+                          holds))
     return {FileKind::kResult};
   return {};
 }

@@ -133,7 +133,7 @@ int judge_compensator(const ValidateArguments& arguments) try {
       open_source(arguments.compensator, process_limits(arguments.limits)),
       std::move(options), !arguments.bundle.empty());
   const BundleContent content = bundle_content(validator);
-  std::vector<fs::path> inputs;
+  std::vector<fs::path> inputs(arguments.runs.begin(), arguments.runs.end());
   for (const InputFile& input : validator.inputs())
     inputs.push_back(input.path);
   // The directory of a set stands for everything below it.

@@ -40,8 +40,6 @@ generate scenarios/campaigns/population.toml --devices 80 -o {0}/set
 train {0}/set --run sweep --model scenarios/population/population.toml \
 -o {0}/population.json
 plan {0}/population.json --soaks 3 --json {0}/plan.json
-validate {0}/spline.json {0}/warm_up.h5 {0}/held_out.h5 {0}/rest.h5 \
---json {0}/scores.json
 validate scenarios/models/cubic.toml --spec specs/uav.toml \
 --device scenarios/devices/nominal.toml --json {0}/validation.json
 """
@@ -55,7 +53,6 @@ DRAWN = {
     "sensitivity": "sensitivity.json",
     "population": "population.json",
     "plan": "plan.json",
-    "scores": "scores.json",
     "validation": "validation.json",
 }
 

@@ -160,27 +160,6 @@ class Validations(ProgramTest):
         self.assertIn("Φ(residual / σ)", labels)
 
 
-class Scores(unittest.TestCase):
-    def test_curves_of_the_devices_of_a_set_differ_without_colours(self):
-        figure = plots.plot_validation({"set": "few", "devices": [
-            {"device": str(k), "passed": True, "raw_rms_deg_per_s": 3.0 + k,
-             "cubic_rms_deg_per_s": 2.0 + k, "residual_rms_deg_per_s": 1.0 + k}
-            for k in range(20)]})
-        lines = figure.axes[0].lines
-        self.assertEqual(len({str(line._dash_pattern) for line in lines}), 3)
-
-    def test_a_score_without_values_has_no_panel(self):
-        """A single block of 60 s has no spread."""
-        run = {"run": "a.h5", **{kind: {
-            "rms_deg_per_s": 1.0, "sigma_deg_per_s": 0.0}
-            for kind in ("raw", "cubic", "residual")}}
-        figure = plots.plot_validation({
-            "verdict": "pass", "method": "cubic", "words": "keeps the rate",
-            "runs": [run], "overall": run})
-        self.assertEqual([axes.get_xlabel() for axes in figure.axes],
-                         ["rms about zero [°/s]"])
-
-
 class Allan(unittest.TestCase):
     def test_a_line_of_another_height_than_its_letter_says_so(self):
         figure = plots.plot_allan({

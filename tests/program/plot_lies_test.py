@@ -55,8 +55,6 @@ class Lies(ProgramTest):
             self.ok("allan", "check.h5", "--json", "result.json")
         elif kind == "compensator":
             shutil.copy(self.dir / "c.json", self.dir / "result.json")
-        elif kind == "scores":
-            self.ok("validate", "c.json", "check.h5", "--json", "result.json")
         else:
             self.beamgyro("validate", "c.json", "check.h5", "--spec",
                           ROOT / "specs/uav.toml", "--json", "result.json")
@@ -80,14 +78,12 @@ class Lies(ProgramTest):
                 (("temperature_range_degC",), [3, 2], "the lower number"),
                 (("kind",), "magic", 'kind: "magic"; expected "none" or'),
                 (("parameters", "slopes"), [1.0], "slopes")],
-            "scores": [
-                (("verdict",), None, "verdict: null; expected a text"),
-                (("runs",), [], "runs: 0 values; expected a list of 1"),
-                (("runs", 0, "residual"), 3, "runs[0].residual: 3;"),
-                (("overall", "run"), DROPPED, "overall.run: missing")],
             "validation": [
                 (("verdict",), None, "verdict: null; expected a text"),
                 (("compensator",), None, "compensator: null"),
+                (("compensator", "name"), DROPPED,
+                 "compensator.name: missing"),
+                (("checks", 0, "passed"), 3, "checks[0].passed: 3;"),
                 (("figures",), None, "figures: null; expected a list"),
                 (("metrics",), None, "metrics: null; expected a list"),
                 (("figures", 0, "series", 0, "x"), [1.0], "values; expected "
@@ -111,7 +107,7 @@ class Lies(ProgramTest):
     def test_every_value_is_checked_or_does_not_matter(self):
         """A document in which any one value is wrong is refused with a
         message, or its picture can be drawn."""
-        for kind in ("allan", "compensator", "scores"):
+        for kind in ("allan", "compensator", "validation"):
             result = self.result(kind)
             refused = drawn = 0
             for place in places(result):

@@ -144,8 +144,7 @@ def plot_compensator(*compensators: Mapping[str, Any],
 
 def plot_validation(result: Mapping[str, Any]) -> Figure:
     """The result of `validate --json`, as a dict."""
-    is_validation = isinstance(result, Mapping) and "figures" in result
-    return _plotted("validation" if is_validation else "scores", result)
+    return _plotted("validation", result)
 
 
 def plot_plan(plan: Mapping[str, Any]) -> Figure:

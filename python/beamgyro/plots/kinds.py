@@ -12,7 +12,7 @@ from typing import Any, Callable, Iterator, Sequence
 from matplotlib.figure import Figure
 
 from . import (allan, compensator, device_set, documents, hdf5, plan,
-               recording, scores, sensitivity, style, table, validation)
+               recording, sensitivity, style, table, validation)
 from .errors import PlotError
 
 Source = Any  # what a kind reads from a file
@@ -57,8 +57,6 @@ KINDS = {
     "validation": Kind("validation", documents.read, validation.draw,
                        validation.height, False, validation.SHAPE,
                        validation.each),
-    "scores": Kind("scores", documents.read, scores.draw, scores.height,
-                   False, scores.SHAPE),
     "plan": Kind("plan", documents.read, plan.draw, lambda _: plan.HEIGHT,
                  False, plan.SHAPE),
     "sensitivity": Kind("sensitivity", documents.read, sensitivity.draw,
@@ -136,12 +134,7 @@ def _kind_of_json(data: dict[str, Any]) -> str | None:
     for kind, names in members.items():
         if names <= data.keys():
             return kind
-    if any(data.get(name) for name in allan.KINDS):
-        return "allan"
-    if {"runs", "overall", "method"} <= data.keys() or \
-            {"devices", "set", "manifest_sha256"} <= data.keys():
-        return "scores"
-    return None
+    return "allan" if any(data.get(name) for name in allan.KINDS) else None
 
 
 def figure_of(kind: str, sources: Sequence[Source]) -> Figure:
