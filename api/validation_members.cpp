@@ -130,10 +130,15 @@ bool is_given(const ValidationMember& row, const ValidationOptions& options) {
 
 void require_sound(const ValidationOptions& options) {
   const unsigned subject = subjects_of(options);
-  if (subject == 0 || (subject & (subject - 1)) != 0)
-    throw std::invalid_argument(fmt::format(
-        "{} to validate on; expected one of a device, recordings and a set",
-        subject == 0 ? "nothing" : words_of(subject)));
+  if (subject == 0)
+    throw option_error(
+        "nothing to validate on; expected recordings, the directory of a set, "
+        "or {}",
+        NamedOption{"device", "DEVICE.toml"});
+  if ((subject & (subject - 1)) != 0)
+    throw option_error(
+        "{} to validate on; expected one of them{}", words_of(subject),
+        options.device ? ": of a set, a number selects devices" : "");
   for (const ValidationMember& row : kMembers) {
     if (!is_given(row, options)) continue;
     if ((row.subjects & subject) == 0)

@@ -25,6 +25,16 @@ bool is_number(const std::string& word) {
          std::ranges::all_of(word, [](char c) { return c >= '0' && c <= '9'; });
 }
 
+// Throws for numbers after the first of --device, which are no recordings.
+void require_no_number(const ValidateArguments& arguments) {
+  const auto number = std::ranges::find_if(arguments.runs, is_number);
+  if (!arguments.device.empty() && number != arguments.runs.end())
+    throw std::invalid_argument(fmt::format(
+        "{0}: no recording; expected one number after each --device: --device "
+        "{1} --device {0}",
+        *number, arguments.device.back()));
+}
+
 // A word after --device is the number of a device of a set, or else a file.
 void require_device_words(const ValidateArguments& arguments, bool is_of_set) {
   const auto is_wrong = [&](const std::string& word) {
@@ -42,12 +52,6 @@ void require_device_words(const ValidateArguments& arguments, bool is_of_set) {
     throw std::invalid_argument(
         fmt::format("--device {}: a second device file; expected one",
                     arguments.device.back()));
-  const auto number = std::ranges::find_if(arguments.runs, is_number);
-  if (!arguments.device.empty() && number != arguments.runs.end())
-    throw std::invalid_argument(fmt::format(
-        "{0}: no recording; expected one number after each --device: --device "
-        "{1} --device {0}",
-        *number, arguments.device.back()));
 }
 
 std::filesystem::path shipped_qualification() {
@@ -154,6 +158,7 @@ int validate_any(const ValidateArguments& arguments) {
 }  // namespace
 
 ValidationOptions validation_options(const ValidateArguments& arguments) {
+  require_no_number(arguments);
   const bool is_of_set = is_set(arguments.runs);
   require_device_words(arguments, is_of_set);
   ValidationOptions options;

@@ -46,7 +46,7 @@ def test_import_loads_nothing_large():
     (lambda folder: bg.Compensator.parse("{", "own.json"), "own.json"),
     (lambda folder: bg.Compensator(3), "no compensator"),
     (lambda folder: bg.open_recording(NOMINAL), "nominal.toml"),
-    (lambda folder: bg.open_set(folder), "manifest"),
+    (lambda folder: bg.open_set(folder), "holds no set"),
     (lambda folder: bg.characterise(NOMINAL, 1000), "1000 degC"),
     (lambda folder: bg.allan([1.0, 2.0]), "rate_Hz"),
 ])

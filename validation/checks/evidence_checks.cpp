@@ -108,6 +108,7 @@ std::optional<WorstAllan> worst_allan(const CheckContext& context) {
     const auto found =
         allan_ratio(run, context.answers[k], context.lag_in(run));
     if (found && found->seconds >= kLeastRestSeconds &&
+        found->fall <= kWhiteNoiseFall &&
         (!worst ||
          std::abs(found->ratio - 1.0) > std::abs(worst->found.ratio - 1.0)))
       worst = WorstAllan{*found, k};

@@ -23,6 +23,10 @@ struct AllanRatio {
   std::size_t seconds;  // [s], whole ones that count
 };
 
+/// Largest fall of a recorded residual that is mostly white noise; drift alone
+/// does not fall.
+constexpr double kWhiteNoiseFall = 0.75;  // [-]
+
 /// Compares residuals, rate less true rate, in all powered stretches without a
 /// gap in which the answers are finite. An answer belongs to the sample `lag`
 /// before it. Returns nothing where 1 s is no multiple of the step, no stretch

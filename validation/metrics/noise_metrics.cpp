@@ -14,7 +14,6 @@ namespace {
 constexpr double kHour = 3600.0;  // [s]
 constexpr std::size_t kLeastRestSamples = 64;
 // Of a residual whose deviation falls from 1 s to 4 s as that of white noise.
-constexpr double kWhiteNoiseFall = 0.75;  // [-]
 constexpr std::size_t kLeastSeconds = 10;
 
 /// Residual [deg/s] of the longest gapless stretch at rest, evenly sampled.
