@@ -182,16 +182,20 @@ DeviceEvidence answered_evidence(std::vector<ReadRun> read,
                               std::optional<std::size_t> clamped = {}) {
       return evidence_run(named, part, std::move(rate), clamped);
     };
+    try {
+      const std::string called = words_of(named);
+      const AskedRun asked(called);
+      found.answers[k] = answering.compensator.answer(run);
+    } catch (const std::invalid_argument& error) {
+      if (!answering.reports_clamped) throw;  // what is asked names its run
+      throw std::invalid_argument(
+          fmt::format("{}: {}", words_of(named), error.what()));
+    }
     found.before.runs[k] = evidence(column_values(run, "rate"));
     found.baselines[0].evidence.runs[k] = found.before.runs[k];
     for (std::size_t b = 0; b < answering.baselines.size(); ++b)
       found.baselines[b + 1].evidence.runs[k] =
           evidence(answering.baselines[b].rate(run));
-    {
-      const std::string called = words_of(named);
-      const AskedRun asked(called);
-      found.answers[k] = answering.compensator.answer(run);
-    }
     found.after.runs[k] = evidence(found.answers[k].rate,
                                    answering.reports_clamped
                                        ? std::optional(found.answers[k].clamped)
