@@ -38,10 +38,9 @@ class Plan(ProgramTest):
                         "adapted.json")
         self.assertIn("1-sigma left open", words)
         self.ok("run", SCENARIOS / "soak_every_kelvin.toml", "-o", "check.h5")
-        text = self.ok("validate", "adapted.json", "check.h5")
-        left, raw = map(float, re.search(
-            r"residual: ([\d.]+) deg/s rms.* the ([\d.]+) deg/s of the raw",
-            text).groups())
+        self.ok("validate", "adapted.json", "check.h5", "--json", "v.json")
+        [run] = json.loads((self.dir / "v.json").read_text())["runs"]
+        left, raw = run["rms_deg_per_s"]["after"], run["rms_deg_per_s"]["before"]
         # The forecast of 49 devices says 0.15 to 0.4 deg/s for 9 of 10.
         self.assertLess(left, 0.2 * raw)
         with h5py.File(self.dir / "soaks.h5") as file:

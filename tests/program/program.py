@@ -165,6 +165,14 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual((self.files(), {*self.dir.rglob("*")}), before)
         return answer.stderr
 
+    def fails_as_seen(self, compensator, run):
+        """All that a validation holds against a compensator is that training
+        saw the run."""
+        answer = self.beamgyro("validate", compensator, run)
+        self.assertEqual(answer.returncode, 3, answer.stderr)
+        self.assertIn("\nFAIL: Not met: hold_out. Training saw 1 of the 1 runs",
+                      answer.stdout)
+
     def run_scenario(self, name, *arguments, text=SCENARIO):
         """Recording NAME.h5 of a scenario text."""
         scenario = self.write(f"{name}.toml", text)

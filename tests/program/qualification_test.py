@@ -57,7 +57,7 @@ class Verdicts(Qualified):
         self.assertLess(results["residual_rms_deg_per_s"]["margin"], 0)
         self.assertEqual(results["residual_max_deg_per_s"]["result"], "pass")
         self.assertEqual(said["verdict"], "fail")
-        self.assertTrue(answer.stdout.startswith("FAIL: "), answer.stdout)
+        self.assertIn("\nFAIL: Not met: residual_rms_deg_per_s", answer.stdout)
         metrics = {metric["name"]: metric for metric in said["metrics"]}
         self.assertEqual(metrics["residual_rms_deg_per_s"]["limit"], 0.1)
         self.assertEqual(metrics["residual_rms_deg_per_s"]["result"], "fail")
@@ -377,15 +377,15 @@ class WrongWords(Qualified):
         device = ["--device", "device.toml"]
         for words, says in [
                 ([], "COMPENSATOR is missing"),
-                (["c.json"], ["nothing to validate on", "--device"]),
+                (["c.json"], ["nothing to validate on", "device"]),
                 (["c.json", "--device", 5], ["--device 5", "set"]),
                 (["c.json", *device, "--device", "b.toml"],
                  ["--device b.toml", "second"]),
-                (["c.json", "ramp.h5", *device], ["device.toml", "set"]),
+                (["c.json", "ramp.h5", *device], ["device or recordings", "set"]),
                 (["c.json", "ramp.h5", "--qualification", "q.toml"],
-                 ["--qualification", "--device"]),
+                 ["--qualification", "a simulated device"]),
                 (["c.json", "ramp.h5", "--campaign", "campaign.toml"],
-                 ["--campaign", "--device"]),
+                 ["--campaign", "a simulated device"]),
                 (["c.json", "ramp.h5", "--devices", 2], "--devices"),
                 (["c.json", *device, "--run", "a"], ["--run", "set"]),
                 (["c.json", *device, "--full-scale", 100], "--full-scale"),

@@ -93,6 +93,11 @@ CheckResult check_hold_out(const CheckContext& context) {
   if (provenance == nullptr || !warning_of_no_training(*provenance).empty())
     return not_tested(
         "The compensator names no recording that it was trained on.");
+  if (context.checked.set != nullptr &&
+      may_have_used(*provenance, *context.checked.set))
+    return not_tested(
+        "The compensator was trained on this set and does not say on which "
+        "devices: these runs may be in-sample.");
   std::vector<std::string> used, sharing;
   for (const CheckedRun& run : context.checked.runs) {
     if (was_used(context.checked, run)) {

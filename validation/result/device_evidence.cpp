@@ -159,18 +159,12 @@ std::string words_of(const ReadRun& run) {
 
 namespace {
 
-// Errors name the run.
-Answer answer_to(const TestedCompensator& compensator, const ReadRun& named,
-                 const Recording& run) {
-  const std::string called = words_of(named);
-  const AskedRun asked(called);
-  try {
-    return compensator.answer(run);
-  } catch (const std::invalid_argument& error) {
-    const std::string words = error.what();
-    if (words.find(named.name) != std::string::npos) throw;
-    throw std::invalid_argument(fmt::format("{}: {}", called, words));
-  }
+// Throws the same error with the run named.
+[[noreturn]] void throw_named(const ReadRun& run,
+                              const std::invalid_argument& error) {
+  const std::string words = error.what();
+  if (words.find(run.name) != std::string::npos) throw error;
+  throw std::invalid_argument(fmt::format("{}: {}", words_of(run), words));
 }
 
 }  // namespace
@@ -202,10 +196,17 @@ DeviceEvidence answered_evidence(std::vector<ReadRun> read,
     };
     found.before.runs[k] = evidence(column_values(run, "rate"));
     found.baselines[0].evidence.runs[k] = found.before.runs[k];
-    for (std::size_t b = 0; b < answering.baselines.size(); ++b)
-      found.baselines[b + 1].evidence.runs[k] =
-          evidence(answering.baselines[b].rate(run));
-    found.answers[k] = answer_to(answering.compensator, named, run);
+    try {
+      const std::string called = words_of(named);
+      const AskedRun asked(called);
+      found.answers[k] = answering.compensator.answer(run);
+      for (std::size_t b = 0; b < answering.baselines.size(); ++b)
+        found.baselines[b + 1].evidence.runs[k] =
+            evidence(answering.baselines[b].rate(run));
+    } catch (const std::invalid_argument& error) {
+      if (!answering.reports_clamped) throw;  // what is asked names its run
+      throw_named(named, error);
+    }
     found.after.runs[k] = evidence(found.answers[k].rate,
                                    answering.reports_clamped
                                        ? std::optional(found.answers[k].clamped)
