@@ -75,7 +75,10 @@ DeviceEvidence recorded_evidence(const std::vector<std::filesystem::path>& runs,
     TrainingRun run{.name = runs[k].string(),
                     .sha256 = sha256_of_file(runs[k]),
                     .recording = reader(runs[k], &warned[k])};
-    marks[k] = mark_of(run);
+    marks[k].file = {.name = run.name, .sha256 = run.sha256};
+    // One without a temperature is refused by what reads it.
+    if (find_column(run.recording, "temperature") != nullptr)
+      marks[k] = mark_of(run);
     recordings[k] = std::move(run.recording);
     read[k] = named_run(runs[k].string(), recordings[k]);
     read[k].name = runs[k].filename().string();
