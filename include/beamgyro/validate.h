@@ -88,10 +88,10 @@ struct ValidationOutcome {
   std::vector<MetricRow> metrics;
   std::vector<CheckRow> checks;
   std::vector<std::string> warnings;
-  std::string text;  ///< what `beamgyro validate` prints
+  std::string text;         ///< what `beamgyro validate` prints
   std::string all_metrics;  ///< the same with every metric: `--all-metrics`
-  std::string json;  ///< what `--json` writes
-  std::string page;  ///< HTML, what `--report` writes
+  std::string json;         ///< what `--json` writes
+  std::string page;         ///< HTML, what `--report` writes
 };
 
 /// Judges a compensator by every metric, check and limit. The result does not
