@@ -55,9 +55,14 @@ def declarations(xml, compound):
         yield header, f".. {directive}:: {name}\n"
 
 
+def doxygen_name(header):
+    """What doxygen calls a header: an underscore is written twice."""
+    return header.stem.replace("_", "__") + "_8h"
+
+
 def header_page(xml, header, free):
     """The page of one public header: what it is, classes, free functions."""
-    tree = ElementTree.parse(xml / f"{header.stem}_8h.xml")
+    tree = ElementTree.parse(xml / f"{doxygen_name(header)}.xml")
     parts = [heading(f"beamgyro/{header.name}"),
              f".. doxygenfile:: {header.name}\n"
              "   :sections: briefdescription detaileddescription\n"]
@@ -77,7 +82,7 @@ def write_cpp_pages(target, xml):
     headers = sorted((ROOT / "include/beamgyro").glob("*.h"))
     free = list(declarations(xml, "namespacebeamgyro"))
     for header in headers:
-        own = list(declarations(xml, f"{header.stem}_8h"))
+        own = list(declarations(xml, doxygen_name(header)))
         (folder / f"{header.stem}.rst").write_text(
             header_page(xml, header, free + own))
     text = (SITE / "cpp.rst").read_text()

@@ -163,7 +163,7 @@ std::string rejected(const std::vector<Recording>& training,
   const auto marks = [](const std::vector<Recording>& runs, char name) {
     std::vector<RunMark> result;
     for (const Recording& run : runs) {
-      const std::string called(1, static_cast<char>(name + result.size()));
+      const std::string called(1, name++);
       result.push_back(mark_of({called, "sha of " + called, run}));
     }
     return result;
