@@ -56,41 +56,89 @@ SlopeSums sums_of(const Plateau& plateau) {
           .samples = plateau.time.size()};
 }
 
-/// The usable samples of every plateau, without those within kSettlingTime
-/// after a larger rate or a larger step of it. `compensated` may be empty.
+/// Tells of each sample, in order, whether its rate has lasted.
+class Settled {
+ public:
+  explicit Settled(const Recording& recording)
+      : time_(recording.time),
+        truth_(column_values(recording, "true_rate")),
+        settling_(kSettlingTime - 0.5 * usual_step(recording)) {}
+
+  /// Returns whether no rate above `largest_rate` and no step above
+  /// `largest_step` came within kSettlingTime before sample k.
+  bool after_steps(std::size_t k, double largest_rate, double largest_step) {
+    const bool stepped =
+        k > 0 && std::abs(truth_[k] - truth_[k - 1]) > largest_step;
+    const bool large = std::abs(truth_[k]) > largest_rate;
+    if (stepped || large) last_large_ = time_[k];
+    return !large && time_[k] - last_large_ >= settling_;
+  }
+
+  /// Returns whether the rate of sample k was held for kSettlingTime.
+  bool held(std::size_t k) {
+    if (std::abs(truth_[k] - truth_[begin_]) > kHeldWithin) begin_ = k;
+    return k > begin_ && time_[k] - time_[begin_] >= settling_;
+  }
+
+ private:
+  const std::vector<double>&time_, &truth_;
+  double settling_;                                               // [s]
+  double last_large_ = -std::numeric_limits<double>::infinity();  // [s]
+  std::size_t begin_ = 0;  // of the rate that is held
+};
+
+/// The usable samples of every plateau that `is_settled` takes.
+/// `compensated` may be empty.
+template <class Predicate>
 std::vector<Plateau> plateaus_of(const Recording& recording,
                                  std::span<const double> compensated,
-                                 double largest_rate, double largest_step) {
-  const auto& time = recording.time;
+                                 const Predicate& is_settled) {
   const auto& truth = column_values(recording, "true_rate");
   const auto& raw = column_values(recording, "rate");
   const Column* temperature = find_column(recording, "temperature");
-  const double settling = kSettlingTime - 0.5 * usual_step(recording);
   std::vector<Plateau> plateaus;
-  double last_large = -std::numeric_limits<double>::infinity();  // [s]
   for (const SampleRange& range : temperature_plateaus(recording)) {
     Plateau& plateau = plateaus.emplace_back();
     for (std::size_t k = range.begin; k < range.end; ++k) {
-      if (k > 0 && std::abs(truth[k] - truth[k - 1]) > largest_step) {
-        last_large = time[k];
-      }
-      if (std::abs(truth[k]) > largest_rate) {
-        last_large = time[k];
-        continue;
-      }
-      if (time[k] - last_large >= settling &&
-          (recording.status[k] & kLeftOut) == 0) {
-        plateau.time.push_back(time[k]);
-        plateau.temperature.push_back(temperature ? temperature->values[k]
-                                                  : 0.0);
-        plateau.truth.push_back(truth[k]);
-        plateau.raw.push_back(raw[k]);
-        plateau.compensated.push_back(compensated.empty() ? raw[k]
-                                                          : compensated[k]);
-      }
+      if (!is_settled(k) || (recording.status[k] & kLeftOut) != 0) continue;
+      plateau.time.push_back(recording.time[k]);
+      plateau.temperature.push_back(temperature ? temperature->values[k] : 0.0);
+      plateau.truth.push_back(truth[k]);
+      plateau.raw.push_back(raw[k]);
+      plateau.compensated.push_back(compensated.empty() ? raw[k]
+                                                        : compensated[k]);
     }
   }
   return plateaus;
+}
+
+std::vector<Plateau> plateaus_after_steps(const Recording& recording,
+                                          std::span<const double> compensated,
+                                          double largest_rate,
+                                          double largest_step) {
+  Settled settled(recording);
+  return plateaus_of(recording, compensated, [&](std::size_t k) {
+    return settled.after_steps(k, largest_rate, largest_step);
+  });
+}
+
+PlateauSlope slope_of(const Plateau& plateau, const SlopeSums& sums) {
+  return {array_view(plateau.temperature).mean(), sums.raw_without_drift,
+          sums.truth_without_drift, sums.compensated_without_drift};
+}
+
+/// Half of the 95 % interval of the slope of the raw rate: of what v, drift
+/// and temperature leave of it, as if that were white.
+double slope_uncertainty(const Plateau& plateau, const SlopeSums& sums) {
+  const Eigen::VectorXd temperature = centred(plateau.temperature);
+  const Eigen::VectorXd v =
+      without_drift(centred(plateau.truth), temperature, plateau.time);
+  const Eigen::VectorXd y =
+      without_drift(centred(plateau.raw), temperature, plateau.time);
+  const double square = v.squaredNorm();
+  const double slope = sums.raw_without_drift / sums.truth_without_drift;
+  const auto freedom = static_cast<double>(plateau.time.size()) - 4.0;
+  return 1.96 * std::sqrt((y - slope * v).squaredNorm() / (freedom * square));
 }
 
 }  // namespace
@@ -116,7 +164,7 @@ SlopeSums slope_sums(const Recording& recording,
   }
   SlopeSums sums;
   for (const Plateau& plateau :
-       plateaus_of(recording, compensated, largest_rate, kEveryRate)) {
+       plateaus_after_steps(recording, compensated, largest_rate, kEveryRate)) {
     sums += sums_of(plateau);
   }
   return sums;
@@ -128,18 +176,33 @@ std::vector<PlateauSlope> plateau_slopes(const Recording& recording,
   std::vector<PlateauSlope> slopes;
   // A rate that is never held has no settled samples.
   for (const double largest_step : {least_departure, kEveryRate}) {
-    for (const Plateau& plateau :
-         plateaus_of(recording, compensated, kEveryRate, largest_step)) {
+    for (const Plateau& plateau : plateaus_after_steps(
+             recording, compensated, kEveryRate, largest_step)) {
       const SlopeSums sums = sums_of(plateau);
       if (sums.largest_departure >= least_departure) {
-        slopes.push_back({array_view(plateau.temperature).mean(),
-                          sums.raw_without_drift, sums.truth_without_drift,
-                          sums.compensated_without_drift});
+        slopes.push_back(slope_of(plateau, sums));
       }
     }
     if (!slopes.empty()) {
       break;
     }
+  }
+  return slopes;
+}
+
+std::vector<HeldSlope> held_slopes(const Recording& recording,
+                                   std::span<const double> compensated) {
+  Settled settled(recording);
+  std::vector<HeldSlope> slopes;
+  for (const Plateau& plateau :
+       plateaus_of(recording, compensated,
+                   [&](std::size_t k) { return settled.held(k); })) {
+    if (plateau.time.size() < kLeastHeldSamples) continue;
+    const SlopeSums sums = sums_of(plateau);
+    if (sums.largest_departure < kTableRate) continue;
+    const double uncertainty = slope_uncertainty(plateau, sums);
+    if (uncertainty <= kMostSlopeUncertainty)
+      slopes.push_back({slope_of(plateau, sums), uncertainty});
   }
   return slopes;
 }

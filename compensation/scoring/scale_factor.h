@@ -63,6 +63,26 @@ std::vector<PlateauSlope> plateau_slopes(
     const Recording& recording, double least_departure,
     std::span<const double> compensated = {});
 
+constexpr double kHeldWithin = 0.5;             // [deg/s], of a held rate
+constexpr std::size_t kLeastHeldSamples = 20;   // of a slope
+constexpr double kMostSlopeUncertainty = 2e-3;  // [-]
+
+/// A slope over rates that were held.
+struct HeldSlope {
+  PlateauSlope slope;
+  // Half of the 95 % interval of raw / truth [-], from what the slope, a drift
+  // and the temperature leave of the rate.
+  double uncertainty;
+};
+
+/// Returns the slopes of every plateau over the samples of held rates: since
+/// kSettlingTime the true rate has stayed within kHeldWithin of one value. A
+/// slope needs kLeastHeldSamples, rates that depart by kTableRate, and an
+/// uncertainty of at most kMostSlopeUncertainty; so a random rate that keeps
+/// still by chance has none.
+std::vector<HeldSlope> held_slopes(const Recording& recording,
+                                   std::span<const double> compensated = {});
+
 struct ScaleFactor {
   double retained;   // [-], Σ v compensated_rate / Σ v rate
   double slope;      // [-], of compensated_rate over true_rate, absolute

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "validation/checks/check_context.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -14,7 +16,9 @@
 namespace beamgyro::internal {
 namespace {
 
-constexpr double kMostMissing = 0.01;  // [-], of the powered samples
+constexpr double kMostMissing = 0.01;    // [-], of the powered samples
+constexpr double kSameAnswer = 1e-12;    // [-], of the answer
+constexpr double kNotRounded = 0.99e-4;  // [deg/s]
 
 std::size_t missing_answers(const Recording& run, const Answer& answer) {
   std::size_t missing = 0;
@@ -28,9 +32,8 @@ std::size_t missing_answers(const Recording& run, const Answer& answer) {
 ScaleFactorCurve curve_of(const CheckedCompensator& all) {
   ScaleFactorCurve curve;
   for (const CheckedRun& run : all.runs)
-    for (const PlateauSlope& plateau :
-         plateau_slopes(*run.recording, kTableRate))
-      curve.add(plateau.temperature, plateau.raw / plateau.truth);
+    for (const auto& [slope, uncertainty] : held_slopes(*run.recording))
+      curve.add(slope.temperature, slope.raw / slope.truth, uncertainty);
   return curve;
 }
 
@@ -50,6 +53,18 @@ std::unique_ptr<const TestedCompensator> stripped(
 }
 
 }  // namespace
+
+double smallest_step(std::span<const double> answers, double least) {
+  double smallest = HUGE_VAL;
+  for (std::size_t k = 1; k < answers.size(); ++k) {
+    const double one = std::abs(answers[k - 1]), two = std::abs(answers[k]);
+    if (!(std::min(one, two) >= least)) continue;
+    const double step = std::abs(answers[k] - answers[k - 1]);
+    if (step > kSameAnswer * std::max(one, two))
+      smallest = std::min(smallest, step);
+  }
+  return smallest;
+}
 
 Compensator without_scale_factor(Compensator compensator) {
   compensator.scale_factor.reset();
@@ -76,13 +91,19 @@ std::vector<double> AlteredAnswers::operator()(const Recording& altered) const {
     seen_[static_cast<std::size_t>(seen.fault)] = true;
   if (missing_answers(altered, answer) > 0)
     seen_[static_cast<std::size_t>(AnswerFault::kNotFinite)] = true;
+  const double step = smallest_step(answer.rate, 0.5 * full_scale_);
+  double least = step_near_full_scale_;
+  while (step < least &&
+         !step_near_full_scale_.compare_exchange_weak(least, step)) {
+  }
   return bridged(altered, std::move(answer.rate));
 }
 
-void ScaleFactorCurve::add(double temperature, double scale_factor) {
+void ScaleFactorCurve::add(double temperature, double scale_factor,
+                           double uncertainty) {
   const auto place =
       std::ranges::upper_bound(points_, temperature, {}, &Point::temperature);
-  points_.insert(place, {temperature, scale_factor});
+  points_.insert(place, {temperature, scale_factor, uncertainty});
 }
 
 bool ScaleFactorCurve::has_point_near(double temperature, double reach) const {
@@ -113,12 +134,25 @@ double ScaleFactorCurve::departure_of_corrected(double gain,
                                                 double temperature) const {
   const auto right =
       std::ranges::upper_bound(points_, temperature, {}, &Point::temperature);
-  const double above =
-      (right == points_.end() ? points_.back() : *right).scale_factor;
-  const double below =
-      (right == points_.begin() ? points_.front() : *(right - 1)).scale_factor;
-  const auto [low, high] = std::minmax(above, below);
+  const Point& above = right == points_.end() ? points_.back() : *right;
+  const Point& below =
+      right == points_.begin() ? points_.front() : *(right - 1);
+  const double low = std::min(above.scale_factor - above.uncertainty,
+                              below.scale_factor - below.uncertainty);
+  const double high = std::max(above.scale_factor + above.uncertainty,
+                               below.scale_factor + below.uncertainty);
   return std::abs(gain / std::clamp(gain, 1.0 / high, 1.0 / low) - 1.0);
+}
+
+std::string ScaleFactorCurve::words() const {
+  const auto [low, high] =
+      std::ranges::minmax(points_, {}, &Point::scale_factor);
+  return fmt::format(
+      "{:.4f} to {:.4f} at {} point{} of held rates from {:.1f} "
+      "to {:.1f} degC",
+      low.scale_factor, high.scale_factor, points_.size(),
+      points_.size() == 1 ? "" : "s", points_.front().temperature,
+      points_.back().temperature);
 }
 
 CheckContext::CheckContext(const CheckedCompensator& all, std::size_t count)
@@ -126,16 +160,39 @@ CheckContext::CheckContext(const CheckedCompensator& all, std::size_t count)
       threads(count),
       scale_factor(curve_of(all)),
       without_table(stripped(all, scale_factor)),
-      altered(without_table ? *without_table : *all.compensator) {
+      altered(without_table ? *without_table : *all.compensator,
+              all.full_scale) {
+  double step = HUGE_VAL;
   for (const CheckedRun& run : all.runs) {
     const Recording& recording = *run.recording;
     for (const std::uint8_t status : recording.status)
       samples += (status & kUnpowered) == 0 ? 1 : 0;
     missing += missing_answers(recording, run.answer);
+    step = std::min(step, smallest_step(run.answer.rate));
     answers.push_back(
         bridged(recording, without_table ? without_table->answer(recording).rate
                                          : run.answer.rate));
   }
+  if (std::isfinite(step)) answer_step = step;
+}
+
+double CheckContext::resolution() const {
+  return answer_step <= kUndeclaredResolution * (1.0 + 1e-9) ? answer_step
+                                                             : 0.0;
+}
+
+GainJudge CheckContext::judge() const {
+  return GainJudge(scale_factor, resolution());
+}
+
+std::string CheckContext::rounding_words() const {
+  const double coarse = altered.step_near_full_scale();
+  const double step =
+      std::max(answer_step, std::isfinite(coarse) ? coarse : 0.0);
+  if (step < kNotRounded) return "";
+  return fmt::format(
+      " The answers are rounded to {:.3g} deg/s{}.", step,
+      step <= resolution() * (1.0 + 1e-9) ? ", which is allowed for" : "");
 }
 
 std::vector<std::string> CheckContext::untested_by_replay() const {

@@ -3,10 +3,12 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,8 +21,16 @@ namespace beamgyro::internal {
 /// is found by the check of missing answers alone.
 std::vector<double> bridged(const Recording& run, std::vector<double> answers);
 
+/// Returns the smallest difference [deg/s] other than rounding between
+/// neighbouring answers, both of at least `least` [deg/s]; infinite where there
+/// is none.
+double smallest_step(std::span<const double> answers, double least = 0.0);
+
 /// Returns the compensator without its table of scale factors.
 Compensator without_scale_factor(Compensator compensator);
+
+/// Answers may be rounded to this without having to declare it.
+constexpr double kUndeclaredResolution = 0.01;  // [deg/s]
 
 /// How far from its temperature a recorded rate speaks.
 constexpr double kRateReach = 10.5;  // [K]
@@ -29,10 +39,14 @@ constexpr double kRateReach = 10.5;  // [K]
 /// Every member may be called from several threads at once.
 class AlteredAnswers {
  public:
-  explicit AlteredAnswers(const TestedCompensator& compensator)
-      : compensator_(compensator) {}
+  AlteredAnswers(const TestedCompensator& compensator, double full_scale)
+      : compensator_(compensator), full_scale_(full_scale) {}
 
   std::vector<double> operator()(const Recording& altered) const;
+
+  /// Returns the smallest_step() [deg/s] that was seen among answers beyond
+  /// half of full scale; infinite before there are any.
+  double step_near_full_scale() const { return step_near_full_scale_; }
 
   bool has_seen(AnswerFault fault) const {
     return seen_[static_cast<std::size_t>(fault)];
@@ -43,26 +57,34 @@ class AlteredAnswers {
       static_cast<std::size_t>(AnswerFault::kCount);
 
   const TestedCompensator& compensator_;
+  double full_scale_;  // [deg/s]
+  mutable std::atomic<double> step_near_full_scale_ = HUGE_VAL;
   mutable std::array<std::atomic<bool>, kFaults> seen_ = {};
 };
 
-/// The scale factor of the recorded rate over temperature, as rate tables show
-/// it.
+/// The scale factor of the recorded rate over temperature, as held rates show
+/// it (held_slopes()).
 class ScaleFactorCurve {
  public:
-  void add(double temperature, double scale_factor);
+  /// `uncertainty` [-] is half of the 95 % interval of the scale factor.
+  void add(double temperature, double scale_factor, double uncertainty);
   bool empty() const { return points_.empty(); }
   bool has_point_near(double temperature, double reach) const;  // [K]
   double at(double temperature) const;  // linear between, constant beyond
   double largest_departure() const;     // from 1 [-]
   /// Returns the departure from 1 [-] of a gain that may be 1 / s for every s
-  /// between those of the rate tables next to the temperature.
+  /// between those of the points next to the temperature, each with its
+  /// uncertainty.
   double departure_of_corrected(double gain, double temperature) const;
+  /// Returns which curve this is, for a user: "1.0005 to 1.0255 at 5 points
+  /// of held rates from -33.0 to 41.2 degC".
+  std::string words() const;
 
  private:
   struct Point {
     double temperature;   // [degC]
     double scale_factor;  // [-]
+    double uncertainty;   // [-]
   };
   std::vector<Point> points_;  // rising temperatures
 };
@@ -77,6 +99,8 @@ struct RandomResponse {
   double time = 0.0;         // [s], of the begin
 };
 
+class GainJudge;
+
 /// What every check may use.
 struct CheckContext {
   explicit CheckContext(const CheckedCompensator& all, std::size_t threads);
@@ -88,6 +112,7 @@ struct CheckContext {
   // without that table, so that its bias is judged all the same.
   std::unique_ptr<const TestedCompensator> without_table;
   AlteredAnswers altered;
+  double answer_step = 0.0;  // [deg/s], smallest_step() of all answers, or 0
   std::vector<std::vector<double>> answers;  // bridged, of checked.runs
   std::optional<RandomResponse> random;
   // Powered samples of all runs, and those without a finite answer.
@@ -99,6 +124,14 @@ struct CheckContext {
   /// "scale_factor" for a table, where no rate table is near a temperature of
   /// the runs.
   std::vector<std::string> untested_by_replay() const;
+  /// Returns to what [deg/s] the answers are rounded, 0 where that is beyond
+  /// kUndeclaredResolution.
+  double resolution() const;
+  /// Returns a judge of gains.
+  GainJudge judge() const;
+  /// Returns "" for answers that step by less than 1e-4 deg/s, else a sentence
+  /// that names the step, after a space.
+  std::string rounding_words() const;
   /// Returns by how many samples of a run the answers come late.
   std::ptrdiff_t lag_in(const Recording& run) const;
   /// Returns the indices of the runs with one of the purposes, or those of all

@@ -46,20 +46,20 @@ std::size_t held_rates(const Recording& run) {
 }  // namespace
 
 CheckResult check_true_rate(const CheckContext& context) {
-  GainJudge judge(context.scale_factor);
+  GainJudge judge = context.judge();
   std::vector<double> temperatures;
   std::size_t rates = 0;
   for (const std::size_t k : context.runs_of({RunPurpose::kRateTable})) {
     const Recording& run = *context.checked.runs[k].recording;
-    const auto plateaus = plateau_slopes(run, kTableRate, context.answers[k]);
-    for (const PlateauSlope& plateau : plateaus) {
+    const auto slopes = held_slopes(run, context.answers[k]);
+    for (const auto& [plateau, uncertainty] : slopes) {
       judge.add(
           {context.checked.full_scale, plateau.compensated / plateau.raw,
            plateau.temperature, run.time.front(), context.checked.full_scale},
-          plateau.raw / plateau.truth);
+          plateau.raw / plateau.truth, uncertainty);
       temperatures.push_back(plateau.temperature);
     }
-    if (!plateaus.empty()) rates = std::max(rates, held_rates(run));
+    if (!slopes.empty()) rates = std::max(rates, held_rates(run));
   }
   const std::size_t seen = different_values(temperatures, kSameTablePlace);
   if (judge.passed() && (seen < kLeastTemperatures || rates < kLeastRates))
@@ -78,8 +78,8 @@ CheckResult check_true_rate(const CheckContext& context) {
   else
     result.words = fmt::format(
         "On a rate table the compensator changes the scale factor to {:.6g} of "
-        "the recorded one at {:.1f} degC.",
-        judge.worst().gain, judge.worst().temperature);
+        "the recorded one at {:.1f} degC; expected {}.",
+        judge.worst().gain, judge.worst().temperature, judge.expected());
   return result;
 }
 

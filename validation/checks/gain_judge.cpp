@@ -8,15 +8,6 @@
 #include <limits>
 
 namespace beamgyro::internal {
-namespace {
-
-/// Departures of less than the resolution count as none.
-double counted(const AddedRate& found, double departure) {
-  return departure * std::abs(found.change) < kRateResolution ? 0.0 : departure;
-}
-
-}  // namespace
-
 std::string place_words(const AddedRate& found) {
   if (std::isnan(found.time))
     return fmt::format("replayed at {:.1f} degC", found.temperature);
@@ -24,6 +15,12 @@ std::string place_words(const AddedRate& found) {
   if (!std::isnan(found.temperature))
     words = fmt::format("at {:.1f} degC, ", found.temperature);
   return words + fmt::format("{:g} s into its run", found.time);
+}
+
+double GainJudge::counted(const AddedRate& found, double departure) const {
+  const double change = std::abs(found.change);
+  const double left = departure - resolution_ / change;
+  return left * change < kRateResolution ? 0.0 : left;
 }
 
 void GainJudge::keep(Worst& worst, double departure, const AddedRate& where) {
@@ -49,8 +46,10 @@ void GainJudge::add(const AddedRate& found) {
   ++count_;
 }
 
-void GainJudge::add(const AddedRate& found, double scale_factor) {
-  keep(corrected_, counted(found, std::abs(found.gain * scale_factor - 1.0)),
+void GainJudge::add(const AddedRate& found, double scale_factor,
+                    double uncertainty) {
+  const double departure = std::abs(found.gain * scale_factor - 1.0);
+  keep(corrected_, counted(found, std::max(departure - uncertainty, 0.0)),
        found);
   keep(kept_, counted(found, std::abs(found.gain - 1.0)), found);
   ++count_;
@@ -75,6 +74,12 @@ bool GainJudge::passed() const {
 
 double GainJudge::limit() const {
   return corrects() ? kCorrectedTolerance : kGainTolerance;
+}
+
+std::string GainJudge::expected() const {
+  if (curve_->empty())
+    return "1, for no run of held rates shows the scale factor";
+  return fmt::format("1, or 1 / s of a scale factor s of {}", curve_->words());
 }
 
 const AddedRate& GainJudge::worst() const { return *judged().where; }

@@ -28,15 +28,20 @@ std::string place_words(const AddedRate& found);
 /// Collects gains and judges the worst one. A compensator either keeps the
 /// rate, gain 1 within kGainTolerance, or corrects the scale factor s, gain
 /// 1 / s within kCorrectedTolerance; then it has to leave less than half of the
-/// largest departure that rate tables show. Where s is not known,
-/// ScaleFactorCurve::departure_of_corrected() counts.
+/// largest departure that held rates show. Where s is not known,
+/// ScaleFactorCurve::departure_of_corrected() counts. Two answers that are
+/// rounded to r differ by up to r more or less than they should, so r / change
+/// is taken off every departure.
 class GainJudge {
  public:
-  explicit GainJudge(const ScaleFactorCurve& curve) : curve_(&curve) {}
+  /// `resolution` r [deg/s] of the answers.
+  GainJudge(const ScaleFactorCurve& curve, double resolution)
+      : curve_(&curve), resolution_(resolution) {}
 
   void add(const AddedRate& found);
-  /// The same where the scale factor of the recorded rate is known.
-  void add(const AddedRate& found, double scale_factor);
+  /// The same where the scale factor of the recorded rate is known, within
+  /// `uncertainty` [-].
+  void add(const AddedRate& found, double scale_factor, double uncertainty);
   void add(const GainJudge& other);
   std::size_t count() const { return count_; }
 
@@ -47,6 +52,9 @@ class GainJudge {
   /// Returns the one that departs most; of those that lose all or more that of
   /// the largest rate. There must be one.
   const AddedRate& worst() const;
+  /// Returns what gains are held against: "1, or 1 / s of a scale factor s of
+  /// 1.0005 to 1.0255 at ...".
+  std::string expected() const;
 
  private:
   struct Worst {
@@ -56,7 +64,10 @@ class GainJudge {
   static void keep(Worst& worst, double departure, const AddedRate& where);
   const Worst& judged() const { return corrects() ? corrected_ : kept_; }
 
+  double counted(const AddedRate& found, double departure) const;
+
   const ScaleFactorCurve* curve_;
+  double resolution_;  // [deg/s]
   Worst kept_, corrected_;
   std::size_t count_ = 0;
 };

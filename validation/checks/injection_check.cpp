@@ -131,15 +131,17 @@ void add_sweep(const CheckContext& context, std::size_t number,
                block.rate});
 }
 
-CheckResult failed_injection(const GainJudge& judge,
+CheckResult failed_injection(const CheckContext& context,
+                             const GainJudge& judge,
                              const RandomResponse& random) {
   CheckResult result{.outcome = CheckOutcome::kFailed,
                      .value = judge.departure(),
                      .limit = judge.limit()};
   const AddedRate& worst = judge.worst();
   const std::string found = fmt::format(
-      "of {:.4g} deg/s the answers at the same time show {:.6g} ({})",
-      worst.rate, worst.gain, place_words(worst));
+      "of {:.4g} deg/s the answers at the same time show {:.6g} ({}); expected "
+      "{}",
+      worst.rate, worst.gain, place_words(worst), judge.expected());
   result.words =
       random.lag > 0.0
           ? fmt::format("Answers come {:.3g} s late: {}.", random.lag, found)
@@ -147,6 +149,7 @@ CheckResult failed_injection(const GainJudge& judge,
                 "A rate that is added to a recording does not come out "
                 "whole: {}.",
                 found);
+  result.words += context.rounding_words();
   return result;
 }
 
@@ -154,8 +157,7 @@ CheckResult failed_injection(const GainJudge& judge,
 
 CheckResult check_injection(const CheckContext& context) {
   const auto runs = context.runs_of(thermal_purposes());
-  std::vector<GainJudge> judges(runs.size() + 1,
-                                GainJudge(context.scale_factor));
+  std::vector<GainJudge> judges(runs.size() + 1, context.judge());
   context.for_each(
       runs, [&](std::size_t k) { add_held(context, runs[k], judges[k]); });
   add_sines(context, fastest_run(context), judges.back());
@@ -166,7 +168,7 @@ CheckResult check_injection(const CheckContext& context) {
     add_sweep(context,
               runs[static_cast<std::size_t>(replayed - judges.begin())],
               judges.back());
-  GainJudge all(context.scale_factor);
+  GainJudge all = context.judge();
   for (const GainJudge& judge : judges) all.add(judge);
   const std::optional<RandomResponse>& random = context.random;
   if (random)
@@ -178,15 +180,15 @@ CheckResult check_injection(const CheckContext& context) {
         "No run has an output that follows its rate, so that none could be "
         "added.");
   if (!all.passed())
-    return failed_injection(all, random.value_or(RandomResponse{}));
+    return failed_injection(context, all, random.value_or(RandomResponse{}));
   CheckResult result{
       .outcome = CheckOutcome::kPassed,
       .value = all.departure(),
       .limit = all.limit(),
       .words = fmt::format("Rates that are added to the recordings come out "
                            "whole in each of {} places: steps, sines, held for "
-                           "up to ten minutes, random.",
-                           all.count())};
+                           "up to ten minutes, random.{}",
+                           all.count(), context.rounding_words())};
   if (random &&
       std::abs(random->intercept) > std::max(random->chance, kRateResolution)) {
     result.outcome = CheckOutcome::kFailed;

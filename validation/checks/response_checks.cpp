@@ -28,13 +28,12 @@ double temperature_at(const Recording& run, std::size_t k) {
 template <class Work>
 GainJudge judged_runs(const CheckContext& context,
                       const std::vector<std::size_t>& runs, const Work& work) {
-  std::vector<GainJudge> judges(context.checked.runs.size(),
-                                GainJudge(context.scale_factor));
+  std::vector<GainJudge> judges(context.checked.runs.size(), context.judge());
   context.for_each(runs, [&](std::size_t k) {
     work(*context.checked.runs[runs[k]].recording, context.answers[runs[k]],
          judges[k]);
   });
-  GainJudge all(context.scale_factor);
+  GainJudge all = context.judge();
   for (const GainJudge& judge : judges) all.add(judge);
   return all;
 }
@@ -91,12 +90,17 @@ CheckResult check_jacobian(const CheckContext& context) {
           : fmt::format(
                 "The correction depends on the rate itself: of a small "
                 "change of the rate at {:.4g} deg/s the answer shows "
-                "{:.6g} ({}).",
-                worst.rate, worst.gain, place_words(worst));
+                "{:.6g} ({}); expected {}.{}",
+                worst.rate, worst.gain, place_words(worst), judge.expected(),
+                context.rounding_words());
   return result;
 }
 
 namespace {
+
+// Of rounding, the difference of two answers has sqrt(1/6) of a step rms; this
+// is twice that, for few samples and for rates that are rounded themselves.
+constexpr double kRoundedPair = 0.82;  // [-]
 
 /// A permutation without fixed order: k -> (k stride) mod size, with a stride
 /// near the golden section that shares no divisor with the size.
@@ -117,7 +121,7 @@ void add_plateau(const CheckContext& context, const Recording& run,
                  const SampleRange& plateau, const std::vector<double>& change,
                  const std::vector<double>& difference, Shuffled& found) {
   const std::ptrdiff_t lag = context.lag_in(run);
-  double xx = 0.0, xy = 0.0, yy = 0.0;
+  double xx = 0.0, xy = 0.0, yy = 0.0, samples = 0.0;
   for (std::size_t k = plateau.begin; k < plateau.end; ++k) {
     const auto at =
         static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) + lag);
@@ -125,12 +129,15 @@ void add_plateau(const CheckContext& context, const Recording& run,
     xx += change[k] * change[k];
     xy += change[k] * difference[at];
     yy += difference[at] * difference[at];
+    samples += 1.0;
   }
   if (!(xx > 0.0)) return;
   const double full_scale = context.checked.full_scale;
   found.gains.add({full_scale, xy / xx, temperature_at(run, plateau.begin),
                    run.time[plateau.begin], full_scale});
-  found.unexplained += std::max(yy - xy * xy / xx, 0.0);
+  const double rounding = kRoundedPair * context.resolution();
+  found.unexplained +=
+      std::max(yy - xy * xy / xx - samples * rounding * rounding, 0.0);
   found.change += xx;
 }
 
@@ -159,12 +166,12 @@ void add_shuffled(const CheckContext& context, const Recording& run,
 
 CheckResult check_shuffled_output(const CheckContext& context) {
   const auto runs = context.runs_of(thermal_purposes());
-  std::vector<Shuffled> all(runs.size(), {GainJudge(context.scale_factor)});
+  std::vector<Shuffled> all(runs.size(), {context.judge()});
   context.for_each(runs, [&](std::size_t k) {
     add_shuffled(context, *context.checked.runs[runs[k]].recording,
                  context.answers[runs[k]], all[k]);
   });
-  Shuffled sums{GainJudge(context.scale_factor)};
+  Shuffled sums{context.judge()};
   for (const Shuffled& run : all) {
     sums.gains.add(run.gains);
     sums.unexplained += run.unexplained;
@@ -185,8 +192,8 @@ CheckResult check_shuffled_output(const CheckContext& context) {
           : fmt::format(
                 "The correction changes by {:.3g} of the change of the "
                 "output when the output is shuffled among samples of "
-                "one temperature: it is not made from the temperature.",
-                value);
+                "one temperature: it is not made from the temperature.{}",
+                value, context.rounding_words());
   return result;
 }
 
