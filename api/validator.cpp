@@ -264,10 +264,15 @@ CompletedValidation Validator::validate(std::size_t threads,
   CompletedValidation done;
   ValidationResult& result = done.result;
   std::optional<WorkbenchDifference> difference;
-  const RecordedAnswering answering{*compensator, known, s.options.full_scale};
+  const DeclaredResponse& declared = s.specification.declared;
+  const auto ready = declared.ready_after > 0.0
+                         ? ready_compensator(*compensator, declared.ready_after)
+                         : nullptr;
+  const TestedCompensator& answering_one = ready ? *ready : *compensator;
+  const RecordedAnswering answering{answering_one, known, s.options.full_scale};
   if (s.options.device) {
     done.evidence =
-        device_evidence(s.qualification, s.device, *compensator, data,
+        device_evidence(s.qualification, s.device, answering_one, data,
                         known != nullptr, threads, [&](double part) {
                           if (progress) progress(share * part);
                         });
@@ -309,7 +314,7 @@ CompletedValidation Validator::validate(std::size_t threads,
   if (s.campaign)
     result.population =
         population_yield({&*s.campaign, &s.qualification, &s.specification,
-                          compensator.get(), model, known},
+                          &answering_one, model, known},
                          threads, [&](double part) {
                            if (progress) progress(share + (1 - share) * part);
                          });

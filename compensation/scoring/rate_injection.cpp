@@ -108,7 +108,7 @@ double value_at(const Column* column, std::size_t k, double without) {
 /// Appends the blocks of one replay; `difference` of its answers [deg/s].
 void append_blocks(const Recording& recording, const Injection& injection,
                    std::span<const double> difference, double full_scale,
-                   std::vector<ReplayedBlock>& blocks) {
+                   double settling, std::vector<ReplayedBlock>& blocks) {
   const Column* temperature = find_column(recording, "temperature");
   const Column* truth = find_column(recording, "true_rate");
   const std::vector<double>& rate = injection.rate;
@@ -124,14 +124,13 @@ void append_blocks(const Recording& recording, const Injection& injection,
       for (; k < stretch.end && (k == begin || (rate[k] == rate[begin] &&
                                                 number(k) == number(begin)));
            ++k) {
-        if (since[k] >= kSettlingTime &&
-            std::abs(value_at(truth, k, 0.0) + rate[k]) <=
-                kBeyond * full_scale) {
+        if (since[k] >= settling && std::abs(value_at(truth, k, 0.0) +
+                                             rate[k]) <= kBeyond * full_scale) {
           sum += difference[k];
           samples += 1.0;
         }
       }
-      if (samples > 0.0) {
+      if (samples > 0.0 && rate[begin] != 0.0) {
         blocks.push_back({recording.time[begin],
                           value_at(temperature, begin, kNone), rate[begin],
                           sum / (samples * rate[begin])});
@@ -180,23 +179,38 @@ std::optional<Recording> with_injected_rate(const Recording& recording,
   return moved;
 }
 
+void quieten(const Recording& recording, double quiet,
+             std::vector<double>& added) {
+  if (quiet <= 0.0) {
+    return;
+  }
+  for (const SampleRange& stretch : powered_stretches(recording)) {
+    const double begin = recording.time[stretch.begin];
+    for (std::size_t k = stretch.begin;
+         k < stretch.end && recording.time[k] - begin <= quiet; ++k) {
+      added[k] = 0.0;
+    }
+  }
+}
+
 std::optional<std::vector<ReplayedBlock>> replay(
     const RateEstimator& estimator, const Recording& recording,
-    std::span<const double> answers, double full_scale,
-    std::size_t first_hold) {
+    std::span<const double> answers, double full_scale, std::size_t first_hold,
+    const ReplayPauses& pauses) {
   const std::size_t samples = recording.time.size();
   if (samples == 0) {
     return std::nullopt;
   }
   const double step = usual_step(recording);
   const double length = recording.time.back() - recording.time.front() + step;
-  const double short_hold = std::max(kShortHold, 4.0 * step);
+  const double short_hold =
+      std::max({kShortHold, 4.0 * step, 2.0 * pauses.settling});
   const double long_hold =
       std::max(short_hold, std::min(kLongHold, 0.25 * length));
   std::vector<ReplayedBlock> blocks;
   for (const double hold : {short_hold, long_hold}) {
-    const Injection injection =
-        injection_of(recording, hold, full_scale, first_hold);
+    Injection injection = injection_of(recording, hold, full_scale, first_hold);
+    quieten(recording, pauses.quiet, injection.rate);
     const auto moved = with_injected_rate(recording, injection.rate);
     if (!moved) {
       return std::nullopt;
@@ -205,7 +219,8 @@ std::optional<std::vector<ReplayedBlock>> replay(
     for (std::size_t k = 0; k < samples; ++k) {
       difference[k] -= answers[k];
     }
-    append_blocks(recording, injection, difference, full_scale, blocks);
+    append_blocks(recording, injection, difference, full_scale, pauses.settling,
+                  blocks);
   }
   return blocks;
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "compensation/scoring/scale_factor.h"
 #include "dataset/recording/recording.h"
 
 namespace beamgyro::internal {
@@ -39,6 +40,17 @@ double held_rate(std::size_t hold, double largest);
 std::optional<Recording> with_injected_rate(const Recording& recording,
                                             std::span<const double> injected);
 
+/// How an estimator that filters answers may be replayed.
+struct ReplayPauses {
+  double settling = kSettlingTime;  // [s] after a step that is not judged
+  double quiet = 0.0;  // [s] after each power-on to which nothing is added
+};
+
+/// Sets to zero what is added up to `quiet` [s] after the begin of a recording
+/// and after each power-on.
+void quieten(const Recording& recording, double quiet,
+             std::vector<double>& added);
+
 /// A block of a replay, one second or less, over which the injected rate was
 /// constant.
 struct ReplayedBlock {
@@ -55,14 +67,15 @@ struct ReplayedBlock {
 /// so the result is 1 to rounding for a compensator that uses neither `output`
 /// nor `rate`.
 /// - `answers` are those of the estimator to the recording.
-/// - Left out are samples without power, within kSettlingTime after a step, and
-///   with a total true rate beyond `full_scale` [deg/s].
+/// - Left out are samples without power, within the pauses, and with a total
+///   true rate beyond `full_scale` [deg/s]. Holds last twice the settling time
+///   at least.
 /// - Saturation and the limits of the converter are not replayed.
 /// - The first hold injects held_rate(`first_hold`).
 /// Returns nothing where with_injected_rate() returns nothing.
 std::optional<std::vector<ReplayedBlock>> replay(
     const RateEstimator& estimator, const Recording& recording,
     std::span<const double> answers, double full_scale,
-    std::size_t first_hold = 0);
+    std::size_t first_hold = 0, const ReplayPauses& pauses = {});
 
 }  // namespace beamgyro::internal

@@ -54,15 +54,20 @@ std::unique_ptr<const TestedCompensator> stripped(
 
 }  // namespace
 
-double smallest_step(std::span<const double> answers, double least) {
+double smallest_step(const Recording& run, std::span<const double> answers,
+                     double ready_after, double least) {
   double smallest = HUGE_VAL;
-  for (std::size_t k = 1; k < answers.size(); ++k) {
-    const double one = std::abs(answers[k - 1]), two = std::abs(answers[k]);
-    if (!(std::min(one, two) >= least)) continue;
-    const double step = std::abs(answers[k] - answers[k - 1]);
-    if (step > kSameAnswer * std::max(one, two))
-      smallest = std::min(smallest, step);
-  }
+  for (const SampleRange& stretch : powered_stretches(run))
+    for (std::size_t k = stretch.begin + 1;
+         k < std::min(stretch.end, answers.size()); ++k) {
+      const double one = std::abs(answers[k - 1]), two = std::abs(answers[k]);
+      if (!(std::min(one, two) >= least) ||
+          run.time[k - 1] - run.time[stretch.begin] <= ready_after)
+        continue;
+      const double step = std::abs(answers[k] - answers[k - 1]);
+      if (step > kSameAnswer * std::max(one, two))
+        smallest = std::min(smallest, step);
+    }
   return smallest;
 }
 
@@ -91,7 +96,8 @@ std::vector<double> AlteredAnswers::operator()(const Recording& altered) const {
     seen_[static_cast<std::size_t>(seen.fault)] = true;
   if (missing_answers(altered, answer) > 0)
     seen_[static_cast<std::size_t>(AnswerFault::kNotFinite)] = true;
-  const double step = smallest_step(answer.rate, 0.5 * full_scale_);
+  const double step =
+      smallest_step(altered, answer.rate, ready_after_, 0.5 * full_scale_);
   double least = step_near_full_scale_;
   while (step < least &&
          !step_near_full_scale_.compare_exchange_weak(least, step)) {
@@ -160,35 +166,58 @@ CheckContext::CheckContext(const CheckedCompensator& all, std::size_t count)
       threads(count),
       scale_factor(curve_of(all)),
       without_table(stripped(all, scale_factor)),
-      altered(without_table ? *without_table : *all.compensator,
-              all.full_scale) {
+      ready(all.declared.ready_after > 0.0
+                ? ready_compensator(
+                      without_table ? *without_table : *all.compensator,
+                      all.declared.ready_after)
+                : nullptr),
+      altered(ready           ? *ready
+              : without_table ? *without_table
+                              : *all.compensator,
+              all.full_scale, all.declared.ready_after) {
   double step = HUGE_VAL;
   for (const CheckedRun& run : all.runs) {
     const Recording& recording = *run.recording;
     for (const std::uint8_t status : recording.status)
       samples += (status & kUnpowered) == 0 ? 1 : 0;
-    missing += missing_answers(recording, run.answer);
-    step = std::min(step, smallest_step(run.answer.rate));
-    answers.push_back(
-        bridged(recording, without_table ? without_table->answer(recording).rate
-                                         : run.answer.rate));
+    Answer answer = run.answer;
+    bridge_until_ready(recording, declared().ready_after, answer);
+    missing += missing_answers(recording, answer);
+    step = std::min(
+        step, smallest_step(recording, answer.rate, declared().ready_after));
+    if (without_table) answer = without_table->answer(recording);
+    answers.push_back(bridged(recording, std::move(answer.rate)));
   }
   if (std::isfinite(step)) answer_step = step;
 }
 
 double CheckContext::resolution() const {
-  return answer_step <= kUndeclaredResolution * (1.0 + 1e-9) ? answer_step
-                                                             : 0.0;
+  const bool counts = answer_step >= kNotRounded &&
+                      answer_step <= kUndeclaredResolution * (1.0 + 1e-9);
+  return std::max(declared().resolution, counts ? answer_step : 0.0);
+}
+
+ReplayPauses CheckContext::pauses(double step) const {
+  return {declared().settling(step), declared().zeroes_at_power_on};
+}
+
+std::optional<Recording> CheckContext::with_rate(
+    const Recording& run, std::vector<double>& added) const {
+  quieten(run, declared().zeroes_at_power_on, added);
+  return with_injected_rate(run, added);
 }
 
 GainJudge CheckContext::judge() const {
   return GainJudge(scale_factor, resolution());
 }
 
-std::string CheckContext::rounding_words() const {
+double CheckContext::coarsest_step() const {
   const double coarse = altered.step_near_full_scale();
-  const double step =
-      std::max(answer_step, std::isfinite(coarse) ? coarse : 0.0);
+  return std::max(answer_step, std::isfinite(coarse) ? coarse : 0.0);
+}
+
+std::string CheckContext::rounding_words() const {
+  const double step = coarsest_step();
   if (step < kNotRounded) return "";
   return fmt::format(
       " The answers are rounded to {:.3g} deg/s{}.", step,
@@ -223,7 +252,7 @@ bool CheckContext::answered() const {
 
 std::ptrdiff_t CheckContext::lag_in(const Recording& run) const {
   const double step = usual_step(run);
-  if (!random || step == 0.0) return 0;
+  if (!random || step == 0.0 || declared().filters()) return 0;
   return static_cast<std::ptrdiff_t>(std::round(random->lag / step));
 }
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "compensation/scoring/rate_injection.h"
 #include "validation/checks/checks.h"
 
 namespace beamgyro::internal {
@@ -21,10 +22,12 @@ namespace beamgyro::internal {
 /// is found by the check of missing answers alone.
 std::vector<double> bridged(const Recording& run, std::vector<double> answers);
 
-/// Returns the smallest difference [deg/s] other than rounding between
-/// neighbouring answers, both of at least `least` [deg/s]; infinite where there
-/// is none.
-double smallest_step(std::span<const double> answers, double least = 0.0);
+/// Returns the smallest difference [deg/s] other than that of numbers as they
+/// are stored between neighbouring answers, both of at least `least` [deg/s]
+/// and more than `ready_after` [s] after a power-on; infinite where there is
+/// none.
+double smallest_step(const Recording& run, std::span<const double> answers,
+                     double ready_after, double least = 0.0);
 
 /// Returns the compensator without its table of scale factors.
 Compensator without_scale_factor(Compensator compensator);
@@ -39,8 +42,11 @@ constexpr double kRateReach = 10.5;  // [K]
 /// Every member may be called from several threads at once.
 class AlteredAnswers {
  public:
-  AlteredAnswers(const TestedCompensator& compensator, double full_scale)
-      : compensator_(compensator), full_scale_(full_scale) {}
+  AlteredAnswers(const TestedCompensator& compensator, double full_scale,
+                 double ready_after)
+      : compensator_(compensator),
+        full_scale_(full_scale),
+        ready_after_(ready_after) {}
 
   std::vector<double> operator()(const Recording& altered) const;
 
@@ -57,7 +63,8 @@ class AlteredAnswers {
       static_cast<std::size_t>(AnswerFault::kCount);
 
   const TestedCompensator& compensator_;
-  double full_scale_;  // [deg/s]
+  double full_scale_;   // [deg/s]
+  double ready_after_;  // [s]
   mutable std::atomic<double> step_near_full_scale_ = HUGE_VAL;
   mutable std::array<std::atomic<bool>, kFaults> seen_ = {};
 };
@@ -111,6 +118,8 @@ struct CheckContext {
   // A trained compensator whose table of scale factors no run tests is asked
   // without that table, so that its bias is judged all the same.
   std::unique_ptr<const TestedCompensator> without_table;
+  // With the answers before it is ready bridged, where that is declared.
+  std::unique_ptr<const TestedCompensator> ready;
   AlteredAnswers altered;
   double answer_step = 0.0;  // [deg/s], smallest_step() of all answers, or 0
   std::vector<std::vector<double>> answers;  // bridged, of checked.runs
@@ -124,11 +133,20 @@ struct CheckContext {
   /// "scale_factor" for a table, where no rate table is near a temperature of
   /// the runs.
   std::vector<std::string> untested_by_replay() const;
-  /// Returns to what [deg/s] the answers are rounded, 0 where that is beyond
-  /// kUndeclaredResolution.
+  /// Returns to what [deg/s] the answers are rounded: as declared, or
+  /// answer_step, unless that is beyond kUndeclaredResolution.
   double resolution() const;
+  const DeclaredResponse& declared() const { return checked.declared; }
+  /// Returns what a replay leaves out of a run with samples `step` [s] apart.
+  ReplayPauses pauses(double step) const;
+  /// Returns a run with a rate added to it, which is set to zero where the
+  /// compensator may take it for its bias; nothing as with_injected_rate().
+  std::optional<Recording> with_rate(const Recording& run,
+                                     std::vector<double>& added) const;
   /// Returns a judge of gains.
   GainJudge judge() const;
+  /// Returns the largest step [deg/s] of the answers that was seen.
+  double coarsest_step() const;
   /// Returns "" for answers that step by less than 1e-4 deg/s, else a sentence
   /// that names the step, after a space.
   std::string rounding_words() const;
@@ -167,8 +185,25 @@ CheckResult check_causality(const CheckContext& context);
 CheckResult check_answers(const CheckContext& context);
 CheckResult check_finite(const CheckContext& context);
 CheckResult check_reset(const CheckContext& context);
+CheckResult check_declared(const CheckContext& context);
 CheckResult check_output_stuck(const CheckContext& context);
 CheckResult check_real_time(const CheckContext& context);
+
+/// The response of the answers to a sine that was added.
+struct SineResponse {
+  double frequency;  // [Hz]
+  double gain;       // [-]
+  double delay;      // [s]
+};
+
+/// Returns the responses of a run.
+std::vector<SineResponse> sine_responses(const CheckContext& context,
+                                         std::size_t number);
+
+/// Returns, for a compensator that fails and declares nothing, what it may
+/// declare to pass; nothing where no declaration explains it.
+std::optional<DeclaredResponse> possible_declaration(
+    const CheckContext& context);
 
 /// Returns a result without a figure; `why` is a sentence.
 CheckResult not_tested(std::string why);

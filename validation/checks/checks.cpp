@@ -99,6 +99,9 @@ constexpr std::array kChecks{
               "forget everything at a reset", "a run of 100 samples"},
              check_reset,
              Stage::kReset},
+    CheckRow{{"declared", "", "declare what the answers are like",
+              "a specification with [declared]", true},
+             check_declared},
     CheckRow{{"output_stuck",
               "longest time with the same answer while the output changes [s]",
               "look at where the answers stay the same", kTurningRun},
@@ -108,6 +111,10 @@ constexpr std::array kChecks{
               "a library or a command", true},
              check_real_time,
              Stage::kFaults}};
+
+constexpr std::array<std::string_view, 6> kExplainedByResponse = {
+    "jacobian",          "injection", "shuffled_output",
+    "allan_fingerprint", "finite",    "output_stuck"};
 
 constexpr const char* kTooFewAnswers =
     "Too many answers are missing: see the checks \"answers\" and \"finite\".";
@@ -120,6 +127,23 @@ std::string obstacle_to_comparison(const CheckContext& context,
     if (result.outcome == CheckOutcome::kFailed)
       return fmt::format("See the check \"{}\" first.", result.name);
   return "";
+}
+
+// Names, in the first check that failed by the response to added rates, the
+// declaration with which it would not.
+void suggest_declaration(const CheckContext& context,
+                         std::vector<CheckResult>& results) {
+  if (!context.declared().empty() || context.checked.trained != nullptr) return;
+  const auto failed = std::ranges::find_if(results, [](const CheckResult& one) {
+    return one.outcome == CheckOutcome::kFailed &&
+           std::ranges::count(kExplainedByResponse, one.name) > 0;
+  });
+  if (failed == results.end()) return;
+  if (const auto declared = possible_declaration(context))
+    failed->words += fmt::format(
+        " With [declared] {} in the specification this would pass: declare it "
+        "where it is intended.",
+        declared->words());
 }
 
 }  // namespace
@@ -151,6 +175,7 @@ std::vector<CheckResult> run_checks(const CheckedCompensator& checked,
   if (obstacle.empty()) context.random = random_response(context);
   run_stage(Stage::kComparison, obstacle);
   run_stage(Stage::kFaults, "");
+  suggest_declaration(context, results);
   return results;
 }
 

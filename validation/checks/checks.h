@@ -11,6 +11,7 @@
 #include "compensation/compensator/compensator.h"
 #include "compensation/rows/run_source.h"
 #include "dataset/recording/recording.h"
+#include "validation/checks/declared_response.h"
 #include "validation/evidence/evidence.h"
 #include "validation/external/tested_compensator.h"
 
@@ -36,7 +37,8 @@ struct CheckedCompensator {
   // The same compensator as training wrote it, if it is one of a file.
   const Compensator* trained = nullptr;  // not owned
   const TrainingSet* set =
-      nullptr;  // of the runs that have a device; not owned
+      nullptr;                     // of the runs that have a device; not owned
+  DeclaredResponse declared = {};  // what its maker states of its answers
 };
 
 enum class CheckOutcome {

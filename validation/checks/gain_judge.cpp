@@ -19,7 +19,9 @@ std::string place_words(const AddedRate& found) {
 
 double GainJudge::counted(const AddedRate& found, double departure) const {
   const double change = std::abs(found.change);
-  const double left = departure - resolution_ / change;
+  const double left =
+      departure - resolution_ * (found.of_rounding > 0.0 ? found.of_rounding
+                                                         : 1.0 / change);
   return left * change < kRateResolution ? 0.0 : left;
 }
 

@@ -20,6 +20,9 @@ struct AddedRate {
   double temperature;  // [degC]; NaN where it is not measured
   double time;         // [s]; NaN in a sweep over temperature
   double change;       // [deg/s], what was added
+  // Largest departure that answers rounded to 1 deg/s show [1/(deg/s)]; 0: that
+  // of two answers, 1 / change.
+  double of_rounding = 0.0;
 };
 
 /// Returns where a gain was found: "at 25.1 degC, 360 s into its run".
@@ -30,8 +33,8 @@ std::string place_words(const AddedRate& found);
 /// 1 / s within kCorrectedTolerance; then it has to leave less than half of the
 /// largest departure that held rates show. Where s is not known,
 /// ScaleFactorCurve::departure_of_corrected() counts. Two answers that are
-/// rounded to r differ by up to r more or less than they should, so r / change
-/// is taken off every departure.
+/// rounded to r differ by up to r more or less than they should, so r times
+/// AddedRate::of_rounding is taken off every departure.
 class GainJudge {
  public:
   /// `resolution` r [deg/s] of the answers.

@@ -21,9 +21,11 @@ namespace {
 constexpr double kLowestSine = 0.01;   // [Hz]
 constexpr double kHighestSine = 20.0;  // [Hz]
 constexpr double kSinesPerDecade = 3.0;
-constexpr double kSinePeriods = 4.0;  // the first one settles
-constexpr double kLeastSine = 20.0;   // samples
-constexpr double kPartOfRate = 0.4;   // [-], of the sampling rate
+constexpr double kSinePeriods = 4.0;        // the first one settles
+constexpr double kLeastSine = 20.0;         // samples
+constexpr double kPartOfRate = 0.4;         // [-], of the sampling rate
+constexpr double kDeclaredTolerance = 0.1;  // [-], of a declared response
+constexpr double kSweepPeriod = 1.0;        // [s], of samples of a sweep
 
 /// The frequencies [Hz] that a run can show.
 std::vector<double> sine_frequencies(const Recording& run) {
@@ -60,36 +62,86 @@ std::vector<SineSegment> sine_segments(const Recording& run) {
   return segments;
 }
 
-/// Adds the share of each sine in the answers that is in phase with it.
+/// What the answers show of a sine: in phase, a quarter of a period late, and
+/// of which size, summed over its samples.
+struct SineSums {
+  double in_phase = 0.0, late = 0.0, square = 0.0;
+
+  double gain() const { return std::hypot(in_phase, late) / square; }
+  double delay(double frequency) const {
+    return std::atan2(late, in_phase) / (2.0 * std::numbers::pi * frequency);
+  }
+};
+
+/// A sine that was added, with its answers.
+struct SineSeen {
+  SineSegment sine;
+  std::size_t settled;  // its first sample that counts
+  SineSums sums;
+};
+
+std::vector<SineSeen> sines_seen(const CheckContext& context,
+                                 std::size_t number, double amplitude) {
+  const Recording& run = *context.checked.runs[number].recording;
+  std::vector<double> added(run.time.size(), 0.0), late = added;
+  const auto segments = sine_segments(run);
+  for (const SineSegment& sine : segments)
+    for (std::size_t k = sine.begin; k < sine.end; ++k) {
+      const double phase = 2.0 * std::numbers::pi * sine.frequency *
+                           (run.time[k] - run.time[sine.begin]);
+      added[k] = amplitude * std::sin(phase);
+      late[k] = -amplitude * std::cos(phase);
+    }
+  const auto found = seen_of_added(context, number, std::move(added));
+  if (!found) return {};
+  std::vector<SineSeen> all;
+  for (const SineSegment& sine : segments) {
+    SineSeen seen{sine, sine.begin, {}};
+    seen.settled += static_cast<std::size_t>(
+        static_cast<double>(sine.end - sine.begin) / kSinePeriods);
+    for (std::size_t k = seen.settled; k < sine.end; ++k) {
+      // A sample that was set to zero after a power-on does not count.
+      if (!is_powered_at(run, k) || found->added[k] == 0.0) continue;
+      seen.sums.square += found->added[k] * found->added[k];
+      seen.sums.in_phase += found->added[k] * found->seen[k];
+      seen.sums.late += late[k] * found->seen[k];
+    }
+    if (seen.sums.square > 0.0) all.push_back(seen);
+  }
+  return all;
+}
+
+/// The share that comes out, or where a filter is declared what the bounds
+/// leave of it: 1 for gains and delays within them, beyond the bandwidth, and
+/// beyond the frequency whose half period is the declared delay.
+double share_of_sine(const DeclaredResponse& declared, const SineSeen& seen) {
+  const SineSums& sums = seen.sums;
+  const double f = seen.sine.frequency;
+  if (!declared.filters()) return sums.in_phase / sums.square;
+  if (f * declared.delay > 0.5 || f > declared.bandwidth.value_or(f))
+    return 1.0;
+  const double delay = sums.delay(f);
+  const double late = std::max(delay - declared.most_delay(f), -delay);
+  const double phase = std::clamp(2.0 * std::numbers::pi * f * late, 0.0,
+                                  0.5 * std::numbers::pi);
+  const double departure = std::max({declared.least_gain(f) - sums.gain(),
+                                     sums.gain() - 1.0, std::sin(phase)});
+  return departure <= kDeclaredTolerance ? 1.0 : 1.0 - departure;
+}
+
+/// Adds the share of each sine that comes out of the answers.
 void add_sines(const CheckContext& context, std::size_t number,
                GainJudge& judge) {
   const Recording& run = *context.checked.runs[number].recording;
   const double amplitude = kAddedShare * context.checked.full_scale;
-  std::vector<double> added(run.time.size(), 0.0);
-  const auto segments = sine_segments(run);
-  for (const SineSegment& sine : segments)
-    for (std::size_t k = sine.begin; k < sine.end; ++k)
-      added[k] = amplitude * std::sin(2.0 * std::numbers::pi * sine.frequency *
-                                      (run.time[k] - run.time[sine.begin]));
-  const auto found = seen_of_added(context, number, std::move(added));
-  if (!found) return;
   const Column* temperature = find_column(run, "temperature");
-  for (const SineSegment& sine : segments) {
-    double xx = 0.0, xy = 0.0;
-    const std::size_t settled =
-        sine.begin +
-        static_cast<std::size_t>(static_cast<double>(sine.end - sine.begin) /
-                                 kSinePeriods);
-    for (std::size_t k = settled; k < sine.end; ++k) {
-      if (!is_powered_at(run, k)) continue;
-      xx += found->added[k] * found->added[k];
-      xy += found->added[k] * found->seen[k];
-    }
-    if (xx > 0.0)
-      judge.add({amplitude, xy / xx,
-                 temperature ? temperature->values[settled] : std::nan(""),
-                 run.time[settled], amplitude});
-  }
+  for (const SineSeen& seen : sines_seen(context, number, amplitude))
+    judge.add({.rate = amplitude,
+               .gain = share_of_sine(context.declared(), seen),
+               .temperature = temperature ? temperature->values[seen.settled]
+                                          : std::nan(""),
+               .time = run.time[seen.settled],
+               .change = amplitude});
 }
 
 void add_held(const CheckContext& context, std::size_t number,
@@ -97,7 +149,7 @@ void add_held(const CheckContext& context, std::size_t number,
   const Recording& run = *context.checked.runs[number].recording;
   const auto blocks =
       replay(std::cref(context.altered), run, context.answers[number],
-             context.checked.full_scale);
+             context.checked.full_scale, 0, context.pauses(usual_step(run)));
   for (const ReplayedBlock& block :
        blocks.value_or(std::vector<ReplayedBlock>()))
     judge.add({block.rate, block.retained, block.temperature, block.time,
@@ -125,7 +177,8 @@ void add_sweep(const CheckContext& context, std::size_t number,
   const auto blocks = replays_over_temperature(
       estimator, *context.checked.runs[number].recording, *range,
       context.checked.full_scale,
-      trained != nullptr ? kSweepReplays : kSweepReplaysOfProgram);
+      trained != nullptr ? kSweepReplays : kSweepReplaysOfProgram,
+      context.pauses(kSweepPeriod));
   for (const ReplayedBlock& block : blocks)
     judge.add({block.rate, block.retained, block.temperature, std::nan(""),
                block.rate});
@@ -155,6 +208,16 @@ CheckResult failed_injection(const CheckContext& context,
 
 }  // namespace
 
+std::vector<SineResponse> sine_responses(const CheckContext& context,
+                                         std::size_t number) {
+  std::vector<SineResponse> all;
+  for (const SineSeen& seen :
+       sines_seen(context, number, kAddedShare * context.checked.full_scale))
+    all.push_back({seen.sine.frequency, seen.sums.gain(),
+                   seen.sums.delay(seen.sine.frequency)});
+  return all;
+}
+
 CheckResult check_injection(const CheckContext& context) {
   const auto runs = context.runs_of(thermal_purposes());
   std::vector<GainJudge> judges(runs.size() + 1, context.judge());
@@ -170,7 +233,9 @@ CheckResult check_injection(const CheckContext& context) {
               judges.back());
   GainJudge all = context.judge();
   for (const GainJudge& judge : judges) all.add(judge);
-  const std::optional<RandomResponse>& random = context.random;
+  // A rate that is new at each sample lies beyond what a filter promises.
+  const std::optional<RandomResponse> random =
+      context.declared().filters() ? std::nullopt : context.random;
   if (random)
     all.add({kAddedShare * context.checked.full_scale, random->gain,
              random->temperature, random->time,

@@ -47,7 +47,7 @@ std::optional<AddedAndSeen> seen_of_added(const CheckContext& context,
                                           std::size_t number,
                                           std::vector<double> added) {
   const Recording& run = *context.checked.runs[number].recording;
-  const auto moved = with_injected_rate(run, added);
+  const auto moved = context.with_rate(run, added);
   if (!moved) return std::nullopt;
   AddedAndSeen result{std::move(added), context.altered(*moved)};
   for (std::size_t k = 0; k < result.seen.size(); ++k)

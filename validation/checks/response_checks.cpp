@@ -15,9 +15,8 @@
 namespace beamgyro::internal {
 namespace {
 
-constexpr double kJacobianHold = 4.0;    // [s]
-constexpr double kJacobianStep = 0.01;   // [-], of full scale
-constexpr double kJacobianSettle = 1.0;  // [s]
+constexpr double kJacobianHold = 4.0;   // [s]
+constexpr double kJacobianStep = 0.01;  // [-], of full scale
 
 double temperature_at(const Recording& run, std::size_t k) {
   const Column* temperature = find_column(run, "temperature");
@@ -43,10 +42,13 @@ const std::string kNoInjection =
 
 /// Adds d(answer)/d(rate) at rates held in turn over a run, by the difference
 /// between two of them.
-void add_jacobian(const AlteredAnswers& answers, const Recording& run,
-                  double full_scale, GainJudge& judge) {
+void add_jacobian(const CheckContext& context, const Recording& run,
+                  GainJudge& judge) {
+  const double full_scale = context.checked.full_scale;
   const double step = usual_step(run);
-  const double hold = std::max(kJacobianHold, 4.0 * step);
+  const ReplayPauses pauses = context.pauses(step);
+  const double hold =
+      std::max({kJacobianHold, 4.0 * step, 2.0 * pauses.settling});
   const std::size_t samples = run.time.size();
   std::vector<double> rate(samples), moved(samples), since(samples);
   for (std::size_t k = 0; k < samples; ++k) {
@@ -56,12 +58,14 @@ void add_jacobian(const AlteredAnswers& answers, const Recording& run,
     rate[k] = held_rate(static_cast<std::size_t>(number), full_scale);
     moved[k] = rate[k] - std::copysign(kJacobianStep * full_scale, rate[k]);
   }
-  const auto at_rate = with_injected_rate(run, rate);
-  const auto at_moved = with_injected_rate(run, moved);
+  const auto at_rate = context.with_rate(run, rate);
+  const auto at_moved = context.with_rate(run, moved);
   if (!at_rate || !at_moved) return;
-  const std::vector<double> one = answers(*at_rate), two = answers(*at_moved);
+  const std::vector<double> one = context.altered(*at_rate),
+                            two = context.altered(*at_moved);
   for (std::size_t k = 0; k < samples; ++k)
-    if ((run.status[k] & kUnpowered) == 0 && since[k] >= kJacobianSettle)
+    if ((run.status[k] & kUnpowered) == 0 && since[k] >= pauses.settling &&
+        rate[k] != 0.0)
       judge.add({rate[k], (one[k] - two[k]) / (rate[k] - moved[k]),
                  temperature_at(run, k), run.time[k], rate[k] - moved[k]});
 }
@@ -73,7 +77,7 @@ CheckResult check_jacobian(const CheckContext& context) {
   const GainJudge judge =
       judged_runs(context, context.runs_of(thermal_purposes()),
                   [&](const Recording& run, const auto&, GainJudge& found) {
-                    add_jacobian(context.altered, run, full_scale, found);
+                    add_jacobian(context, run, found);
                   });
   if (judge.count() == 0) return not_tested(kNoInjection);
   CheckResult result{
@@ -117,15 +121,30 @@ struct Shuffled {
   double unexplained = 0.0, change = 0.0;  // [(deg/s)^2], sums of squares
 };
 
+/// How many samples are moved together: one, or where a filter is declared so
+/// many that it settles within them.
+std::size_t samples_moved(const CheckContext& context, const Recording& run) {
+  const double step = usual_step(run);
+  if (!context.declared().filters() || step == 0.0) return 1;
+  return static_cast<std::size_t>(
+      std::ceil(3.0 * context.pauses(step).settling / step));
+}
+
 void add_plateau(const CheckContext& context, const Recording& run,
                  const SampleRange& plateau, const std::vector<double>& change,
                  const std::vector<double>& difference, Shuffled& found) {
   const std::ptrdiff_t lag = context.lag_in(run);
-  double xx = 0.0, xy = 0.0, yy = 0.0, samples = 0.0;
+  const std::size_t moved = samples_moved(context, run);
+  const double settling = context.pauses(usual_step(run)).settling;
+  double x = 0.0, xx = 0.0, xy = 0.0, yy = 0.0, samples = 0.0;
   for (std::size_t k = plateau.begin; k < plateau.end; ++k) {
     const auto at =
         static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) + lag);
-    if (!is_powered_at(run, at)) continue;
+    const std::size_t first = k - (k - plateau.begin) % moved;
+    if (!is_powered_at(run, at) ||
+        (moved > 1 && run.time[k] - run.time[first] < settling))
+      continue;
+    x += std::abs(change[k]);
     xx += change[k] * change[k];
     xy += change[k] * difference[at];
     yy += difference[at] * difference[at];
@@ -133,12 +152,31 @@ void add_plateau(const CheckContext& context, const Recording& run,
   }
   if (!(xx > 0.0)) return;
   const double full_scale = context.checked.full_scale;
-  found.gains.add({full_scale, xy / xx, temperature_at(run, plateau.begin),
-                   run.time[plateau.begin], full_scale});
+  found.gains.add({.rate = full_scale,
+                   .gain = xy / xx,
+                   .temperature = temperature_at(run, plateau.begin),
+                   .time = run.time[plateau.begin],
+                   .change = full_scale,
+                   .of_rounding = x / xx});
   const double rounding = kRoundedPair * context.resolution();
   found.unexplained +=
       std::max(yy - xy * xy / xx - samples * rounding * rounding, 0.0);
   found.change += xx;
+}
+
+/// The change of the rate of each sample of a plateau when groups of `moved`
+/// samples change places: of one sample its own, of more their means.
+void add_changes(const std::vector<double>& rate, const SampleRange& plateau,
+                 std::size_t moved, std::vector<double>& change) {
+  const std::size_t groups = plateau.size() / moved;
+  if (groups == 0) return;
+  std::vector<double> means(groups, 0.0);
+  for (std::size_t k = 0; k < groups * moved; ++k)
+    means[k / moved] += rate[plateau.begin + k] / static_cast<double>(moved);
+  const std::size_t stride = golden_stride(groups);
+  for (std::size_t k = 0; k < groups * moved; ++k)
+    change[plateau.begin + k] =
+        means[k / moved * stride % groups] - means[k / moved];
 }
 
 void add_shuffled(const CheckContext& context, const Recording& run,
@@ -146,14 +184,10 @@ void add_shuffled(const CheckContext& context, const Recording& run,
   const auto& rate = column_values(run, "rate");
   const auto plateaus = temperature_plateaus(run);
   std::vector<double> change(run.time.size(), 0.0);
-  for (const SampleRange& plateau : plateaus) {
-    const std::size_t size = plateau.size();
-    const std::size_t stride = golden_stride(size);
-    for (std::size_t k = 0; k < size; ++k)
-      change[plateau.begin + k] =
-          rate[plateau.begin + k * stride % size] - rate[plateau.begin + k];
-  }
-  const auto shuffled = with_injected_rate(run, change);
+  const std::size_t moved = samples_moved(context, run);
+  for (const SampleRange& plateau : plateaus)
+    add_changes(rate, plateau, moved, change);
+  const auto shuffled = context.with_rate(run, change);
   if (!shuffled) return;
   std::vector<double> difference = context.altered(*shuffled);
   for (std::size_t k = 0; k < difference.size(); ++k)

@@ -85,12 +85,14 @@ Recording temperature_sweep(const Recording& recording,
 
 std::vector<ReplayedBlock> replays_over_temperature(
     const RateEstimator& estimator, const Recording& recording,
-    const TemperatureRange& range, double full_scale, std::size_t replays) {
+    const TemperatureRange& range, double full_scale, std::size_t replays,
+    const ReplayPauses& pauses) {
   const Recording sweep = temperature_sweep(recording, range);
   const std::vector<double> answers = estimator(sweep);
   std::vector<ReplayedBlock> all;
   for (std::size_t first = 0; first < replays; ++first) {
-    const auto blocks = replay(estimator, sweep, answers, full_scale, first);
+    const auto blocks =
+        replay(estimator, sweep, answers, full_scale, first, pauses);
     if (!blocks) return {};
     all.insert(all.end(), blocks->begin(), blocks->end());
   }

@@ -31,6 +31,7 @@ constexpr std::size_t kSweepReplaysOfProgram = 2;
 /// samples. Returns none where replay() returns nothing.
 std::vector<ReplayedBlock> replays_over_temperature(
     const RateEstimator& estimator, const Recording& recording,
-    const TemperatureRange& range, double full_scale, std::size_t replays);
+    const TemperatureRange& range, double full_scale, std::size_t replays,
+    const ReplayPauses& pauses);
 
 }  // namespace beamgyro::internal

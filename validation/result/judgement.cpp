@@ -390,6 +390,7 @@ void judge(const JudgedBy& by, const DeviceEvidence& found, std::size_t threads,
   checked.trained = by.trained;
   if (by.trained != nullptr) checked.provenance = &by.trained->provenance;
   checked.set = by.set;
+  checked.declared = by.specification.declared;
   result.checks = run_checks(checked, threads);
   result.shared_seeds = shared_seeds(by.trained, found);
   decide_on(by.specification, result);

@@ -64,6 +64,20 @@ std::vector<std::string> better_than(const ConfigTable& root) {
   return names;
 }
 
+DeclaredResponse declared_response(const ConfigTable& root) {
+  const ConfigTable table = root.table_or_empty("declared");
+  DeclaredResponse declared;
+  // Slower answers would leave nothing to judge by rates held for seconds.
+  declared.bandwidth = table.optional_number("bandwidth_Hz", {1.0, 1e5});
+  declared.delay = table.number_or("delay_s", 0.0, {0.0, 0.5});
+  declared.ready_after = table.number_or("ready_after_s", 0.0, {0.0, 60.0});
+  declared.zeroes_at_power_on =
+      table.number_or("zeroes_at_power_on_s", 0.0, {0.0, 60.0});
+  declared.resolution =
+      table.number_or("resolution_deg_per_s", 0.0, {0.0, 1.0});
+  return declared;
+}
+
 SpecificationFile specification_of(const ConfigDocument& document) {
   const ConfigTable& root = document.root();
   SpecificationFile file;
@@ -79,6 +93,7 @@ SpecificationFile specification_of(const ConfigDocument& document) {
   file.may_leave_untested =
       root.choice_or("not_tested", "is undecided",
                      {"is undecided", kDoesNotDecide}) == kDoesNotDecide;
+  file.declared = declared_response(root);
   document.reject_unknown_keys();
   if (file.limits.empty() && file.better_than.empty())
     root.fail("limits", "empty, must limit one metric or more");

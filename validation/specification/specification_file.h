@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "validation/checks/declared_response.h"
 #include "validation/specification/decision.h"
 #include "validation/specification/limit.h"
 
@@ -20,7 +21,8 @@ struct SpecificationFile {
   std::vector<std::string> better_than = {};
   // Whether a check that no run tests leaves the verdict as it is.
   bool may_leave_untested = false;
-  std::string text;  // byte for byte as read
+  DeclaredResponse declared = {};  // how the compensator answers on purpose
+  std::string text;                // byte for byte as read
 };
 
 /// Reads a file of limits. Throws std::invalid_argument with file, line and
@@ -30,7 +32,8 @@ struct SpecificationFile {
 /// - a limit without `max` and `min`, one with `min` above `max`, and one
 ///   without a source;
 /// - no limit and nothing that it has to be better than;
-/// - a risk outside (0, 0.5].
+/// - a risk outside (0, 0.5];
+/// - a declared figure that is out of range.
 SpecificationFile read_specification_file(const std::filesystem::path& file);
 
 /// The same for a text in memory, called `name` in messages.
