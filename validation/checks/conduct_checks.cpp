@@ -120,26 +120,60 @@ CheckResult check_hold_out(const CheckContext& context) {
 
 namespace {
 
-/// The run with the fewest samples that are enough to cut.
-const Recording* shortest_run(const CheckContext& context) {
-  constexpr std::size_t kEnough = 100;
-  const Recording* shortest = nullptr;
-  for (const CheckedRun& run : context.checked.runs) {
-    const std::size_t size = run.recording->time.size();
-    if (size >= kEnough &&
-        (shortest == nullptr || size < shortest->time.size()))
-      shortest = run.recording;
-  }
-  return shortest;
+constexpr std::size_t kEnough = 100;  // samples, to cut a run
+
+/// The runs that conduct is tried on: the one with the fewest samples, the one
+/// over temperature and the one of power cycles that last longest.
+std::vector<const CheckedRun*> tried_runs(const CheckContext& context) {
+  const auto& runs = context.checked.runs;
+  const auto chosen = [&](const auto& is_one, const auto& is_better) {
+    const CheckedRun* best = nullptr;
+    for (const CheckedRun& run : runs)
+      if (run.recording->time.size() >= kEnough && is_one(run) &&
+          (best == nullptr || is_better(*run.recording, *best->recording)))
+        best = &run;
+    return best;
+  };
+  const auto fewer = [](const Recording& one, const Recording& other) {
+    return one.time.size() < other.time.size();
+  };
+  const auto longer = [](const Recording& one, const Recording& other) {
+    return one.time.back() - one.time.front() >
+           other.time.back() - other.time.front();
+  };
+  const auto thermal = thermal_purposes();
+  std::vector<const CheckedRun*> tried;
+  for (const CheckedRun* run :
+       {chosen([](const CheckedRun&) { return true; }, fewer),
+        chosen(
+            [&](const CheckedRun& run) {
+              return std::ranges::count(thermal, run.purpose) > 0;
+            },
+            longer),
+        chosen(
+            [](const CheckedRun& run) {
+              return run.purpose == RunPurpose::kPowerCycle;
+            },
+            longer)})
+    if (run != nullptr && std::ranges::count(tried, run) == 0)
+      tried.push_back(run);
+  return tried;
 }
 
 const std::string kTooShort = "Every run is shorter than 100 samples.";
 
-CheckResult seen_result(const std::optional<SeenFault>& seen,
-                        const std::string& passed) {
-  return count_result(
-      seen ? 1 : 0, passed,
-      seen ? fmt::format("The compensator {}.", seen->words) : "");
+/// The first fault that `find` sees in tried_runs().
+template <class Find>
+CheckResult tried_result(const CheckContext& context, const Find& find,
+                         const std::string& passed) {
+  const auto tried = tried_runs(context);
+  if (tried.empty()) return not_tested(kTooShort);
+  for (const CheckedRun* run : tried)
+    if (const auto seen = find(*context.checked.compensator, *run->recording))
+      return count_result(
+          1, "",
+          fmt::format("In {} the compensator {}.", run->name, seen->words));
+  return count_result(0, passed, "");
 }
 
 }  // namespace
@@ -155,20 +189,16 @@ CheckResult check_causality(const CheckContext& context) {
           fmt::format("{} was fitted and held out at once: what was "
                       "chosen by it has seen the answer.",
                       *leaked));
-  const Recording* run = shortest_run(context);
-  if (run == nullptr) return not_tested(kTooShort);
-  return seen_result(later_samples_used(*context.checked.compensator, *run),
-                     "No answer changes with a later sample.");
+  return tried_result(context, later_samples_used,
+                      "No answer changes with a later sample.");
 }
 
 CheckResult check_reset(const CheckContext& context) {
   const CheckResult given =
       fault_result(context, {AnswerFault::kKeepsState}, "");
   if (!given.passed()) return given;
-  const Recording* run = shortest_run(context);
-  if (run == nullptr) return not_tested(kTooShort);
-  return seen_result(state_kept_over_reset(*context.checked.compensator, *run),
-                     "The same run after a reset has the same answers.");
+  return tried_result(context, state_kept_over_reset,
+                      "The same run after a reset has the same answers.");
 }
 
 CheckResult check_answers(const CheckContext& context) {

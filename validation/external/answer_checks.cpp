@@ -109,24 +109,20 @@ std::optional<SeenFault> state_kept_over_reset(
 std::optional<SeenFault> later_samples_used(
     const TestedCompensator& compensator, const Recording& run) {
   const Answer whole = compensator.answer(run);
-  const std::size_t end = place_after(run, 1.0 / 3.0);
-  const std::size_t begin = place_after(run, 2.0 / 3.0);
-  const std::pair<Recording, const char*> others[] = {
-      {measured_before(run, end), "are missing"},
-      {changed_from(run, begin), "are changed"}};
-  const std::size_t borders[] = {end, begin};
-  for (std::size_t k = 0; k < 2; ++k) {
-    const auto& [other, what] = others[k];
-    const Answer answer = compensator.answer(other);
+  for (const double share : {1.0 / 3.0, 2.0 / 3.0, 0.7, 0.15}) {
+    const std::size_t border = place_after(run, share);
+    const bool cut = share == 1.0 / 3.0 || share == 0.7;
+    const Answer answer = compensator.answer(cut ? measured_before(run, border)
+                                                 : changed_from(run, border));
     if (any_fault({&whole, &answer})) return std::nullopt;
-    const auto at = first_difference(run, whole, answer, borders[k]);
+    const auto at = first_difference(run, whole, answer, border);
     if (!at) continue;
     return SeenFault{
         AnswerFault::kUsesLaterSamples, *at,
         fmt::format("uses later samples: at {} it answers {} when the samples "
                     "from {} on {}",
                     sample_words(run, *at), answers_words(whole, answer, *at),
-                    borders[k], what)};
+                    border, cut ? "are missing" : "are changed")};
   }
   return std::nullopt;
 }

@@ -13,8 +13,9 @@ namespace beamgyro::internal {
 std::optional<SeenFault> state_kept_over_reset(
     const TestedCompensator& compensator, const Recording& run);
 
-/// Answers the run as it is, cut off after a third of its powered samples, and
-/// with every measured variable changed after two thirds. Returns a fault
+/// Answers the run as it is, cut off after a third and after 0.7 of its powered
+/// samples, and with every measured variable changed after two thirds and after
+/// 0.15. Returns a fault
 /// kUsesLaterSamples when a bit of an answer before the cut or the change
 /// differs; nothing otherwise, or when one of the answers has a fault of its
 /// own.

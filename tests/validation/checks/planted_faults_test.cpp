@@ -175,6 +175,32 @@ TEST(PlantedFaults, StateThatIsKeptOverAReset) {
   EXPECT_EQ(failed(keeps), Names{"reset"});
 }
 
+// It smooths over a minute and begins and ends with zero, as a convolution over
+// the valid part does: short runs are all edge, long ones are not.
+TEST(PlantedFaults, ADerivativeFromBothSides) {
+  const auto centred = [](const Recording& run) {
+    std::vector<double> answers = sound(run);
+    const auto& T = column_values(run, "temperature");
+    if (run.time.size() < 15000) return answers;
+    for (std::size_t k = 300; k + 300 < answers.size(); ++k)
+      answers[k] -= 0.01 * (T[k + 300] - T[k - 300]);
+    return answers;
+  };
+  EXPECT_EQ(failed(centred), Names{"causality"});
+}
+
+// What it has learnt in long runs it keeps.
+TEST(PlantedFaults, StateThatALongRunLeaves) {
+  const auto learnt = std::make_shared<double>(0.0);
+  const auto keeps = [learnt](const Recording& run) {
+    std::vector<double> answers = sound(run);
+    for (double& value : answers) value -= *learnt;
+    if (run.time.back() > 1700.0) *learnt += 1e-5;
+    return answers;
+  };
+  EXPECT_EQ(failed(keeps), Names{"reset"});
+}
+
 TEST(PlantedFaults, PeekingOneSampleAhead) {
   const auto peeks = [](const Recording& run) {
     std::vector<double> answers = sound(run);
@@ -309,8 +335,8 @@ std::vector<double> perfect(const Recording& run) {
   const auto& temperature = column_values(run, "temperature");
   const auto is_of_run = [&](const SimulatedRun& known) {
     const auto& T = column_values(known.recording, "temperature");
-    return temperature.size() >= 3000 &&
-           std::equal(T.begin(), T.begin() + 3000, temperature.begin());
+    return temperature.size() >= 1000 &&
+           std::equal(T.begin(), T.begin() + 1000, temperature.begin());
   };
   const auto known = std::ranges::find_if(simulated_runs(), is_of_run);
   if (known == simulated_runs().end()) return column_values(run, "rate");
