@@ -205,6 +205,7 @@ void bind_compensators(py::module_& core) {
       .def_property_readonly("highest_temperature",
                              &Compensator::highest_temperature)
       .def_property_readonly("states_sigma", &Compensator::states_sigma)
+      .def_property_readonly("curve", &Compensator::curve)
       .def_property_readonly("warnings", &Compensator::warnings);
 }
 

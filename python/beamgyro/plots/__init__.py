@@ -5,8 +5,8 @@
     plots.plot("warm_up.h5").savefig("warm_up.png")
     plots.plot(["cubic.json", "bp.json"], compare=True)
 
-Each function returns a matplotlib Figure. It needs no compiled part of the
-package: numpy, h5py and matplotlib are enough.
+Each function returns a matplotlib Figure. It needs numpy, h5py and matplotlib,
+and of the compiled part of the package the curves of compensators only.
 """
 
 from __future__ import annotations
@@ -98,10 +98,10 @@ def _plotted(kind: str, *sources: Any, places: Sequence[object] = ()
              ) -> Figure:
     names = [place or KINDS[kind].name for place in
              [*places, *[None] * (len(sources) - len(places))]]
-    for source, name in zip(sources, names):
-        KINDS[kind].check(source, name)
+    drawn = [KINDS[kind].checked(source, name)
+             for source, name in zip(sources, names)]
     with look():
-        return figure_of(kind, sources)
+        return figure_of(kind, drawn)
 
 
 def _named(data: Mapping[str, Any], name: str) -> dict[str, Any]:
@@ -166,8 +166,7 @@ def save_each(file: Path, folder: Path) -> list[str]:
         raise PlotError(f"{path}: one picture only; expected the --json of "
                         "validate or sensitivity")
     names = []
-    source = kind.read(path, path.name)
-    kind.check(source, path)
+    source = kind.checked(kind.read(path, path.name), path)
     with look():
         for name, figure in kind.each(source):
             names.append(f"{name}.png")

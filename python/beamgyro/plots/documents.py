@@ -115,17 +115,6 @@ def rows(shape: Shape, least: int = 0, most: float = float("inf")) -> Shape:
 PAIR = rows(NUMBER, 2, 2)
 
 
-def rising(shape: Shape) -> Shape:
-    """A list of that shape, of numbers that increase."""
-    def check(values: Any, key: str) -> None:
-        shape.check(values, key)
-        for k, (before, after) in enumerate(zip(values, values[1:]), 1):
-            if not before < after:
-                raise wrong(f"{key}[{k}]", shown(after),
-                            f"a number above {shown(before)}, that before it")
-    return Shape(shape.words, check)
-
-
 def _inside(key: str, name: str) -> str:
     return f"{key}.{name}" if key else name
 
@@ -144,8 +133,10 @@ def record(needed: Mapping[str, Shape], optional: Mapping[str, Shape] = {},
                 shape.check(value[name], _inside(key, name))
         first, *others = [name for name in alike if name in value] or [""]
         for name in others:
-            require_count(value[name], _inside(key, name), len(value[first]),
-                          f"as {first} has")
+            count = len(value[first])
+            if len(value[name]) != count:
+                raise wrong(_inside(key, name), f"{len(value[name])} values",
+                            f"{count}, as {first} has")
     return Shape("an object", check)
 
 
@@ -176,12 +167,6 @@ def members(shape: Shape) -> Shape:
             NAME.check(name, key)
             shape.check(one, _inside(key, name))
     return Shape("an object", check)
-
-
-def require_count(values: Sequence[Any], key: str, count: int, why: str
-                  ) -> None:
-    if len(values) != count:
-        raise wrong(key, f"{len(values)} values", f"{count}, {why}")
 
 
 def check(document: Any, shape: Shape, where: object) -> None:
