@@ -104,11 +104,15 @@ def _plotted(kind: str, *sources: Any, places: Sequence[object] = ()
         return figure_of(kind, drawn)
 
 
-def _named(data: Mapping[str, Any], name: str) -> dict[str, Any]:
-    if not isinstance(data, Mapping):
-        raise PlotError(f"{name}: {type(data).__name__}; expected the JSON "
-                        "of a command as a dict")
-    return {"name": name, **data}
+def _plotted_documents(kind: str, data: Sequence[Any], names: Sequence[str]
+                       ) -> Figure:
+    names = [*names, *[KINDS[kind].name] * (len(data) - len(names))]
+    for one, name in zip(data, names):
+        if not isinstance(one, Mapping):
+            raise PlotError(f"{name}: {type(one).__name__}; expected the JSON "
+                            "of a command as a dict")
+    return _plotted(kind, *({"name": name, **one}
+                            for one, name in zip(data, names)), places=names)
 
 
 def plot_recording(*recordings: Any, names: Sequence[str] = ()) -> Figure:
@@ -130,16 +134,13 @@ def plot_table(*tables: Any, names: Sequence[str] = ()) -> Figure:
 def plot_allan(*results: Mapping[str, Any], names: Sequence[str] = ()
                ) -> Figure:
     """Results of `allan --json`, as dicts."""
-    names = [*names, *["Allan deviation"] * (len(results) - len(names))]
-    return _plotted("allan", *map(_named, results, names), places=names)
+    return _plotted_documents("allan", results, names)
 
 
 def plot_compensator(*compensators: Mapping[str, Any],
                      names: Sequence[str] = ()) -> Figure:
     """Compensators or populations, as dicts of their JSON."""
-    names = [*names, *["compensator"] * (len(compensators) - len(names))]
-    return _plotted("compensator", *map(_named, compensators, names),
-                    places=names)
+    return _plotted_documents("compensator", compensators, names)
 
 
 def plot_validation(result: Mapping[str, Any]) -> Figure:

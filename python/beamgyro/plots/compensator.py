@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 from . import documents, style
 from .errors import PlotError
+from .units import unit_of
 
 SCORES = [("constant", "constant", style.GREY),
           ("cubic", "baseline", style.YELLOW),
@@ -207,7 +208,7 @@ def _population(figure: Figure, one: Document) -> None:
                         label=("1st", "2nd", "3rd", "4th")[k])
         row[1].axhline(0, color=style.GREY, lw=0.8)
         row[0].set_ylabel(style.quantity(name.replace("_", " "),
-                                         _channel_unit(name)))
+                                         unit_of(name)))
     style.legend_above(grid[0, 0])
     style.legend_above(grid[0, 1])
     for axes in grid[-1]:
@@ -216,8 +217,3 @@ def _population(figure: Figure, one: Document) -> None:
                  f"{population['devices']:,} devices",
                  "left: mean and spread over devices; right: the strongest of "
                  f"{len(modes)} ways in which a device differs, 1σ each")
-
-
-def _channel_unit(name: str) -> str:
-    return {"drive_frequency": "Hz", "drive_voltage": "V",
-            "temperature": "degC", "output": "V"}.get(name, "deg/s")

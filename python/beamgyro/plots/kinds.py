@@ -38,17 +38,9 @@ class Kind:
         return self.completed(source, where) if self.completed else source
 
 
-def _draw_recordings(figure: Figure, runs: Sequence[recording.Run]) -> None:
-    recording.draw(figure, runs[0] if len(runs) == 1 else runs)
-
-
-def _height_of_recordings(runs: Sequence[recording.Run]) -> float:
-    return recording.height(runs[0] if len(runs) == 1 else runs)
-
-
 KINDS = {
-    "recording": Kind("recording", recording.read, _draw_recordings,
-                      _height_of_recordings, True),
+    "recording": Kind("recording", recording.read, recording.draw,
+                      recording.height, True),
     "table": Kind("table of characterise", table.read, table.draw,
                   lambda _: table.HEIGHT, True),
     "allan": Kind("Allan deviation", documents.read, allan.draw,
