@@ -10,6 +10,7 @@
 #include "api/compensator_state.h"
 #include "api/user_compensator.h"
 #include "compensation/compensator/compensator_file.h"
+#include "compensation/compensator/settled_curve.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/text_file.h"
 #include "validation/external/file_compensator.h"
@@ -106,6 +107,9 @@ double Compensator::highest_temperature() const {
 }
 bool Compensator::states_sigma() const {
   return state_->compensator.sigma.has_value();
+}
+std::string Compensator::curve() const {
+  return internal::settled_curve(state_->compensator);
 }
 std::vector<std::string> Compensator::warnings() const {
   return state_->compensator.provenance.warnings;

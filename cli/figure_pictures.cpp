@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstddef>
 #include <limits>
 #include <span>
 #include <stdexcept>
+#include <thread>
 
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
@@ -48,8 +50,20 @@ std::string last_line(std::string text) {
   return text.substr(text.find_last_of('\n') + 1);
 }
 
-// Runs the script with `words`, and waits for it.
-void run_script(const std::vector<std::string>& words, double most_seconds) {
+// Writes all to the standard input of a process, unless that reads no more.
+void give(ChildProcess& process, std::string_view text) {
+  const NoBrokenPipeSignal quiet;
+  while (process.input() && !text.empty()) {
+    const std::size_t taken = write_available(process.input(), text);
+    text.remove_prefix(taken);
+    if (taken == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  process.input().reset();
+}
+
+// Runs the script with `words` and `input`, and waits for it.
+void run_script(const std::vector<std::string>& words, double most_seconds,
+                std::string_view input = "") {
   const fs::path script = shipped_file(kScript);
   if (script.empty())
     throw std::runtime_error(fmt::format(
@@ -58,7 +72,7 @@ void run_script(const std::vector<std::string>& words, double most_seconds) {
   std::vector<std::string> command = {kPython, "-B", script.string()};
   command.insert(command.end(), words.begin(), words.end());
   ChildProcess process(command);
-  process.input().reset();
+  give(process, input);
   const auto end = process.wait(most_seconds);
   if (!end)
     throw std::runtime_error(fmt::format("{}: still draws after {:.0f} s",
@@ -72,16 +86,16 @@ void run_script(const std::vector<std::string>& words, double most_seconds) {
 }
 
 void draw_into(AtomicFile& picture, const fs::path& path,
-               std::vector<std::string> words) {
+               std::vector<std::string> words, std::string_view input = "") {
   words.push_back("--output=" + picture.partial_path().string());
   words.push_back("--format=" + picture_ending(path).substr(1));
-  run_script(words, kLongestDrawing);
+  run_script(words, kLongestDrawing, input);
   picture.publish();
 }
 
 std::vector<std::string> script_words(const std::vector<std::string>& files,
                                       bool compare) {
-  std::vector<std::string> words;
+  std::vector<std::string> words = {"--curves"};
   if (compare) words.emplace_back("--compare");
   // A file may be called "-o".
   for (const std::string& file : files)
@@ -124,14 +138,16 @@ void draw_plan(const std::string& result, const fs::path& path) {
   draw_into(picture, path, {json.partial_path().string()});
 }
 
-void draw_files(const std::vector<std::string>& files, bool compare,
+void draw_files(const std::vector<std::string>& files,
+                const std::string& curves, bool compare,
                 const fs::path& picture) {
   AtomicFile file(picture);
-  draw_into(file, picture, script_words(files, compare));
+  draw_into(file, picture, script_words(files, compare), curves);
 }
 
-void show_files(const std::vector<std::string>& files, bool compare) {
-  run_script(script_words(files, compare), kNoLimit);
+void show_files(const std::vector<std::string>& files,
+                const std::string& curves, bool compare) {
+  run_script(script_words(files, compare), kNoLimit, curves);
 }
 
 }  // namespace beamgyro::internal

@@ -32,10 +32,13 @@ void require_picture_name(std::string_view option,
 void draw_plan(const std::string& result, const std::filesystem::path& path);
 
 /// Draws a file, or several of one kind over each other, into `picture`.
-void draw_files(const std::vector<std::string>& files, bool compare,
+/// `curves` has a line for each file: Compensator::curve(), or "null".
+void draw_files(const std::vector<std::string>& files,
+                const std::string& curves, bool compare,
                 const std::filesystem::path& picture);
 
 /// Shows the files in windows, one each or all in one, until they are closed.
-void show_files(const std::vector<std::string>& files, bool compare);
+void show_files(const std::vector<std::string>& files,
+                const std::string& curves, bool compare);
 
 }  // namespace beamgyro::internal

@@ -21,12 +21,18 @@ struct PlotArguments {
   bool compare = false;
 };
 
+// Returns a line for each file: the curve of a compensator, else "null".
 // Damage and values that no command would take are refused as elsewhere.
-void require_whole(const std::string& file) {
-  if (is_of_kind(file, FileKind::kRecording))
-    load_recording(file);
-  else if (is_of_kind(file, FileKind::kCompensator))
-    beamgyro::Compensator::read(file);
+std::string curves_of(const std::vector<std::string>& files) {
+  std::string curves;
+  for (const std::string& file : files) {
+    if (is_of_kind(file, FileKind::kRecording)) load_recording(file);
+    curves += is_of_kind(file, FileKind::kCompensator)
+                  ? beamgyro::Compensator::read(file).curve()
+                  : "null";
+    curves += '\n';
+  }
+  return curves;
 }
 
 int plot(const PlotArguments& arguments) {
@@ -35,13 +41,13 @@ int plot(const PlotArguments& arguments) {
     require_output(*arguments.output,
                    {arguments.files.begin(), arguments.files.end()});
   }
-  for (const std::string& file : arguments.files) require_whole(file);
+  const std::string curves = curves_of(arguments.files);
   if (!arguments.output) {
-    show_files(arguments.files, arguments.compare);
+    show_files(arguments.files, curves, arguments.compare);
     return 0;
   }
   const Progress progress("drawing " + arguments.files.front());
-  draw_files(arguments.files, arguments.compare, *arguments.output);
+  draw_files(arguments.files, curves, arguments.compare, *arguments.output);
   return 0;
 }
 

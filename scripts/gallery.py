@@ -8,15 +8,11 @@ They go to docs/pictures/plot_*.png, in few colours to keep them small.
 import argparse
 import pathlib
 import subprocess
-import sys
 import tempfile
 
 from PIL import Image
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "python/beamgyro"))
-import plots  # noqa: E402  (where it is comes first)
-
 PICTURES = ROOT / "docs/pictures"
 WIDTH = 800  # [px]
 COLORS = (128, 64, 40, 20, 12)  # fewer where a picture is larger than LARGEST
@@ -71,7 +67,8 @@ def main():
                 raise SystemExit(f"{line}: ended with status {status}")
         for name, file in DRAWN.items():
             drawn = pathlib.Path(folder) / f"{name}.png"
-            plots.save(plots.plot(pathlib.Path(folder) / file), drawn)
+            subprocess.run([program, "plot", pathlib.Path(folder) / file, "-o",
+                            drawn], check=True)
             picture = Image.open(drawn).convert("RGB")
             picture.thumbnail((WIDTH, 4 * WIDTH), Image.LANCZOS)
             target = PICTURES / f"plot_{name}.png"

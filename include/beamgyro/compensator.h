@@ -90,6 +90,17 @@ class Compensator final : public RateCompensator {
   double lowest_temperature() const;   ///< [degC], seen in training
   double highest_temperature() const;  ///< [degC]
   bool states_sigma() const;
+  /// Returns its curve over temperature as JSON, long after power-on at a
+  /// steady measured temperature, in lists of one length:
+  ///
+  ///     temperature_degC   from 8 % of the trained range below it to 8 % above
+  ///     bias_deg_per_s     taken away, at the clamped temperature; null where
+  ///                        it follows more than the temperature
+  ///     cubic_deg_per_s    the same of the cubic of its training
+  ///     sigma_deg_per_s    stated 1-sigma; null where it states none
+  ///
+  /// `other_inputs` names the inputs that the temperature does not tell.
+  std::string curve() const;
   /// What the data of its training do not support.
   std::vector<std::string> warnings() const;
 

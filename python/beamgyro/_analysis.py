@@ -16,7 +16,7 @@ from beamgyro import _arguments, _checks, _core, _shipped, _toml
 from beamgyro._compensation import Compensator, compensator_of
 from beamgyro._dataset import Path, recording_of
 from beamgyro._device import DeviceLike, device_of
-from beamgyro._progress import ProgressArgument, Watched
+from beamgyro._progress import ProgressArgument, watched
 from beamgyro._results import (AllanResult, PlanResult, SensitivityResult,
                                ValidationResult)
 from beamgyro._set import Campaign, CampaignLike, Set
@@ -139,7 +139,7 @@ def validate(compensator: Any, runs: Optional[Runs] = None, *,
                          "of runs, set= and device=")
     if isinstance(runs, Set):
         raise _checks.wrong(runs, "runs", "recordings; a set is given as set=")
-    with _Files() as files, Watched(progress, "validating") as function:
+    with _Files() as files, watched(progress, "validating") as function:
         given: dict[str, Any] = {"jobs": _arguments.jobs(jobs)}
         for keyword, value in options.items():
             if keyword not in _OPTIONS:
@@ -287,19 +287,20 @@ def allan(data: Union[xr.Dataset, Path, npt.ArrayLike], *,
     unit = None if unit is None else _checks.text(unit, "unit")
     names = _checks.texts(kinds, "kinds")
     _arguments.not_empty(names, "kinds")
-    rest = (names,
-            _checks.text(taus, "taus", "\"octave\", \"decade\" or \"all\""),
-            _checks.bound(from_s, "from_s"), _checks.bound(to_s, "to_s"))
+    options = {
+        "kinds": names, "from_s": _checks.bound(from_s, "from_s"),
+        "to_s": _checks.bound(to_s, "to_s"), "taus": _checks.text(
+            taus, "taus", "\"octave\", \"decade\" or \"all\"")}
     if isinstance(data, (str, os.PathLike)):
         file = _checks.file(data, "data", "a recording", tables=_TABLES)
-        found = _core.allan_file(file, column, rate_Hz, unit, *rest)
+        found = _core.allan_file(file, column, rate_Hz, unit, options)
     elif hasattr(data, "data_vars"):
         recording: Any = data
         _checks.refuse("for a CSV or an array; a dataset states its own",
                        rate_Hz=rate_Hz, unit=unit)
         found = _core.allan_recording(
             recording_of(recording, is_sound=False),
-            "rate" if column is None else column, *rest)
+            "rate" if column is None else column, options)
     else:
         _checks.refuse("for a recording or a file; an array has none",
                        column=column)
@@ -309,7 +310,7 @@ def allan(data: Union[xr.Dataset, Path, npt.ArrayLike], *,
                              "expected the number of samples in a second")
         found = _core.allan_samples(
             samples, _checked_rate(data, rate_Hz),
-            _checked_unit(data, unit), *rest)
+            _checked_unit(data, unit), options)
     text, json_text, warnings = found
     warn(warnings)
     return AllanResult(text, json_text, warnings)
@@ -416,7 +417,7 @@ def sensitivity(campaign: CampaignLike, *, figures: Sequence[str] = (),
         jobs=_arguments.jobs(jobs))
     if compensator is not None:
         options["compensator"] = compensator_of(compensator)._trained("file")
-    with Watched(progress, "studying") as function:
+    with watched(progress, "studying") as function:
         found = _core.sensitivity(Campaign(campaign)._native, options,
                                   function)
     return SensitivityResult(*found)

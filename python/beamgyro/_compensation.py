@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import functools
 import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from beamgyro import _adapters, _arguments, _checks, _core
 from beamgyro._dataset import Path, core_recording, dataset_of
+from beamgyro._native import Native, Wrapper
 from beamgyro._shipped import program
 from beamgyro._warnings import warn
 
@@ -16,7 +18,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-class Compensator:
+class Compensator(Wrapper):
     """What makes a rate without drift of the measured signals of a gyro.
 
     Args:
@@ -53,7 +55,7 @@ class Compensator:
         ValueError: `source` is none of these, or cannot be read.
     """
 
-    __slots__ = ("_native", "_source")
+    __slots__ = ("_source",)
 
     _native: _core.RateCompensator
 
@@ -62,15 +64,17 @@ class Compensator:
                  arrays: bool = False, name: Optional[str] = None,
                  stall_s: float = 10.0) -> None:
         stall_s = _arguments.number(stall_s, "stall_s", above=0)
-        self._source: Optional[tuple[Any, ...]] = (
-            source, inputs, arrays, name, stall_s)
+        self._source: dict[str, Any] = {
+            "source": source, "inputs": inputs, "arrays": arrays,
+            "name": name, "stall_s": stall_s}
         if not isinstance(source, (Compensator, str, os.PathLike)):
             self._native = _of_python(source, inputs, arrays, name)
             return
         _checks.refuse("for a function, an estimator or a network",
                        inputs=inputs, arrays=arrays or None, name=name)
         if isinstance(source, Compensator):
-            self._native, self._source = source._native, source._source
+            self._native = source._native
+            self._source = getattr(source, "_source", {})
         else:
             self._native = _opened(source, stall_s)
 
@@ -78,15 +82,8 @@ class Compensator:
     def parse(cls, text: str,
               name: str = "compensator.json") -> Compensator:
         """Read the text of a compensator file, called `name` in messages."""
-        return cls._of(_core.Compensator.parse(
-            _checks.text(text, "text"), _checks.text(name, "name")))
-
-    @classmethod
-    def _of(cls, core: _core.Compensator) -> Compensator:
-        compensator = cls.__new__(cls)
-        compensator._native = core
-        compensator._source = None
-        return compensator
+        return cls._parsed(_checks.text(text, "text"),
+                           _checks.text(name, "name"))
 
     def _trained(self, what: str) -> _core.Compensator:
         if isinstance(self._native, _core.Compensator):
@@ -94,15 +91,9 @@ class Compensator:
         raise ValueError(
             f"{self.name}: has no {what}; expected a trained compensator")
 
-    @property
-    def name(self) -> str:
-        """The name that reports give it."""
-        return self._native.name
-
-    @property
-    def inputs(self) -> list[str]:
-        """The measured variables that it reads; none: all there are."""
-        return self._native.inputs
+    name = Native(str, "The name that reports give it.")
+    inputs = Native(list[str],
+                 "The measured variables that it reads; none: all there are.")
 
     @property
     def text(self) -> str:
@@ -151,15 +142,7 @@ class Compensator:
     def __reduce__(self) -> tuple[Any, ...]:
         if isinstance(self._native, _core.Compensator):
             return Compensator.parse, (self._native.text, self.name)
-        assert self._source is not None
-        return _compensator_of, self._source
-
-
-def _compensator_of(source: Any, inputs: Optional[Sequence[str]],
-                    arrays: bool, name: Optional[str],
-                    stall_s: float) -> Compensator:
-    return Compensator(source, inputs=inputs, arrays=arrays, name=name,
-                       stall_s=stall_s)
+        return functools.partial(Compensator, **self._source), ()
 
 
 def _opened(source: Path, stall_s: float) -> _core.RateCompensator:

@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import numpy as np
 
 from beamgyro import _arguments, _checks, _core, _lazy
+from beamgyro._checks import Path as Path
 from beamgyro._warnings import warn
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Path = Union[str, "os.PathLike[str]"]
 
 # Texts of /meta of a file, which are no attributes of its variables. They go
 # along in the encoding of a dataset.

@@ -3,24 +3,24 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
 from beamgyro import _arguments, _checks, _core, _lazy, _toml
+from beamgyro._checks import Path as Path
+from beamgyro._native import Native, Wrapper
 from beamgyro._warnings import warn
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Path = Union[str, "os.PathLike[str]"]
 Keys = Mapping[str, Any]
 DeviceLike = Union["Device", Path, Keys]
 
 
-class Device:
+class Device(Wrapper):
     """A gyro: what a device file says, read and checked.
 
     It does not change. Two devices are equal when their texts and their
@@ -35,7 +35,7 @@ class Device:
         ValueError: with file, line and key, what is wrong.
     """
 
-    __slots__ = ("_native",)
+    __slots__ = ()
 
     _native: _core.Device
 
@@ -58,15 +58,8 @@ class Device:
     def parse(cls, text: str, name: str = "device",
               set: Optional[Keys] = None) -> Device:
         """Read the text of a device file, called `name` in messages."""
-        return cls._of(_core.Device.parse(
-            _checks.text(text, "text"), _checks.text(name, "name"),
-            _toml.overrides(set)))
-
-    @classmethod
-    def _of(cls, core: _core.Device) -> Device:
-        device = cls.__new__(cls)
-        device._native = core
-        return device
+        return cls._parsed(_checks.text(text, "text"),
+                           _checks.text(name, "name"), _toml.overrides(set))
 
     def with_(self, keys: Optional[Keys] = None, /, **more: Any) -> Device:
         """Return the device with further keys replaced.
@@ -77,20 +70,9 @@ class Device:
         return Device._of(
             self._native.with_(_toml.overrides(_toml.merged(keys, more))))
 
-    @property
-    def text(self) -> str:
-        """The text of the device file."""
-        return self._native.text
-
-    @property
-    def name(self) -> str:
-        """The name of the file, as messages give it."""
-        return self._native.name
-
-    @property
-    def overrides(self) -> list[str]:
-        """The keys that were replaced, as KEY=VALUE."""
-        return self._native.overrides
+    text = Native(str, "The text of the device file.")
+    name = Native(str, "The name of the file, as messages give it.")
+    overrides = Native(list[str], "The keys that were replaced, as KEY=VALUE.")
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Device):
@@ -105,11 +87,7 @@ class Device:
         return f"<beamgyro.Device {self.name}{changes}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _device_of, (self.text, self.name, self.overrides)
-
-
-def _device_of(text: str, name: str, overrides: list[str]) -> Device:
-    return Device._of(_core.Device.parse(text, name, overrides))
+        return Device._parsed, (self.text, self.name, self.overrides)
 
 
 def device_of(source: DeviceLike) -> Device:

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
-from types import TracebackType
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Optional, Union
 
 ProgressFunction = Callable[[float], object]
@@ -48,24 +48,19 @@ class Bar:
             self._shown = ""
 
 
-class Watched:
-    """The function that a long call tells its progress, or None."""
-
-    def __init__(self, progress: ProgressArgument, title: str) -> None:
-        if not (progress is None or isinstance(progress, bool)
-                or callable(progress)):
-            raise ValueError(f"progress {progress!r}: expected True, False or "
-                             "a function of the share that is done")
-        self._bar = Bar(title) if progress is True else None
-        self._function: Optional[ProgressFunction] = (
-            self._bar if self._bar is not None
-            else progress if callable(progress) else None)
-
-    def __enter__(self) -> Optional[ProgressFunction]:
-        return self._function
-
-    def __exit__(self, kind: Optional[type[BaseException]],
-                 error: Optional[BaseException],
-                 traceback: Optional[TracebackType]) -> None:
-        if self._bar is not None:
-            self._bar.close()
+@contextmanager
+def watched(progress: ProgressArgument, title: str
+            ) -> Iterator[Optional[ProgressFunction]]:
+    """Give the function that a long call tells its progress, or None."""
+    if callable(progress):
+        yield progress
+        return
+    if not (progress is None or isinstance(progress, bool)):
+        raise ValueError(f"progress {progress!r}: expected True, False or "
+                         "a function of the share that is done")
+    bar = Bar(title) if progress else None
+    try:
+        yield bar
+    finally:
+        if bar is not None:
+            bar.close()

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, Literal, Optional, Union, overload
 
 import numpy as np
@@ -12,7 +11,8 @@ import numpy as np
 from beamgyro import _arguments, _checks, _core, _toml
 from beamgyro._dataset import dataset_of, recording_name
 from beamgyro._device import Device, DeviceLike, Keys, Path, device_of
-from beamgyro._progress import ProgressArgument, Watched
+from beamgyro._native import Native, Wrapper
+from beamgyro._progress import ProgressArgument, watched
 from beamgyro._warnings import warn
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ ScenarioLike = Union["Scenario", Path, Keys]
 Arrays = dict[str, "np.ndarray[Any, Any]"]
 
 
-class Scenario:
+class Scenario(Wrapper):
     """What happens to a gyro over time, and the gyro that it happens to.
 
     It does not change, even where a file that it was read from does. Two
@@ -41,7 +41,7 @@ class Scenario:
         ValueError: with file, line and key, what is wrong.
     """
 
-    __slots__ = ("_native",)
+    __slots__ = ()
 
     _native: _core.Scenario
 
@@ -72,15 +72,9 @@ class Scenario:
 
         Profiles that it names are relative to the folder of `name`.
         """
-        return cls._of(_core.Scenario.parse(
+        return cls._parsed(
             _checks.text(text, "text"), device_of(device)._native,
-            _toml.overrides(set), _checks.text(name, "name"), []))
-
-    @classmethod
-    def _of(cls, core: _core.Scenario) -> Scenario:
-        scenario = cls.__new__(cls)
-        scenario._native = core
-        return scenario
+            _toml.overrides(set), _checks.text(name, "name"), [])
 
     def with_(self, keys: Optional[Keys] = None, /, *,
               device: Optional[DeviceLike] = None, **more: Any) -> Scenario:
@@ -92,55 +86,21 @@ class Scenario:
         """
         return Scenario(self, device=device, set=_toml.merged(keys, more))
 
-    @property
-    def text(self) -> str:
-        """The text of the scenario file."""
-        return self._native.text
-
-    @property
-    def name(self) -> str:
-        """The name of the file, as messages give it."""
-        return self._native.name
+    text = Native(str, "The text of the scenario file.")
+    name = Native(str, "The name of the file, as messages give it.")
 
     @property
     def device(self) -> Device:
         """The device, without the keys that the scenario replaces."""
         return Device._of(self._native.device)
 
-    @property
-    def overrides(self) -> list[str]:
-        """The keys that were replaced, as KEY=VALUE."""
-        return self._native.overrides
-
-    @property
-    def title(self) -> str:
-        """The name and the description in the file."""
-        return self._native.title
-
-    @property
-    def duration_s(self) -> float:
-        """How long it lasts [s]."""
-        return self._native.duration
-
-    @property
-    def output_rate_Hz(self) -> float:
-        """Samples in a second [Hz]."""
-        return self._native.output_rate
-
-    @property
-    def samples(self) -> int:
-        """The number of samples of its recording."""
-        return self._native.samples
-
-    @property
-    def fidelity(self) -> str:
-        """How much of the physics is simulated."""
-        return self._native.fidelity
-
-    @property
-    def seed(self) -> int:
-        """The seed of everything random."""
-        return self._native.seed
+    overrides = Native(list[str], "The keys that were replaced, as KEY=VALUE.")
+    title = Native(str, "The name and the description in the file.")
+    duration_s = Native(float, "How long it lasts [s].", "duration")
+    output_rate_Hz = Native(float, "Samples in a second [Hz].", "output_rate")
+    samples = Native(int, "The number of samples of its recording.")
+    fidelity = Native(str, "How much of the physics is simulated.")
+    seed = Native(int, "The seed of everything random.")
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scenario):
@@ -164,10 +124,8 @@ class Scenario:
                               self.name, self._native.profiles)
 
 
-def _scenario_of(text: str, device: Device, overrides: list[str], name: str,
-                 profiles: list[tuple[FilePath, bytes]]) -> Scenario:
-    return Scenario._of(_core.Scenario.parse(text, device._native, overrides,
-                                             name, profiles))
+def _scenario_of(text: str, device: Device, *others: Any) -> Scenario:
+    return Scenario._parsed(text, device._native, *others)
 
 
 def _scenario_of_keys(keys: Keys, device: Optional[DeviceLike],
@@ -198,17 +156,6 @@ def _simulated(source: ScenarioLike, device: Optional[DeviceLike],
     if isinstance(source, Scenario) and device is None and not keys:
         return source._native
     return Scenario(source, device=device, set=keys)._native
-
-
-def _recorded(scenario: _core.Scenario, stop_on_unlock: bool,
-              progress: ProgressArgument) -> _core.Recording:
-    with Watched(progress, "simulating") as function:
-        recording, warnings = _core.simulate(
-            scenario, _checks.flag(stop_on_unlock, "stop_on_unlock"),
-            function)
-    if warnings:
-        warn(f"{scenario.name}: {text}" for text in warnings)
-    return recording
 
 
 @overload
@@ -262,9 +209,11 @@ def run(scenario: ScenarioLike, *, device: Optional[DeviceLike] = None,
     """
     if output not in ("dataset", "arrays"):
         raise _checks.wrong(output, "output", "\"dataset\" or \"arrays\"")
-    recording = _recorded(
-        _simulated(scenario, device, set, seed, fidelity), stop_on_unlock,
-        progress)
+    core = _simulated(scenario, device, set, seed, fidelity)
+    with watched(progress, "simulating") as function:
+        recording, warnings = _core.simulate(
+            core, _checks.flag(stop_on_unlock, "stop_on_unlock"), function)
+    warn(f"{core.name}: {text}" for text in warnings)
     return (recording.arrays() if output == "arrays"
             else dataset_of(recording))
 
@@ -281,7 +230,7 @@ def run_to_file(scenario: ScenarioLike, path: Path, *,
     """
     core = _simulated(scenario, device, set, seed, fidelity)
     file = recording_name(path)
-    with Watched(progress, "simulating") as function:
+    with watched(progress, "simulating") as function:
         warnings = _core.simulate_to_file(
             core, file, _checks.flag(stop_on_unlock, "stop_on_unlock"),
             function)

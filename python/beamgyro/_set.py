@@ -13,7 +13,8 @@ import numpy as np
 from beamgyro import _arguments, _checks, _core, _lazy
 from beamgyro._dataset import Path, dataset_of
 from beamgyro._device import Device
-from beamgyro._progress import ProgressArgument, Watched
+from beamgyro._native import Native, Wrapper
+from beamgyro._progress import ProgressArgument, watched
 from beamgyro._warnings import warn
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 CampaignLike = Union["Campaign", Path]
 
 
-class Campaign:
+class Campaign(Wrapper):
     """A population of devices and the runs of each of them.
 
     It does not change. Campaigns are equal when their files are; a campaign
@@ -36,7 +37,7 @@ class Campaign:
         ValueError: with file, line and key, what is wrong.
     """
 
-    __slots__ = ("_native",)
+    __slots__ = ()
 
     _native: _core.Campaign
 
@@ -51,30 +52,11 @@ class Campaign:
             self._native = _core.Campaign.read(
                 _checks.file(source, "campaign", "a campaign"), count)
 
-    @property
-    def name(self) -> str:
-        """The name in the file."""
-        return self._native.name
-
-    @property
-    def text(self) -> str:
-        """The text of the campaign file."""
-        return self._native.text
-
-    @property
-    def devices(self) -> int:
-        """The number of devices."""
-        return self._native.devices
-
-    @property
-    def seed(self) -> int:
-        """The seed of everything random."""
-        return self._native.seed
-
-    @property
-    def runs(self) -> list[str]:
-        """The names of the runs of each device."""
-        return self._native.runs
+    name = Native(str, "The name in the file.")
+    text = Native(str, "The text of the campaign file.")
+    devices = Native(int, "The number of devices.")
+    seed = Native(int, "The seed of everything random.")
+    runs = Native(list[str], "The names of the runs of each device.")
 
     def device(self, number: int) -> Device:
         """Return a device of the population; numbers start at 0.
@@ -99,17 +81,10 @@ class Campaign:
                 f"runs {', '.join(self.runs)}>")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _campaign_of, (self._native.files, self.devices)
+        return Campaign._parsed, (self._native.files, self.devices)
 
 
-def _campaign_of(files: list[tuple[FilePath, bytes]],
-                 devices: int) -> Campaign:
-    campaign = Campaign.__new__(Campaign)
-    campaign._native = _core.Campaign.parse(files, devices)
-    return campaign
-
-
-class Set(Mapping[tuple[str, int], "xr.Dataset"]):
+class Set(Wrapper, Mapping[tuple[str, int], "xr.Dataset"]):
     """The recordings of many devices in one directory.
 
     A mapping of (run, device) to recordings, which are read when they are
@@ -124,7 +99,7 @@ class Set(Mapping[tuple[str, int], "xr.Dataset"]):
         ValueError: there is no finished set.
     """
 
-    __slots__ = ("_native",)
+    __slots__ = ()
 
     _native: _core.Set
 
@@ -133,30 +108,12 @@ class Set(Mapping[tuple[str, int], "xr.Dataset"]):
         self._native = _core.Set.open(os.path.abspath(
             _checks.file(directory, "set", "the directory of a set")))
 
-    @property
-    def directory(self) -> FilePath:
-        """Where the set is."""
-        return self._native.directory
-
-    @property
-    def devices(self) -> int:
-        """The number of devices, which are counted from 0."""
-        return self._native.devices
-
-    @property
-    def runs(self) -> list[str]:
-        """The names of the runs of each device."""
-        return self._native.runs
-
-    @property
-    def seed(self) -> int:
-        """The seed of everything random."""
-        return self._native.seed
-
-    @property
-    def failures(self) -> list[tuple[str, int, str]]:
-        """Run, device and reason of each run that has no values."""
-        return self._native.failures
+    directory = Native(FilePath, "Where the set is.")
+    devices = Native(int, "The number of devices, which are counted from 0.")
+    runs = Native(list[str], "The names of the runs of each device.")
+    seed = Native(int, "The seed of everything random.")
+    failures = Native(list[tuple[str, int, str]],
+                   "Run, device and reason of each run that has no values.")
 
     def part(self, device: int) -> str:
         """Return what a device is for: "train", "validation" or "test"."""
@@ -233,7 +190,7 @@ class Set(Mapping[tuple[str, int], "xr.Dataset"]):
         Returns:
             The damaged files with what is wrong; none for a whole set.
         """
-        with Watched(progress, "verifying") as function:
+        with watched(progress, "verifying") as function:
             return self._native.verify(function)
 
     def _failed(self) -> set[tuple[str, int]]:
@@ -321,7 +278,7 @@ def generate(campaign: CampaignLike, directory: Path, *,
     folder = _checks.path(directory, "directory", "the name of a directory")
     threads = _arguments.jobs(jobs)
     go_on = _checks.flag(resume, "resume")
-    with Watched(progress, "generating") as function:
+    with watched(progress, "generating") as function:
         failures, warnings, _ = _core.generate(core, folder, threads, go_on,
                                                function)
     warn(warnings)

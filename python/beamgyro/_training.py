@@ -13,7 +13,7 @@ import numpy as np
 from beamgyro import _adapters, _arguments, _checks, _core, _toml
 from beamgyro._compensation import Compensator
 from beamgyro._dataset import Path, core_recording
-from beamgyro._progress import ProgressArgument, Watched
+from beamgyro._progress import ProgressArgument, watched
 from beamgyro._set import Set
 from beamgyro._warnings import warn
 
@@ -110,7 +110,7 @@ def train(model: Union[Path, Mapping[str, Any]],
     if not isinstance(runs, Set):
         _checks.refuse("for a set", set_runs=named or None,
                        devices=numbered or None)
-    with Watched(progress, "training") as function:
+    with watched(progress, "training") as function:
         if isinstance(runs, Set):
             if kept or groups:
                 raise ValueError(

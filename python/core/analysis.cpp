@@ -16,11 +16,13 @@
 #include <utility>
 #include <vector>
 
+#include "api/file_kind.h"
 #include "api/validation_members.h"
 #include "include/beamgyro/allan.h"
 #include "include/beamgyro/campaign.h"
 #include "include/beamgyro/export.h"
 #include "include/beamgyro/option_error.h"
+#include "include/beamgyro/plan.h"
 #include "include/beamgyro/sensitivity.h"
 #include "include/beamgyro/validate.h"
 #include "python/core/bindings.h"
@@ -41,48 +43,44 @@ py::tuple report_of(Result&& found) {
   return py::make_tuple(found.text, found.json, found.warnings);
 }
 
-AllanOptions allan_options(const std::vector<std::string>& kinds,
-                           const std::string& taus, double from_s, double to_s,
-                           const Progress& progress) {
-  return {.kinds = kinds,
-          .taus = taus,
-          .from_s = from_s,
-          .to_s = to_s,
-          .progress = progress};
+/// Returns the report of allan_of(options).
+template <class Allan>
+py::tuple allan_report(const py::dict& given, const Allan& allan_of) {
+  AllanOptions options;
+  take(given, "kinds", options.kinds);
+  take(given, "taus", options.taus);
+  take(given, "from_s", options.from_s);
+  take(given, "to_s", options.to_s);
+  return report_of(long_call(py::none(), [=](const Progress& progress) mutable {
+    options.progress = progress;
+    return allan_of(options);
+  }));
 }
 
 py::tuple allan_recording(const SharedRecording& recording,
-                          const std::string& column,
-                          const std::vector<std::string>& kinds,
-                          const std::string& taus, double from_s, double to_s) {
-  return report_of(long_call(py::none(), [=](const Progress& progress) {
-    return allan(*recording, column,
-                 allan_options(kinds, taus, from_s, to_s, progress));
-  }));
+                          const std::string& column, const py::dict& given) {
+  return allan_report(given, [=](const AllanOptions& options) {
+    return allan(*recording, column, options);
+  });
 }
 
 py::tuple allan_samples(const Doubles& samples, double rate_Hz,
-                        const std::string& unit,
-                        const std::vector<std::string>& kinds,
-                        const std::string& taus, double from_s, double to_s) {
+                        const std::string& unit, const py::dict& given) {
   const std::vector<double> values(samples.data(),
                                    samples.data() + samples.size());
-  return report_of(long_call(py::none(), [=](const Progress& progress) {
-    return allan(values, rate_Hz, unit,
-                 allan_options(kinds, taus, from_s, to_s, progress));
-  }));
+  return allan_report(given, [=](const AllanOptions& options) {
+    return allan(values, rate_Hz, unit, options);
+  });
 }
 
 py::tuple allan_file(const Path& file, const std::optional<std::string>& column,
                      const std::optional<double>& rate_Hz,
                      const std::optional<std::string>& unit,
-                     const std::vector<std::string>& kinds,
-                     const std::string& taus, double from_s, double to_s) {
-  return report_of(long_call(py::none(), [=](const Progress& progress) {
-    return allan_of_file(file,
-                         {.column = column, .rate_Hz = rate_Hz, .unit = unit},
-                         allan_options(kinds, taus, from_s, to_s, progress));
-  }));
+                     const py::dict& given) {
+  return allan_report(given, [=](const AllanOptions& options) {
+    return allan_of_file(
+        file, {.column = column, .rate_Hz = rate_Hz, .unit = unit}, options);
+  });
 }
 
 ValidationOptions validation_options(const py::dict& given) {
@@ -150,6 +148,27 @@ py::tuple validate_model(const Model& model, const py::dict& given,
                    });
 }
 
+py::tuple plan_soaks(const Compensator& population, const Device& device,
+                     const py::dict& given) {
+  PlanOptions options;
+  take(given, "soaks", options.soaks);
+  take(given, "hours", options.hours);
+  take(given, "residual_deg_per_s", options.residual_deg_per_s);
+  take(given, "range_degC", options.range_degC);
+  take(given, "chamber_degC", options.chamber_degC);
+  take(given, "ramp_K_per_min", options.ramp_K_per_min);
+  take(given, "start_degC", options.start_degC);
+  take(given, "hold_min", options.hold_min);
+  take(given, "candidates", options.candidates);
+  take(given, "bias_only", options.bias_only);
+  take(given, "device_name", options.device_name);
+  const SoakPlanResult found =
+      long_call(py::none(), [population, device, options](const Progress&) {
+        return plan(population, device, options);
+      });
+  return py::make_tuple(found.text, found.json, found.warnings, found.schedule);
+}
+
 py::tuple study_sensitivity(const Campaign& campaign, const py::dict& given,
                             const py::object& on_progress) {
   SensitivityOptions options;
@@ -198,39 +217,32 @@ py::tuple export_compensators(const std::vector<Compensator>& compensators,
 }  // namespace
 
 void bind_analysis(py::module_& core) {
-  core.def("allan_recording", &allan_recording, py::arg("recording"),
-           py::arg("column"), py::arg("kinds"), py::arg("taus"),
-           py::arg("from_s"), py::arg("to_s"));
-  core.def("allan_samples", &allan_samples, py::arg("samples"),
-           py::arg("rate_Hz"), py::arg("unit"), py::arg("kinds"),
-           py::arg("taus"), py::arg("from_s"), py::arg("to_s"));
-  core.def("allan_file", &allan_file, py::arg("file"), py::arg("column"),
-           py::arg("rate_Hz"), py::arg("unit"), py::arg("kinds"),
-           py::arg("taus"), py::arg("from_s"), py::arg("to_s"));
-  core.def("validate", &validate_compensator, py::arg("compensator"),
-           py::arg("options"), py::arg("progress"));
+  core.def("plan", &plan_soaks);
+  core.def("kinds_of", [](const Path& path) {
+    std::vector<std::string_view> names;
+    for (const internal::FileKind kind : internal::kinds_of(path))
+      names.push_back(internal::kind_name(kind));
+    return names;
+  });
+  core.def("allan_recording", &allan_recording);
+  core.def("allan_samples", &allan_samples);
+  core.def("allan_file", &allan_file);
+  core.def("validate", &validate_compensator);
   core.def("validation_members", &validation_members);
-  core.def(
-      "source_kind",
-      [](const std::string& argument) {
-        return internal::kind_name(internal::source_kind(argument));
-      },
-      py::arg("argument"));
-  core.def("validate_model", &validate_model, py::arg("model"),
-           py::arg("options"), py::arg("progress"));
-  core.def("sensitivity", &study_sensitivity, py::arg("campaign"),
-           py::arg("options"), py::arg("progress"));
-  core.def(
-      "write_texts",
-      [](const Path& directory,
-         const std::vector<std::pair<std::string, std::string>>& texts) {
-        std::vector<ExportedFile> files;
-        for (const auto& [name, text] : texts) files.push_back({name, text});
-        write_exported(directory, files);
-      },
-      py::arg("directory"), py::arg("texts"));
-  core.def("export_files", &export_compensators, py::arg("compensators"),
-           py::arg("format"), py::arg("options"));
+  core.def("source_kind", [](const std::string& argument) {
+    return internal::kind_name(internal::source_kind(argument));
+  });
+  core.def("validate_model", &validate_model);
+  core.def("sensitivity", &study_sensitivity);
+  core.def("write_texts",
+           [](const Path& directory,
+              const std::vector<std::pair<std::string, std::string>>& texts) {
+             std::vector<ExportedFile> files;
+             for (const auto& [name, text] : texts)
+               files.push_back({name, text});
+             write_exported(directory, files);
+           });
+  core.def("export_files", &export_compensators);
 }
 
 }  // namespace beamgyro::python

@@ -9,13 +9,11 @@ namespace beamgyro::python {
 // module `_core`; `_core.pyi` declares them for Python. bind_errors() gives
 // exceptions of the library the words of Python.
 void bind_errors(pybind11::module_& core);
-void bind_kinds(pybind11::module_& core);
 void bind_recording(pybind11::module_& core);
 void bind_device(pybind11::module_& core);
 void bind_scenario(pybind11::module_& core);
 void bind_set(pybind11::module_& core);
 void bind_compensation(pybind11::module_& core);
 void bind_analysis(pybind11::module_& core);
-void bind_plan(pybind11::module_& core);
 
 }  // namespace beamgyro::python

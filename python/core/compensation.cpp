@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <pybind11/eigen.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -98,11 +99,8 @@ SharedCompensator function_compensator(const std::string& name,
 
 SharedCompensator open(const std::string& argument,
                        const std::filesystem::path& program, double stall_s) {
-  ProcessOptions options;
-  options.program = program;
-  options.stall_s = stall_s;
   return std::const_pointer_cast<RateCompensator>(
-      open_compensator(argument, options));
+      open_compensator(argument, {.stall_s = stall_s, .program = program}));
 }
 
 py::tuple compensate_recording(const SharedCompensator& compensator,
@@ -115,17 +113,12 @@ py::tuple compensate_recording(const SharedCompensator& compensator,
 }
 
 /// Rows are samples, columns are inputs; NaN where unpowered.
-py::array_t<double> features(const std::vector<std::string>& inputs,
-                             const SharedRecording& recording) {
+Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> features(
+    const std::vector<std::string>& inputs, const SharedRecording& recording) {
   std::vector<internal::Input> parsed;
   for (const std::string& input : inputs)
     parsed.push_back(internal::parse_input(input));
-  const Eigen::ArrayXXd found = internal::features_of(parsed, *recording);
-  py::array_t<double> rows({found.rows(), found.cols()});
-  auto row = rows.mutable_unchecked<2>();
-  for (Eigen::Index i = 0; i < found.rows(); ++i)
-    for (Eigen::Index k = 0; k < found.cols(); ++k) row(i, k) = found(i, k);
-  return rows;
+  return internal::features_of(parsed, *recording);
 }
 
 using NamedRecordings = std::vector<std::pair<std::string, SharedRecording>>;
@@ -194,10 +187,9 @@ void bind_compensators(py::module_& core) {
       .def_property_readonly("inputs", &RateCompensator::inputs);
   py::class_<Compensator, RateCompensator, std::shared_ptr<Compensator>>(
       core, "Compensator")
-      .def_static("read", &Compensator::read, py::arg("file"))
-      .def_static("parse", &Compensator::parse, py::arg("text"),
-                  py::arg("name"))
-      .def("write", &Compensator::write, py::arg("file"))
+      .def_static("read", &Compensator::read)
+      .def_static("parse", &Compensator::parse)
+      .def("write", &Compensator::write)
       .def_property_readonly("text", &Compensator::text)
       .def_property_readonly("method", &Compensator::method)
       .def_property_readonly("lowest_temperature",
@@ -205,6 +197,7 @@ void bind_compensators(py::module_& core) {
       .def_property_readonly("highest_temperature",
                              &Compensator::highest_temperature)
       .def_property_readonly("states_sigma", &Compensator::states_sigma)
+      .def_property_readonly("curve", &Compensator::curve)
       .def_property_readonly("warnings", &Compensator::warnings);
 }
 
@@ -212,27 +205,18 @@ void bind_compensators(py::module_& core) {
 
 void bind_compensation(py::module_& core) {
   bind_compensators(core);
-  core.def("function_compensator", &function_compensator, py::arg("name"),
-           py::arg("inputs"), py::arg("function"));
-  core.def("open_compensator", &open, py::arg("argument"), py::arg("program"),
-           py::arg("stall_s"));
-  core.def("compensate", &compensate_recording, py::arg("compensator"),
-           py::arg("recording"));
-  core.def("features", &features, py::arg("inputs"), py::arg("recording"));
+  core.def("function_compensator", &function_compensator);
+  core.def("open_compensator", &open);
+  core.def("compensate", &compensate_recording);
+  core.def("features", &features);
   py::class_<Model>(core, "Model")
-      .def_static("read", &Model::read, py::arg("file"))
-      .def_static("parse", &Model::parse, py::arg("text"), py::arg("name"))
+      .def_static("read", &Model::read)
+      .def_static("parse", &Model::parse)
       .def_property_readonly("text", &Model::text)
       .def_property_readonly("name", &Model::name);
-  core.def("train_files", &train_files, py::arg("model"), py::arg("files"),
-           py::arg("held_out"), py::arg("seed"), py::arg("cross_validation"),
-           py::arg("progress"));
-  core.def("train_recordings", &train_recordings, py::arg("model"),
-           py::arg("recordings"), py::arg("held_out"), py::arg("seed"),
-           py::arg("cross_validation"), py::arg("progress"));
-  core.def("train_set", &train_set, py::arg("model"), py::arg("set"),
-           py::arg("runs"), py::arg("devices"), py::arg("seed"),
-           py::arg("progress"));
+  core.def("train_files", &train_files);
+  core.def("train_recordings", &train_recordings);
+  core.def("train_set", &train_set);
 }
 
 }  // namespace beamgyro::python

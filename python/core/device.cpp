@@ -42,17 +42,14 @@ py::dict characterise_device(const Device& device,
 
 void bind_device(py::module_& core) {
   py::class_<Device>(core, "Device")
-      .def_static("read", &Device::read, py::arg("file"), py::arg("overrides"))
-      .def_static("parse", &Device::parse, py::arg("text"), py::arg("name"),
-                  py::arg("overrides"))
-      .def("with_", &Device::with, py::arg("overrides"))
+      .def_static("read", &Device::read)
+      .def_static("parse", &Device::parse)
+      .def("with_", &Device::with)
       .def_property_readonly("text", &Device::text)
       .def_property_readonly("name", &Device::name)
       .def_property_readonly("overrides", &Device::overrides);
-  core.def("even_temperatures", &even_temperatures, py::arg("start"),
-           py::arg("stop"), py::arg("step"));
-  core.def("characterise", &characterise_device, py::arg("device"),
-           py::arg("temperatures_degC"));
+  core.def("even_temperatures", &even_temperatures);
+  core.def("characterise", &characterise_device);
 }
 
 }  // namespace beamgyro::python

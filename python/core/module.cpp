@@ -11,14 +11,12 @@ PYBIND11_MODULE(_core, core) {
   core.attr("version") = beamgyro::version();
   core.attr("git_revision") = beamgyro::git_revision();
   python::bind_errors(core);
-  python::bind_kinds(core);
   python::bind_recording(core);
   python::bind_device(core);
   python::bind_scenario(core);
   python::bind_set(core);
   python::bind_compensation(core);
   python::bind_analysis(core);
-  python::bind_plan(core);
   core.def("end_running_work", &python::end_running_work);
   pybind11::module_::import("atexit").attr("register")(
       core.attr("end_running_work"));

@@ -216,17 +216,15 @@ py::tuple with_warnings(Recording&& recording,
 }
 
 void bind_recording(py::module_& core) {
-  core.def("unit_of", &unit_of, py::arg("name"));
+  core.def("unit_of", &unit_of);
   py::class_<Recording, SharedRecording> recording(core, "Recording");
-  recording.def(py::init(&new_recording), py::arg("time"), py::arg("status"))
-      .def("add", &add_column, py::arg("name"), py::arg("values"),
-           py::arg("attributes"))
+  recording.def(py::init(&new_recording))
+      .def("add", &add_column)
       .def("require_sound", &require_sound)
       .def("arrays", &arrays_of)
       .def("variable_attributes", &variable_attributes)
       .def("file_attributes", &file_attributes)
-      .def("write", &write_recording, py::arg("path"),
-           py::call_guard<py::gil_scoped_release>());
+      .def("write", &write_recording, py::call_guard<py::gil_scoped_release>());
   for (const auto& [name, member] :
        {std::pair{"fidelity", &Recording::fidelity},
         {"title", &Recording::title},
@@ -240,7 +238,7 @@ void bind_recording(py::module_& core) {
         {"overrides_text", &Recording::overrides_text}})
     recording.def_readwrite(name, member);
   recording.def_readwrite("seed", &Recording::seed);
-  core.def("read_recording", &read, py::arg("path"));
+  core.def("read_recording", &read);
 }
 
 }  // namespace beamgyro::python

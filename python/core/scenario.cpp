@@ -56,20 +56,16 @@ PathsAndTexts profiles_of(const Scenario& scenario) {
 
 void bind_scenario(py::module_& core) {
   py::class_<Scenario>(core, "Scenario")
-      .def_static(
-          "read",
-          py::overload_cast<const std::filesystem::path&,
-                            const std::vector<std::string>&>(&Scenario::read),
-          py::arg("file"), py::arg("overrides"))
+      .def_static("read", py::overload_cast<const std::filesystem::path&,
+                                            const std::vector<std::string>&>(
+                              &Scenario::read))
       .def_static(
           "read_with",
           py::overload_cast<const std::filesystem::path&, const Device&,
-                            const std::vector<std::string>&>(&Scenario::read),
-          py::arg("file"), py::arg("device"), py::arg("overrides"))
-      .def_static("parse", &parse, py::arg("text"), py::arg("device"),
-                  py::arg("overrides"), py::arg("name"), py::arg("profiles"))
-      .def("with_", &Scenario::with, py::arg("overrides"))
-      .def("with_device", &Scenario::with_device, py::arg("device"))
+                            const std::vector<std::string>&>(&Scenario::read))
+      .def_static("parse", &parse)
+      .def("with_", &Scenario::with)
+      .def("with_device", &Scenario::with_device)
       .def_property_readonly("text", &Scenario::text)
       .def_property_readonly("name", &Scenario::name)
       .def_property_readonly("device", &Scenario::device)
@@ -83,10 +79,8 @@ void bind_scenario(py::module_& core) {
       .def_property_readonly("fidelity", &Scenario::fidelity)
       .def_property_readonly("seed", &Scenario::seed)
       .def_property_readonly("estimated_seconds", &Scenario::estimated_seconds);
-  core.def("simulate", &simulate_scenario, py::arg("scenario"),
-           py::arg("stop_on_unlock"), py::arg("progress"));
-  core.def("simulate_to_file", &simulate_into, py::arg("scenario"),
-           py::arg("path"), py::arg("stop_on_unlock"), py::arg("progress"));
+  core.def("simulate", &simulate_scenario);
+  core.def("simulate_to_file", &simulate_into);
 }
 
 }  // namespace beamgyro::python

@@ -6,7 +6,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,22 +16,9 @@
 #include "python/core/bindings.h"
 #include "python/core/input_files.h"
 #include "python/core/long_call.h"
-#include "python/core/recording.h"
 
 namespace beamgyro::python {
 namespace {
-
-SharedRecording recording_of(const Set& set, const std::string& run,
-                             std::uint32_t device) {
-  const py::gil_scoped_release released;
-  return std::make_shared<Recording>(set.recording(run, device));
-}
-
-SharedRecording slow_recording_of(const Set& set, const std::string& run,
-                                  std::uint32_t device) {
-  const py::gil_scoped_release released;
-  return std::make_shared<Recording>(set.slow_recording(run, device));
-}
 
 py::list parameters_of(const Set& set, const std::string& run,
                        std::uint32_t device) {
@@ -85,20 +71,18 @@ PathsAndTexts files_of(const Campaign& campaign) {
 
 void bind_set(py::module_& core) {
   py::class_<Campaign>(core, "Campaign")
-      .def_static("read", &Campaign::read, py::arg("file"), py::arg("devices"))
-      .def_static("parse", &parse_campaign, py::arg("files"),
-                  py::arg("devices"))
+      .def_static("read", &Campaign::read)
+      .def_static("parse", &parse_campaign)
       .def_property_readonly("name", &Campaign::name)
       .def_property_readonly("text", &Campaign::text)
       .def_property_readonly("files", &files_of)
       .def_property_readonly("devices", &Campaign::devices)
       .def_property_readonly("seed", &Campaign::seed)
       .def_property_readonly("runs", &Campaign::runs)
-      .def("device", &Campaign::device, py::arg("number"));
-  core.def("generate", &generate_set, py::arg("campaign"), py::arg("directory"),
-           py::arg("jobs"), py::arg("resume"), py::arg("progress"));
+      .def("device", &Campaign::device);
+  core.def("generate", &generate_set);
   py::class_<Set>(core, "Set")
-      .def_static("open", &Set::open, py::arg("directory"))
+      .def_static("open", &Set::open)
       .def_property_readonly("directory", &Set::directory)
       .def_property_readonly("campaign", &Set::campaign)
       .def_property_readonly("devices", &Set::devices)
@@ -107,17 +91,16 @@ void bind_set(py::module_& core) {
       .def_property_readonly("program_version", &Set::program_version)
       .def_property_readonly("git_revision", &Set::git_revision)
       .def_property_readonly("failures", &failures_of)
-      .def(
-          "part",
-          [](const Set& set, std::uint32_t device) {
-            return part_name(set.part(device));
-          },
-          py::arg("device"))
-      .def("recording", &recording_of, py::arg("run"), py::arg("device"))
-      .def("slow_recording", &slow_recording_of, py::arg("run"),
-           py::arg("device"))
-      .def("parameters", &parameters_of, py::arg("run"), py::arg("device"))
-      .def("verify", &verify, py::arg("progress"));
+      .def("part",
+           [](const Set& set, std::uint32_t device) {
+             return part_name(set.part(device));
+           })
+      .def("recording", &Set::recording,
+           py::call_guard<py::gil_scoped_release>())
+      .def("slow_recording", &Set::slow_recording,
+           py::call_guard<py::gil_scoped_release>())
+      .def("parameters", &parameters_of)
+      .def("verify", &verify);
 }
 
 }  // namespace beamgyro::python

@@ -96,9 +96,11 @@ ALLOWED = """
 beamgyro\\._core\\.[A-Z]\\w+(\\.__init__)?
 # Names of Python's own library, which modules import: the stubs of mypy's
 # typeshed differ from Python itself.
-beamgyro\\.([a-z_0-9]+\\.)*(Callable|Iterable|Iterator|Mapping|ModuleType|NamedTuple|Sequence|Sized|TypeGuard|field)(\\.\\w+)?
+beamgyro\\.([a-z_0-9]+\\.)*(Callable|Generic|Iterable|Iterator|Mapping|ModuleType|NamedTuple|Sequence|Sized|TypeGuard|field)(\\.\\w+)?
 # An alias of a Literal, which stubtest takes for a Union.
 beamgyro\\._scenario\\.Fidelity
+# Properties of the class Native, which cannot be set, as mypy knows.
+beamgyro\\.(_\\w+\\.)?[A-Z]\\w+\\.(devices|directory|duration_s|failures|fidelity|inputs|name|output_rate_Hz|overrides|runs|samples|seed|text|title)
 # Its keywords come from the compiled part; the test below looks at them.
 beamgyro\\.(_analysis\\.)?validate
 """

@@ -5,8 +5,8 @@
     plots.plot("warm_up.h5").savefig("warm_up.png")
     plots.plot(["cubic.json", "bp.json"], compare=True)
 
-Each function returns a matplotlib Figure. It needs no compiled part of the
-package: numpy, h5py and matplotlib are enough.
+Each function returns a matplotlib Figure. It needs numpy, h5py and matplotlib,
+and of the compiled part of the package the curves of compensators only.
 """
 
 from __future__ import annotations
@@ -98,17 +98,21 @@ def _plotted(kind: str, *sources: Any, places: Sequence[object] = ()
              ) -> Figure:
     names = [place or KINDS[kind].name for place in
              [*places, *[None] * (len(sources) - len(places))]]
-    for source, name in zip(sources, names):
-        KINDS[kind].check(source, name)
+    drawn = [KINDS[kind].checked(source, name)
+             for source, name in zip(sources, names)]
     with look():
-        return figure_of(kind, sources)
+        return figure_of(kind, drawn)
 
 
-def _named(data: Mapping[str, Any], name: str) -> dict[str, Any]:
-    if not isinstance(data, Mapping):
-        raise PlotError(f"{name}: {type(data).__name__}; expected the JSON "
-                        "of a command as a dict")
-    return {"name": name, **data}
+def _plotted_documents(kind: str, data: Sequence[Any], names: Sequence[str]
+                       ) -> Figure:
+    names = [*names, *[KINDS[kind].name] * (len(data) - len(names))]
+    for one, name in zip(data, names):
+        if not isinstance(one, Mapping):
+            raise PlotError(f"{name}: {type(one).__name__}; expected the JSON "
+                            "of a command as a dict")
+    return _plotted(kind, *({"name": name, **one}
+                            for one, name in zip(data, names)), places=names)
 
 
 def plot_recording(*recordings: Any, names: Sequence[str] = ()) -> Figure:
@@ -130,16 +134,13 @@ def plot_table(*tables: Any, names: Sequence[str] = ()) -> Figure:
 def plot_allan(*results: Mapping[str, Any], names: Sequence[str] = ()
                ) -> Figure:
     """Results of `allan --json`, as dicts."""
-    names = [*names, *["Allan deviation"] * (len(results) - len(names))]
-    return _plotted("allan", *map(_named, results, names), places=names)
+    return _plotted_documents("allan", results, names)
 
 
 def plot_compensator(*compensators: Mapping[str, Any],
                      names: Sequence[str] = ()) -> Figure:
     """Compensators or populations, as dicts of their JSON."""
-    names = [*names, *["compensator"] * (len(compensators) - len(names))]
-    return _plotted("compensator", *map(_named, compensators, names),
-                    places=names)
+    return _plotted_documents("compensator", compensators, names)
 
 
 def plot_validation(result: Mapping[str, Any]) -> Figure:
@@ -166,8 +167,7 @@ def save_each(file: Path, folder: Path) -> list[str]:
         raise PlotError(f"{path}: one picture only; expected the --json of "
                         "validate or sensitivity")
     names = []
-    source = kind.read(path, path.name)
-    kind.check(source, path)
+    source = kind.checked(kind.read(path, path.name), path)
     with look():
         for name, figure in kind.each(source):
             names.append(f"{name}.png")

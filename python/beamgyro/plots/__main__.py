@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: MIT
 """Draws files of beamgyro. `beamgyro plot` runs this script.
 
-__main__.py FILE... [-o PICTURE [--format png|svg]] [--compare]
+__main__.py FILE... [-o PICTURE [--format png|svg]] [--compare] [--curves]
 __main__.py RESULT.json --each DIR
+
+With --curves it reads a line for each file: of a compensator its curve.
 """
 
 import argparse
 import importlib.util
+import json
 import os
 import pathlib
 import sys
@@ -82,6 +85,7 @@ def main() -> None:
     parser.add_argument("-o", "--output")
     parser.add_argument("--format", choices=["png", "svg"])
     parser.add_argument("--compare", action="store_true")
+    parser.add_argument("--curves", action="store_true")
     parser.add_argument("--each", type=pathlib.Path)
     arguments = parser.parse_args()
     if arguments.output or arguments.each:  # whatever MPLBACKEND says
@@ -108,6 +112,9 @@ def main() -> None:
 
 
 def draw(plots: Any, arguments: argparse.Namespace) -> None:
+    if arguments.curves:
+        plots.compensator.CURVES.update(zip(
+            map(pathlib.Path, arguments.files), map(json.loads, sys.stdin)))
     if arguments.each:
         plots.save_each(arguments.files[0], arguments.each)
     elif arguments.output:

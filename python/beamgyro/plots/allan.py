@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from . import style
 from .documents import (NOT_NEGATIVE, NUMBER, POSITIVE, TEXT, both, in_order,
-                        maybe, record, rows, wrong)
+                        maybe, record, rows, WrongValue)
 from .errors import PlotError
 from .units import duration
 
@@ -41,7 +41,7 @@ def _units_agree(data: Mapping[str, Any], _: str) -> None:
         term = _term(data, symbol)
         expected = of_rates if unit == "deg/s" else unit + factor
         if term and term["unit"] != expected:
-            raise wrong(f"noise.{symbol}.per_second.unit",
+            raise WrongValue(f"noise.{symbol}.per_second.unit",
                         f'"{term["unit"]}"',
                         f'"{expected}", as the series is in {unit}')
 

@@ -4,19 +4,18 @@ population: the mean of its devices and how they differ."""
 
 from __future__ import annotations
 
+import json
+import pathlib
 from typing import Any, Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from . import style
-from .bias_curve import (MODEL, bias, other_inputs, sigma, steady_inputs)
-from .documents import (NOT_NEGATIVE, NUMBER, PAIR, POSITIVE, RANGE, TEXT,
-                        both, maybe, record, require_count, rising, rows)
+from . import documents, style
+from .errors import PlotError
+from .units import unit_of
 
-BEYOND = 0.08  # of the range, drawn at both ends
-POINTS = 300
 SCORES = [("constant", "constant", style.GREY),
           ("cubic", "baseline", style.YELLOW),
           ("compensator", "", style.AFTER)]
@@ -24,35 +23,28 @@ SAMPLES = [("in-sample", "in_sample_rms_deg_per_s"),
            ("held out", "held_out_rms_deg_per_s")]
 Document = Mapping[str, Any]
 
-
-def _population_fits(one: Document, key: str) -> None:
-    size = len(one["temperatures_degC"]) * (1 + len(one["channels"]))
-    lists = [("mean", one["mean"]), *((f"modes[{k}]", mode) for k, mode in
-                                      enumerate(one["modes"]))]
-    for name, values in lists:
-        require_count(values, f"{key}.{name}", size,
-                      "the temperatures of bias and channels")
+# Those of files, where the program that draws them has computed them.
+CURVES: dict[object, Document | None] = {}
 
 
-_MEMBERS = record(
-    {"inputs": rows(TEXT), "temperature_range_degC": RANGE,
-     "training": record({"method": TEXT}, {
-         **{f"{prefix}_{key}" if prefix else key: maybe(NOT_NEGATIVE)
-            for _, prefix, _ in SCORES for _, key in SAMPLES},
-         "cross_validation": maybe(record({}, {
-             "constant_rms_deg_per_s": maybe(NOT_NEGATIVE),
-             "rms_deg_per_s": maybe(NOT_NEGATIVE)}))})},
-    {"baseline": MODEL,
-     "sigma": record(
-         {"temperature_degC": rising(rows(NUMBER, 1)),
-          "sigma_deg_per_s": rows(NUMBER, 1),
-          "growth_deg_per_s_per_K": PAIR, "factor": POSITIVE},
-         alike=("temperature_degC", "sigma_deg_per_s")),
-     "population": both(record(
-         {"devices": NOT_NEGATIVE, "channels": rows(TEXT),
-          "temperatures_degC": rising(rows(NUMBER, 2)), "mean": rows(NUMBER),
-          "modes": rows(rows(NUMBER), 1)}), _population_fits)})
-SHAPE = both(_MEMBERS, MODEL.check)
+def with_curve(one: Document, where: object) -> Document:
+    """A compensator and its curve over temperature. The compiled part of the
+    package computes it, and checks all that is drawn."""
+    curve = CURVES.get(where)
+    if curve is None:
+        from beamgyro import _core
+        try:
+            text = documents.text_of(where) if isinstance(
+                where, pathlib.Path) else json.dumps(
+                    {key: one[key] for key in one if key != "name"})
+            curve = json.loads(
+                _core.Compensator.parse(text, str(where)).curve)
+        except TypeError as error:
+            raise PlotError(f"{where}: {error}; expected what a file of JSON "
+                            "holds") from None
+        except ValueError as error:
+            raise PlotError(str(error)) from None
+    return {**one, "curve": curve}
 
 
 def height(compensators: Sequence[Document]) -> float:
@@ -70,22 +62,16 @@ def draw(figure: Figure, compensators: Sequence[Document]) -> None:
         _several(figure, compensators)
 
 
-def _temperatures(low: float, high: float) -> Any:
-    reach = BEYOND * (high - low) or 1.0
-    return np.linspace(low - reach, high + reach, POINTS)
-
-
 def _curve(axes: Axes, one: Document, color: str, label: str,
            band: bool = True, **options: Any) -> bool:
     """Bias over temperature, where that is all the compensator sees."""
-    if other_inputs(one):
+    curve = one["curve"]
+    if curve["bias_deg_per_s"] is None:
         return False
-    low, high = one["temperature_range_degC"]
-    T = _temperatures(low, high)
-    values = bias(one, steady_inputs(one, np.clip(T, low, high)))
+    T, values = curve["temperature_degC"], np.array(curve["bias_deg_per_s"])
     axes.plot(T, values, color=color, label=label, **options)
     if band and "sigma" in one:
-        s = sigma(one["sigma"], T)
+        s = np.array(curve["sigma_deg_per_s"])
         axes.fill_between(T, values - s, values + s, color=color, alpha=0.25,
                           lw=0, label="±1σ stated")
     return True
@@ -105,23 +91,21 @@ def _one(figure: Figure, one: Document) -> None:
     rows = figure.subplots(2 + stated, 1,
                            height_ratios=[3, 1.6, 1.3] if stated else [3, 1.3])
     low, high = one["temperature_range_degC"]
-    T = _temperatures(low, high)
+    curve = one["curve"]
+    T = np.array(curve["temperature_degC"])
     drawn = _curve(rows[0], one, style.AFTER, "bias taken away", zorder=3)
-    baseline = one.get("baseline")
-    if baseline:
-        inside = np.clip(T, low, high)
-        rows[0].plot(T, bias(baseline, inside[:, None]), color=style.YELLOW,
-                     ls=(0, (4, 2)), label="cubic of the same training",
-                     lw=2.2, zorder=2.5)
+    rows[0].plot(T, curve["cubic_deg_per_s"], color=style.YELLOW,
+                 ls=(0, (4, 2)), label="cubic of the same training", lw=2.2,
+                 zorder=2.5)
     rows[0].set(ylabel="bias [°/s]", xlim=(T[0], T[-1]))
     words = "shaded: beyond the training, where the temperature is clamped"
     if not drawn:
-        words = (f"its bias follows {' and '.join(other_inputs(one))}, not "
+        words = (f"its bias follows {' and '.join(curve['other_inputs'])}, not "
                  "the temperature alone: no curve")
     _range(rows[0], low, high)
     style.legend_above(rows[0])
     if stated:
-        s = sigma(one["sigma"], T)
+        s = np.array(curve["sigma_deg_per_s"])
         rows[1].plot(T, s, color=style.AFTER)
         inside = s[(T >= low) & (T <= high)]
         rows[1].set(ylabel="stated σ [°/s]", ylim=(0, 2 * inside.max()),
@@ -180,9 +164,10 @@ def _several(figure: Figure, compensators: Sequence[Document]) -> None:
         if not _curve(rows[0], one, color, name, band=False, **look):
             without.append(name)
         if "sigma" in one:
-            T = _temperatures(*one["temperature_range_degC"])
-            rows[1].plot(T, sigma(one["sigma"], T), color=color, label=name
-                         if other_inputs(one) else None, **look)
+            curve = one["curve"]
+            rows[1].plot(curve["temperature_degC"], curve["sigma_deg_per_s"],
+                         color=color,
+                         label=name if curve["other_inputs"] else None, **look)
     rows[0].set_ylabel("bias [°/s]")
     if stated:
         rows[1].set_ylabel("stated σ [°/s]")
@@ -223,7 +208,7 @@ def _population(figure: Figure, one: Document) -> None:
                         label=("1st", "2nd", "3rd", "4th")[k])
         row[1].axhline(0, color=style.GREY, lw=0.8)
         row[0].set_ylabel(style.quantity(name.replace("_", " "),
-                                         _channel_unit(name)))
+                                         unit_of(name)))
     style.legend_above(grid[0, 0])
     style.legend_above(grid[0, 1])
     for axes in grid[-1]:
@@ -232,8 +217,3 @@ def _population(figure: Figure, one: Document) -> None:
                  f"{population['devices']:,} devices",
                  "left: mean and spread over devices; right: the strongest of "
                  f"{len(modes)} ways in which a device differs, 1σ each")
-
-
-def _channel_unit(name: str) -> str:
-    return {"drive_frequency": "Hz", "drive_voltage": "V",
-            "temperature": "degC", "output": "V"}.get(name, "deg/s")

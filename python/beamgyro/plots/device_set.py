@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import documents, hdf5, style
+from .envelope import means_of
 from .errors import PlotError
 from .units import time_unit
 
@@ -163,15 +164,7 @@ def _read_devices(run: SetRun, file: hdf5.File, shown: npt.NDArray[np.int64],
         for truth in rates[1:]:
             values = values - _decoded(truth, row)
         if np.isfinite(values).any():
-            run.rate.append(_means(values, edges))
-
-
-def _means(values: Values, edges: npt.NDArray[np.int64]) -> Values:
-    finite = np.isfinite(values)
-    count = np.add.reduceat(finite, edges, dtype=float)
-    count[count == 0] = np.nan
-    means: Values = np.add.reduceat(np.where(finite, values, 0), edges) / count
-    return means
+            run.rate.append(means_of(edges, values))
 
 
 # --- drawing ---

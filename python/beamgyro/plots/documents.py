@@ -33,15 +33,6 @@ class Shape:
     check: Callable[[Any, str], None]
 
 
-def _require_object(value: Any, key: str) -> None:
-    if not isinstance(value, Mapping):
-        raise wrong(key, shown(value), "an object")
-
-
-def wrong(key: str, met: str, expected: str) -> WrongValue:
-    return WrongValue(key, met, expected)
-
-
 def shown(value: Any) -> str:
     try:
         text = json.dumps(value, ensure_ascii=False)
@@ -53,7 +44,7 @@ def shown(value: Any) -> str:
 def _simple(words: str, holds: Callable[[Any], bool]) -> Shape:
     def check(value: Any, key: str) -> None:
         if not holds(value):
-            raise wrong(key, shown(value), words)
+            raise WrongValue(key, shown(value), words)
     return Shape(words, check)
 
 
@@ -93,7 +84,7 @@ def maybe(shape: Shape) -> Shape:
             except WrongValue as error:
                 if error.args[0] != key:
                     raise
-                raise wrong(key, error.args[1], words) from None
+                raise WrongValue(key, error.args[1], words) from None
     return Shape(words, check)
 
 
@@ -104,26 +95,15 @@ def rows(shape: Shape, least: int = 0, most: float = float("inf")) -> Shape:
 
     def check(value: Any, key: str) -> None:
         if not isinstance(value, (list, tuple)):
-            raise wrong(key, shown(value), words)
+            raise WrongValue(key, shown(value), words)
         if not least <= len(value) <= most:
-            raise wrong(key, f"{len(value)} values", words)
+            raise WrongValue(key, f"{len(value)} values", words)
         for k, one in enumerate(value):
             shape.check(one, f"{key}[{k}]")
     return Shape(words, check)
 
 
 PAIR = rows(NUMBER, 2, 2)
-
-
-def rising(shape: Shape) -> Shape:
-    """A list of that shape, of numbers that increase."""
-    def check(values: Any, key: str) -> None:
-        shape.check(values, key)
-        for k, (before, after) in enumerate(zip(values, values[1:]), 1):
-            if not before < after:
-                raise wrong(f"{key}[{k}]", shown(after),
-                            f"a number above {shown(before)}, that before it")
-    return Shape(shape.words, check)
 
 
 def _inside(key: str, name: str) -> str:
@@ -134,18 +114,22 @@ def record(needed: Mapping[str, Shape], optional: Mapping[str, Shape] = {},
            alike: Sequence[str] = ()) -> Shape:
     """An object with these members; the lists `alike` are equally long."""
     def check(value: Any, key: str) -> None:
-        _require_object(value, key)
+        if not isinstance(value, Mapping):
+            raise WrongValue(key, shown(value), "an object")
         for name, shape in needed.items():
             if name not in value:
-                raise wrong(_inside(key, name), "missing", shape.words)
+                raise WrongValue(_inside(key, name), "missing", shape.words)
             shape.check(value[name], _inside(key, name))
         for name, shape in optional.items():
             if name in value:
                 shape.check(value[name], _inside(key, name))
         first, *others = [name for name in alike if name in value] or [""]
         for name in others:
-            require_count(value[name], _inside(key, name), len(value[first]),
-                          f"as {first} has")
+            count = len(value[first])
+            if len(value[name]) != count:
+                raise WrongValue(_inside(key, name),
+                                 f"{len(value[name])} values",
+                                 f"{count}, as {first} has")
     return Shape("an object", check)
 
 
@@ -161,7 +145,7 @@ def in_order(ends: Sequence[float | None], key: str) -> None:
     """The lower end of an interval stands first; null is no end."""
     low, high = ends
     if low is not None and high is not None and low > high:
-        raise wrong(key, shown(ends), "the lower number first")
+        raise WrongValue(key, shown(ends), "the lower number first")
 
 
 RANGE = both(PAIR, in_order)
@@ -171,17 +155,11 @@ def members(shape: Shape) -> Shape:
     """An object whose members all have that shape, one or more."""
     def check(value: Any, key: str) -> None:
         if not isinstance(value, Mapping) or not value:
-            raise wrong(key, shown(value), "an object with members")
+            raise WrongValue(key, shown(value), "an object with members")
         for name, one in value.items():
             NAME.check(name, key)
             shape.check(one, _inside(key, name))
     return Shape("an object", check)
-
-
-def require_count(values: Sequence[Any], key: str, count: int, why: str
-                  ) -> None:
-    if len(values) != count:
-        raise wrong(key, f"{len(values)} values", f"{count}, {why}")
 
 
 def check(document: Any, shape: Shape, where: object) -> None:

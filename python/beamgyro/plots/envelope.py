@@ -67,11 +67,12 @@ class Envelope:
     high: Values
 
 
-def _means(bins: Bins, values: Values) -> Values:
+def means_of(starts: npt.NDArray[np.int64], values: Values) -> Values:
+    """The mean of the finite values of each bin, by its first sample."""
     finite = np.isfinite(values)
-    count = np.add.reduceat(finite, bins.starts, dtype=float)
+    count = np.add.reduceat(finite, starts, dtype=float)
     count[count == 0] = np.nan
-    means: Values = np.add.reduceat(np.where(finite, values, 0), bins.starts) \
+    means: Values = np.add.reduceat(np.where(finite, values, 0), starts) \
         / count
     return means
 
@@ -81,7 +82,7 @@ def envelope(bins: Bins, values: Values) -> Envelope:
     series = [bins.time, values, values, values]
     if bins.merged:
         series = [bins.time, np.fmin.reduceat(values, starts),
-                  _means(bins, values), np.fmax.reduceat(values, starts)]
+                  means_of(starts, values), np.fmax.reduceat(values, starts)]
     return Envelope(*(np.insert(one, bins.breaks, np.nan)
                       for one in series))
 

@@ -24,19 +24,19 @@ class File:
 
     def __init__(self, path: pathlib.Path, file: Any) -> None:
         self.path = path
-        self._file = file
+        self.contents = file
 
     def __contains__(self, name: str) -> bool:
-        return name in self._file
+        return name in self.contents
 
     @property
     def attributes(self) -> dict[str, Any]:
-        return dict(self._file.attrs)
+        return dict(self.contents.attrs)
 
     def variable(self, name: str, dimensions: int = 1) -> Any:
         """A dataset of numbers that is not read yet."""
         import h5py
-        found = self._file.get(name)
+        found = self.contents.get(name)
         if not isinstance(found, h5py.Dataset):
             met = "missing" if found is None else "no variable"
             raise PlotError(f"{self.path}: {name}: {met}; expected numbers")
@@ -52,9 +52,6 @@ class File:
         """All values of a variable of one dimension."""
         values: Values = self.variable(name)[()]
         return values
-
-    def unit(self, name: str, otherwise: str) -> str:
-        return text_of(self._file[name].attrs.get("units", otherwise))
 
 
 @contextmanager

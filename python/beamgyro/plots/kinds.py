@@ -29,30 +29,25 @@ class Kind:
     compares: bool = False  # draw() and height() take a list
     shape: documents.Shape | None = None  # of a JSON document
     each: Callable[[Source], Iterator[tuple[str, Figure]]] | None = None
+    completed: Callable[[Source, object], Source] | None = None
 
-    def check(self, source: Source, where: object) -> None:
-        """Raises PlotError for a document that is not of its shape."""
+    def checked(self, source: Source, where: object) -> Source:
+        """What is drawn of a source. Raises PlotError where it is wrong."""
         if self.shape is not None:
             documents.check(source, self.shape, where)
-
-
-def _draw_recordings(figure: Figure, runs: Sequence[recording.Run]) -> None:
-    recording.draw(figure, runs[0] if len(runs) == 1 else runs)
-
-
-def _height_of_recordings(runs: Sequence[recording.Run]) -> float:
-    return recording.height(runs[0] if len(runs) == 1 else runs)
+        return self.completed(source, where) if self.completed else source
 
 
 KINDS = {
-    "recording": Kind("recording", recording.read, _draw_recordings,
-                      _height_of_recordings, True),
+    "recording": Kind("recording", recording.read, recording.draw,
+                      recording.height, True),
     "table": Kind("table of characterise", table.read, table.draw,
                   lambda _: table.HEIGHT, True),
     "allan": Kind("Allan deviation", documents.read, allan.draw,
                   lambda _: allan.HEIGHT, True, allan.SHAPE),
     "compensator": Kind("compensator", documents.read, compensator.draw,
-                        compensator.height, True, compensator.SHAPE),
+                        compensator.height, True,
+                        completed=compensator.with_curve),
     "set": Kind("set", device_set.read, device_set.draw, device_set.height),
     "validation": Kind("validation", documents.read, validation.draw,
                        validation.height, False, validation.SHAPE,

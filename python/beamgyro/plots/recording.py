@@ -118,21 +118,10 @@ def _values(variable: Any, key: str, name: str) -> Values:
 
 def read(path: pathlib.Path, name: str) -> Run:
     with open(path, "rb") as file:
-        is_hdf5 = file.read(4) == b"\x89HDF"
-    return Run(_read_h5(path) if is_hdf5 else _read_csv(path), name)
-
-
-def _read_h5(path: pathlib.Path) -> dict[str, Any]:
-    with hdf5.opened(path) as file:
-        data: dict[str, Any] = {"attrs": file.attributes}
-        for key in ("time", *DRAWN):
-            if key in file:
-                values = file.numbers(key).astype(float, copy=False)
-                data[key] = converted(key, values, file.unit(
-                    key, unit_of(key)), f"{path}: ")
-        if "status" in file:
-            data["status"] = file.numbers("status")
-        return data
+        if file.read(4) != b"\x89HDF":
+            return Run(_read_csv(path), name)
+    with hdf5.opened(path) as recording:
+        return Run(recording.contents, name)
 
 
 def _read_csv(path: pathlib.Path) -> dict[str, Any]:
@@ -162,17 +151,16 @@ def _column(head: str) -> tuple[str, str]:
 
 # --- drawing ---
 
-def draw(figure: Figure, runs: Run | Sequence[Run]) -> None:
+def draw(figure: Figure, runs: Sequence[Run]) -> None:
     """One recording, or several over each other."""
-    if isinstance(runs, Run):
-        _draw_one(figure, runs)
+    if len(runs) == 1:
+        _draw_one(figure, runs[0])
     else:
         _draw_several(figure, runs)
 
 
-def height(runs: Run | Sequence[Run]) -> float:
-    panels = _panels_of(runs) if isinstance(runs, Run) \
-        else _compared(runs)
+def height(runs: Sequence[Run]) -> float:
+    panels = _panels_of(runs[0]) if len(runs) == 1 else _compared(runs)
     return 1.0 + sum(_SHARES[kind] for kind in panels) * 0.9
 
 

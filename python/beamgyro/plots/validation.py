@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from . import style
 from .documents import (FLAG, NAME, NOT_NEGATIVE, NUMBER, TEXT, both, either,
-                        maybe, record, rows, wrong)
+                        maybe, record, rows, WrongValue)
 
 # Colours, dashes and markers of series are those of the page of the report
 # (validation/page/page.html).
@@ -41,7 +41,7 @@ _FIGURE = record({"id": NAME, "title": TEXT, "kind": _KIND, "x": _AXIS,
 
 def _has_an_end(limit: Mapping[str, Any], key: str) -> None:
     if limit["min"] is None and limit["max"] is None:
-        raise wrong(key, "neither min nor max is a number", "one or both")
+        raise WrongValue(key, "neither min nor max is a number", "one or both")
 
 
 _LIMIT = both(record({
