@@ -2,7 +2,6 @@
 """`allan` of the shipped program: coefficients, gaps, units and windows."""
 
 import json
-import unittest
 
 import h5py
 import numpy as np
@@ -205,6 +204,3 @@ class Kinds(ProgramTest):
             self.assertAlmostEqual(60 * one, other, places=12)
         self.assertIn(f"{60 * low:.4g} to {60 * high:.4g}", text)
         self.assertIn(f"{low:.4g} to {high:.4g}", text)
-
-if __name__ == "__main__":
-    unittest.main()

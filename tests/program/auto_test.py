@@ -4,7 +4,6 @@
 import json
 import re
 import shutil
-import unittest
 
 import h5py
 import numpy as np
@@ -266,6 +265,3 @@ class CrossValidation(Auto):
             self.assertEqual((validated["by"], validated["groups"]),
                              (by, count))
             self.assertRegex(report, f"rms cross-validated over {count} {by}s")
-
-if __name__ == "__main__":
-    unittest.main()

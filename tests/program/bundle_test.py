@@ -7,7 +7,6 @@ import resource
 import signal
 import subprocess
 import time
-import unittest
 
 from program import PATIENCE, PROGRAM
 from qualified import Qualified
@@ -357,7 +356,3 @@ class Places(Qualified):
             begun.unlink()
             for name in "rfb":
                 self.assertFalse((self.dir / name).exists(), name)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 
 import csv
 import io
-import unittest
 
 from program import ProgramTest, processor_time_of_children
 
@@ -96,6 +95,3 @@ class Characterise(ProgramTest):
             self.assertEqual(answer.returncode, 0, answer.stderr)
             self.assertEqual("beyond -40 to 80 degC the ceramic's coefficients"
                              in answer.stderr, warns, grid)
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 
 import json
 import math
-import unittest
 
 import h5py
 import numpy as np
@@ -156,7 +155,3 @@ class Compensation(ProgramTest):
         text = self.ok("allan", "named.csv", "--dataset", "y", "--rate-Hz", 1)
         self.assertIn("91.229", text)
         self.assertIn("tau", self.ok("allan", "test.h5").lower())
-
-
-if __name__ == "__main__":
-    unittest.main()

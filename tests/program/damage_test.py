@@ -2,7 +2,6 @@
 """Recordings that are damaged or that somebody else made."""
 
 import random
-import unittest
 
 import h5py
 import numpy as np
@@ -137,7 +136,3 @@ class Units(ProgramTest):
                                     "expected"])
                 self.change(name, right)
         self.ok("info", "run.h5")
-
-
-if __name__ == "__main__":
-    unittest.main()

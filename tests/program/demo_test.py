@@ -110,7 +110,3 @@ class Demo(unittest.TestCase):
         left = [self.lifelike[method]["before_store_rms_deg_per_s"] ** 2
                 for method in ("recommended_with_play", "recommended")]
         self.assertLess(left[0], left[1] / 2)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,7 +5,6 @@ import json
 import shutil
 import subprocess
 import time
-import unittest
 
 from program import CUBIC, PROGRAM, ROOT, ProgramTest, class_folder, ramp
 from sets import CAMPAIGN, SCENARIO
@@ -202,7 +201,3 @@ class ChangedMeanwhile(Judged):
         self.assertEqual((self.dir / "b/inputs/runs/test.h5").read_bytes(),
                          before)
         self.ok("validate", "--check", "b", "--run-code")
-
-
-if __name__ == "__main__":
-    unittest.main()

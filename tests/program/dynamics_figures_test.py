@@ -22,7 +22,3 @@ class DynamicsFigures(unittest.TestCase):
                 for suffix in ["png", "svg"]:
                     picture = pathlib.Path(folder) / f"{name}.{suffix}"
                     self.assertGreater(picture.stat().st_size, 10000)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -98,7 +98,3 @@ class ExportFirmware(ExportTest):
             with self.subTest(sigma=sigma):
                 self.assertLessEqual(code + constants, MOST_BYTES[sigma])
                 self.assertEqual(size[".data"] + size[".bss"], 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

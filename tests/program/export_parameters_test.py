@@ -4,7 +4,6 @@
 import json
 import re
 import shutil
-import unittest
 
 import h5py
 import numpy as np
@@ -146,7 +145,3 @@ class ExportParameters(ExportTest):
         for name, value in of_cubic.items():
             self.assertAlmostEqual(of_spline[name], value,
                                    delta=1e-5 * abs(value) + 1e-12)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -341,7 +341,3 @@ class ExportPage(ExportTest):
                             "_a$", f"_{axis}", name)))
             self.assertEqual(written, expected)
             shutil.rmtree(path.parent)
-
-
-if __name__ == "__main__":
-    unittest.main()

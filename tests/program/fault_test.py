@@ -17,7 +17,6 @@ import shutil
 import subprocess
 import tempfile
 import threading
-import unittest
 
 import pytest
 
@@ -230,7 +229,3 @@ class Sets(Struck):
     def test_verify(self):
         self.ok("generate", "campaign.toml", "-o", "set")
         self.strike("verify", "set", fewest_calls=30)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -175,6 +175,3 @@ class Csv(ProgramTest):
         # 273.15 costs the temperatures six digits of 2^-52.
         np.testing.assert_allclose(one["coefficients"], other["coefficients"],
                                    rtol=1e-9)
-
-if __name__ == "__main__":
-    unittest.main()

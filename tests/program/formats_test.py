@@ -1,11 +1,9 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Compares docs/reference/ with what the program reads and writes."""
 
 import json
 import re
 import tomllib
-import unittest
 
 import h5py
 
@@ -340,7 +338,3 @@ class Formats(ProgramTest):
                                         "-o", "c.json",
                                         says=key.rpartition(".")[2])
                 self.assertNotIn("unknown key", message)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -8,7 +8,6 @@ import re
 import signal
 import subprocess
 import time
-import unittest
 
 import h5py
 import numpy as np
@@ -354,7 +353,3 @@ class ReadOnly(Set):
                        capture_output=True)
         subprocess.run([os.fsencode(PROGRAM), b"verify", folder], check=True,
                        capture_output=True)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 
 import re
 import shlex
-import unittest
 
 from program import ROOT, ProgramTest, commands
 
@@ -98,7 +97,3 @@ class Help(ProgramTest):
                     # Here are none of its files, and that is all it says.
                     self.assertRegex(self.rejected(*words),
                                      "No such file|is no directory|is not there")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,7 +5,6 @@ import hashlib
 import json
 import os
 import shutil
-import unittest
 
 from sets import Set
 
@@ -199,7 +198,3 @@ class HostileSet(Set):
         shutil.copytree(self.set, self.dir / "copy", copy_function=os.link)
         self.harmless("generate", "campaign.toml", "-o", "set", "--resume",
                       status=0, says="whole")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -74,8 +74,3 @@ class Hysteresis(ProgramTest):
             self.sigma(method, training, held_out, test, restarts=(8, 3))[0]
             ** 2 for method in ("recommended_with_play", "recommended")]
         self.assertLess(variance[0], variance[1] / 2)
-
-
-if __name__ == "__main__":
-    import unittest
-    unittest.main()

@@ -2,7 +2,6 @@
 """`beamgyro import`: logs as gyros and flight controllers write them."""
 
 import math
-import unittest
 
 import h5py
 import numpy as np
@@ -359,7 +358,3 @@ unit = "degC"
         self.assertIn(f"{count} rows read, {count} kept", text)
         values, _, _ = self.read("r.h5")
         np.testing.assert_array_equal(values["time"], np.arange(count) / 1e6)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -160,7 +160,3 @@ class Install(unittest.TestCase):
         self.assertEqual(left, [other])
         self.assertEqual([path.name for path in prefix.rglob("*")
                           if "beamgyro" in path.name], [])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -312,7 +312,3 @@ class Library(Call):
         for name in names:
             self.assertTrue(filecmp.cmp(by_program / name, by_library / name,
                                         shallow=False), name)
-
-
-if __name__ == "__main__":
-    unittest.main()

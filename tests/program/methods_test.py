@@ -4,7 +4,6 @@ on a simulated scenario and on an imported log."""
 
 import json
 import tomllib
-import unittest
 
 import h5py
 import numpy as np
@@ -194,7 +193,3 @@ class Methods(ProgramTest):
         found = found["training"]["cross_validation"]
         self.assertEqual((found["by"], found["groups"]), ("run", 3))
         self.assertLess(found["rms_deg_per_s"], found["constant_rms_deg_per_s"])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,8 +1,5 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Compares docs/reference/metrics.md with the table of metrics."""
-
-import unittest
 
 from pages import page, rows
 from program import ProgramTest
@@ -30,7 +27,3 @@ class MetricsPage(ProgramTest):
                                  "^ *(Interval|No interval|Exact)")
         self.assertEqual({name for name in described
                           if not name.startswith("--")}, listed)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,7 +5,6 @@ it is interrupted, killed or out of space."""
 import signal
 import subprocess
 import time
-import unittest
 
 from program import PATIENCE, PROGRAM, SCENARIO, ProgramTest
 
@@ -96,7 +95,3 @@ scenario = "\\u001b[31ms.toml"
                 self.assertEqual(process.returncode, -name)
                 self.assertIn("interrupted; old.h5 is as it was before", said)
                 self.assertEqual(self.files(), before)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 
 import os
 import shutil
-import unittest
 
 from bench_log import BENCH
 from program import CUBIC, SCENARIO, ramp
@@ -114,7 +113,3 @@ class Sets(Set):
         self.ok("generate", "set/campaign.toml", "-o", "set")
         self.ok("generate", "set/source/campaign.toml", "-o", "set",
                 "--resume")
-
-
-if __name__ == "__main__":
-    unittest.main()

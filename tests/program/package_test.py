@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """The Debian packages of the build that the program comes from."""
 
@@ -272,7 +271,3 @@ class ThirdParty(unittest.TestCase):
                 with self.subTest(name):
                     self.assertIn(name.replace("libboost-dev",
                                                "libboost1.74-dev"), listed)
-
-
-if __name__ == "__main__":
-    unittest.main()

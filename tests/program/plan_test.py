@@ -5,7 +5,6 @@ import json
 import re
 import shutil
 import tomllib
-import unittest
 
 import h5py
 import numpy as np
@@ -268,7 +267,3 @@ class Plan(ProgramTest):
                            ("ramp.h5", "recording")]:
             with self.subTest(name):
                 self.rejected("plan", name, *two, says=says)
-
-
-if __name__ == "__main__":
-    unittest.main()

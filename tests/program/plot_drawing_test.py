@@ -218,7 +218,3 @@ class Speed(unittest.TestCase):
         figure = plots.plot_recording(data)
         self.assertLessEqual(max(len(line.get_xdata()) for axes in figure.axes
                                  for line in axes.lines), 2000)
-
-
-if __name__ == "__main__":
-    unittest.main()

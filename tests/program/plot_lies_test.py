@@ -6,7 +6,6 @@ import copy
 import json
 import shutil
 import sys
-import unittest
 
 import h5py
 import numpy as np
@@ -233,7 +232,3 @@ scenario = "sweep.toml"
             with self.subTest(says):
                 self.write("few/manifest.jsonl", text)
                 self.rejected("plot", "few", "-o", "p.png", says=says)
-
-
-if __name__ == "__main__":
-    unittest.main()

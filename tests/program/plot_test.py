@@ -514,7 +514,3 @@ class Surroundings(PlotTest):
         ticks = re.findall(r"^[\d.]+$", texts(self.picture("log.csv")),
                            re.MULTILINE)
         self.assertTrue({"8", "7.5"} & set(ticks), ticks)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -348,7 +348,3 @@ class Firmware(ExportTest):
         np.testing.assert_array_equal(
             rates(self.dir / "so.h5")["compensated_rate"],
             rates(self.dir / "qemu.h5")["compensated_rate"])
-
-
-if __name__ == "__main__":
-    unittest.main()

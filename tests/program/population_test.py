@@ -119,7 +119,3 @@ class ShortenedRun(unittest.TestCase):
             with (out / "devices_quick.jsonl").open("a") as file:
                 file.write('{"device": 1, "stu')
             self.assertEqual(run(), (text, ""))  # nothing is done again
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 
 import json
 import shutil
-import unittest
 
 from program import CUBIC, ROOT, SCENARIO, SCENARIOS, ProgramTest
 from qualified import CAMPAIGN, NOMINAL, Qualified, SHORT, SPECIFICATION
@@ -441,7 +440,3 @@ class Shipped(ProgramTest):
         text = (SCENARIOS / "qualification.toml").read_text()
         self.assertTrue(text.startswith("# "))
         self.assertTrue((ROOT / "scenarios/qualification.toml").is_file())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@
 import pathlib
 import shutil
 import tempfile
-import unittest
 
 from faults import FaultTest
 from program import CUBIC, ramp
@@ -71,7 +70,3 @@ class Sets(FailingReads, Set):
                 self.ok(*generate[:2], "-o", place / "set", "--resume")
                 self.assertEqual(self.contents(place / "set"), whole,
                                  f"read {number}")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 
 import csv
 import subprocess
-import unittest
 
 import h5py
 import netCDF4
@@ -186,7 +185,3 @@ class Recording(ProgramTest):
             cwd=ROOT.anchor, capture_output=True, text=True, check=False)
         self.assertEqual(answer.returncode, 0, answer.stderr)
         self.assertTrue((folder / "o.h5").exists())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -163,7 +163,3 @@ class ReportFile(ProgramTest):
         self.assertLess(len(page), 2_000_000)
         self.assertEqual(list((self.dir / "one").iterdir()),
                          [self.dir / "one/index.html"])
-
-
-if __name__ == "__main__":
-    unittest.main()

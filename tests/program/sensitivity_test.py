@@ -5,7 +5,6 @@ import json
 import signal
 import subprocess
 import time
-import unittest
 
 from program import (CUBIC, PATIENCE, PROGRAM, SCENARIO, SCENARIOS,
                      ProgramTest, ramp)
@@ -230,7 +229,3 @@ class Sensitivity(ProgramTest):
                                 ["result.json"]))
         self.assertEqual((self.dir / "p/result.json").read_bytes(),
                          (self.dir / "s.json").read_bytes())
-
-
-if __name__ == "__main__":
-    unittest.main()

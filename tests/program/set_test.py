@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Opens a generated set in h5py, xarray, netCDF4, ncdump and Octave."""
 
@@ -218,7 +217,3 @@ class SetTest(unittest.TestCase):
                 self.assertIn("reason", json.loads(line))
         self.assertEqual(campaign, (SCENARIOS / "campaigns/small.toml")
                          .read_text(encoding="utf-8"))
-
-
-if __name__ == "__main__":
-    unittest.main()

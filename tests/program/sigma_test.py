@@ -5,7 +5,6 @@ import importlib.util
 import json
 import re
 import subprocess
-import unittest
 
 import h5py
 import numpy as np
@@ -215,7 +214,3 @@ class OfAPopulation(ProgramTest):
         # Known from two soaks, a device is surer than the population.
         self.assertLess(np.mean(adapted["sigma_deg_per_s"]),
                         np.mean(sigma["sigma_deg_per_s"]))
-
-
-if __name__ == "__main__":
-    unittest.main()

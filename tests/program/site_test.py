@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """The site of the documentation, of the build that the program comes from."""
 
@@ -110,7 +109,3 @@ class Site(unittest.TestCase):
                 self.assertIn(f"_images/{picture.name}", gallery)
                 self.assertTrue((self.site / "_images"
                                  / picture.name).exists())
-
-
-if __name__ == "__main__":
-    unittest.main()

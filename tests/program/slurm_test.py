@@ -209,7 +209,3 @@ class Slurm(unittest.TestCase):
         self.assertEqual(answer.returncode, 2)
         self.assertIn("missing.toml", answer.stderr)
         self.assertEqual(self.said("squeue", "-h").strip(), "")
-
-
-if __name__ == "__main__":
-    unittest.main()

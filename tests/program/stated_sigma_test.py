@@ -6,7 +6,6 @@ import json
 import math
 import re
 import subprocess
-import unittest
 
 import h5py
 import numpy as np
@@ -370,7 +369,3 @@ class Validate(StatedSigmaTest):
                          {"undecided"})
         self.assertIn("bias_filter_nis: the compensator states no sigma",
                       " ".join(answer.stdout.split()))
-
-
-if __name__ == "__main__":
-    unittest.main()

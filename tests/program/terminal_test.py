@@ -13,7 +13,6 @@ import struct
 import subprocess
 import termios
 import time
-import unittest
 
 from faults import ShimTest
 from program import CUBIC, NETWORK, PATIENCE, PROGRAM, SCENARIO, ramp
@@ -341,7 +340,3 @@ class Pipe(Timed):
                 self.assertGreaterEqual(times[0], 60)
                 self.assertGreaterEqual(times[1], times[0] + 60)
                 self.assertNotIn("\r", "".join(lines))
-
-
-if __name__ == "__main__":
-    unittest.main()

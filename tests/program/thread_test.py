@@ -7,7 +7,6 @@ program with status 66.
 
 import json
 import os
-import unittest
 
 from program import NETWORK, SCENARIOS, ramp
 from qualified import Qualified
@@ -68,7 +67,3 @@ class ThreadsOfAValidation(Qualified):
             (self.dir / "v.json").rename(self.dir / f"{jobs}.json")
         self.assertEqual((self.dir / "4.json").read_bytes(),
                          (self.dir / "1.json").read_bytes())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@
 import json
 import re
 import shutil
-import unittest
 
 import h5py
 import numpy as np
@@ -349,7 +348,3 @@ class Refused(TrainSet):
         self.refused("--cv", "run", says="--cv")
         self.rejected("train", "nowhere", "--model", "cubic.toml", "-o",
                       "cubic.json", says="nowhere")
-
-
-if __name__ == "__main__":
-    unittest.main()

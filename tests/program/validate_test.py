@@ -4,7 +4,6 @@
 import json
 import resource
 import shutil
-import unittest
 
 import h5py
 import numpy as np
@@ -383,7 +382,3 @@ class InSample(Validate):
         for file in self.cubic["training"]["files"]:
             del file["measured_sha256"], file["measured_sketch"]
         self.assertInSample("train.h5")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@
 import json
 import os
 import struct
-import unittest
 
 from program import SCENARIOS, ProgramTest
 
@@ -35,7 +34,3 @@ class ValidationFigures(ProgramTest):
         self.assertEqual(answer.returncode, 1)
         self.assertIn("none here", answer.stderr)
         self.assertIn("python3-matplotlib", answer.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -241,7 +241,3 @@ class Faults(unittest.TestCase):
         except subprocess.CalledProcessError:
             self.skipTest("mounting a small disk is not allowed here")
         self.assertEqual(figures["sizes"], 20)
-
-
-if __name__ == "__main__":
-    unittest.main()

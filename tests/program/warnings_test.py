@@ -2,7 +2,6 @@
 """What `run` warns of, and what `generate` and `verify` say of a set that failed."""
 
 import re
-import unittest
 
 import numpy as np
 
@@ -182,7 +181,3 @@ class EveryDeviceFails(Set):
         self.assertEqual(answer.returncode, 1, answer.stdout)
         self.assertNotIn("whole", answer.stdout)
         self.assertIn("every one of its 14 device runs failed", answer.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

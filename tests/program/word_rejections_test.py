@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Words of the command line that are mistyped, missing or too many."""
 
-import unittest
-
 import h5py
 
 from program import SCENARIO, ProgramTest
@@ -99,7 +97,3 @@ class Accepted(ProgramTest):
         self.ok("run", "s.toml", "-oa.h5", "--seed", 2**63 - 1)
         with h5py.File(self.dir / "a.h5") as file:
             self.assertEqual(file.attrs["seed"], 2**63 - 1)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Python and the command line give the same values, attributes and bytes."""
 

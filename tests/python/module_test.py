@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """The objects of the package: errors, copies, arrays, memory, interrupts."""
 

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Allan deviations of arrays, datasets and files, and what is refused."""
 
@@ -9,7 +8,6 @@ import pytest
 
 import beamgyro as bg
 from program import PATIENCE, PROGRAM, SCENARIOS
-
 
 
 @pytest.fixture(scope="module", name="rest")

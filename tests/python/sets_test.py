@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Sets, Allan deviations, plans and sensitivity."""
 
@@ -10,8 +9,6 @@ import pytest
 
 import beamgyro as bg
 from program import PATIENCE, PROGRAM, SCENARIOS
-
-
 
 
 @pytest.fixture(scope="module", name="campaign")

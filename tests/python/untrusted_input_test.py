@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Datasets, arrays and numbers that NumPy would bend until they fit."""
 

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Functions, estimators and networks of users that answer oddly."""
 

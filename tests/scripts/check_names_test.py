@@ -77,7 +77,3 @@ class CheckNames(unittest.TestCase):
             "sim/device/a.cpp": text, "compensation/a/a.cpp": text,
             "sim/campaign/a.h": "struct Points {};\n"})
         self.assertEqual((answer.returncode, answer.stdout), (0, ""))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -81,7 +81,3 @@ class Docs(unittest.TestCase):
                     self.assertEqual(
                         path.read_text(),
                         (ROOT / "docs/pictures" / path.name).read_text())
-
-
-if __name__ == "__main__":
-    unittest.main()
