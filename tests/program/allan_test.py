@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: MIT
 """`allan` of the shipped program: coefficients, gaps, units and windows."""
 
-import json
-import unittest
-
-import h5py
 import numpy as np
 
+from bench_log import table
 from program import ProgramTest, SCENARIO
 
 HERTZ = 100.0
@@ -32,27 +29,18 @@ def band_limited(rate, pole=0.02):
     return rate
 
 
-def rows(columns, names):
-    lines = [",".join(names)]
-    lines += [",".join(repr(float(value)) for value in row)
-              for row in zip(*columns)]
-    return "\n".join(lines) + "\n"
-
-
 class Allan(ProgramTest):
     def noise(self, *arguments):
         """Printed text, warnings, and what the JSON file says."""
-        answer = self.beamgyro("allan", *arguments, "--json", "a.json")
-        self.assertEqual(answer.returncode, 0, answer.stderr)
-        return (answer.stdout, answer.stderr,
-                json.loads((self.dir / "a.json").read_text()))
+        answer = self.ended("allan", *arguments, "--json", "a.json")
+        return (answer.stdout, answer.stderr, self.json("a.json"))
 
     def random_walk(self, found):
         return found["noise"]["N"]["per_second"]["value"]
 
     def test_a_filter_does_not_make_the_white_noise_less(self):
         rate = band_limited(normals(1) * N * HERTZ**0.5)
-        self.write("s.csv", rows([rate], ["rate"]))
+        self.write("s.csv", table("rate", zip(rate)))
         text, _, found = self.noise("s.csv", "--rate-Hz", HERTZ, "--unit",
                                     "deg/s")
         # 1-sigma of N over the taus that are left is 0.7 %; the fit may be
@@ -72,8 +60,8 @@ class Allan(ProgramTest):
     def test_a_time_column_sets_the_rate_and_shows_the_gaps(self):
         rate = normals(2) * N * HERTZ**0.5
         kept = np.arange(SAMPLES) % 7 != 3
-        self.write("s.csv", rows([np.arange(SAMPLES)[kept] / HERTZ,
-                                  rate[kept]], ["time", "rate"]))
+        self.write("s.csv", table("time,rate", zip(
+            np.arange(SAMPLES)[kept] / HERTZ, rate[kept])))
         text, errors, found = self.noise("s.csv", "--unit", "deg/s")
         missing = np.flatnonzero(kept)[-1] + 1 - kept.sum()
         self.assertEqual(found["series"]["samples"], kept.sum())
@@ -90,7 +78,7 @@ class Allan(ProgramTest):
                       says="say 100 Hz; expected no --rate-Hz")
 
     def test_a_csv_has_the_unit_that_is_stated(self):
-        self.write("s.csv", rows([normals(3)], ["output"]))
+        self.write("s.csv", table("output", zip(normals(3))))
         text, errors, found = self.noise("s.csv", "--rate-Hz", HERTZ, "--unit",
                                          "V")
         self.assertNotIn("deg", text)
@@ -116,27 +104,23 @@ class Allan(ProgramTest):
                                    ("time [ms]", 1e3), ("time [us]", 1e6),
                                    ("time [ns]", 1e9), ("time [min]", 1 / 60),
                                    ("time [h]", 1 / 3600)]:
-            with self.subTest(header):
-                self.write("s.csv", rows([seconds * per_second, rate],
-                                         [header, "rate [deg/h]"]))
-                _, errors, found = self.noise("s.csv")
-                self.assertEqual(errors, "")
-                self.assertAlmostEqual(found["series"]["rate_Hz"], HERTZ,
-                                       places=6)
-                self.assertAlmostEqual(found["series"]["to_s"], seconds[-1],
-                                       places=6)
-                # Of white noise 0.1 %, over 16 octaves.
-                self.assertAlmostEqual(self.random_walk(found) / N, 1,
-                                       delta=0.01)
+            self.write("s.csv", table(f"{header},rate [deg/h]",
+                                      zip(seconds * per_second, rate)))
+            _, errors, found = self.noise("s.csv")
+            self.assertEqual(errors, "")
+            self.assertAlmostEqual(found["series"]["rate_Hz"], HERTZ, places=6)
+            self.assertAlmostEqual(found["series"]["to_s"], seconds[-1],
+                                   places=6)
+            # Of white noise 0.1 %, over 16 octaves.
+            self.assertAlmostEqual(self.random_walk(found) / N, 1, delta=0.01)
 
     def test_a_window_of_time(self):
         text = SCENARIO.replace("output_rate_Hz = 2", "output_rate_Hz = 10")
-        run = self.run_scenario("run", text=text)
+        self.run_scenario("run", text=text)
         _, _, found = self.noise("run.h5", "--from", 100, "--to", 300)
-        with h5py.File(run) as file:
-            time, rate = file["time"][()], file["rate"][()]
-        within = (time >= 100) & (time <= 300)
-        self.write("s.csv", rows([rate[within]], ["rate"]))
+        run = self.signals("run.h5")
+        within = (run["time"] >= 100) & (run["time"] <= 300)
+        self.write("s.csv", table("rate", zip(run["rate"][within])))
         _, _, same = self.noise("s.csv", "--rate-Hz", 10, "--unit", "deg/s")
         self.assertEqual(found["series"]["samples"], within.sum())
         self.assertEqual(found["series"]["from_s"], 100)
@@ -154,12 +138,12 @@ class Allan(ProgramTest):
 class Kinds(ProgramTest):
     def white(self):
         rate = normals(4)[:1 << 12] * N * HERTZ**0.5
-        self.write("s.csv", rows([rate], ["rate"]))
+        self.write("s.csv", table("rate", zip(rate)))
         return ["s.csv", "--rate-Hz", HERTZ, "--unit", "deg/s"]
 
     def found(self, *arguments):
         text = self.ok("allan", *self.white(), *arguments, "--json", "a.json")
-        return text, json.loads((self.dir / "a.json").read_text())
+        return text, self.json("a.json")
 
     def test_the_kinds_asked_for_are_printed_and_written(self):
         kinds = ["adev", "oadev", "mdev", "hdev", "ohdev", "totdev"]
@@ -205,6 +189,3 @@ class Kinds(ProgramTest):
             self.assertAlmostEqual(60 * one, other, places=12)
         self.assertIn(f"{60 * low:.4g} to {60 * high:.4g}", text)
         self.assertIn(f"{low:.4g} to {high:.4g}", text)
-
-if __name__ == "__main__":
-    unittest.main()

@@ -6,26 +6,19 @@ import json
 import resource
 import signal
 import subprocess
-import time
-import unittest
 
-from program import PATIENCE, PROGRAM
-from qualified import Qualified
+from program import IDENTITY, PATIENCE, PROGRAM, limit
+from qualified import DEVICE, Qualified
 
 
 class Bundles(Qualified):
     def bundle(self, *arguments, model="cubic.toml"):
-        answer = self.beamgyro(
-            "validate", model, "--device", "device.toml", "--qualification",
-            "q.toml", "--bundle", "bundle", *arguments)
-        self.assertIn(answer.returncode, (0, 3), answer.stderr)
-        return answer
+        return self.ended("validate", model, *DEVICE, "--bundle", "bundle",
+                          *arguments, allowed=(0, 3))
 
     def check(self, status, *arguments):
-        answer = self.beamgyro("validate", "--check", "bundle", *arguments)
-        self.assertEqual(answer.returncode, status,
-                         answer.stdout + answer.stderr)
-        return answer.stdout
+        return self.ok("validate", "--check", "bundle", *arguments,
+                       allowed=(status,))
 
     def test_a_bundle_is_made_again(self):
         told = self.bundle("--spec", "spec.toml", "--campaign",
@@ -36,8 +29,7 @@ class Bundles(Qualified):
         (self.dir / "bundle").rename(self.dir / "elsewhere")
         (self.dir / "elsewhere").rename(self.dir / "bundle")
         self.assertIn("are the same", self.check(0))
-        self.assertEqual((self.dir / "bundle/report.txt").read_text(),
-                         told.stdout)
+        self.assertEqual(self.text("bundle/report.txt"), told.stdout)
 
     def test_a_changed_file_is_named(self):
         self.bundle()
@@ -47,48 +39,37 @@ class Bundles(Qualified):
                      "inputs/compensator/cubic.toml"]:
             path = self.dir / "bundle" / name
             whole = path.read_bytes()
-            with self.subTest(name):
-                path.write_bytes(whole + b" ")
-                self.assertIn(name, self.check(1))
-                path.unlink()
-                self.assertIn(name, self.check(1))
+            path.write_bytes(whole + b" ")
+            self.assertIn(name, self.check(1))
+            path.unlink()
+            self.assertIn(name, self.check(1))
             path.write_bytes(whole)
         self.check(0)
 
     def test_a_result_of_other_inputs_is_told_by_its_bytes(self):
         """A bundle whose result was improved by hand, hash and all."""
         self.bundle()
-        path = self.dir / "bundle/result.json"
-        said = json.loads(path.read_text())
-        said["verdict"] = "pass"
-        said["words"] = "all is well"
-        path.write_text(json.dumps(said, indent=2) + "\n")
+        said = self.json("bundle/result.json") | {
+            "verdict": "pass", "words": "all is well"}
+        self.write("bundle/result.json", json.dumps(said, indent=2) + "\n")
         self.assertIn("result.json", self.check(1))
 
     def test_recordings_are_bundled_too(self):
         self.ok("run", "ramp.toml", "-o", "ramp.h5")
-        self.ok("run", "ramp.toml", "--seed", 3, "-o", "t.h5")
-        self.ok("train", "t.h5", "--model", "cubic.toml", "-o", "c.json")
-        answer = self.beamgyro("validate", "c.json", "ramp.h5", "--bundle",
-                               "bundle")
-        self.assertIn(answer.returncode, (0, 3), answer.stderr)
+        self.ended("validate", self.trained_file(), "ramp.h5", "--bundle",
+                   "bundle", allowed=(0, 3))
         for path in self.dir.glob("*.h5"):
             path.unlink()
         self.check(0)
 
     def test_the_bundle_of_a_command_runs_it_again(self):
-        self.write("same.py", "import sys\nrate = sys.stdin.readline()"
-                   ".strip().split(',').index('rate')\n"
-                   "for line in sys.stdin:\n"
-                   "    print(line.split(',')[rate].strip())\n")
+        self.write("same.py", IDENTITY)
         answer = self.bundle(model="cmd:/usr/bin/python3 same.py")
         self.assertIn("Of no use", answer.stdout)
         self.check(0, "--run-code")
-        told = self.beamgyro("validate", "--check", "bundle", "--run-code",
-                             "--timeout-s", 9)
-        self.assertEqual(told.returncode, 0, told.stderr)
-        self.assertIn("bundle: runs cmd:/usr/bin/python3 same.py", told.stderr)
-        (self.dir / "same.py").write_text("print(0)\n")
+        self.assertIn("bundle: runs cmd:/usr/bin/python3 same.py", self.warned(
+            "validate", "--check", "bundle", "--run-code", "--timeout-s", 9))
+        self.write("same.py", "print(0)\n")
         self.assertIn("result.json", self.check(1, "--run-code"))
 
     def altered(self, change):
@@ -143,8 +124,7 @@ class Bundles(Qualified):
                 (lambda said: said["inputs"].append(said["inputs"][0]),
                  ["inputs[", "twice"])]:
             whole = self.altered(change)
-            with self.subTest(says):
-                self.rejected("validate", "--check", "bundle", says=says)
+            self.rejected("validate", "--check", "bundle", says=says)
             (self.dir / "bundle/bundle.json").write_text(whole)
         self.check(0)
         self.altered(lambda said: said.update(inputs=[]))
@@ -152,8 +132,8 @@ class Bundles(Qualified):
 
     def test_bundle_json_of_other_files_is_not_the_same(self):
         self.bundle()
-        names = [file["file"] for file in json.loads(
-            (self.dir / "bundle/bundle.json").read_text())["inputs"]]
+        names = [file["file"] for file in
+                 self.json("bundle/bundle.json")["inputs"]]
         ramp_number = names.index("inputs/qualification/ramp.toml")
 
         def zeros(said):
@@ -168,8 +148,7 @@ class Bundles(Qualified):
                 (lambda said: said["inputs"].reverse(),
                  "bundle.json: is not the same")]:
             whole = self.altered(change)
-            with self.subTest(says):
-                self.assertIn(says, self.check(1))
+            self.assertIn(says, self.check(1))
             (self.dir / "bundle/bundle.json").write_text(whole)
 
     def test_files_that_are_not_listed_are_named(self):
@@ -178,24 +157,22 @@ class Bundles(Qualified):
                      "read_me_first.txt", "report/second.html"]:
             path = self.dir / "bundle" / name
             path.write_text("A better result.\n")
-            with self.subTest(name):
-                self.assertIn(f"{name}: is not listed", self.check(1))
+            self.assertIn(f"{name}: is not listed", self.check(1))
             path.unlink()
         self.check(0)
 
     def test_an_input_that_names_a_file_elsewhere_is_found(self):
         """Hash and all, a scenario of the bundle reads one outside."""
         self.bundle()
-        path = self.dir / "bundle/inputs/qualification/q.toml"
-        path.write_text(path.read_text().replace(
-            'scenario = "warm_up.toml"',
-            f'scenario = "{self.dir}/warm_up.toml"'))
+        name = "inputs/qualification/q.toml"
+        self.change(f"bundle/{name}", 'scenario = "warm_up.toml"',
+                    f'scenario = "{self.dir}/warm_up.toml"')
+        digest = hashlib.sha256(self.text(f"bundle/{name}").encode())
 
         def change(said):
             for file in said["inputs"]:
-                if file["file"].endswith("q.toml"):
-                    file["sha256"] = hashlib.sha256(
-                        path.read_bytes()).hexdigest()
+                if file["file"] == name:
+                    file["sha256"] = digest.hexdigest()
         self.altered(change)
         told = self.check(1)
         self.assertIn(f"{self.dir}/warm_up.toml: is read and not in", told)
@@ -205,106 +182,92 @@ class Bundles(Qualified):
         self.bundle()
         for key in "beamgyro_version", "git_revision":
             whole = self.altered(lambda said: said.update({key: "older"}))
-            answer = self.beamgyro("validate", "--check", "bundle")
-            self.assertEqual(answer.returncode, 0, answer.stderr)
-            self.assertIn("was made by beamgyro", answer.stderr)
-            self.assertIn("older", answer.stderr)
-            (self.dir / "bundle/bundle.json").write_text(whole)
-        answer = self.beamgyro("validate", "--check", "bundle")
-        self.assertEqual(answer.stderr, "")
+            self.assertSays(self.warned("validate", "--check", "bundle"),
+                            ["was made by beamgyro", "older"])
+            self.write("bundle/bundle.json", whole)
+        self.assertEqual(self.warned("validate", "--check", "bundle"), "")
 
     def test_what_an_interrupt_left_of_the_same_bundle_is_completed(self):
         self.bundle()
-        whole = {path: path.read_bytes()
-                 for path in (self.dir / "bundle").rglob("*")
-                 if path.is_file()}
+        whole = self.files()
         (self.dir / "bundle/bundle.json").unlink()
         (self.dir / "bundle/report.txt").unlink()
-        (self.dir / "bundle/result.json").write_text("of another version")
+        self.write("bundle/result.json", "of another version")
         self.bundle()
-        for path, content in whole.items():
-            self.assertEqual(path.read_bytes(), content, path)
+        self.assertEqual(self.files(), whole)
         self.check(0)
         # A file of somebody else's is not taken for one of the bundle.
         (self.dir / "bundle/bundle.json").unlink()
         self.write("bundle/inputs/device/device.toml", "mine")
-        self.rejected("validate", "cubic.toml", "--device", "device.toml",
-                      "--qualification", "q.toml", "--bundle", "bundle",
+        self.refused_again()
+
+    def refused_again(self):
+        self.rejected("validate", "cubic.toml", *DEVICE, "--bundle", "bundle",
                       says=["--bundle bundle", "new directory"])
 
     def test_a_directory_that_is_not_empty_is_not_taken(self):
         self.bundle()
-        self.rejected("validate", "cubic.toml", "--device", "device.toml",
-                      "--qualification", "q.toml", "--bundle", "bundle",
-                      says=["--bundle bundle", "new directory"])
+        self.refused_again()
 
     def test_damaged_bundles_are_refused(self):
         self.bundle()
-        path = self.dir / "bundle/bundle.json"
-        whole = path.read_text()
+        whole = self.text("bundle/bundle.json")
         for change, says in [
                 (whole[:50], "bundle.json"),
                 (whole.replace("beamgyro-bundle", "a cake"), "filetype"),
                 (whole.replace('"format_version": 1', '"format_version": 2'),
                  "format_version"),
                 (whole.replace('"request"', '"demand"'), "request")]:
-            path.write_text(change)
-            with self.subTest(says):
-                self.rejected("validate", "--check", "bundle", says=says)
+            self.write("bundle/bundle.json", change)
+            self.rejected("validate", "--check", "bundle", says=says)
         self.rejected("validate", "--check", "nowhere",
                       says="nowhere/bundle.json")
 
 
-def small_files():
-    """A limit in place of a full disk. The page is larger, no other file is."""
-    resource.setrlimit(resource.RLIMIT_FSIZE, (150_000, 150_000))
+# In place of a full disk. The page is larger, no other file is.
+SMALL_FILES = limit(resource.RLIMIT_FSIZE, 150_000)
 
 
 class Places(Qualified):
     """Where a validation writes."""
 
     def asked(self, *arguments, **options):
-        return self.beamgyro("validate", "cubic.toml", "--device",
-                             "device.toml", "--qualification", "q.toml",
-                             *arguments, **options)
+        return self.ended("validate", "cubic.toml", *DEVICE, *arguments,
+                          **{"allowed": (0, 3)} | options)
 
     def test_the_verdict_is_told_though_a_file_cannot_be_written(self):
         told = self.asked().stdout
-        answer = self.asked("--json", "v.json", "--report", "page",
-                            "--bundle", "b", preexec_fn=small_files)
-        self.assertEqual(answer.returncode, 1)
+        answer = self.asked("--json", "v.json", "--report", "page", "--bundle",
+                            "b", allowed=(1,), preexec_fn=SMALL_FILES)
         self.assertEqual(answer.stdout, told)
-        self.assertIn("page/index.html: cannot write", answer.stderr)
-        self.assertIn("b/report/index.html: cannot write", answer.stderr)
-        json.loads((self.dir / "v.json").read_text())
+        self.assertSays(answer.stderr, ["page/index.html: cannot write",
+                                        "b/report/index.html: cannot write"])
+        self.json("v.json")
         for name in "page", "b":
             self.assertFalse((self.dir / name).exists(), name)
 
     def test_files_are_written_though_the_verdict_cannot_be_told(self):
         with open("/dev/full", "w", encoding="utf-8") as full:
             answer = subprocess.run(
-                [str(PROGRAM), "validate", "cubic.toml", "--device",
-                 "device.toml", "--qualification", "q.toml", "--json",
-                 "v.json"], cwd=self.dir, stdin=subprocess.DEVNULL,
-                stdout=full, stderr=subprocess.PIPE, check=False,
-                timeout=PATIENCE)
+                [PROGRAM, "validate", "cubic.toml", *DEVICE, "--json", "v.json"],
+                cwd=self.dir, stdin=subprocess.DEVNULL, stdout=full,
+                stderr=subprocess.PIPE, check=False, timeout=PATIENCE)
         self.assertEqual(answer.returncode, 1)
         self.assertIn(b"standard output", answer.stderr)
-        json.loads((self.dir / "v.json").read_text())
+        self.json("v.json")
 
     def test_a_disk_that_becomes_full_leaves_no_half_bundle(self):
         for before in False, True:
             if before:
                 (self.dir / "deep/b").mkdir(parents=True)
-            answer = self.asked("--bundle", "deep/b",
-                                preexec_fn=small_files)
-            self.assertEqual(answer.returncode, 1, answer.stderr)
+            answer = self.asked("--bundle", "deep/b", allowed=(1,),
+                                preexec_fn=SMALL_FILES)
             self.assertIn("deep/b/report/index.html", answer.stderr)
             self.assertIn("residual_rms_deg_per_s", answer.stdout)
             self.assertEqual((self.dir / "deep").exists(), before)
             if before:
                 self.assertEqual(list((self.dir / "deep/b").iterdir()), [])
-        self.assertIn(self.asked("--bundle", "deep/b").returncode, (0, 3))
+        self.asked("--bundle", "deep/b")
         self.ok("validate", "--check", "deep/b")
 
     def test_each_output_has_a_place_of_its_own(self):
@@ -320,44 +283,24 @@ class Places(Qualified):
                 (["--report", "r", "--figures", "r"], "--figures r"),
                 (["--json", "r/v.json", "--bundle", "r"], "--json r/v.json"),
                 (["--json", "v", "--report", "v"], "--json v")]:
-            with self.subTest(words):
-                told = self.rejected("validate", "cubic.toml", "--device",
-                                     "device.toml", "--qualification",
-                                     "q.toml", *words, says=says)
-                self.assertIn("place of its own", told)
-                self.assertFalse((self.dir / "r").exists())
+            self.assertIn("place of its own", self.rejected(
+                "validate", "cubic.toml", *DEVICE, *words, says=says))
 
     def test_what_can_be_no_directory_is_refused_by_its_option(self):
         self.write("file", "mine")
         for option in "--report", "--figures", "--bundle":
             for name in ["/proc/x", "/dev/full", "file", "file/x", "c.json"]:
-                with self.subTest((option, name)):
-                    told = self.rejected(
-                        "validate", "cubic.toml", "--device", "device.toml",
-                        "--qualification", "q.toml", option, name,
-                        says=f"{option} {name}: ")
-                    self.assertNotIn("filesystem error", told)
+                self.assertNotIn("filesystem error", self.rejected(
+                    "validate", "cubic.toml", *DEVICE, option, name,
+                    says=f"{option} {name}: "))
 
     def test_what_fails_or_is_interrupted_leaves_no_directory(self):
         self.write("hang.py", "import pathlib, time\n"
                    "pathlib.Path('begun').touch()\ntime.sleep(600)\n")
-        begun = self.dir / "begun"
         for number in signal.SIGINT, signal.SIGTERM:
-            with subprocess.Popen(
-                    [str(PROGRAM), "validate", "cmd:/usr/bin/python3 hang.py",
-                     "--device", "device.toml", "--qualification", "q.toml",
-                     "--report", "r", "--figures", "f", "--bundle", "b"],
-                    cwd=self.dir, stdout=subprocess.DEVNULL,
-                    stderr=subprocess.DEVNULL) as process:
-                while not begun.exists():
-                    self.assertIsNone(process.poll())
-                    time.sleep(0.01)
-                process.send_signal(number)
-                self.assertEqual(process.wait(PATIENCE), -number)
-            begun.unlink()
+            self.interrupted(
+                "validate", "cmd:/usr/bin/python3 hang.py", *DEVICE, "--report",
+                "r", "--figures", "f", "--bundle", "b", until="begun", by=number)
+            (self.dir / "begun").unlink()
             for name in "rfb":
                 self.assertFalse((self.dir / name).exists(), name)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 
 import csv
 import io
-import unittest
 
 from program import ProgramTest, processor_time_of_children
 
@@ -22,14 +21,13 @@ ROUNDING = {60: 0.05}
 class Characterise(ProgramTest):
     def rows(self, *arguments):
         self.ok("characterise", "device.toml", "-o", "out.csv", *arguments)
-        text = (self.dir / "out.csv").read_text()
+        text = self.text("out.csv")
         return [{key: float(value) for key, value in row.items()}
                 for row in csv.DictReader(io.StringIO(text))]
 
     def test_header_and_one_row_per_temperature(self):
         rows = self.rows("--beam-temperature", "-40:60:0.25")
-        self.assertEqual((self.dir / "out.csv").read_text().splitlines()[0],
-                         HEADER)
+        self.assertEqual(self.text("out.csv").splitlines()[0], HEADER)
         self.assertEqual([row["temperature_degC"] for row in rows],
                          [-40 + 0.25 * k for k in range(401)])
 
@@ -44,7 +42,7 @@ class Characterise(ProgramTest):
 
     def test_nine_digits(self):
         self.rows("--beam-temperature", "-31.7")
-        text = (self.dir / "out.csv").read_text().splitlines()[1]
+        text = self.text("out.csv").splitlines()[1]
         for value in text.split(",")[1:]:
             digits = value.lower().split("e")[0].replace("-", "") \
                 .replace(".", "").lstrip("0")
@@ -54,10 +52,9 @@ class Characterise(ProgramTest):
         rows = {row["temperature_degC"]: row for row in self.rows(
             "--set", "beam.angular_gain=1", "--beam-temperature", "-40:60:5")}
         for temperature, bias in BIAS.items():
-            with self.subTest(temperature):
-                self.assertAlmostEqual(
-                    rows[temperature]["bias_deg_per_s"], bias,
-                    delta=0.02 + ROUNDING.get(temperature, 0.005))
+            self.assertAlmostEqual(
+                rows[temperature]["bias_deg_per_s"], bias,
+                delta=0.02 + ROUNDING.get(temperature, 0.005))
         nominal = rows[25]
         self.assertAlmostEqual(nominal["drive_frequency_Hz"], 9081.50,
                                delta=0.02 + 0.005)
@@ -76,26 +73,19 @@ class Characterise(ProgramTest):
     def test_trims_hold_after_a_change_of_the_device(self):
         for change in [[], ["--set", "beam.length_m=0.038"],
                        ["--set", "patches.offset_m=[20e-6,1e-6,-4e-6,0.0]"]]:
-            with self.subTest(change):
-                (row,) = self.rows("--beam-temperature", "25", *change)
-                self.assertAlmostEqual(row["bias_deg_per_s"], 0.5, delta=1e-6)
-                self.assertAlmostEqual(row["quadrature_deg_per_s"], 40,
-                                       delta=1e-6)
+            (row,) = self.rows("--beam-temperature", "25", *change)
+            self.assertAlmostEqual(row["bias_deg_per_s"], 0.5, delta=1e-6)
+            self.assertAlmostEqual(row["quadrature_deg_per_s"], 40, delta=1e-6)
 
     def test_same_bytes_again(self):
         self.ok("characterise", "device.toml", "-o", "a.csv")
         self.ok("characterise", "device.toml", "-o", "b.csv")
-        self.assertEqual((self.dir / "a.csv").read_bytes(),
-                         (self.dir / "b.csv").read_bytes())
+        self.assertSameBytes("a.csv", "b.csv")
 
     def test_temperatures_beyond_the_linear_range_of_the_ceramic(self):
         for grid, warns in [("-40:80:20", False), ("-41", True),
                             ("70:90:10", True)]:
-            answer = self.beamgyro("characterise", "device.toml", "-o", "c.csv",
-                                   "--beam-temperature", grid)
-            self.assertEqual(answer.returncode, 0, answer.stderr)
+            answer = self.ended("characterise", "device.toml", "-o", "c.csv",
+                                "--beam-temperature", grid)
             self.assertEqual("beyond -40 to 80 degC the ceramic's coefficients"
                              in answer.stderr, warns, grid)
-
-if __name__ == "__main__":
-    unittest.main()

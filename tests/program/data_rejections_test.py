@@ -2,7 +2,6 @@
 """Recordings, models, compensators and campaigns that are refused."""
 
 import shutil
-import unittest
 
 import h5py
 
@@ -207,7 +206,3 @@ class Kinds(Rejections, Set):
         self.ok("generate", "campaign.toml", "-o", "set", "--devices", 2)
         self.ok("characterise", "device.toml", "-o", "table.csv",
                 "--beam-temperature", "0:1:1")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,48 +3,29 @@
 
 import json
 import shutil
-import subprocess
-import time
-import unittest
 
-from program import CUBIC, PROGRAM, ROOT, ProgramTest, class_folder, ramp
-from sets import CAMPAIGN, SCENARIO
+from program import (CUBIC, IDENTITY, PROGRAM, ROOT, SCENARIO, ProgramTest, ended,
+                     failed, ramp)
+from qualified import SHORT
+from sets import write_campaign
 
 NAMES = ["x.json", "x.comp", "x.JSON", "link"]
-IDENTITY = """\
-import sys
-rate = sys.stdin.readline().strip().split(",").index("rate")
-for line in sys.stdin:
-    print(line.split(",")[rate])
-"""
 
 
 class Judged(ProgramTest):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        case = cls()
-        cls.kept = case.dir = class_folder(cls)
-        case.prepare()
-        case.run_scenario("train", text=ramp(seed=3))
-        case.run_scenario("test", text=ramp(low=-25, high=35, seed=5))
-        case.write("cubic.toml", CUBIC)
-        case.ok("train", "train.h5", "--model", "cubic.toml", "-o", "x.json")
-
-    def setUp(self):
-        super().setUp()
-        shutil.copytree(self.kept, self.dir, dirs_exist_ok=True)
+    def prepare(self):
+        super().prepare()
+        self.run_scenario("train", text=ramp(seed=3))
+        self.run_scenario("test", text=ramp(low=-25, high=35, seed=5))
+        self.write("cubic.toml", CUBIC)
+        self.ok("train", "train.h5", "--model", "cubic.toml", "-o", "x.json")
         for name in "x.comp", "x.JSON":
             shutil.copy(self.dir / "x.json", self.dir / name)
         (self.dir / "link").symlink_to("x.json")
 
     def judged(self, compensator, *arguments, status):
         """What is said, without the name of the compensator."""
-        answer = self.beamgyro("validate", compensator, *arguments, "--json",
-                               "v.json")
-        self.assertEqual(answer.returncode, status,
-                         answer.stdout + answer.stderr)
-        said = json.loads((self.dir / "v.json").read_text())
+        said, _ = self.validated(compensator, *arguments, allowed=(status,))
         del said["compensator"]["name"]
         for file in said["provenance"]["files"]:
             if file["group"] == "compensator":
@@ -53,12 +34,11 @@ class Judged(ProgramTest):
 
     def in_python(self, compensator, run):
         """Verdict, words and checks of beamgyro.validate()."""
-        said = subprocess.run(
-            ["/usr/bin/python3", "-c",
-             "import json, sys, beamgyro as bg\n"
-             "r = bg.validate(sys.argv[1], [sys.argv[2]])\n"
-             "print(json.dumps([r.passed, r.data['words']]))", compensator, run],
-            cwd=self.dir, capture_output=True, text=True, check=False,
+        said = self.beamgyro(
+            "-c", "import json, sys, beamgyro as bg\n"
+            "r = bg.validate(sys.argv[1], [sys.argv[2]])\n"
+            "print(json.dumps([r.passed, r.data['words']]))", compensator, run,
+            program="/usr/bin/python3",
             env={"PYTHONPATH": str(PROGRAM.parent / "python")})
         if "No module named" in said.stderr:
             return None  # a build without Python
@@ -73,23 +53,19 @@ class Doors(Judged):
         default = ["--spec", ROOT / "specs/default.toml"]
         for run, status in [("test.h5", 0), ("train.h5", 3)]:
             first = self.judged("x.json", run, status=status)
-            failed = [check["name"] for check in first["checks"]
-                      if check["passed"] is False]
-            self.assertEqual(failed, ["hold_out"] if status else [])
+            self.assertEqual(failed(first), ["hold_out"] if status else [])
             pages = []
             for name in NAMES:
-                with self.subTest((run, name)):
-                    bundle = f"of_{run[:-3]}_{name}".replace(".", "_")
-                    self.assertEqual(
-                        self.judged(name, run, status=status), first)
-                    self.assertEqual(
-                        self.judged(name, run, "--report", "page", "--bundle",
-                                    bundle, status=status), first)
-                    self.ok("validate", "--check", bundle)
-                    asked = self.judged(name, run, *default, status=status)
-                    for key in "verdict", "words", "checks", "metrics":
-                        self.assertEqual(asked[key], first[key])
-                    self.assertEqual(asked.keys(), first.keys())
+                bundle = f"of_{run[:-3]}_{name}".replace(".", "_")
+                self.assertEqual(self.judged(name, run, status=status), first)
+                self.assertEqual(
+                    self.judged(name, run, "--report", "page", "--bundle",
+                                bundle, status=status), first)
+                self.ok("validate", "--check", bundle)
+                asked = self.judged(name, run, *default, status=status)
+                for key in "verdict", "words", "checks", "metrics":
+                    self.assertEqual(asked[key], first[key])
+                self.assertEqual(asked.keys(), first.keys())
             for _ in range(2):
                 self.judged("x.json", run, "--report", "page", status=status)
                 pages.append((self.dir / "page/index.html").read_bytes())
@@ -100,13 +76,8 @@ class Doors(Judged):
                     self.assertEqual(told, [status == 0, first["words"]])
 
     def test_a_set_is_judged_alike(self):
-        for name, ambient in [("rest", "constant_degC = 25"),
-                              ("ramp", "points = [[0, -30], [4000, 40]]")]:
-            self.write(f"{name}.toml", SCENARIO.format(
-                name=name, ambient=ambient).replace(
-                    "duration_s = 60\noutput_rate_Hz = 2",
-                    "duration_s = 4000\noutput_rate_Hz = 0.5"))
-        self.write("campaign.toml", CAMPAIGN)
+        write_campaign(self, seconds=4000, rate_Hz=0.5,
+                       ramp="points = [[0, -30], [4000, 40]]")
         self.ok("generate", "campaign.toml", "-o", "set")
         devices = ["--device", 1, "--device", 4]
         keys = self.judged("x.json", "test.h5", status=0).keys()
@@ -126,9 +97,8 @@ class Doors(Judged):
             self.assertEqual(said["compensator"]["kind"], "command")
 
     def test_a_library_is_one_by_its_bytes(self):
-        subprocess.run(["cc", "-shared", "-fPIC", f"-I{ROOT}/include",
-                        ROOT / "examples/plugins/cubic.c", "-o", "lib.json"],
-                       cwd=self.dir, check=True)
+        ended("cc", "-shared", "-fPIC", f"-I{ROOT}/include",
+              ROOT / "examples/plugins/cubic.c", "-o", "lib.json", cwd=self.dir)
         said = self.judged("./lib.json", "test.h5", status=0)
         self.assertEqual(said["compensator"]["kind"], "library")
 
@@ -137,21 +107,19 @@ class Doors(Judged):
         self.write("same.py", "open('ran', 'a').write('x')\n" + IDENTITY)
         self.judged("cmd:/usr/bin/python3 same.py", "test.h5", "--bundle", "b",
                     status=3)
-        ran = (self.dir / "ran").read_text()
+        ran = self.text("ran")
         self.rejected("validate", "--check", "b",
                       says=["/usr/bin/python3 same.py", "--run-code"])
-        self.assertEqual((self.dir / "ran").read_text(), ran)
+        self.assertEqual(self.text("ran"), ran)
         self.ok("validate", "--check", "b", "--run-code")
-        self.assertNotEqual((self.dir / "ran").read_text(), ran)
+        self.assertNotEqual(self.text("ran"), ran)
 
     def test_a_constant_is_not_good_enough_for_a_device(self):
         self.write("constant.toml", 'kind = "constant"\n'
                    'inputs = ["temperature"]\n')
         self.write("ramp.toml", ramp(seed=11))
-        self.write("q.toml", 'name = "q"\n[[run]]\nname = "ramp"\n'
-                   'purpose = "ramp"\nscenario = "ramp.toml"\n'
-                   '[[training]]\nname = "t"\nscenario = "ramp.toml"\n'
-                   '[training.overrides]\nseed = 21\n')
+        self.write("warm_up.toml", SCENARIO)
+        self.write("q.toml", SHORT)
         said = self.judged("constant.toml", "--device", "device.toml",
                            "--qualification", "q.toml", status=3)
         self.assertIn("Of no use", said["words"])
@@ -168,13 +136,8 @@ class ChangedMeanwhile(Judged):
                    "pathlib.Path('asked').touch()\n"
                    "while not pathlib.Path('go').exists():\n"
                    "    time.sleep(0.05)\n" + IDENTITY)
-        with subprocess.Popen(
-                [str(PROGRAM), "validate", "cmd:/usr/bin/python3 slow.py",
-                 *arguments, "--bundle", "b"], cwd=self.dir, text=True,
-                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE) as asked:
-            while asked.poll() is None and not (self.dir / "asked").exists():
-                time.sleep(0.05)
+        with self.working("validate", "cmd:/usr/bin/python3 slow.py",
+                          *arguments, "--bundle", "b", until="asked") as asked:
             shutil.copy(self.dir / "other", self.dir / name)
             (self.dir / "go").touch()
             _, words = asked.communicate()
@@ -202,7 +165,3 @@ class ChangedMeanwhile(Judged):
         self.assertEqual((self.dir / "b/inputs/runs/test.h5").read_bytes(),
                          before)
         self.ok("validate", "--check", "b", "--run-code")
-
-
-if __name__ == "__main__":
-    unittest.main()

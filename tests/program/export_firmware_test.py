@@ -46,11 +46,10 @@ class ExportFirmware(ExportTest):
     def test_every_kind_answers_to_the_last_bit_on_a_cortex_m4(self):
         for kind in MODELS:
             folder = self.export(kind)
-            with self.subTest(kind):
-                self.compile(folder, *WARNINGS, *CORE, "net.c",
-                             "net_selftest.c", *LINK, compiler=COMPILER)
-                self.assertEqual(self.emulate(folder),
-                                 "net: 10000 answers equal to the last bit\n")
+            self.compile(folder, *WARNINGS, *CORE, "net.c",
+                         "net_selftest.c", *LINK, compiler=COMPILER)
+            self.assertEqual(self.emulate(folder),
+                             "net: 10000 answers equal to the last bit\n")
 
     def networks(self):
         """Whether a network 3-8-1 states a sigma, and the folder of its code."""
@@ -74,11 +73,10 @@ class ExportFirmware(ExportTest):
                      re.findall(r"(\w+) (\d+)", told)}
             print(f"\n3-8-1 on a Cortex-M4, sigma {sigma}: "
                   f"{told.replace(chr(10), ', ')}", end="")
-            with self.subTest(sigma=sigma):
-                # 49 products and 8 divisions
-                self.assertLess(200, count["bias"])
-                self.assertLess(count["bias"], count["step"])
-                self.assertLessEqual(count["step"], MOST_INSTRUCTIONS[sigma])
+            # 49 products and 8 divisions
+            self.assertLess(200, count["bias"])
+            self.assertLess(count["bias"], count["step"])
+            self.assertLessEqual(count["step"], MOST_INSTRUCTIONS[sigma])
 
     def test_code_and_parameters_of_a_3_8_1_network_are_small(self):
         for sigma, folder in self.networks():
@@ -95,10 +93,5 @@ class ExportFirmware(ExportTest):
             print(f"\n3-8-1, sigma {sigma}: .text {code} (step "
                   f"{size['.text.net_step']}), constants {constants} bytes",
                   end="")
-            with self.subTest(sigma=sigma):
-                self.assertLessEqual(code + constants, MOST_BYTES[sigma])
-                self.assertEqual(size[".data"] + size[".bss"], 0)
-
-
-if __name__ == "__main__":
-    unittest.main()
+            self.assertLessEqual(code + constants, MOST_BYTES[sigma])
+            self.assertEqual(size[".data"] + size[".bss"], 0)

@@ -4,9 +4,7 @@
 import json
 import re
 import shutil
-import unittest
 
-import h5py
 import numpy as np
 
 from exported import ExportTest
@@ -30,10 +28,10 @@ class ExportParameters(ExportTest):
         """Temperatures, and what `compensate` took off there."""
         self.ok("compensate", f"{kind}.json", "train.h5", "-o", "out.h5",
                 "--quiet")
-        with h5py.File(self.dir / "out.h5") as file:
-            on = file["status"][()] & 1 == 0
-            return (file["temperature"][()][on],
-                    (file["rate"][()] - file["compensated_rate"][()])[on])
+        out = self.signals("out.h5")
+        on = out["status"] & 1 == 0
+        return (out["temperature"][on],
+                (out["rate"] - out["compensated_rate"])[on])
 
     def test_px4_takes_off_what_compensate_takes_off(self):
         for kind in ["none", "constant", "cubic", "px4"]:
@@ -43,10 +41,9 @@ class ExportParameters(ExportTest):
             d = np.clip(temperature, p["TC_G3_TMIN"], p["TC_G3_TMAX"]) \
                 - p["TC_G3_TREF"]
             offset = sum(p[f"TC_G3_X{k}_1"] * d ** k for k in range(4))
-            with self.subTest(kind):
-                self.assertLess(np.max(np.abs(np.degrees(offset) - bias)), 1e-6)
-                self.assertEqual(p["TC_G3_ID"], 4_000_000)
-                self.assertEqual(p["TC_G3_X0_0"], 0)
+            self.assertLess(np.max(np.abs(np.degrees(offset) - bias)), 1e-6)
+            self.assertEqual(p["TC_G3_ID"], 4_000_000)
+            self.assertEqual(p["TC_G3_X0_0"], 0)
 
     def test_ardupilot_takes_off_what_compensate_takes_off(self):
         for kind in ["none", "constant", "cubic", "ardupilot"]:
@@ -57,9 +54,8 @@ class ExportParameters(ExportTest):
                         p["INS_TCAL2_TMAX"]) - 35
             offset = p["INS_GYR2OFFS_X"] + 1e-6 * sum(
                 p[f"INS_TCAL2_GYR{k}_X"] * d ** k for k in (1, 2, 3))
-            with self.subTest(kind):
-                self.assertEqual(p["INS_GYR2_CALTEMP"], 35)
-                self.assertLess(np.max(np.abs(np.degrees(offset) - bias)), 1e-6)
+            self.assertEqual(p["INS_GYR2_CALTEMP"], 35)
+            self.assertLess(np.max(np.abs(np.degrees(offset) - bias)), 1e-6)
 
     def test_ardupilot_reference_is_clamped_as_the_autopilot_does(self):
         """Training that ends below 35 degC: CALTEMP is the highest of it."""
@@ -86,10 +82,10 @@ class ExportParameters(ExportTest):
         for axis, file in zip("xyz", files):
             self.ok("export", file, "--format", "px4", "-o", "one", "--name",
                     "net", "--axis", axis, "--device-id", 1)
-            single[axis] = (self.dir / "one/net.params").read_text()
+            single[axis] = self.text("one/net.params")
         self.ok("export", *files, "--format", "px4", "-o", "three",
                 "--device-id", 1)
-        merged = (self.dir / "three/cubic.params").read_text().splitlines()
+        merged = self.text("three/cubic.params").splitlines()
         for line in merged[1:]:
             power, axis = re.match(r"1\t1\t(?:TC_G0_X(\d)_(\d)|\S+)\t",
                                    line).groups()
@@ -98,7 +94,7 @@ class ExportParameters(ExportTest):
                     self.assertIn(line, text.splitlines())
         self.ok("export", *files[:2], "--format", "ardupilot", "-o", "two",
                 "--axis", "z,x")
-        two = (self.dir / "two/cubic.parm").read_text()
+        two = self.text("two/cubic.parm")
         self.assertNotIn("INS_GYROFFS_Z,0\n", two)
         self.assertIn("INS_GYROFFS_Y,0\n", two)
         self.assertNotIn("INS_GYROFFS_X,0\n", two)
@@ -106,18 +102,16 @@ class ExportParameters(ExportTest):
     def test_axes_of_other_temperatures_share_what_all_saw(self):
         self.ok("export", self.train("cubic"), "--format", "ardupilot", "-o",
                 "one")
-        content = json.loads((self.dir / "cubic.json").read_text())
+        content = self.json("cubic.json")
         del content["sigma"]  # which lies within the range of training
         text = json.dumps(content)
         start = text.index("[", text.index('"temperature_range_degC"'))
         end = text.index("]", start)
         self.write("other.json", text[:start] + "[-20.0, 60.0" + text[end:])
-        answer = self.beamgyro("export", "cubic.json", "other.json", "--format",
-                               "ardupilot", "-o", "two", "--axis", "x,y")
-        self.assertEqual(answer.returncode, 0, answer.stderr)
+        answer = self.ended("export", "cubic.json", "other.json", "--format",
+                            "ardupilot", "-o", "two", "--axis", "x,y")
         self.assertIn("clamp all of them to -20.00 to", answer.stderr)
-        self.assertIn("INS_TCAL1_TMIN,-20\n",
-                      (self.dir / "two/cubic.parm").read_text())
+        self.assertIn("INS_TCAL1_TMIN,-20\n", self.text("two/cubic.parm"))
 
     def test_the_first_gyro_and_axis_z_without_options(self):
         p = self.parameters("cubic", "px4", "--device-id", 1)
@@ -127,9 +121,8 @@ class ExportParameters(ExportTest):
         self.assertNotEqual(a["INS_GYROFFS_Z"], 0)
 
     def test_px4_without_a_device_is_warned_of(self):
-        answer = self.beamgyro("export", self.train("cubic"), "--format", "px4",
-                               "-o", "out")
-        self.assertEqual(answer.returncode, 0)
+        answer = self.ended("export", self.train("cubic"), "--format", "px4",
+                            "-o", "out")
         self.assertIn("expected its device id", answer.stderr)
         answer = self.beamgyro("export", "cubic.json", "--format", "px4", "-o",
                                "out", "--device-id", 5)
@@ -146,7 +139,3 @@ class ExportParameters(ExportTest):
         for name, value in of_cubic.items():
             self.assertAlmostEqual(of_spline[name], value,
                                    delta=1e-5 * abs(value) + 1e-12)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,9 +3,8 @@
 exported by the program, and the C compiler."""
 
 import json
-import subprocess
 
-from program import CUBIC, PATIENCE, ProgramTest, ramp
+from program import CUBIC, ProgramTest, ended, ramp, said
 
 # Rounding of a * b + c once instead of twice would change last bits.
 WARNINGS = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow",
@@ -74,7 +73,7 @@ class ExportTest(ProgramTest):
         self.ok("train", "train.h5", "--held-out", "held_out.h5", "--model",
                 model, "-o", f"{kind}.json", "--quiet")
         if kind == "scaled":
-            stored = json.loads((self.dir / "scaled.json").read_text())
+            stored = self.json("scaled.json")
             self.write("scaled.json", json.dumps(
                 stored | {"scale_factor": SCALE_FACTOR}))
         return f"{kind}.json"
@@ -86,15 +85,8 @@ class ExportTest(ProgramTest):
         return self.dir / kind
 
     def compile(self, folder, *arguments, compiler="cc"):
-        answer = subprocess.run([compiler, *map(str, arguments)], cwd=folder,
-                                text=True, capture_output=True, check=False)
-        self.assertEqual(answer.returncode, 0, answer.stderr)
+        answer = ended(compiler, *arguments, cwd=folder)
         self.assertEqual(answer.stderr, "")
 
     def run_binary(self, *command, given="", status=0):
-        answer = subprocess.run([str(word) for word in command], input=given,
-                                text=True, capture_output=True, check=False,
-                                timeout=PATIENCE)
-        self.assertEqual(answer.returncode, status,
-                         answer.stdout + answer.stderr)
-        return answer.stdout
+        return said(*command, input=given, allowed=(status,))

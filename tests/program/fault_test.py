@@ -14,15 +14,12 @@ import os
 import pathlib
 import re
 import shutil
-import subprocess
 import tempfile
 import threading
-import unittest
 
 import pytest
 
 from faults import FaultTest
-from program import PROGRAM
 from sets import CAMPAIGN, SCENARIO
 
 CHANGES = {"write", "fsync", "rename", "link", "mkdir", "ftruncate"}
@@ -77,12 +74,6 @@ class Command:
             self.seen.add(state)
         return new
 
-    def run_again(self, place):
-        return subprocess.run(
-            [str(PROGRAM), *map(str, self.again)], cwd=place, text=True,
-            stdin=subprocess.DEVNULL, capture_output=True, check=False,
-            timeout=600)
-
     def chosen(self):
         """Number, name and kind of file of the calls to strike."""
         kinds = {}
@@ -114,7 +105,7 @@ class Command:
             yield from self.wrong_files(files)
             if self.once in files or not self.is_new(state_of(place)):
                 return
-            answer = self.run_again(place)
+            answer = self.test.beamgyro(*self.again, cwd=place, timeout=600)
             if answer.returncode != self.status:
                 yield f"once more: status {answer.returncode}: {answer.stderr}"
             elif files_in(place) != self.after:
@@ -154,8 +145,8 @@ class Command:
 
 
 class Struck(FaultTest):
-    def setUp(self):
-        super().setUp()
+    def prepare(self):
+        super().prepare()
         self.write("ramp.toml", SCENARIO.format(
             name="ramp", ambient="points = [[0, 0], [60, 60]]"))
 
@@ -217,8 +208,8 @@ class Validation(Struck):
 
 @pytest.mark.early
 class Sets(Struck):
-    def setUp(self):
-        super().setUp()
+    def prepare(self):
+        super().prepare()
         one_run, _, _ = CAMPAIGN.partition("[[run]]\nname = \"ramp\"")
         self.write("campaign.toml", one_run.replace("rest", "ramp").replace(
             "devices = 7", "devices = 3"))  # two in the first file
@@ -230,7 +221,3 @@ class Sets(Struck):
     def test_verify(self):
         self.ok("generate", "campaign.toml", "-o", "set")
         self.strike("verify", "set", fewest_calls=30)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,10 +3,9 @@
 
 import os
 import pathlib
-import subprocess
 import tempfile
 
-from program import PROGRAM, ROOT, ProgramTest
+from program import ROOT, ProgramTest, class_folder, said
 
 
 class ShimTest(ProgramTest):
@@ -16,12 +15,10 @@ class ShimTest(ProgramTest):
 
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.shim = pathlib.Path(folder.name) / f"{cls.SHIM}.so"
-        subprocess.run(["cc", "-std=c11", "-O1", "-shared", "-fPIC",
-                        ROOT / f"tests/faults/{cls.SHIM}.c", "-o", cls.shim,
-                        "-ldl"], check=True)
+        super().setUpClass()
+        cls.shim = class_folder(cls) / f"{cls.SHIM}.so"
+        said("cc", "-std=c11", "-O1", "-shared", "-fPIC",
+             ROOT / f"tests/faults/{cls.SHIM}.c", "-o", cls.shim, "-ldl")
 
     def shimmed(self, **variables):
         """The environment of a program with the library."""
@@ -36,10 +33,8 @@ class FaultTest(ShimTest):
     def faulty(self, place, arguments, **plan):
         """The answer of a command in a folder, all of whose calls on files
         below that folder are numbered; `plan` is as the shim has it."""
-        return subprocess.run(
-            [str(PROGRAM), *map(str, arguments)], cwd=place, text=True,
-            stdin=subprocess.DEVNULL, capture_output=True, check=False,
-            timeout=600,
+        return self.beamgyro(
+            *arguments, cwd=place, timeout=600,
             env=self.shimmed(FAULT_PREFIX=str(place), **plan))
 
     def calls(self, place, arguments, status=0):

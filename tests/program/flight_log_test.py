@@ -5,13 +5,11 @@ writes as their public specifications state."""
 import random
 import re
 import struct
-import subprocess
 import sys
 
-import h5py
 import numpy as np
 
-from program import PATIENCE, ROOT, ProgramTest
+from program import ROOT, ProgramTest
 
 SCRIPT = ROOT / "scripts/flight_log_to_csv.py"
 GYRO = ("uint64_t timestamp;uint64_t timestamp_sample;uint32_t device_id;"
@@ -78,27 +76,17 @@ def dataflash(samples, instances=(0, 1)):
 
 class FlightLogs(ProgramTest):
     def converted(self, log, *arguments):
-        answer = subprocess.run([sys.executable, SCRIPT, log, *arguments],
-                                cwd=self.dir, capture_output=True, text=True,
-                                check=False, timeout=PATIENCE)
-        self.assertEqual(answer.returncode, 0, answer.stderr)
-        return answer.stdout
+        return self.ok(SCRIPT, log, *arguments, program=sys.executable)
 
     def refused(self, data, says, *arguments):
         self.write("bad.bin", data)
-        answer = subprocess.run([sys.executable, SCRIPT, "bad.bin", *arguments],
-                                cwd=self.dir, capture_output=True, text=True,
-                                check=False, timeout=PATIENCE)
-        self.assertEqual(answer.returncode, 1)
-        self.assertEqual(len(answer.stderr.splitlines()), 1, answer.stderr)
-        self.assertIn(says, answer.stderr)
-        self.assertFalse((self.dir / "bad.csv").exists())
+        self.rejected(SCRIPT, "bad.bin", *arguments, program=sys.executable,
+                      says=says, status=1)
 
     def imported(self, name, axis):
         self.ok("import", f"{name}.csv", "--map", f"{name}.toml", "--axis",
                 axis, "-o", f"{name}.h5")
-        with h5py.File(self.dir / f"{name}.h5") as file:
-            return {key: file[key][()] for key in file if key != "meta"}
+        return self.signals(f"{name}.h5")
 
     def test_a_ulog_file(self):
         self.write("flight.ulg", ulog(50))
@@ -191,16 +179,15 @@ class FlightLogs(ProgramTest):
             "number": (data[:second + 3] + b"\xee\xee" + data[second + 5:], 49,
                        message)}
         for name, (log, kept, skipped) in damaged.items():
-            with self.subTest(name):
-                self.write(f"{name}.ulg", log)
-                self.assertIn(
-                    f"{kept} rows of sensor_gyro, instance 0; 1 dropouts; "
-                    f"{skipped} bytes that are no whole message skipped\n",
-                    self.converted(f"{name}.ulg"))
-                rows = (self.dir / f"{name}.csv").read_text().splitlines()
-                times = [int(row.split(",")[0]) for row in rows[1:]]
-                self.assertEqual(times, [5000000 + 4000 * k for k in range(50)
-                                         if kept == 50 or k != 10])
+            self.write(f"{name}.ulg", log)
+            self.assertIn(
+                f"{kept} rows of sensor_gyro, instance 0; 1 dropouts; "
+                f"{skipped} bytes that are no whole message skipped\n",
+                self.converted(f"{name}.ulg"))
+            rows = self.text(f"{name}.csv").splitlines()
+            times = [int(row.split(",")[0]) for row in rows[1:]]
+            self.assertEqual(times, [5000000 + 4000 * k for k in range(50)
+                                     if kept == 50 or k != 10])
 
     def test_bytes_that_look_as_messages_do_not_hide_true_ones(self):
         data, head = bytearray(ulog(2000)), len(ulog(0))

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Runs the code of README.md, of every guide and tutorial, in order.
 
@@ -88,7 +87,3 @@ def test_every_guide_is_found():
         if guide.stem == "plots":
             continue  # draws, and prints nothing
         assert any(text for _, _, text in steps(guide)), guide
-
-
-if __name__ == "__main__":
-    sys.exit(pytest.main([__file__]))

@@ -3,7 +3,6 @@
 
 import re
 import shlex
-import unittest
 
 from program import ROOT, ProgramTest, commands
 
@@ -35,9 +34,8 @@ class Help(ProgramTest):
             {"characterise", "run", "import", "generate", "train", "compensate",
              "export", "validate", "allan", "info", "verify"}, {*commands()})
         for command, text in self.texts():
-            with self.subTest(command):
-                self.assertIn(command, text)
-                self.assertGreater(len(text.splitlines()), 4)
+            self.assertIn(command, text)
+            self.assertGreater(len(text.splitlines()), 4)
 
     def test_version_names_revision_and_libraries(self):
         text = self.ok("--version").lower()
@@ -46,30 +44,25 @@ class Help(ProgramTest):
 
     def test_no_line_is_wider_than_80_columns(self):
         for command, text in self.texts():
-            with self.subTest(command):
-                self.assertLessEqual(max(map(len, text.splitlines())), WIDTH)
+            self.assertLessEqual(max(map(len, text.splitlines())), WIDTH)
 
     def test_help_as_a_word_is_the_same(self):
         self.assertEqual(self.ok("help"), self.ok("--help"))
         for command in commands():
-            with self.subTest(command):
-                self.assertEqual(self.ok("help", command),
-                                 self.ok(command, "-h"))
+            self.assertEqual(self.ok("help", command), self.ok(command, "-h"))
 
     def test_every_option_states_a_default_or_is_required(self):
         for command in commands():
             for left, right in entries(self.ok(command, "--help")):
                 if re.match(r"(-\w, )?--[\w-]+ \S", left):  # takes a value
-                    with self.subTest(f"{command} {left}"):
-                        self.assertRegex(right, r"Default: .+\.$|Required\.$")
+                    self.assertRegex(right, r"Default: .+\.$|Required\.$")
 
     def test_options_stand_in_groups(self):
         for command in commands():
-            with self.subTest(command):
-                groups = re.findall(r"^(\S.*):$", self.ok(command, "--help"),
-                                    re.MULTILINE)
-                self.assertEqual(groups[0], "Arguments")
-                self.assertEqual(groups[-1], "Examples")
+            groups = re.findall(r"^(\S.*):$", self.ok(command, "--help"),
+                                re.MULTILINE)
+            self.assertEqual(groups[0], "Arguments")
+            self.assertEqual(groups[-1], "Examples")
 
     def test_the_defaults_of_the_help_are_those_of_the_program(self):
         self.ok("characterise", "device.toml", "-o", "default.csv")
@@ -78,27 +71,20 @@ class Help(ProgramTest):
         grid = re.search(r"Default: (\S+)\.$", stated)[1]
         self.ok("characterise", "device.toml", "-o", "stated.csv",
                 "--beam-temperature", grid)
-        self.assertEqual((self.dir / "default.csv").read_bytes(),
-                         (self.dir / "stated.csv").read_bytes())
+        self.assertSameBytes("default.csv", "stated.csv")
 
     def test_every_command_has_an_example_that_its_options_allow(self):
         for command in commands():
             text = self.ok(command, "--help").split("Examples:\n")[1]
             examples = re.findall(r"^  (beamgyro .*)$",
                                   text.replace("\\\n      ", ""), re.MULTILINE)
-            with self.subTest(command):
-                self.assertGreater(len(examples), 0)
+            self.assertGreater(len(examples), 0)
             for example in examples:
                 words = shlex.split(example)[1:]
-                with self.subTest(example):
-                    self.assertEqual(words[0], command)
-                    for word in words:
-                        if word.startswith("scenarios/"):
-                            self.assertTrue((ROOT / word).exists())
-                    # Here are none of its files, and that is all it says.
-                    self.assertRegex(self.rejected(*words),
-                                     "No such file|is no directory|is not there")
-
-
-if __name__ == "__main__":
-    unittest.main()
+                self.assertEqual(words[0], command)
+                for word in words:
+                    if word.startswith("scenarios/"):
+                        self.assertTrue((ROOT / word).exists())
+                # Here are none of its files, and that is all it says.
+                self.assertRegex(self.rejected(*words),
+                                 "No such file|is no directory|is not there")

@@ -2,7 +2,6 @@
 """Logs and maps that `import` refuses."""
 
 import re
-import unittest
 
 from bench_log import BENCH, table
 from program import ProgramTest
@@ -98,7 +97,3 @@ class Accepted(ProgramTest):
                       BENCH.replace('"ms"', '"us"')]:
             self.write("map.toml", bench)
             self.ok(*IMPORT.split())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -6,12 +6,11 @@ import json
 import pathlib
 import re
 import shutil
-import subprocess
 import unittest
 
 import pytest
 
-from program import PROGRAM, ROOT, class_folder
+from program import PROGRAM, ROOT, class_folder, ended
 
 BUILD = PROGRAM.parent
 SCENARIOS = ROOT / "scenarios"
@@ -105,12 +104,7 @@ class Call(unittest.TestCase):
 
     @classmethod
     def call(cls, *command, cwd=None, allowed=(0,)):
-        answer = subprocess.run([str(part) for part in command],
-                                cwd=cwd or cls.dir, capture_output=True,
-                                text=True, check=False)
-        if answer.returncode not in allowed:
-            raise AssertionError(answer.stdout + answer.stderr)
-        return answer
+        return ended(*command, cwd=cwd or cls.dir, allowed=allowed)
 
 
 class PublicHeaders(Call):
@@ -221,11 +215,10 @@ class Library(Call):
                   "$(pkg-config --cflags --libs beamgyro)")
         said = self.call("./by_pkg_config", SCENARIOS / "ten_minutes.toml")
         self.assertEqual(said.stdout, "3000 samples\n")
-        version = subprocess.run(
-            ["pkg-config", "--modversion", "beamgyro"], check=True, text=True,
-            capture_output=True, env={"PKG_CONFIG_PATH": str(pkgconfig)})
+        version = ended("pkg-config", "--modversion", "beamgyro",
+                        env={"PKG_CONFIG_PATH": str(pkgconfig)}).stdout
         stated = self.call(self.prefix / "bin/beamgyro", "--version").stdout
-        self.assertIn(f"beamgyro {version.stdout.strip()} (", stated)
+        self.assertIn(f"beamgyro {version.strip()} (", stated)
 
     # What stands for it in test.sh: the library makes the bytes of the program,
     # below. Nothing there links it with an Eigen of the user's, and the test of
@@ -312,7 +305,3 @@ class Library(Call):
         for name in names:
             self.assertTrue(filecmp.cmp(by_program / name, by_library / name,
                                         shallow=False), name)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,14 +1,10 @@
 # SPDX-License-Identifier: MIT
 """A population of few devices to plan for."""
 
-import subprocess
-
-from program import PROGRAM, SCENARIOS
-
-DEVICES = 60
+from program import PROGRAM, SCENARIOS, said
 
 
-def population_of(folder):
+def population_of(folder, devices=60):
     """FOLDER/population.json, learned from the sweeps of some devices."""
     campaign = (SCENARIOS / "campaigns/population.toml").read_text()
     first, *_ = campaign.split("[[run]]")
@@ -19,12 +15,9 @@ def population_of(folder):
         f'scenario = "{SCENARIOS}/soak_sweep_sparse.toml"\n'
         '[output]\nvariables = ["rate", "temperature", "quadrature", '
         '"true_rate"]\n')
-
-    def beamgyro(*words):
-        subprocess.run([PROGRAM, *words], cwd=folder, check=True,
-                       stdout=subprocess.DEVNULL)
-    beamgyro("generate", "campaigns/sweep.toml", "-o", "set", "--devices",
-             str(DEVICES))
-    beamgyro("train", "set", "--model",
-             SCENARIOS / "population/population.toml", "-o", "population.json")
+    said(PROGRAM, "generate", "campaigns/sweep.toml", "-o", "set", "--devices",
+         devices, cwd=folder)
+    said(PROGRAM, "train", "set", "--model",
+         SCENARIOS / "population/population.toml", "-o", "population.json",
+         cwd=folder)
     return folder / "population.json"

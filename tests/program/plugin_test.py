@@ -16,7 +16,7 @@ import pytest
 
 from export_firmware_test import CORE, EMULATOR, LINK, missing
 from exported import MODELS, ExportTest
-from program import PATIENCE, PROGRAM, ROOT, ProgramTest, ramp
+from program import PATIENCE, PROGRAM, ROOT, ProgramTest, ramp, said
 
 EXAMPLES = ROOT / "examples/plugins"
 PYTHON = f"'{sys.executable}'"
@@ -27,12 +27,6 @@ QEMU = (f"cmd:{EMULATOR} -M mps2-an386 -display none -serial none "
 
 # Power is lost for a while, so that a plug-in begins twice.
 TWICE = ramp(seconds=600, rate_Hz=5) + "[power]\non_s = [0, 320]\noff_s = [280]\n"
-
-
-def rates(path):
-    with h5py.File(path) as file:
-        return {name: file[name][:] for name in
-                ["time", "rate", "temperature", "status", "compensated_rate"]}
 
 
 def processes(word):
@@ -48,19 +42,18 @@ def processes(word):
 
 
 class Plugins(ProgramTest):
-    def setUp(self):
-        super().setUp()
+    def prepare(self):
+        super().prepare()
         self.run_scenario("run", text=TWICE)
 
-    def build(self, source, name, compiler="cc", options=()):
-        subprocess.run([compiler, "-O2", "-Wall", "-Wextra", "-Werror",
-                        "-shared", "-fPIC", f"-I{ROOT}/include", *options,
-                        str(source), "-o", name], cwd=self.dir, check=True)
+    def build(self, source, name, compiler="cc"):
+        said(compiler, "-O2", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC",
+             f"-I{ROOT}/include", source, "-o", name, cwd=self.dir)
         return f"./{name}"
 
     def compensated(self, compensator, name="out.h5"):
         self.ok("compensate", compensator, "run.h5", "-o", name)
-        return rates(self.dir / name)
+        return self.signals(name)
 
     def test_the_cubic_in_c_and_in_python_gives_the_same_bits(self):
         in_c = self.compensated(self.build(EXAMPLES / "cubic.c", "cubic.so"))
@@ -119,20 +112,17 @@ class Plugins(ProgramTest):
                 (per_line + "print('ok')", 'answered "ok", which is no number'),
                 ("import time; time.sleep(60)", "hung at sample 0")]:
             script = self.write("bad.py", code)
-            with self.subTest(code):
-                self.rejected("compensate", f"cmd:{PYTHON} {script}", "run.h5",
-                              "-o", "out.h5", "--timeout-s", 1, says=says,
-                              status=3)
+            self.rejected("compensate", f"cmd:{PYTHON} {script}", "run.h5",
+                          "-o", "out.h5", "--timeout-s", 1, says=says,
+                          status=3)
 
     def test_what_is_no_plugin_is_wrong_input(self):
         self.write("text.so", "not a library")
-        wants = self.write("wants.c", (EXAMPLES / "cubic.c").read_text()
-                           .replace('"rate,temperature"', '"rate,true_rate"'))
-        self.build(wants, "wants.so")
-        spaced = self.write("spaced.c", (EXAMPLES / "cubic.c").read_text()
-                            .replace('"rate,temperature"',
-                                     '"rate, temperature"'))
-        self.build(spaced, "spaced.so")
+        for name, inputs in [("wants", "rate,true_rate"),
+                             ("spaced", "rate, temperature")]:
+            self.write(f"{name}.c", (EXAMPLES / "cubic.c").read_text().replace(
+                '"rate,temperature"', f'"{inputs}"'))
+            self.build(f"{name}.c", f"{name}.so")
         told = self.rejected("compensate", "./spaced.so", "run.h5", "-o",
                              "out.h5", says=["' temperature'", "quadrature"])
         self.assertNotIn("true_", told)  # none of these may be asked for
@@ -159,17 +149,13 @@ class Plugins(ProgramTest):
 
     def test_an_interrupt_ends_the_command_and_what_it_started(self):
         word = f"sleep 98{os.getpid() % 1000:03}"
+        slept = word.replace(" ", "\0")
         for number in [signal.SIGINT, signal.SIGTERM]:
-            with subprocess.Popen(
-                    [PROGRAM, "compensate", f"cmd:{word} | cat", "run.h5",
-                     "-o", "out.h5"], cwd=self.dir,
-                    stderr=subprocess.PIPE) as program:
-                slept = word.replace(" ", "\0")
-                for _ in range(6000):
-                    if processes(slept):
-                        break
-                    time.sleep(0.05)
-                self.assertTrue(processes(slept))
+            (self.dir / "begun").unlink(missing_ok=True)
+            with self.working("compensate", f"cmd:{word} | tee begun", "run.h5",
+                              "-o", "out.h5", until="begun") as program:
+                while not processes(slept):
+                    self.assertIsNone(program.poll())
                 program.send_signal(number)
                 program.communicate(timeout=PATIENCE)
                 self.assertEqual(program.returncode, -number)
@@ -184,39 +170,33 @@ class Plugins(ProgramTest):
 class Stream(ProgramTest):
     """`compensate --stream`."""
 
-    def setUp(self):
-        super().setUp()
+    compensators = [
+        "cubic.json", "./cubic.so", f"cmd:{PYTHON} '{EXAMPLES}/cubic.py'"]
+
+    def prepare(self):
+        super().prepare()
         self.run_scenario("run", text=TWICE)
         self.ok("run", "run.toml", "-o", "run.csv")
-        self.write("cubic.toml", MODELS["cubic"])
-        self.ok("train", "run.h5", "--model", "cubic.toml", "-o", "cubic.json",
-                "--quiet")
         # With a sigma the file would answer two columns (stated_sigma_test.py).
-        stored = json.loads((self.dir / "cubic.json").read_text())
+        stored = self.train_on("run.h5")
         stored.pop("sigma", None)
         self.write("cubic.json", json.dumps(stored))
-        subprocess.run(["cc", "-O2", "-shared", "-fPIC", f"-I{ROOT}/include",
-                        str(EXAMPLES / "cubic.c"), "-o", "cubic.so"],
-                       cwd=self.dir, check=True)
-        self.compensators = [
-            "cubic.json", "./cubic.so", f"cmd:{PYTHON} '{EXAMPLES}/cubic.py'"]
+        said("cc", "-O2", "-shared", "-fPIC", f"-I{ROOT}/include",
+             EXAMPLES / "cubic.c", "-o", "cubic.so", cwd=self.dir)
 
-    def stream(self, *arguments, text):
-        return subprocess.run(
-            [PROGRAM, "compensate", *arguments, "--stream"], cwd=self.dir,
-            input=text, text=True, capture_output=True, check=False,
-            timeout=PATIENCE)
+    def stream(self, *arguments, text, status=0):
+        return self.ended("compensate", *arguments, "--stream", given=text,
+                          allowed=(status,))
 
     def test_the_answers_are_those_to_the_recording(self):
-        text = (self.dir / "run.csv").read_text()
+        text = self.text("run.csv")
         for compensator in self.compensators:
             self.ok("compensate", compensator, "run.h5", "-o", "out.h5")
             answer = self.stream(compensator, text=text)
-            self.assertEqual((answer.returncode, answer.stderr), (0, ""))
-            with self.subTest(compensator):
-                np.testing.assert_array_equal(
-                    [float(line) for line in answer.stdout.splitlines()],
-                    rates(self.dir / "out.h5")["compensated_rate"])
+            self.assertEqual(answer.stderr, "")
+            np.testing.assert_array_equal(
+                [float(line) for line in answer.stdout.splitlines()],
+                self.signals("out.h5")["compensated_rate"])
 
     def test_each_sample_is_answered_before_the_next_one_comes(self):
         flushing = (EXAMPLES / "cubic.py").read_text().replace(
@@ -224,7 +204,7 @@ class Stream(ProgramTest):
         self.write("flushing.py", flushing)
         for compensator in [*self.compensators[:2],
                             f"cmd:{PYTHON} -u flushing.py"]:
-            with self.subTest(compensator), subprocess.Popen(
+            with subprocess.Popen(
                     [PROGRAM, "compensate", compensator, "--stream",
                      "--rate-Hz", "5"], cwd=self.dir, text=True, bufsize=1,
                     stdin=subprocess.PIPE, stdout=subprocess.PIPE) as program:
@@ -247,18 +227,20 @@ class Stream(ProgramTest):
                             "input:3: 2 cells; expected 3"),
                            (names + "0,1,2\n1,nan,2\n",
                             "input:3: rate is nan while powered"),
-                           ("time,temperature\n0,1\n1,2\n", "rate")]:
+                           ("time,temperature\n0,1\n1,2\n", "rate"),
+                           ("time,rate\n0,1\n", "temperature"),
+                           (names + "0,1,nan\n", "temperature")]:
             for compensator in self.compensators[:2]:
-                answer = self.stream(compensator, text=text)
-                self.assertEqual(answer.returncode, 2, answer.stderr)
+                answer = self.stream(compensator, text=text, status=2)
                 self.assertIn(says, answer.stderr)
+                self.assertEqual(len(answer.stderr.splitlines()), 1)
 
     def test_lines_may_end_in_carriage_return_and_newline(self):
         for names, cells in [("time,rate,temperature", "0,1,20"),
                              ("time,rate,temperature,status", "0,1,20,0")]:
             one, other = (self.stream("cubic.json", text=end.join(
                 [names, cells, ""])) for end in ["\n", "\r\n"])
-            self.assertEqual((other.returncode, other.stderr), (0, ""))
+            self.assertEqual(other.stderr, "")
             self.assertEqual(other.stdout, one.stdout)
 
     def test_a_fault_ends_the_stream_with_status_3(self):
@@ -268,10 +250,8 @@ class Stream(ProgramTest):
                               ("echo what", '"what", which is no number'),
                               ("yes 1", "more answers than samples"),
                               ("sleep 60", "hung")]:
-            answer = self.stream(f"cmd:{command}", "--timeout-s", "1",
-                                 text=text)
-            self.assertEqual(answer.returncode, 3, command)
-            self.assertIn(says, answer.stderr)
+            self.assertIn(says, self.stream(
+                f"cmd:{command}", "--timeout-s", 1, text=text, status=3).stderr)
 
     def test_a_file_and_a_stream_exclude_each_other(self):
         self.rejected("compensate", "cubic.json", "run.h5", "--stream",
@@ -288,37 +268,34 @@ class Firmware(ExportTest):
     def test_every_kind_of_exported_code_is_a_plugin(self):
         for kind in MODELS:
             folder = self.export(kind)
-            with self.subTest(kind):
-                self.compile(folder, "-std=c99", "-O2", "-Wall", "-Wextra",
-                             "-Wpedantic", "-Wconversion", "-Wmissing-prototypes",
-                             "-Werror", "-shared", "-fPIC", "net.c",
-                             "net_plugin.c", "-o", "net.so")
-                self.ok("compensate", f"./{kind}/net.so", "train.h5", "-o",
-                        f"{kind}_c.h5")
-                self.ok("compensate", f"{kind}.json", "train.h5", "-o",
-                        f"{kind}_json.h5")
-                firmware = rates(self.dir / f"{kind}_c.h5")
-                workbench = rates(self.dir / f"{kind}_json.h5")
-                # What export allows single precision.
-                np.testing.assert_allclose(
-                    firmware["compensated_rate"],
-                    workbench["compensated_rate"], atol=1e-4, rtol=0)
-                self.assertTrue(
-                    (firmware["status"] & 1 == 1).any())
+            self.compile(folder, "-std=c99", "-O2", "-Wall", "-Wextra",
+                         "-Wpedantic", "-Wconversion", "-Wmissing-prototypes",
+                         "-Werror", "-shared", "-fPIC", "net.c",
+                         "net_plugin.c", "-o", "net.so")
+            self.ok("compensate", f"./{kind}/net.so", "train.h5", "-o",
+                    f"{kind}_c.h5")
+            self.ok("compensate", f"{kind}.json", "train.h5", "-o",
+                    f"{kind}_json.h5")
+            firmware = self.signals(f"{kind}_c.h5")
+            workbench = self.signals(f"{kind}_json.h5")
+            # What export allows single precision.
+            np.testing.assert_allclose(
+                firmware["compensated_rate"],
+                workbench["compensated_rate"], atol=1e-4, rtol=0)
+            self.assertTrue((firmware["status"] & 1 == 1).any())
 
     def test_a_verdict_tells_the_difference_from_the_workbench(self):
         folder = self.export("cubic")
         self.compile(folder, "-O2", "-ffp-contract=off", "-shared", "-fPIC",
                      "net.c", "net_plugin.c", "-o", "net.so")
-        answer = self.beamgyro("validate", "./cubic/net.so", "held_out.h5",
-                               "--workbench", "cubic.json", "--json", "v.json")
-        self.assertIn(answer.returncode, [0, 3], answer.stderr)
+        result, answer = self.validated("./cubic/net.so", "held_out.h5",
+                                        "--workbench", "cubic.json")
         self.assertIn("difference from cubic.json: at most", answer.stdout)
-        told = json.loads((self.dir / "v.json").read_text())["compensator"]
+        told = result["compensator"]
         self.ok("compensate", "./cubic/net.so", "held_out.h5", "-o", "a.h5")
         self.ok("compensate", "cubic.json", "held_out.h5", "-o", "b.h5")
-        difference = np.abs(rates(self.dir / "a.h5")["compensated_rate"]
-                            - rates(self.dir / "b.h5")["compensated_rate"])
+        difference = np.abs(self.signals("a.h5")["compensated_rate"]
+                            - self.signals("b.h5")["compensated_rate"])
         difference = difference[np.isfinite(difference)]
         self.assertEqual(told["workbench"], "cubic.json")
         self.assertEqual(told["workbench_difference_largest_deg_per_s"],
@@ -346,9 +323,5 @@ class Firmware(ExportTest):
         self.ok("compensate", "./cubic/net.so", "train.h5", "-o", "so.h5")
         self.ok("compensate", QEMU, "train.h5", "-o", "qemu.h5")
         np.testing.assert_array_equal(
-            rates(self.dir / "so.h5")["compensated_rate"],
-            rates(self.dir / "qemu.h5")["compensated_rate"])
-
-
-if __name__ == "__main__":
-    unittest.main()
+            self.signals("so.h5")["compensated_rate"],
+            self.signals("qemu.h5")["compensated_rate"])

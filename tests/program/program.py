@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What the tests of the shipped program share: the program and small inputs."""
 
+import contextlib
+import importlib.util
+import json
 import os
 import pathlib
 import re
@@ -9,7 +12,10 @@ import shutil
 import signal
 import subprocess
 import tempfile
+import time
 import unittest
+
+import h5py
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENARIOS = ROOT / "scenarios"
@@ -60,6 +66,21 @@ restarts = 1
 max_epochs = 30
 """
 
+# A compensator that changes nothing, for `cmd:/usr/bin/python3`.
+IDENTITY = """\
+import sys
+rate = sys.stdin.readline().strip().split(",").index("rate")
+for line in sys.stdin:
+    print(line.split(",")[rate])
+"""
+
+
+def limits(**most):
+    """A specification of the largest values of metrics."""
+    return 'name = "s"\n[limits]\n' + "".join(
+        f'{metric} = {{ max = {value}, source = "a test" }}\n'
+        for metric, value in most.items())
+
 
 def class_folder(case, prefix=""):
     """A directory that is there while the tests of a class run."""
@@ -67,13 +88,57 @@ def class_folder(case, prefix=""):
         tempfile.TemporaryDirectory(prefix=prefix)))
 
 
-def said(*command, **options):
-    """What a command prints that must succeed; a failure shows all of it."""
+def ended(*command, allowed=(0,), timeout=4 * PATIENCE, **options):
+    """How a command ended that must end so; a failure shows all it printed."""
     answer = subprocess.run([str(part) for part in command], text=True,
-                            capture_output=True, check=False, **options)
-    if answer.returncode != 0:
-        raise AssertionError(answer.stdout + answer.stderr)
-    return answer.stdout
+                            capture_output=True, check=False, timeout=timeout,
+                            **options)
+    if answer.returncode not in allowed:
+        raise AssertionError(f"{command}: status {answer.returncode}\n"
+                             f"{answer.stdout}{answer.stderr}")
+    return answer
+
+
+def said(*command, **options):
+    """What a command prints that must succeed."""
+    return ended(*command, **options).stdout
+
+
+def by_octave(code, folder):
+    """The lines that Octave prints, with its package netcdf."""
+    if not shutil.which("octave-cli"):
+        raise unittest.SkipTest("octave is not installed")
+    answer = ended("octave-cli", "--no-gui", "--eval", "pkg load netcdf\n" + code,
+                   cwd=folder, allowed=(0, 1))
+    if "netcdf is not installed" in answer.stderr:
+        raise unittest.SkipTest("no octave-netcdf here")
+    if answer.returncode:
+        raise AssertionError(answer.stderr)
+    return answer.stdout.splitlines()
+
+
+def limit(kind, size):
+    """What a process does first that must not exceed a limit of `resource`."""
+    return lambda: resource.setrlimit(kind, (size, size))
+
+
+def script(path):
+    """The module of a script of the project."""
+    specification = importlib.util.spec_from_file_location(path.stem, path)
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    return module
+
+
+def by_name(rows):
+    """Rows of a result by their names."""
+    return {row["name"]: row for row in rows}
+
+
+def failed(result):
+    """The checks that a validation did not pass."""
+    return [check["name"] for check in result["checks"]
+            if check["passed"] is False]
 
 
 def processor_time_of_children():
@@ -89,12 +154,20 @@ def commands():
 
 
 class ProgramTest(unittest.TestCase):
-    """A test in a directory of its own that holds the nominal device."""
+    """A test in a copy of the folder that prepare() fills once for its class."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.kept = class_folder(cls)
+        case = cls()
+        case.dir = cls.kept
+        case.prepare()
 
     def setUp(self):
         self.dir = pathlib.Path(
             self.enterContext(tempfile.TemporaryDirectory()))
-        self.prepare()
+        shutil.copytree(self.kept, self.dir, symlinks=True, dirs_exist_ok=True)
 
     def prepare(self):
         """Fills the directory."""
@@ -105,18 +178,62 @@ class ProgramTest(unittest.TestCase):
         (self.dir / name).write_bytes(data)
         return name
 
-    def beamgyro(self, *arguments, **options):
-        return subprocess.run(
-            [str(PROGRAM), *map(str, arguments)], cwd=self.dir, text=True,
-            stdin=subprocess.DEVNULL, capture_output=True, check=False,
-            timeout=PATIENCE, **options)
+    def text(self, name):
+        return (self.dir / name).read_text()
 
-    def ok(self, *arguments):
+    def json(self, name):
+        return json.loads(self.text(name))
+
+    def signals(self, name):
+        """The values of a recording, of a file of a set or of a view, by the
+        names of their variables."""
+        with h5py.File(self.dir / name) as file:
+            return {key: file[key][()] for key in file if key != "meta"}
+
+    def change(self, name, pattern, new, to=None):
+        """Writes a file, or another one, with other lines; it has such lines."""
+        text, count = re.subn(f"(?m){pattern}", new, self.text(name))
+        self.assertGreater(count, 0, f"{name}: {pattern}")
+        self.write(to or name, text)
+
+    def flip(self, name):
+        """Turns one bit in the middle of a file."""
+        data = bytearray((self.dir / name).read_bytes())
+        data[len(data) // 2] ^= 1
+        self.write(name, bytes(data))
+
+    def assertSameBytes(self, *names):
+        first, *others = [(self.dir / name).read_bytes() for name in names]
+        for name, other in zip(names[1:], others):
+            self.assertEqual(other, first, f"{names[0]} and {name}")
+
+    def beamgyro(self, *arguments, program=PROGRAM, given=None, **options):
+        return subprocess.run(
+            [str(program), *map(str, arguments)], text=True, input=given,
+            stdin=subprocess.DEVNULL if given is None else None,
+            capture_output=True, check=False,
+            **{"cwd": self.dir, "timeout": PATIENCE} | options)
+
+    def ended(self, *arguments, allowed=(0,), **options):
+        """How a command ended, which must be so."""
+        answer = self.beamgyro(*arguments, **options)
+        self.assertIn(answer.returncode, allowed,
+                      f"{arguments}: {answer.stderr}{answer.stdout}")
+        return answer
+
+    def ok(self, *arguments, **options):
         """Output of a command that must succeed."""
-        answer = self.beamgyro(*arguments)
-        self.assertEqual(answer.returncode, 0,
-                         f"{arguments}: {answer.stderr}{answer.stdout}")
-        return answer.stdout
+        return self.ended(*arguments, **options).stdout
+
+    def warned(self, *arguments, **options):
+        """What a command that succeeds says beside its output."""
+        return self.ended(*arguments, **options).stderr
+
+    def validated(self, *arguments, allowed=(0, 3), **options):
+        """The result in the file of a validation, and how it ended."""
+        answer = self.ended("validate", *arguments, "--json", "v.json",
+                            allowed=allowed, **options)
+        return self.json("v.json"), answer
 
     def alone(self, *arguments):
         """Output of a command that must succeed as the only process of its
@@ -131,13 +248,27 @@ class ProgramTest(unittest.TestCase):
                 os.setgid(LONELY_USER)
                 os.setuid(LONELY_USER)
 
-        answer = subprocess.run(
-            [str(program), *map(str, arguments)], cwd=self.dir, text=True,
-            stdin=subprocess.DEVNULL, capture_output=True, check=False,
-            timeout=PATIENCE, preexec_fn=restrict)
-        self.assertEqual(answer.returncode, 0,
-                         f"{arguments}: {answer.stderr}{answer.stdout}")
-        return answer.stdout
+        return self.ok(*arguments, program=program, preexec_fn=restrict)
+
+    @contextlib.contextmanager
+    def working(self, *arguments, until, **options):
+        """The process of a command, from when there is a file of a pattern."""
+        with subprocess.Popen(
+                [str(PROGRAM), *map(str, arguments)], cwd=self.dir, text=True,
+                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE, **options) as process:
+            while not list(self.dir.glob(until)):
+                self.assertIsNone(process.poll())
+                time.sleep(0.01)
+            yield process
+
+    def interrupted(self, *arguments, until, by=signal.SIGTERM):
+        """What a command says that a signal ends while it works."""
+        with self.working(*arguments, until=until) as process:
+            process.send_signal(by)
+            output, words = process.communicate(timeout=PATIENCE)
+        self.assertEqual((process.returncode, output), (-by, ""), words)
+        return words
 
     def files(self):
         return {path.relative_to(self.dir): path.read_bytes()
@@ -151,13 +282,11 @@ class ProgramTest(unittest.TestCase):
             else:
                 self.assertRegex(text, part)
 
-    def rejected(self, *arguments, says=(), status=2):
+    def rejected(self, *arguments, says=(), status=2, **options):
         """The one message of a command refused with an exit status, after which
         every file is as it was and no other file or directory has come."""
         before = self.files(), {*self.dir.rglob("*")}
-        answer = self.beamgyro(*arguments)
-        self.assertEqual(answer.returncode, status,
-                         f"{arguments}: {answer.stderr}{answer.stdout}")
+        answer = self.ended(*arguments, allowed=(status,), **options)
         self.assertEqual(answer.stdout, "")
         self.assertEqual(len(answer.stderr.strip().splitlines()), 1,
                          answer.stderr)
@@ -168,8 +297,7 @@ class ProgramTest(unittest.TestCase):
     def fails_as_seen(self, compensator, run):
         """All that a validation holds against a compensator is that training
         saw the run."""
-        answer = self.beamgyro("validate", compensator, run)
-        self.assertEqual(answer.returncode, 3, answer.stderr)
+        answer = self.ended("validate", compensator, run, allowed=(3,))
         self.assertIn("\nFAIL: Not met: hold_out. Training saw 1 of the 1 runs",
                       answer.stdout)
 
@@ -179,11 +307,16 @@ class ProgramTest(unittest.TestCase):
         self.ok("run", scenario, "-o", f"{name}.h5", *arguments)
         return self.dir / f"{name}.h5"
 
+    def train_on(self, *runs, model=CUBIC, to="c.json"):
+        """What the file TO says of a compensator of the text of a model."""
+        self.ok("train", *runs, "--model", self.write("model.toml", model),
+                "-o", to)
+        return self.json(to)
+
     def cubic_of_a_ramp(self, name):
         """Recording NAME.h5 of a ramp, and a cubic trained on it in c.json."""
         self.run_scenario(name, text=ramp())
-        self.ok("train", f"{name}.h5", "--model",
-                self.write("model.toml", CUBIC), "-o", "c.json")
+        self.train_on(f"{name}.h5")
 
 
 def ramp(seconds=4000, low=-30, high=40, rate_Hz=1, seed=3):

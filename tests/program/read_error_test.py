@@ -4,10 +4,9 @@
 import pathlib
 import shutil
 import tempfile
-import unittest
 
 from faults import FaultTest
-from program import CUBIC, ramp
+from program import ramp
 from sets import Set
 
 
@@ -34,8 +33,7 @@ class Recordings(FailingReads):
     def test_no_read_of_a_recording_fails_in_silence(self):
         self.run_scenario("run", "--set", "beam.length_m=0.0401",
                           text=ramp(seconds=400))
-        self.write("cubic.toml", CUBIC)
-        self.ok("train", "run.h5", "--model", "cubic.toml", "-o", "c.json")
+        self.train_on("run.h5")
         compensate = ["compensate", "c.json", "run.h5", "-o", "out.h5"]
         for stripped in [False, True]:
             if stripped:
@@ -71,7 +69,3 @@ class Sets(FailingReads, Set):
                 self.ok(*generate[:2], "-o", place / "set", "--resume")
                 self.assertEqual(self.contents(place / "set"), whole,
                                  f"read {number}")
-
-
-if __name__ == "__main__":
-    unittest.main()

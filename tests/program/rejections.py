@@ -4,7 +4,7 @@
 import dataclasses
 import shlex
 
-from program import ProgramTest, class_folder
+from program import ProgramTest
 
 
 @dataclasses.dataclass(frozen=True)
@@ -35,13 +35,8 @@ class Rejections(ProgramTest):
             assert not hasattr(cls, test), f"{test} stands twice"
             setattr(cls, test, lambda self, one=one: self.refuse(one))
 
-    @classmethod
-    def setUpClass(cls):
-        cls.dir = class_folder(cls)
-        cls().prepare()
-
     def setUp(self):
-        pass  # The folder is that of the class.
+        self.dir = self.kept
 
     def refuse(self, one):
         replaced = {name: (self.dir / name).read_bytes() for name in one.files

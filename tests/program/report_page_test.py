@@ -8,7 +8,7 @@ import unittest
 import pytest
 
 from browser import CHROMIUM, browser
-from program import ROOT, SCENARIOS, ProgramTest, class_folder
+from program import PROGRAM, ROOT, SCENARIOS, ProgramTest, class_folder, ended
 
 WIDTHS = [1280, 390]  # [px], of a desktop and of a phone
 NAME = "<img src=x onerror=alert(1)><!--.toml"  # what a file may be called
@@ -39,13 +39,10 @@ class ReportPage(unittest.TestCase):
     def setUpClass(cls):
         cls.dir = class_folder(cls, "a report ")
         shutil.copy(SCENARIOS / "models/cubic.toml", cls.dir / NAME)
-        test = ProgramTest()
-        test.dir = cls.dir
-        answer = test.beamgyro("validate", NAME, "--device",
-                               SCENARIOS / "devices/nominal.toml", "--spec",
-                               ROOT / "specs/uav.toml", "--report", "report",
-                               "--json", "result.json")
-        assert answer.returncode in (0, 3), answer.stderr
+        ended(PROGRAM, "validate", NAME, "--device",
+              SCENARIOS / "devices/nominal.toml", "--spec",
+              ROOT / "specs/uav.toml", "--report", "report", "--json",
+              "result.json", cwd=cls.dir, allowed=(0, 3))
         cls.page = cls.dir / "report/index.html"
         cls.result = json.loads((cls.dir / "result.json").read_text())
         cls.browser = cls.enterClassContext(browser())
@@ -57,20 +54,18 @@ class ReportPage(unittest.TestCase):
     def test_opens_without_a_complaint_and_asks_for_nothing_else(self):
         for width in WIDTHS:
             for dark in [False, True]:
-                with self.subTest(width=width, dark=dark):
-                    tab = self.opened(width, dark)
-                    self.assertEqual(tab.complaints(), [])
-                    self.assertEqual(tab.requests(), [self.page.as_uri()])
+                tab = self.opened(width, dark)
+                self.assertEqual(tab.complaints(), [])
+                self.assertEqual(tab.requests(), [self.page.as_uri()])
 
     def test_draws_every_figure(self):
         self.assertGreaterEqual(len(self.result["figures"]), 12)
         for width in WIDTHS:
             for dark in [False, True]:
-                with self.subTest(width=width, dark=dark):
-                    tab = self.opened(width, dark)
-                    self.assertEqual(tab.value("drawn.length"),
-                                     len(self.result["figures"]))
-                    self.assertEqual(tab.value(BLANK), [])
+                tab = self.opened(width, dark)
+                self.assertEqual(tab.value("drawn.length"),
+                                 len(self.result["figures"]))
+                self.assertEqual(tab.value(BLANK), [])
 
     def test_is_no_wider_than_the_screen(self):
         for width in [320, *WIDTHS, 820, 1000]:
@@ -163,7 +158,3 @@ class ReportFile(ProgramTest):
         self.assertLess(len(page), 2_000_000)
         self.assertEqual(list((self.dir / "one").iterdir()),
                          [self.dir / "one/index.html"])
-
-
-if __name__ == "__main__":
-    unittest.main()

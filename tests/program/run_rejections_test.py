@@ -2,7 +2,6 @@
 """Scenarios and devices that `run` and `characterise` refuse."""
 
 import re
-import unittest
 
 from program import SCENARIO, SCENARIOS, ProgramTest
 from rejections import Rejections, row
@@ -204,7 +203,3 @@ class Accepted(ProgramTest):
         self.write("s.toml", SCENARIO)
         self.ok(*RUN.split(), "--set", "bond.beta_step_Pa=0", "--set",
                 "bond.alpha_step_Pa=0.0")
-
-
-if __name__ == "__main__":
-    unittest.main()

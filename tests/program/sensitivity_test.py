@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: MIT
 """sensitivity: indices of a campaign, the same by any way, and bad input."""
 
-import json
 import signal
-import subprocess
 import time
-import unittest
 
-from program import (CUBIC, PATIENCE, PROGRAM, SCENARIO, SCENARIOS,
-                     ProgramTest, ramp)
+import pytest
+
+from program import PATIENCE, SCENARIO, SCENARIOS, ProgramTest, ramp
 
 CAMPAIGN = """\
 name = "three"
@@ -32,8 +30,8 @@ TURN_ON = "noise.turn_on_deg_per_s"
 
 
 class Sensitivity(ProgramTest):
-    def setUp(self):
-        super().setUp()
+    def prepare(self):
+        super().prepare()
         self.write("rest.toml", SCENARIO)
         self.write("c.toml", CAMPAIGN.format(more=""))
 
@@ -41,7 +39,7 @@ class Sensitivity(ProgramTest):
         """Printed text, and what the JSON file says."""
         text = self.ok("sensitivity", "c.toml", "--samples", 256, "--json",
                        "s.json", *arguments)
-        return text, json.loads((self.dir / "s.json").read_text())
+        return text, self.json("s.json")
 
     def test_the_table_and_the_file_have_the_indices_by_their_totals(self):
         text, found = self.found()
@@ -101,8 +99,7 @@ class Sensitivity(ProgramTest):
 
     def test_a_compensator_is_scored_on_every_device(self):
         self.run_scenario("train", text=ramp())
-        self.write("m.toml", CUBIC)
-        self.ok("train", "train.h5", "--model", "m.toml", "-o", "cubic.json")
+        self.train_on("train.h5", to="cubic.json")
         name = "compensator_rms_deg_per_s"
         _, found = self.found("--compensator", "cubic.json", "--figure", PP)
         self.assertEqual(list(found["figures"]), [PP, name])
@@ -154,8 +151,7 @@ class Sensitivity(ProgramTest):
             self.ok("sensitivity", SCENARIOS / "campaigns/population.toml",
                     "--figure", PP, "--seed", seed, "--samples", 2048,
                     "--json", "p.json")
-            indices = json.loads((self.dir / "p.json").read_text())[
-                "figures"][PP]["indices"]
+            indices = self.json("p.json")["figures"][PP]["indices"]
             for estimator in ["total", "total_by_product"]:
                 indices.sort(key=lambda index: -index[estimator])
                 orders.add(tuple(index["key"] for index in indices[:5]))
@@ -169,19 +165,17 @@ class Sensitivity(ProgramTest):
             "readout.offset_tc_deg_per_s_per_K")})
 
     def test_an_interruption_leaves_no_file(self):
-        work = subprocess.Popen(
-            [str(PROGRAM), "sensitivity", "c.toml", "--samples", "1000000",
-             "--json", "s.json"], cwd=self.dir, stderr=subprocess.PIPE)
-        time.sleep(1)
-        work.send_signal(signal.SIGINT)
-        work.communicate(timeout=PATIENCE)
+        with self.working("sensitivity", "c.toml", "--samples", 1000000,
+                          "--json", "s.json", until="c.toml") as work:
+            time.sleep(1)
+            work.send_signal(signal.SIGINT)
+            work.communicate(timeout=PATIENCE)
         self.assertEqual(work.returncode, -signal.SIGINT)
         self.assertEqual(list(self.dir.glob("s.json*")), [])
 
     def test_wrong_words_are_refused(self):
         def refused(*words, says, campaign="c.toml"):
-            with self.subTest(words):
-                self.rejected("sensitivity", campaign, *words, says=says)
+            self.rejected("sensitivity", campaign, *words, says=says)
 
         refused("--figure", "bias_pp", says=["--figure bias_pp", f'"{PP}"'])
         refused("--samples", 8, says=["--samples 8", "32"])
@@ -220,17 +214,9 @@ class Sensitivity(ProgramTest):
                       says=["no.toml", "no device differs"])
 
     def test_bar_charts_are_drawn(self):
-        try:
-            import matplotlib  # noqa: F401
-        except ImportError:
-            self.skipTest("needs matplotlib")
+        pytest.importorskip("matplotlib")
         self.found("--pictures", "p")
         self.assertEqual(sorted(path.name for path in (self.dir / "p").iterdir()),
                          sorted([f"{name}.png" for name in FIGURES] +
                                 ["result.json"]))
-        self.assertEqual((self.dir / "p/result.json").read_bytes(),
-                         (self.dir / "s.json").read_bytes())
-
-
-if __name__ == "__main__":
-    unittest.main()
+        self.assertSameBytes("p/result.json", "s.json")

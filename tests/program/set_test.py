@@ -1,11 +1,9 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Opens a generated set in h5py, xarray, netCDF4, ncdump and Octave."""
 
 import hashlib
 import json
 import shutil
-import subprocess
 import unittest
 
 import h5py
@@ -14,7 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from program import PATIENCE, PROGRAM, SCENARIOS, class_folder
+from program import PROGRAM, SCENARIOS, by_octave, class_folder, said
 
 ENGINES = ("h5netcdf", "netcdf4")
 FIXED = ("device", "time", "truth_time", "part", "device_status", "status")
@@ -28,10 +26,8 @@ class SetTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.set = class_folder(cls, "beamgyro set ") / "a set"
-        subprocess.run([PROGRAM, "generate",
-                        SCENARIOS / "campaigns/small.toml", "-o", cls.set],
-                       check=True, stdin=subprocess.DEVNULL,
-                       capture_output=True, timeout=PATIENCE)
+        said(PROGRAM, "generate", SCENARIOS / "campaigns/small.toml", "-o",
+             cls.set)
         lines = [json.loads(line) for line in
                  (cls.set / "manifest.jsonl").read_text().splitlines()]
         cls.head = lines[0]
@@ -115,8 +111,7 @@ class SetTest(unittest.TestCase):
     def test_both_engines_give_the_values_of_the_counts(self):
         for engine in ENGINES:
             for run, path in self.first_files():
-                with self.subTest(engine=engine, run=run), \
-                        xr.open_dataset(path, engine=engine) as data, \
+                with xr.open_dataset(path, engine=engine) as data, \
                         h5py.File(path) as file:
                     self.assertEqual(set(data.variables),
                                      set(file) - {"meta"})
@@ -141,8 +136,8 @@ class SetTest(unittest.TestCase):
                             np.testing.assert_array_equal(view[name][at],
                                                           file[name][:])
             for engine in ENGINES:
-                with self.subTest(engine=engine, run=run), xr.open_dataset(
-                        self.set / f"{run}.nc", engine=engine) as data:
+                with xr.open_dataset(self.set / f"{run}.nc",
+                                     engine=engine) as data:
                     self.assertEqual(data.sizes["device"],
                                      self.head["devices"])
                     one = data.isel(device=-1).load()
@@ -157,8 +152,7 @@ class SetTest(unittest.TestCase):
             devices = file["device"][:]
         (copy / path.name).unlink()
         for engine in ENGINES:
-            with self.subTest(engine), xr.open_dataset(
-                    copy / f"{run}.nc", engine=engine) as data:
+            with xr.open_dataset( copy / f"{run}.nc", engine=engine) as data:
                 lost = data.isel(device=devices)
                 self.assertTrue(np.isnan(lost.output.values).all())
                 self.assertTrue((lost.device_status.values == 255).all())
@@ -175,8 +169,7 @@ class SetTest(unittest.TestCase):
     def test_ncdump_lists_variables_over_device_and_time(self):
         for run, path in self.first_files():
             for name in (path, self.set / f"{run}.nc"):
-                header = subprocess.run(["ncdump", "-h", name], check=True,
-                                        capture_output=True, text=True).stdout
+                header = said("ncdump", "-h", name)
                 self.assertIn("output(device, time) ;", header)
                 self.assertIn("ubyte status(device, time) ;", header)
                 self.assertIn('flag_meanings = "train validation test"',
@@ -187,25 +180,14 @@ class SetTest(unittest.TestCase):
     # does.
     @pytest.mark.deep
     def test_octave_reads_files_and_views(self):
-        octave = shutil.which("octave-cli")
-        if not octave:
-            self.skipTest("no octave here")
-        script = self.set.parent / "read.m"
         run, path = next(self.first_files())
-        script.write_text(
-            "pkg load netcdf\n" + "".join(
-                f"x = ncread('{name}', 'output', [1 1], [Inf 1]);\n"
-                "printf('%d %.17g\\n', numel(x), x(end));\n"
-                for name in (path, self.set / f"{run}.nc")))
-        answer = subprocess.run([octave, "--no-gui", script], check=False,
-                                capture_output=True, text=True,
-                                timeout=PATIENCE)
-        if "netcdf is not installed" in answer.stderr:
-            self.skipTest("no octave-netcdf here")
+        rows = [line.split() for line in by_octave("".join(
+            f"x = ncread('{name}', 'output', [1 1], [Inf 1]);\n"
+            "printf('%d %.17g\\n', numel(x), x(end));\n"
+            for name in (path, self.set / f"{run}.nc")), self.set)]
         with h5py.File(path) as file:
             values = self.decoded(file["output"])[0]
-        rows = [line.split() for line in answer.stdout.splitlines()]
-        self.assertEqual(len(rows), 2, answer.stderr)
+        self.assertEqual(len(rows), 2)
         for row in rows:
             self.assertEqual(int(row[0]), len(values))
             np.testing.assert_allclose(float(row[1]), values[-1], rtol=1e-12)
@@ -218,7 +200,3 @@ class SetTest(unittest.TestCase):
                 self.assertIn("reason", json.loads(line))
         self.assertEqual(campaign, (SCENARIOS / "campaigns/small.toml")
                          .read_text(encoding="utf-8"))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What the tests of sets share: a campaign of seven devices in two runs."""
 
+import json
 import sys
 
 from program import ROOT, ProgramTest
@@ -42,17 +43,30 @@ seed = 1
 """
 
 
+def write_campaign(test, devices=7, seconds=60, rate_Hz=2, **ambients):
+    """The campaign and its scenarios in the folder of a test."""
+    for name, ambient in ({"rest": "constant_degC = 25",
+                           "ramp": "points = [[0, 0], [60, 10]]"}
+                          | ambients).items():
+        test.write(f"{name}.toml", SCENARIO.format(name=name, ambient=ambient)
+                   .replace("= 60\n", f"= {seconds}\n")
+                   .replace("= 2\n", f"= {rate_Hz}\n"))
+    test.write("campaign.toml",
+               CAMPAIGN.replace("devices = 7", f"devices = {devices}"))
+
+
 class Set(ProgramTest):
     def prepare(self):
         super().prepare()
-        self.write("rest.toml", SCENARIO.format(name="rest",
-                                                ambient="constant_degC = 25"))
-        self.write("ramp.toml", SCENARIO.format(
-            name="ramp", ambient="points = [[0, 0], [60, 10]]"))
-        self.write("campaign.toml", CAMPAIGN)
+        write_campaign(self)
 
     def contents(self, name):
         return set_faults.contents(self.dir / name)
+
+    def manifest(self, name):
+        """Its lines."""
+        return [json.loads(line) for line in
+                self.text(f"{name}/manifest.jsonl").splitlines()]
 
     def generate(self, name, *arguments):
         return self.ok("generate", "campaign.toml", "-o", name, *arguments)

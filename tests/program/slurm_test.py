@@ -14,7 +14,7 @@ import unittest
 
 import pytest
 
-from program import PATIENCE, PROGRAM, ROOT, SCENARIOS
+from program import PATIENCE, PROGRAM, ROOT, SCENARIOS, ended, said
 
 SCRIPT = ROOT / "scripts/slurm_generate.sh"
 SMALL = SCENARIOS / "campaigns/small.toml"
@@ -130,11 +130,7 @@ class Slurm(unittest.TestCase):
             time.sleep(0.2)
 
     def submit(self, *arguments):
-        answer = subprocess.run(
-            [str(SCRIPT), *map(str, arguments)], env=self.environment,
-            text=True, check=False, capture_output=True)
-        self.assertEqual(answer.returncode, 0, answer.stderr)
-        return answer.stdout
+        return said(SCRIPT, *arguments, env=self.environment)
 
     def until_no_job_is_left(self):
         self.wait_for(lambda: not self.said("squeue", "-h").strip(),
@@ -144,8 +140,7 @@ class Slurm(unittest.TestCase):
         folder = self.dir / f"reference {campaign.stem}"
         if folder.exists():
             return folder
-        subprocess.run([str(PROGRAM), "--quiet", "generate", str(campaign),
-                        "-o", str(folder)], check=True, capture_output=True)
+        said(PROGRAM, "--quiet", "generate", campaign, "-o", folder)
         return folder
 
     def require_same(self, folder, reference):
@@ -159,9 +154,8 @@ class Slurm(unittest.TestCase):
 
     def test_an_array_makes_the_set_and_verifies_it(self):
         folder = self.dir / "a set"
-        said = self.submit(SMALL, folder, "--tasks", 3, "--",
-                           "--cpus-per-task=2")
-        self.assertIn("tasks 1-3 of 3", said)
+        self.assertIn("tasks 1-3 of 3", self.submit(
+            SMALL, folder, "--tasks", 3, "--", "--cpus-per-task=2"))
         self.until_no_job_is_left()
         self.require_same(folder, self.reference(SMALL))
         self.assertIn("whole", (folder / "log/finish.log").read_text())
@@ -169,13 +163,11 @@ class Slurm(unittest.TestCase):
 
     def test_a_directory_may_have_what_sbatch_replaces_in_its_name(self):
         for name in ["100 %a", "b\\%j set"]:
-            with self.subTest(name):
-                folder = self.dir / name
-                self.submit(SMALL, folder, "--tasks", 2)
-                self.until_no_job_is_left()
-                self.require_same(folder, self.reference(SMALL))
-                self.assertIn("whole",
-                              (folder / "log/finish.log").read_text())
+            folder = self.dir / name
+            self.submit(SMALL, folder, "--tasks", 2)
+            self.until_no_job_is_left()
+            self.require_same(folder, self.reference(SMALL))
+            self.assertIn("whole", (folder / "log/finish.log").read_text())
 
     def test_every_job_gets_the_options(self):
         self.submit(SMALL, self.dir / "held", "--tasks", 2, "--", "--hold",
@@ -203,13 +195,7 @@ class Slurm(unittest.TestCase):
         self.assertFalse(list(folder.glob("*.partial*")))
 
     def test_a_campaign_that_is_missing_submits_nothing(self):
-        answer = subprocess.run(
-            [str(SCRIPT), "missing.toml", str(self.dir / "none")],
-            env=self.environment, text=True, check=False, capture_output=True)
-        self.assertEqual(answer.returncode, 2)
+        answer = ended(SCRIPT, "missing.toml", self.dir / "none", allowed=(2,),
+                       env=self.environment)
         self.assertIn("missing.toml", answer.stderr)
         self.assertEqual(self.said("squeue", "-h").strip(), "")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -13,12 +13,10 @@ import struct
 import subprocess
 import termios
 import time
-import unittest
 
 from faults import ShimTest
 from program import CUBIC, NETWORK, PATIENCE, PROGRAM, SCENARIO, ramp
-from sets import CAMPAIGN
-from sets import SCENARIO as REST
+from sets import write_campaign
 
 LONG = SCENARIO.replace("= 600", "= 200000").replace("= 2\n", "= 200\n")
 PATIENT = NETWORK.replace("[2]", "[12]").replace("restarts = 1",
@@ -114,13 +112,6 @@ class Timed(ShimTest):
     def timed(self):
         return self.shimmed(CLOCK_SPEED=str(self.SPEED))
 
-    def write_campaign(self, devices):
-        for name, ambient in [("rest", "constant_degC = 25"),
-                              ("ramp", "points = [[0, 0], [60, 10]]")]:
-            self.write(f"{name}.toml", REST.format(name=name, ambient=ambient))
-        self.write("campaign.toml",
-                   CAMPAIGN.replace("devices = 7", f"devices = {devices}"))
-
 
 class Terminal(Timed):
     def screen(self, *words, columns=80):
@@ -152,14 +143,13 @@ class Line(Terminal):
             + "_" * 60 + ".toml"
         self.write(name, LONG)
         for columns in [80, 44]:
-            with self.subTest(columns):
-                screen = self.screen("run", name, "-o", f"{columns}.h5",
-                                     columns=columns)
-                for frame in self.watched(screen):
-                    self.assertLess(len(frame), columns)
-                self.assertRegex(screen.frames()[-1],
-                                 rf"\.\.\., \d+ %, {CLOCK}, {CLOCK} left")
-                self.end(screen)
+            screen = self.screen("run", name, "-o", f"{columns}.h5",
+                                 columns=columns)
+            for frame in self.watched(screen):
+                self.assertLess(len(frame), columns)
+            self.assertRegex(screen.frames()[-1],
+                             rf"\.\.\., \d+ %, {CLOCK}, {CLOCK} left")
+            self.end(screen)
 
     def test_the_line_is_gone_at_the_end(self):
         self.write("s.toml", LONG.replace("200000", "3000"))
@@ -194,22 +184,22 @@ class Line(Terminal):
             self.write("m.toml", PATIENT.replace("incremental", trainer)
                        .replace("[12]", f"[{neurons}]") +
                        f"[rows]\nseconds = {seconds}\n")
-            with self.subTest(trainer):
-                screen = self.screen("train", "run.h5", "--model", "m.toml",
-                                     "--held-out", "held_out.h5", "-o",
-                                     "c.json")
-                self.assertTrue(screen.read(
-                    rf"training c.json, {CLOCK}, restart [123]/3, epoch "
-                    r"\d+/1000000, rms [\d.e-]+ deg/s"), screen.sent)
-                self.assertEqual(len(screen.lines()), 1)
-                self.end(screen)
+            screen = self.screen("train", "run.h5", "--model", "m.toml",
+                                 "--held-out", "held_out.h5", "-o", "c.json")
+            self.assertTrue(screen.read(
+                rf"training c.json, {CLOCK}, restart [123]/3, epoch "
+                r"\d+/1000000, rms [\d.e-]+ deg/s"), screen.sent)
+            self.assertEqual(len(screen.lines()), 1)
+            self.end(screen)
 
     def test_a_set_shows_one_line(self):
-        self.write_campaign(40000)
+        write_campaign(self, 40000)
         screen = self.screen("generate", "campaign.toml", "-o", "set")
         for frame in self.watched(screen):
             self.assertLess(len(frame), 80)
             self.assertRegex(frame, rf"generating set, .*{CLOCK}.*\d+ of 80000")
+        self.assertRegex(screen.frames()[-1], r", \d:\d\d:\d\d left, "
+                         r"\d+ of 80000 runs, 0 failed")
 
 
 class Interrupt(Terminal):
@@ -241,22 +231,14 @@ class Interrupt(Terminal):
         self.assertNotIn("to the end", screen.sent.decode())
 
     def test_a_set_says_how_to_go_on_and_does(self):
-        self.write_campaign(7)
-        command = [str(PROGRAM), "generate", "campaign.toml", "-o", "a set",
-                   "--devices", "300"]
-        process = subprocess.Popen(command, cwd=self.dir, text=True,
-                                   stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE)
-        while not list(self.dir.glob("a set/*.h5")):
-            self.assertIsNone(process.poll())
-            time.sleep(0.01)
-        process.send_signal(signal.SIGTERM)
-        said = process.communicate(timeout=PATIENCE)[1]
-        self.assertEqual(process.returncode, -signal.SIGTERM)
+        write_campaign(self, 7)
+        said = self.interrupted("generate", "campaign.toml", "-o", "a set",
+                                "--devices", 300, until="a set/*.h5")
+        self.assertEqual(list(self.dir.glob("a set/*partial*")), [])
         self.assertIn("interrupted; a set keeps its finished files; go on with: ",
                       said)
         # The last file may have been published and not yet noted.
-        noted = (self.dir / "a set/manifest.jsonl").read_text()
+        noted = self.text("a set/manifest.jsonl")
         kept = {path: path.stat().st_mtime_ns
                 for path in self.dir.glob("a set/*.h5") if path.name in noted}
         advice = shlex.split(said.split("go on with: beamgyro ")[1])
@@ -266,29 +248,20 @@ class Interrupt(Terminal):
 
     def test_quiet_says_nothing(self):
         self.write("s.toml", LONG)
-        process = subprocess.Popen(
-            [str(PROGRAM), "run", "s.toml", "-o", "a.h5", "-q"], cwd=self.dir,
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        while not list(self.dir.glob("*partial*")):
-            self.assertIsNone(process.poll())
-            time.sleep(0.01)
-        process.send_signal(signal.SIGINT)
-        self.assertEqual(process.communicate(timeout=PATIENCE), (b"", b""))
-        self.assertEqual(process.returncode, -signal.SIGINT)
+        self.assertEqual(self.interrupted(
+            "run", "s.toml", "-o", "a.h5", "-q", until="*partial*",
+            by=signal.SIGINT), "")
 
     def test_a_signal_that_was_ignored_stays_so(self):
         """nohup ignores SIGHUP, a script SIGINT in its background."""
         self.write("s.toml", LONG.replace("200000", "8000"))
         for number in signal.SIGHUP, signal.SIGINT:
-            process = subprocess.Popen(
-                [str(PROGRAM), "run", "s.toml", "-o", f"{number}.h5"],
-                cwd=self.dir,
-                preexec_fn=lambda: signal.signal(number, signal.SIG_IGN))
-            while not list(self.dir.glob("*partial*")):
-                self.assertIsNone(process.poll())
-                time.sleep(0.01)
-            process.send_signal(number)
-            self.assertEqual(process.wait(PATIENCE), 0)
+            with self.working(
+                    "run", "s.toml", "-o", f"{number}.h5", until="*partial*",
+                    preexec_fn=lambda: signal.signal(number, signal.SIG_IGN)
+                    ) as process:
+                process.send_signal(number)
+                self.assertEqual(process.wait(PATIENCE), 0)
 
 
 class Pipe(Timed):
@@ -322,7 +295,7 @@ class Pipe(Timed):
                    'unit = "degC"\n')
         self.write("log.csv", "t,w,T\n" + "".join(
             f"{k},1.5,25\n" for k in range(200000)))
-        self.write_campaign(4000)
+        write_campaign(self, 4000)
         for command in [
                 ["run", "s.toml", "-o", "a.h5"],
                 ["characterise", "device.toml", "-o", "c.csv",
@@ -334,14 +307,9 @@ class Pipe(Timed):
                 ["allan", "run.h5"],
                 ["import", "log.csv", "--map", "map.toml", "-o", "log.h5"],
                 ["generate", "campaign.toml", "-o", "set"]]:
-            with self.subTest(command[0]):
-                lines = self.notes(*command)
-                self.assertEqual(len(lines), 2, "too short")
-                times = [seconds_of(line) for line in lines]
-                self.assertGreaterEqual(times[0], 60)
-                self.assertGreaterEqual(times[1], times[0] + 60)
-                self.assertNotIn("\r", "".join(lines))
-
-
-if __name__ == "__main__":
-    unittest.main()
+            lines = self.notes(*command)
+            self.assertEqual(len(lines), 2, "too short")
+            times = [seconds_of(line) for line in lines]
+            self.assertGreaterEqual(times[0], 60)
+            self.assertGreaterEqual(times[1], times[0] + 60)
+            self.assertNotIn("\r", "".join(lines))

@@ -7,7 +7,6 @@ program with status 66.
 
 import json
 import os
-import unittest
 
 from program import NETWORK, SCENARIOS, ramp
 from qualified import Qualified
@@ -57,8 +56,7 @@ class Threads(Set):
             self.ok("sensitivity", SCENARIOS / "campaigns/population.toml",
                     "--samples", 32, "--figure", "bias_pp_deg_per_s",
                     "--jobs", jobs, "--json", f"{jobs}.json")
-        self.assertEqual((self.dir / "4.json").read_bytes(),
-                         (self.dir / "1.json").read_bytes())
+        self.assertSameBytes("4.json", "1.json")
 
 
 class ThreadsOfAValidation(Qualified):
@@ -66,9 +64,4 @@ class ThreadsOfAValidation(Qualified):
         for jobs in [1, 4]:
             self.validate("--campaign", "campaign.toml", "--jobs", jobs)
             (self.dir / "v.json").rename(self.dir / f"{jobs}.json")
-        self.assertEqual((self.dir / "4.json").read_bytes(),
-                         (self.dir / "1.json").read_bytes())
-
-
-if __name__ == "__main__":
-    unittest.main()
+        self.assertSameBytes("4.json", "1.json")

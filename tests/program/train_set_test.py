@@ -4,12 +4,11 @@
 import json
 import re
 import shutil
-import unittest
 
-import h5py
 import numpy as np
 
-from program import CUBIC, SCENARIOS, ProgramTest
+from program import (CUBIC, IDENTITY, SCENARIOS, ProgramTest, by_name,
+                     limits)
 
 CAMPAIGN = """\
 name = "tiny"
@@ -75,8 +74,8 @@ TRAIN, VALIDATION, TEST = range(3)  # of the variable part
 
 
 class TrainSet(ProgramTest):
-    def setUp(self):
-        super().setUp()
+    def prepare(self):
+        super().prepare()
         self.write("sweep.toml", SCENARIO.format(
             name="sweep", temperatures=list(range(-35, 41, 15)),
             duration=6 * 2700 + 75 * 60))
@@ -88,25 +87,21 @@ class TrainSet(ProgramTest):
         self.write("population.toml", POPULATION)
         shutil.copy(SCENARIOS / "population/adapted.toml", self.dir)
         self.ok("generate", "campaign.toml", "-o", "set", "--jobs", 1)
-        with h5py.File(self.dir / "set/sweep.nc") as view:
-            self.part = view["part"][:]
 
     def devices(self, part):
-        return [int(k) for k in np.flatnonzero(self.part == part)]
+        parts = self.signals("set/sweep.nc")["part"]
+        return [int(k) for k in np.flatnonzero(parts == part)]
 
     def train(self, model, name, *arguments):
         """What a compensator trained on the set says of its training."""
         self.ok("train", "set", "--model", model, "-o", name, *arguments)
-        return json.loads((self.dir / name).read_text())["training"]
+        return self.json(name)["training"]
 
     def scores(self, name, *arguments):
-        answer = self.beamgyro("validate", name, "set", "--json",
-                               "scores.json", *arguments)
-        self.assertIn(answer.returncode, (0, 3), answer.stderr)
-        said = json.loads((self.dir / "scores.json").read_text())
-        (rms,) = [one["after"] for one in said["population"]["metrics"]
-                  if one["name"] == "residual_rms_deg_per_s"]
-        devices = [one["device"] for one in said["population"]["verdicts"]]
+        said, answer = self.validated(name, "set", *arguments)
+        found = said["population"]
+        rms = by_name(found["metrics"])["residual_rms_deg_per_s"]["after"]
+        devices = [one["device"] for one in found["verdicts"]]
         return answer.stdout, list(zip(devices, rms, strict=True))
 
 
@@ -125,10 +120,10 @@ class Split(TrainSet):
                    "--device", *self.devices(TRAIN))
         self.train("cubic.toml", "more.json", "--run", "sweep", "--device",
                    *self.devices(TRAIN), *self.devices(TEST))
-        models = [json.loads((self.dir / f"{name}.json").read_text())
-                  ["parameters"] for name in ("all", "same", "more")]
-        self.assertEqual(models[0], models[1])
-        self.assertNotEqual(models[0], models[2])
+        every, same, more = (self.json(f"{name}.json")["parameters"]
+                             for name in ("all", "same", "more"))
+        self.assertEqual(every, same)
+        self.assertNotEqual(every, more)
 
     def test_a_run_is_chosen_by_its_name(self):
         rows = {}
@@ -158,10 +153,7 @@ class Split(TrainSet):
 class InSample(TrainSet):
     def in_sample(self, name, *arguments):
         """Of each score, whether its device was used in training."""
-        answer = self.beamgyro("validate", name, "set", "--json",
-                               "scores.json", *arguments)
-        self.assertIn(answer.returncode, (0, 3), answer.stderr)
-        said = json.loads((self.dir / "scores.json").read_text())
+        said, _ = self.validated(name, "set", *arguments)
         return ["hold_out" in one["words"]
                 for one in said["population"]["verdicts"]]
 
@@ -184,18 +176,11 @@ class InSample(TrainSet):
                                             "--device", tests[0]),
                              [device < tests[0], device > tests[0]])
 
-    def judged(self, name, *arguments):
-        answer = self.beamgyro("validate", name, "set", "--json", "v.json",
-                               *arguments)
-        self.assertIn(answer.returncode, (0, 3), answer.stderr)
-        return json.loads((self.dir / "v.json").read_text()), answer
-
     def test_every_device_is_judged_by_a_specification(self):
         self.train("cubic.toml", "cubic.json")
-        limit = "residual_rms_deg_per_s = {{ max = {}, source = 'a test' }}"
-        self.write("spec.toml",
-                   f"name = 's'\n[limits]\n{limit.format(0.5)}\n")
-        said, answer = self.judged("cubic.json", "--spec", "spec.toml")
+        judge = ["cubic.json", "set", "--spec", "spec.toml"]
+        self.write("spec.toml", limits(residual_rms_deg_per_s=0.5))
+        said, answer = self.validated(*judge)
         tests = self.devices(TEST)
         self.assertEqual([one["device"] for one in
                           said["population"]["verdicts"]],
@@ -208,37 +193,31 @@ class InSample(TrainSet):
                       " ".join(answer.stdout.split()))
         (rms,) = said["population"]["metrics"]
         # The same figure as of the device alone, and on any number of threads.
-        one, _ = self.judged("cubic.json", "--spec", "spec.toml", "--device",
-                             tests[1])
+        one, _ = self.validated(*judge, "--device", tests[1])
         self.assertEqual(one["population"]["metrics"][0]["after"],
                          rms["after"][1:2])
-        again, _ = self.judged("cubic.json", "--spec", "spec.toml", "--jobs", 1)
+        again, _ = self.validated(*judge, "--jobs", 1)
         self.assertEqual(again, said)
         # The verdict is that of the worst device.
-        worst = max(rms["after"])
-        self.write("spec.toml", "name = 's'\n[limits]\n"
-                   f"{limit.format(0.2 * worst)}\n")
-        said, answer = self.judged("cubic.json", "--spec", "spec.toml")
-        self.assertEqual((said["verdict"], answer.returncode), ("fail", 3))
+        self.write("spec.toml", limits(
+            residual_rms_deg_per_s=0.2 * max(rms["after"])))
+        said, _ = self.validated(*judge, allowed=(3,))
+        self.assertEqual(said["verdict"], "fail")
 
     def test_a_device_that_was_trained_on_fails_the_check(self):
         self.train("cubic.toml", "cubic.json", "--run", "sweep")
-        self.write("spec.toml", "name = 's'\n[limits]\nresidual_rms_deg_per_s"
-                   " = { max = 100, source = 'a test' }\n")
-        for part, outcome in ((TRAIN, False), (VALIDATION, False),
-                              (TEST, True)):
-            said, _ = self.judged("cubic.json", "--spec", "spec.toml", "--run",
-                                  "check", "--device", self.devices(part)[0])
-            checks = {one["name"]: one["passed"] for one in said["checks"]}
-            self.assertIs(checks["hold_out"], outcome)
+        self.write("spec.toml", limits(residual_rms_deg_per_s=100))
+        for part in TRAIN, VALIDATION, TEST:
+            said, _ = self.validated(
+                "cubic.json", "set", "--spec", "spec.toml", "--run", "check",
+                "--device", self.devices(part)[0])
+            self.assertIs(by_name(said["checks"])["hold_out"]["passed"],
+                          part == TEST)
 
     def test_a_command_is_judged_on_a_set(self):
-        self.write("same.py", "import sys\n"
-                   "rate = sys.stdin.readline().strip().split(',')"
-                   ".index('rate')\n"
-                   "for line in sys.stdin:\n"
-                   "    print(line.split(',')[rate])\n")
-        said, _ = self.judged("cmd:/usr/bin/python3 same.py", "--run", "check")
+        self.write("same.py", IDENTITY)
+        said, _ = self.validated("cmd:/usr/bin/python3 same.py", "set", "--run",
+                                 "check")
         for metric in said["metrics"]:
             if metric["name"].startswith("residual"):
                 self.assertEqual(metric["after"]["value"],
@@ -248,14 +227,9 @@ class InSample(TrainSet):
         self.train("cubic.toml", "cubic.json")
         self.rejected("validate", "cubic.json", "set", "--bundle", "b",
                       says=["--bundle", "is a set", "recordings"])
-        self.assertFalse((self.dir / "b").exists())
-
-    def test_each_device_to_score_has_an_option_of_its_own(self):
-        self.train("cubic.toml", "cubic.json", "--run", "sweep")
-        answer = self.beamgyro("validate", "cubic.json", "set", "--device",
-                               3, 5)
-        self.assertEqual(answer.returncode, 2)
-        self.assertIn("--device 3 --device 5", answer.stderr)
+        # Each device to score has an option of its own.
+        self.rejected("validate", "cubic.json", "set", "--device", 3, 5,
+                      says="--device 3 --device 5")
 
     def test_another_run_of_the_one_device_trained_on_is_unseen(self):
         device = self.devices(TEST)[0]
@@ -263,18 +237,17 @@ class InSample(TrainSet):
                    device)
         self.assertEqual(self.in_sample("mine.json", "--device", device),
                          [True])
-        self.assertIn("Training saw 1 of the 2 runs",
-                      (self.dir / "scores.json").read_text())
+        self.assertIn("Training saw 1 of the 2 runs", self.text("v.json"))
 
     def test_a_compensator_that_does_not_tell_its_devices(self):
         self.train("cubic.toml", "cubic.json", "--run", "sweep")
-        stored = json.loads((self.dir / "cubic.json").read_text())
+        stored = self.json("cubic.json")
         for part in ("set", "held_out_set"):
             for key in ("device_ranges", "runs", "seed", "campaign_sha256"):
                 del stored["training"][part][key]
         self.write("cubic.json", json.dumps(stored))
-        answer = self.beamgyro("validate", "cubic.json", "set", "--device",
-                               self.devices(TRAIN)[0])
+        _, answer = self.validated("cubic.json", "set", "--device",
+                                   self.devices(TRAIN)[0])
         self.assertIn("may be in-sample", answer.stdout)
 
 
@@ -303,16 +276,9 @@ class Refused(TrainSet):
         self.rejected("train", "set", "--model", "cubic.toml", "-o",
                       "cubic.json", *arguments, says=says)
 
-    def change(self, name):
-        """Turns one bit of a file of the set."""
-        path = self.dir / "set" / name
-        data = bytearray(path.read_bytes())
-        data[len(data) // 2] ^= 1
-        path.write_bytes(data)
-
     def test_a_file_of_other_bytes_than_the_manifest_says(self):
         self.train("cubic.toml", "before.json", "--run", "sweep")
-        self.change("sweep_00001.h5")
+        self.flip("set/sweep_00001.h5")
         self.refused("--run", "sweep", says=["sweep_00001.h5", "verify"])
         self.rejected("validate", "before.json", "set",
                       says=["sweep_00001.h5", "verify"])
@@ -324,21 +290,16 @@ class Refused(TrainSet):
         self.refused(says=["sweep_00002.h5", "other bytes"])
 
     def test_a_line_of_the_manifest_that_was_changed(self):
-        path = self.dir / "set/manifest.jsonl"
-        text = path.read_text()
-        path.write_text(text.replace('"first_device":6', '"first_device":7'))
-        self.assertNotEqual(path.read_text(), text)
+        self.change("set/manifest.jsonl", '"first_device":6', '"first_device":7')
         self.refused(says=["manifest"])
 
     def test_a_set_that_is_not_finished(self):
+        self.write("set/manifest.jsonl",  # whose last line is torn
+                   self.text("set/manifest.jsonl")[:-20])
+        self.refused(says=["set", "not finished"])
         shutil.rmtree(self.dir / "set")
         self.ok("generate", "campaign.toml", "-o", "set", "--shard", "1/2")
         self.refused(says=["set: holds no set, or none that is finished"])
-        shutil.rmtree(self.dir / "set")
-        self.ok("generate", "campaign.toml", "-o", "set", "--jobs", 1)
-        path = self.dir / "set/manifest.jsonl"
-        path.write_bytes(path.read_bytes()[:-20])  # its last line is torn
-        self.refused(says=["set", "not finished"])
 
     def test_runs_devices_and_options_it_does_not_have(self):
         self.refused("--run", "ramp", says=["ramp", "sweep, check"])
@@ -349,7 +310,3 @@ class Refused(TrainSet):
         self.refused("--cv", "run", says="--cv")
         self.rejected("train", "nowhere", "--model", "cubic.toml", "-o",
                       "cubic.json", says="nowhere")
-
-
-if __name__ == "__main__":
-    unittest.main()

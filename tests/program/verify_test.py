@@ -3,120 +3,91 @@
 
 import os
 import re
+import shutil
 import signal
 import socket
 import subprocess
-import time
 import unittest
 
-import h5py
 import numpy as np
 
-from program import PROGRAM, class_folder
-from sets import CAMPAIGN, Set, set_faults
+from program import PROGRAM, class_folder, said
+from sets import Set, set_faults
 
 
 class Verify(Set):
-    def setUp(self):
-        super().setUp()
+    def prepare(self):
+        super().prepare()
         self.generate("set")
-        self.before = self.contents("set")
+        shutil.copytree(self.dir / "set", self.dir / "before")
 
-    def found(self, *names):
-        answer = self.beamgyro("verify", "set")
-        self.assertEqual(answer.returncode, 1, answer.stderr)
-        for name in names:
-            self.assertIn(name, answer.stdout)
-        return answer.stdout
+    def lose(self, name, text=None):
+        """Takes a file of the set away, or puts a text in its place."""
+        (self.dir / "set" / name).unlink()
+        if text is not None:
+            self.write(f"set/{name}", text)
 
-    def repaired(self):
+    def mended(self, *says):
+        """A damaged set is found to be so, and is made again."""
+        if says:
+            self.assertSays(self.ok("verify", "set", allowed=(1,)), says)
         self.ok("verify", "set", "--repair")
-        self.assertEqual(self.contents("set"), self.before)
+        self.assertEqual(self.contents("set"), self.contents("before"))
         self.assertIn("whole", self.ok("verify", "set"))
 
-    def test_a_missing_file_is_made_again(self):
-        (self.dir / "set/ramp_00002.h5").unlink()
-        self.assertIn("missing", self.found("ramp_00002.h5"))
-        self.repaired()
+    def test_lost_and_damaged_files_are_made_again(self):
+        for name, text, *says in [
+                ("ramp_00002.h5", None, "missing"), ("rest.nc", "nothing"),
+                ("manifest.jsonl", None, "rest_00000.h5"),
+                ("source/head.jsonl", None)]:
+            self.lose(name, text)
+            self.mended(name, *says)
 
     def test_swapped_files_name_each_other(self):
         one, other = (self.dir / f"set/rest_0000{k}.h5" for k in range(2))
         content = one.read_bytes()
         one.write_bytes(other.read_bytes())
         other.write_bytes(content)
-        said = self.found(one.name, other.name)
-        self.assertRegex(said, rf"{one.name}.*{other.name}")
-        self.repaired()
-
-    def test_a_damaged_view_is_made_again(self):
-        (self.dir / "set/rest.nc").write_bytes(b"nothing")
-        self.found("rest.nc")
-        self.repaired()
+        self.mended(re.compile(rf"{one.name}.*{other.name}"))
 
     def test_a_damaged_manifest_is_made_again(self):
-        manifest = self.dir / "set/manifest.jsonl"
-        text = manifest.read_text()
         digest = re.search(r'"bytes":\d+,"sha256":"([0-9a-f]{64})"',
-                           text).group(1)
-        manifest.write_text(text.replace(digest, digest[::-1]))
-        self.found("manifest.jsonl")
-        self.repaired()
+                           self.text("set/manifest.jsonl"))[1]
+        self.change("set/manifest.jsonl", digest, digest[::-1])
+        self.mended("manifest.jsonl")
 
     def test_a_foreign_file_is_named_and_not_touched(self):
-        foreign = self.dir / "set/foreign.h5"
-        foreign.write_bytes(b"mine")
-        self.found("foreign.h5")
+        self.write("set/foreign.h5", "mine")
+        self.assertIn("foreign.h5", self.ok("verify", "set", allowed=(1,)))
         self.beamgyro("verify", "set", "--repair")
-        self.assertEqual(foreign.read_bytes(), b"mine")
+        self.assertEqual(self.text("set/foreign.h5"), "mine")
 
     def test_repair_needs_nothing_but_the_set(self):
-        for name in ["campaign.toml", "rest.toml", "ramp.toml", "device.toml"]:
+        """Lost and damaged sources come from the files."""
+        sources = ["campaign.toml", "rest.toml", "ramp.toml", "device.toml"]
+        for name in sources:
             (self.dir / name).unlink()
-        (self.dir / "set/ramp_00000.h5").write_bytes(b"")
-        self.repaired()
-
-    def test_a_lost_manifest_is_made_again(self):
-        (self.dir / "set/manifest.jsonl").unlink()
-        self.found("manifest.jsonl", "rest_00000.h5")
-        self.repaired()
-
-    def test_a_lost_copy_of_the_first_line_is_made_again(self):
-        (self.dir / "set/source/head.jsonl").unlink()
-        self.found("source/head.jsonl")
-        self.repaired()
-
-    def test_lost_and_damaged_sources_come_from_the_files(self):
-        for name in ["campaign.toml", "rest.toml", "ramp.toml", "device.toml"]:
-            (self.dir / name).unlink()
-        source = self.dir / "set/source"
-        for name, text in [("campaign.toml", "x\n"), ("device.toml", None),
-                           ("rest.toml", ""), ("ramp.toml", None)]:
-            if text is None:
-                (source / name).unlink()
-            else:
-                (source / name).write_text(text)
-        (self.dir / "set/rest_00000.h5").unlink()
-        self.found("source/campaign.toml", "source/device.toml",
-                   "source/rest.toml", "source/ramp.toml")
-        self.repaired()
+        self.lose("ramp_00000.h5", "")
+        self.mended()
+        for name, text in zip(sources, ["x\n", "", None, None]):
+            self.lose(f"source/{name}", text)
+        self.lose("rest_00000.h5")
+        self.mended(*[f"source/{name}" for name in sources])
 
     def test_everything_but_one_file_of_each_run_is_made_again(self):
         for path in (self.dir / "set").rglob("*"):
             if path.is_file() and path.name not in {
                     "rest_00001.h5", "ramp_00003.h5", "head.jsonl"}:
                 path.unlink()
-        self.repaired()
+        self.mended()
 
     def test_a_source_that_is_in_no_file_is_named(self):
         self.write("log.csv", "time_s,temperature_degC\n0,20\n60,30\n")
-        self.write("rest.toml", (self.dir / "rest.toml").read_text().replace(
-            "constant_degC = 25", 'file = "log.csv"'))
+        self.change("rest.toml", "constant_degC = 25", 'file = "log.csv"')
         self.generate("other")
-        (self.dir / "other/source/log.csv").write_text("x\n")
-        answer = self.beamgyro("verify", "other", "--repair")
-        self.assertEqual(answer.returncode, 1)
-        self.assertIn("source/log.csv", answer.stderr)
-        self.assertIn("resume the generation", answer.stderr)
+        self.write("other/source/log.csv", "x\n")
+        self.assertSays(self.warned("verify", "other", "--repair", allowed=(1,)),
+                        ["source/log.csv", "resume the generation"])
         self.generate("other", "--resume")
         self.assertIn("whole", self.ok("verify", "other"))
 
@@ -125,8 +96,7 @@ class Verify(Set):
         elsewhere.mkdir()
         (self.dir / "device.toml").rename(elsewhere / "unit.toml")
         for name in ["campaign.toml", "rest.toml", "ramp.toml"]:
-            self.write(name, (self.dir / name).read_text().replace(
-                "device.toml", str(elsewhere / "unit.toml")))
+            self.change(name, "device.toml", str(elsewhere / "unit.toml"))
         self.generate("other")
         before = self.contents("other")
         (elsewhere / "unit.toml").unlink()
@@ -139,63 +109,47 @@ class Verify(Set):
             os.utime(path, (4e9, 4e9))
         self.assertIn("whole", self.ok("verify", "set"))
         self.generate("set", "--resume")
-        self.assertEqual(self.contents("set"), self.before)
+        self.assertEqual(self.contents("set"), self.contents("before"))
 
 
 class Lost(Set):
     def test_a_file_that_vanishes_while_others_are_made_is_told(self):
-        self.write("campaign.toml", CAMPAIGN.replace("devices = 7",
-                                                     "devices = 400"))
-        for arguments in [[], ["--shard", "1/1"]]:
-            with self.subTest(arguments):
-                folder = self.dir / f"set{len(arguments)}"
-                with subprocess.Popen(
-                        [str(PROGRAM), "generate", "campaign.toml", "-o",
-                         folder.name, "--jobs", "1", *arguments],
-                        cwd=self.dir, text=True, stdout=subprocess.PIPE,
-                        stderr=subprocess.PIPE) as process:
-                    while not (folder / "rest_00001.h5").exists():
-                        time.sleep(0.01)
-                    (folder / "rest_00000.h5").unlink()
-                    said = process.communicate()[1]
-                self.assertEqual(process.returncode, 1, said)
-                self.assertIn("rest_00000.h5 has vanished", said)
-                self.generate(folder.name, "--resume")
-                self.assertIn("whole", self.ok("verify", folder.name))
+        self.change("campaign.toml", "devices = 7", "devices = 400")
+        for name, *arguments in ["one"], ["other", "--shard", "1/1"]:
+            with self.working("generate", "campaign.toml", "-o", name, "--jobs",
+                              1, *arguments, until=f"{name}/rest_00001.h5"
+                              ) as process:
+                (self.dir / name / "rest_00000.h5").unlink()
+                said = process.communicate()[1]
+            self.assertEqual(process.returncode, 1, said)
+            self.assertIn("rest_00000.h5 has vanished", said)
+            self.generate(name, "--resume")
+            self.assertIn("whole", self.ok("verify", name))
 
     def test_nothing_that_the_dead_left_stays(self):
         self.generate("set", "--shard", "1/2")
-        host = socket.gethostname()
-        ended = subprocess.run(["sh", "-c", "echo $$"], capture_output=True,
-                               check=True, text=True).stdout.strip()
-        left = [f"rest_00000.h5.partial-{host}-{ended}-0",
-                f"source/rest.toml.partial-{host}-{ended}-0",
-                f"source/head.jsonl.partial-{host}-{ended}-3"]
-        for name in left:
-            (self.dir / "set" / name).write_bytes(b"half")
+        dead = f"{socket.gethostname()}-{said('sh', '-c', 'echo $$').strip()}"
+        left = [self.write(f"set/{name}.partial-{dead}-{number}", "half")
+                for name, number in [("rest_00000.h5", 0),
+                                     ("source/rest.toml", 0),
+                                     ("source/head.jsonl", 3)]]
         self.generate("set", "--shard", "2/2")
         for name in left:
-            self.assertFalse((self.dir / "set" / name).exists(), name)
+            self.assertFalse((self.dir / name).exists(), name)
 
 
 class Info(Set):
-    def test_a_set_is_summarised(self):
+    def test_a_set_and_a_file_of_it_are_summarised(self):
         self.generate("set")
-        said = self.ok("info", "set")
-        for part in ["campaign.toml", "7 devices", "rest", "ramp", "0 failed",
-                     "patches_offset_m_0", "whole"]:
-            self.assertIn(part, said)
+        self.assertSays(self.ok("info", "set"), [
+            "campaign.toml", "7 devices", "rest", "ramp", "0 failed",
+            "patches_offset_m_0", "whole"])
+        self.assertSays(self.ok("info", "set/rest_00003.h5"), [
+            "devices 6 to 6", "rest", "output", "true_bias"])
 
     def test_a_set_that_is_not_whole_says_what_it_lacks(self):
         self.generate("set", "--shard", "1/2")
         self.assertIn("4 of 8 files", self.ok("info", "set"))
-
-    def test_a_file_of_a_set_is_described(self):
-        self.generate("set")
-        said = self.ok("info", "set/rest_00003.h5")
-        for part in ["devices 6 to 6", "rest", "output", "true_bias"]:
-            self.assertIn(part, said)
-
 
     def test_a_device_is_made_again_by_run(self):
         self.generate("set")
@@ -205,10 +159,9 @@ class Info(Set):
                     for word in ["--set", line]]
         self.ok("run", "rest.toml", "-o", "run.h5", "--set",
                 "noise.enabled=false", *settings)
-        with h5py.File(self.dir / "set/rest_00001.h5") as device, \
-                h5py.File(self.dir / "run.h5") as run:
-            np.testing.assert_allclose(device["true_bias"][1],
-                                       run["true_bias"], rtol=2e-7)
+        np.testing.assert_allclose(
+            self.signals("set/rest_00001.h5")["true_bias"][1],
+            self.signals("run.h5")["true_bias"], rtol=2e-7)
         self.rejected("info", "set", "--device", 7, says="devices 0 to 6")
         self.rejected("info", "run.h5", "--device", 0, says="run.h5")
 
@@ -241,7 +194,3 @@ class Faults(unittest.TestCase):
         except subprocess.CalledProcessError:
             self.skipTest("mounting a small disk is not allowed here")
         self.assertEqual(figures["sizes"], 20)
-
-
-if __name__ == "__main__":
-    unittest.main()

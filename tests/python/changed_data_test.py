@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """A dataset that was changed says so where it is saved; others keep their
 bytes. Training takes no recording twice."""

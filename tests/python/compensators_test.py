@@ -1,18 +1,15 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Compensators of Python: functions, estimators, networks."""
 
-import json
 import pickle
 import shutil
-import subprocess
 
 import numpy as np
 import pytest
 
 import beamgyro as bg
 import qualified
-from program import PATIENCE, PROGRAM, SCENARIO, SCENARIOS, ramp
+from program import SCENARIO, SCENARIOS, ramp
 
 CUBIC = SCENARIOS / "models/cubic.toml"
 TWO_CYCLES = {"power.on_s": [0.0, 8000.0], "power.off_s": [6000.0]}
@@ -128,9 +125,8 @@ def test_validation_of_a_function_prints_and_shows(sweeps):
     native = bg.validate(trained, sweeps[1], full_scale=150)
     # The trained one states a sigma, which has metrics of its own.
     assert result.metrics.keys() < native.metrics.keys()
-    name = "residual_1sigma"
-    name = name if name in result.metrics else next(iter(result.metrics))
-    assert (result.metrics[name]["after"] == native.metrics[name]["after"])
+    name = next(iter(result.metrics))
+    assert result.metrics[name]["after"] == native.metrics[name]["after"]
     assert name in result._repr_html_()
     assert result.verdict in ("pass", "fail", "undecided")
     assert result.passed == (result.verdict == "pass")
@@ -191,9 +187,7 @@ def test_runs_in_memory_that_were_fitted_are_no_unseen_runs(sweeps):
     trained = bg.train(CUBIC, sweeps[0])
     result = bg.validate(trained, sweeps[0], full_scale=150)
     assert result.verdict == "fail"
-    [check] = [one for one in result.checks if one["name"] == "hold_out"] \
-        if not isinstance(result.checks, dict) else [result.checks["hold_out"]]
-    assert check["passed"] is False
+    assert result.checks["hold_out"]["passed"] is False
 
 
 @pytest.mark.parametrize("sigma", [-1.0, 0.0, np.nan, np.inf])
@@ -202,22 +196,3 @@ def test_a_sigma_is_above_0(sweeps, sigma):
         return signals.rate.values, np.full(signals.sizes["time"], sigma)
     with pytest.raises(ValueError, match="stating: gave a sigma of"):
         bg.compensate(stating, sweeps[0])
-
-
-def test_without_limits_the_verdict_is_that_of_the_page_of_the_command(
-        sweeps, tmp_path):
-    sweeps[1].beamgyro.save(tmp_path / "run.h5")
-    bg.train(CUBIC, sweeps[0]).save(tmp_path / "cubic.json")
-    answer = subprocess.run(
-        [PROGRAM, "validate", "cubic.json", "run.h5", "--report", "page",
-         "--json", "result.json"], cwd=tmp_path, capture_output=True,
-        text=True, check=False, timeout=PATIENCE)
-    assert answer.returncode in (0, 3), answer.stderr
-    result = bg.validate(bg.Compensator(tmp_path / "cubic.json"),
-                         tmp_path / "run.h5")
-    assert str(result) == answer.stdout
-    ours = result.data
-    theirs = json.loads((tmp_path / "result.json").read_text())
-    assert ours["verdict"] == theirs["verdict"]
-    assert ours["metrics"] == theirs["metrics"]
-    assert ours["checks"] == theirs["checks"]

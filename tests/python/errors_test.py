@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Wrong arguments are ValueErrors that name the argument and what is right."""
 

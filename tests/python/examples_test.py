@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """The examples run, and their types and those of the package hold."""
 
@@ -7,24 +6,19 @@ import importlib.util
 import inspect
 import os
 import pathlib
-import subprocess
 import sys
 
 import pytest
 
-from program import PATIENCE, ROOT, SCENARIOS
+from program import PATIENCE, ROOT, SCENARIOS, said
 
 EXAMPLES = ROOT / "examples/python"
 PACKAGE = ROOT / "python"
 
 
 def run(folder, *arguments, **variables):
-    answer = subprocess.run(
-        [sys.executable, *map(str, arguments)], cwd=folder, text=True,
-        capture_output=True, check=False, timeout=500,
-        env={**os.environ, **variables})
-    assert answer.returncode == 0, answer.stdout + answer.stderr
-    return answer.stdout
+    return said(sys.executable, *arguments, cwd=folder,
+                env={**os.environ, **variables})
 
 
 def test_drift_curve(tmp_path):

@@ -1,8 +1,5 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Datasets of the package are drawn as the command draws files."""
-
-import pytest
 
 import beamgyro as bg
 
@@ -22,9 +19,3 @@ def test_a_dataset_draws_itself_as_its_file_is_drawn(sweeps, tmp_path):
 def test_several_datasets_over_each_other(sweeps):
     figure = bg.plots.plot_recording(*sweeps, names=["a", "b", "c"])
     assert [line.get_label() for line in figure.axes[0].lines] == list("abc")
-
-
-def test_what_has_no_picture_is_a_value_error(tmp_path):
-    (tmp_path / "notes.txt").write_text("no data\n")
-    with pytest.raises(ValueError, match="has no picture"):
-        bg.plots.plot(tmp_path / "notes.txt")

@@ -1,14 +1,11 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Plans of soaks, by the package and by the command."""
-
-import subprocess
 
 import pytest
 
 import beamgyro as bg
 from plan_test_population import population_of
-from program import PATIENCE, PROGRAM, SCENARIOS
+from program import PROGRAM, SCENARIOS, said
 
 
 @pytest.fixture(scope="module", name="population")
@@ -23,13 +20,10 @@ def make_plan(population):
 
 
 def test_a_plan_is_that_of_the_command(population, planned, tmp_path):
-    answer = subprocess.run(
-        [PROGRAM, "plan", population, "--soaks", "4", "--candidates",
-         "-30,0,20,45", "--json", "plan.json"], cwd=tmp_path,
-        capture_output=True, text=True, check=False, timeout=PATIENCE)
-    assert answer.returncode == 0, answer.stderr
+    told = said(PROGRAM, "plan", population, "--soaks", 4, "--candidates",
+                "-30,0,20,45", "--json", "plan.json", cwd=tmp_path)
     assert planned.to_json() == (tmp_path / "plan.json").read_text()
-    assert str(planned) == answer.stdout
+    assert str(planned) == told
 
 
 def test_a_schedule_is_a_scenario_that_runs(planned):

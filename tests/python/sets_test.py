@@ -1,17 +1,13 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Sets, Allan deviations, plans and sensitivity."""
 
 import pickle
-import subprocess
 
 import numpy as np
 import pytest
 
 import beamgyro as bg
-from program import PATIENCE, PROGRAM, SCENARIOS
-
-
+from program import PROGRAM, SCENARIOS, said
 
 
 @pytest.fixture(scope="module", name="campaign")
@@ -30,15 +26,12 @@ def make_set(campaign, tmp_path_factory):
 
 
 def test_a_set_has_the_bytes_of_the_command(campaign, made, tmp_path):
-    answer = subprocess.run(
-        [PROGRAM, "generate", campaign, "-o", "set", "--devices", "6"],
-        cwd=tmp_path, capture_output=True, text=True, check=False,
-        timeout=PATIENCE)
-    assert answer.returncode == 0, answer.stderr
-    command = {path.relative_to(tmp_path / "set"): path.read_bytes()
-               for path in (tmp_path / "set").rglob("*") if path.is_file()}
-    python = {path.relative_to(made.directory): path.read_bytes()
-              for path in made.directory.rglob("*") if path.is_file()}
+    said(PROGRAM, "generate", campaign, "-o", "set", "--devices", 6,
+         cwd=tmp_path)
+    command, python = (
+        {path.relative_to(folder): path.read_bytes()
+         for path in folder.rglob("*") if path.is_file()}
+        for folder in (tmp_path / "set", made.directory))
     assert python == command
 
 
@@ -99,24 +92,20 @@ def test_allan_of_white_noise_falls_with_the_root_of_the_time(tmp_path):
     assert float(tenth) == pytest.approx(128 ** -0.5, rel=0.1)
     path = tmp_path / "rates.csv"
     path.write_text("\n".join(map(repr, samples.tolist())) + "\n")
-    answer = subprocess.run([PROGRAM, "allan", path, "--rate-Hz", "10",
-                             "--json", tmp_path / "a.json"], check=True,
-                            capture_output=True, text=True)
-    assert str(bg.allan(path, rate_Hz=10)) == answer.stdout
+    told = said(PROGRAM, "allan", path, "--rate-Hz", 10, "--json",
+                tmp_path / "a.json")
+    assert str(bg.allan(path, rate_Hz=10)) == told
     assert bg.allan(path, rate_Hz=10).to_json() == (
         tmp_path / "a.json").read_text()
 
 
 def test_sensitivity_is_that_of_the_command(campaign, tmp_path):
-    answer = subprocess.run(
-        [PROGRAM, "sensitivity", campaign, "--samples", "64", "--figure",
-         "bias_pp_deg_per_s", "--json", tmp_path / "s.json"], text=True,
-        capture_output=True, check=False, timeout=PATIENCE)
-    assert answer.returncode == 0, answer.stderr
+    told = said(PROGRAM, "sensitivity", campaign, "--samples", 64, "--figure",
+                "bias_pp_deg_per_s", "--json", tmp_path / "s.json")
     found = bg.sensitivity(campaign, samples=64,
                            figures=["bias_pp_deg_per_s"])
     assert found.to_json() == (tmp_path / "s.json").read_text()
-    assert str(found) == answer.stdout
+    assert str(found) == told
     indices = found.figures["bias_pp_deg_per_s"]
     assert indices[0]["total"] >= indices[-1]["total"]
     assert indices[0]["key"] in found._repr_html_()

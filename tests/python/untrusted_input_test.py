@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Datasets, arrays and numbers that NumPy would bend until they fit."""
 
@@ -173,19 +172,15 @@ NAN, INF = float("nan"), float("inf")
     (lambda run: bg.validate(as_is, run, full_scale=NAN), "full_scale nan"),
     (lambda run: bg.validate(as_is, run, full_scale=INF), "full_scale inf"),
     (lambda run: bg.validate(as_is, run, full_scale=True), "full_scale True"),
-    (lambda run: bg.validate(as_is, run, jobs=-1), "jobs -1"),
     (lambda run: bg.validate(as_is, run, jobs=10 ** 6), "jobs 1000000"),
     (lambda run: bg.validate(as_is, run, progress="yes"), "progress 'yes'"),
     (lambda run: bg.Campaign(SMALL).device(20), "no device 20.* 0 to 19"),
-    (lambda run: bg.Campaign(SMALL).device(99), "no device 99"),
     (lambda run: bg.Campaign(SMALL).device(-1), "device -1"),
     (lambda run: bg.Campaign(SMALL).device(1.0), "device 1.0"),
     (lambda run: bg.Campaign(SMALL).device(True), "device True"),
     (lambda run: bg.Campaign(SMALL, 0), "devices 0"),
     (lambda run: bg.Campaign(SMALL, 2.5), "devices 2.5"),
     (lambda run: bg.characterise(NOMINAL, []), "beam_temperature: is empty"),
-    (lambda run: bg.characterise(NOMINAL, [[1, 2], [3, 4]]),
-     "beam_temperature: has the shape"),
     (lambda run: bg.characterise(NOMINAL, ["25"]), "beam_temperature: .*text"),
     (lambda run: bg.characterise(NOMINAL, [True]), "beam_temperature: .*true"),
     (lambda run: bg.characterise(NOMINAL, [NAN]), "nan degC"),
@@ -210,14 +205,10 @@ NAN, INF = float("nan"), float("inf")
      "seed -1"),
     (lambda run: bg.train(SCENARIOS / "models/cubic.toml", run, seed=True),
      "seed True"),
-    (lambda run: bg.sensitivity(SMALL, samples=2.5), "samples 2.5"),
     (lambda run: bg.sensitivity(SMALL, samples=2 ** 31),
      "2147483648 samples; expected 32 to 1000000"),
-    (lambda run: bg.sensitivity(SMALL, range_degC=(50,)), "range_degC"),
     (lambda run: bg.sensitivity(SMALL, range_degC=(NAN, 3)),
      "range_degC nan"),
-    (lambda run: bg.sensitivity(SMALL, samples=8, limits={
-        "bias_pp_deg_per_s": "1"}), "limits: bias_pp_deg_per_s '1'"),
 ])
 def test_what_no_number_can_mean_is_refused(run, call, words):
     with pytest.raises(ValueError, match=words):

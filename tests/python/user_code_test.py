@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Functions, estimators and networks of users that answer oddly."""
 
@@ -161,7 +160,6 @@ def test_a_tensor_that_requires_a_gradient_is_an_answer(run):
 
 
 @pytest.mark.parametrize("options, words", [
-    ({"inputs": "temperature"}, "inputs 'temperature'"),
     ({"inputs": [1]}, r"inputs \[1\]"),
     ({"stall_s": -1}, "stall_s -1"),
     ({"stall_s": float("nan")}, "stall_s nan"),
@@ -206,14 +204,6 @@ def test_names_that_are_no_inputs_are_told_by_their_order(run):
         compensated(Fitted(), run,
                     inputs=["temperature", "since_power_on(5)"]),
         run.rate - 0.5 * run.temperature)
-
-
-def test_a_single_sample_is_compensated(run):
-    trained = bg.train(SCENARIOS / "models/cubic.toml", bg.run(
-        SCENARIOS / "soak_sweep_train.toml", set={"output_rate_Hz": 0.1}))
-    whole = bg.compensate(trained, run).compensated_rate.values
-    one = bg.compensate(trained, run.isel(time=slice(0, 1)))
-    assert one.compensated_rate.values[0] == whole[0]
 
 
 def test_an_estimator_names_its_features_in_a_sequence():

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """The include checker on small trees made to offend."""
 
@@ -95,7 +94,3 @@ class CheckIncludes(unittest.TestCase):
         self.assert_offends("sim/other/a.h", "", "belongs to no room")
         self.assert_offends("sim/device/a.h", '#include "device.h"\n',
                             "must be named from the project root")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -33,8 +33,7 @@ class Docs(unittest.TestCase):
             wide = [number for number, line in
                     enumerate(page.read_text().splitlines(), 1)
                     if len(line) > WIDTH]
-            with self.subTest(page.relative_to(ROOT)):
-                self.assertEqual(wide, [])
+            self.assertEqual(wide, [])
 
     def test_links_lead_to_files_and_headings(self):
         for page in PAGES:
@@ -44,10 +43,9 @@ class Docs(unittest.TestCase):
                 target = page.parent / path if path else page
                 if link.startswith(("http:", "https:")):
                     continue
-                with self.subTest(f"{page.relative_to(ROOT)}: {link}"):
-                    self.assertTrue(target.exists())
-                    if anchor:
-                        self.assertIn(anchor, anchors(target.read_text()))
+                self.assertTrue(target.exists())
+                if anchor:
+                    self.assertIn(anchor, anchors(target.read_text()))
 
     def test_the_pages_show_every_picture_of_plot(self):
         shown = {name for page in PAGES for name in re.findall(
@@ -67,8 +65,7 @@ class Docs(unittest.TestCase):
         for path in files:
             for page in re.findall(r"\b(?:docs|bench)/[a-z_/]+\.md\b",
                                    path.read_text(errors="replace")):
-                with self.subTest(f"{path.relative_to(ROOT)}: {page}"):
-                    self.assertTrue((ROOT / page).exists())
+                self.assertTrue((ROOT / page).exists())
 
     def test_the_diagrams_are_those_of_the_script(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -77,11 +74,6 @@ class Docs(unittest.TestCase):
             drawn = sorted(pathlib.Path(folder).glob("*.svg"))
             self.assertEqual(len(drawn), 3)
             for path in drawn:
-                with self.subTest(path.name):
-                    self.assertEqual(
-                        path.read_text(),
-                        (ROOT / "docs/pictures" / path.name).read_text())
-
-
-if __name__ == "__main__":
-    unittest.main()
+                self.assertEqual(
+                    path.read_text(),
+                    (ROOT / "docs/pictures" / path.name).read_text())
