@@ -267,7 +267,9 @@ class Stream(ProgramTest):
                               ("true", "fewer answers"),
                               ("echo what", '"what", which is no number'),
                               ("yes 1", "more answers than samples"),
-                              ("sleep 60", "hung")]:
+                              ("sleep 60", "hung"),
+                              ("while sleep 0.1; do echo . >&2; done", "hung"),
+                              ("yes | tr -d '\\n'", "a line without end")]:
             answer = self.stream(f"cmd:{command}", "--timeout-s", "1",
                                  text=text)
             self.assertEqual(answer.returncode, 3, command)
