@@ -12,7 +12,6 @@
 #include "compensation/compensator/compensator_file.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/text_file.h"
-#include "validation/external/file_compensator.h"
 
 namespace beamgyro {
 namespace {

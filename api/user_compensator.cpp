@@ -15,7 +15,6 @@
 #include "api/compensator_state.h"
 #include "compensation/inputs/sample_ranges.h"
 #include "validation/external/answering.h"
-#include "validation/external/file_compensator.h"
 #include "validation/external/measured_signals.h"
 
 namespace beamgyro::internal {

@@ -7,17 +7,31 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <span>
-
-#include "validation/external/error_text.h"
 
 namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kSentBytes = 1 << 16;      // made ready at a time
 constexpr std::size_t kLongestAnswer = 1 << 16;  // bytes
+constexpr std::size_t kTail = 4096;              // bytes of standard error
 constexpr std::size_t kQuoted = 40;              // characters of an answer
+
+// Whether it says that memory was refused: as C, C++, Python, Java and shells
+// say it.
+bool tells_of_no_memory(const std::string& text) {
+  std::string lower = text;
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) {
+    return static_cast<char>(std::tolower(c));
+  });
+  for (const char* words :
+       {"out of memory", "memoryerror", "bad_alloc", "outofmemory",
+        "cannot allocate memory", "memory allocation"})
+    if (lower.find(words) != lower.npos) return true;
+  return false;
+}
 
 // Returns sample n of all stretches, as a stretch of one; the last one behind
 // the end.
@@ -53,12 +67,14 @@ void Conversation::finish() {
   while (!failed_ && (process_.output() || process_.error())) turn(1.0, true);
   if (failed_) return;
   const std::optional<ProcessEnd> end = process_.wait(stall_);
+  const bool no_memory = tells_of_no_memory(error_);
   if (!end)
     fail(AnswerFault::kTimedOut,
          fmt::format("hung after its last answer for {:.3g} s", stall_));
-  else if (const auto fault = fault_of_end(*end, error_))
-    fail(fault->fault,
-         fmt::format("{} at {}{}", fault->words, place(), last_words(error_)));
+  else if (end->status != 0 || end->signal != 0)
+    fail(no_memory ? AnswerFault::kOutOfMemory : AnswerFault::kCrashed,
+         fmt::format("{}{} at {}{}", no_memory ? "ran out of memory: " : "",
+                     end_words(*end), place(), last_words(error_)));
   else if (!complete())
     fail(AnswerFault::kTooFew,
          fmt::format("gave fewer answers than samples: none to {} and what "
@@ -94,7 +110,7 @@ void Conversation::exchange(double longest) {
   if (waits[1].revents != 0 && read_available(process_.output(), received_))
     progress = true;
   if (waits[2].revents != 0) read_available(process_.error(), error_);
-  keep_tail(error_);
+  if (error_.size() > 2 * kTail) error_.erase(0, error_.size() - kTail);
   if (progress) since_progress_ = Stopwatch();
 }
 

@@ -13,7 +13,6 @@
 #include "compensation/inputs/sample_ranges.h"
 #include "validation/external/answering.h"
 #include "validation/external/conversation.h"
-#include "validation/external/error_text.h"
 #include "validation/external/measured_signals.h"
 #include "validation/external/plugin_host.h"
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "validation/specification/decision.h"
-#include "validation/specification/limit.h"
 
 namespace beamgyro::internal {
 
