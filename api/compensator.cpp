@@ -13,7 +13,6 @@
 #include "compensation/compensator/settled_curve.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/text_file.h"
-#include "validation/external/file_compensator.h"
 
 namespace beamgyro {
 namespace {

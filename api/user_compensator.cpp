@@ -15,8 +15,6 @@
 #include "api/compensator_state.h"
 #include "compensation/inputs/sample_ranges.h"
 #include "validation/external/answering.h"
-#include "validation/external/asked_run.h"
-#include "validation/external/file_compensator.h"
 #include "validation/external/measured_signals.h"
 
 namespace beamgyro::internal {
@@ -24,8 +22,7 @@ namespace {
 
 // Names a sample, and the run that it is of where that is known.
 std::string asked_sample_words(const Recording& run, std::size_t sample) {
-  const std::string name = AskedRun::name();
-  return sample_words(run, sample) + (name.empty() ? "" : " of " + name);
+  return sample_words(run, sample) + (run.run.empty() ? "" : " of " + run.run);
 }
 
 constexpr double kNoAnswer = std::numeric_limits<double>::quiet_NaN();
@@ -36,11 +33,12 @@ std::vector<T> part_of(const std::vector<T>& all, const SampleRange& range) {
           all.begin() + static_cast<std::ptrdiff_t>(range.end)};
 }
 
-/// What a compensator of the user is given: no truth and no text.
+/// What a compensator of the user is given: no truth and no text of files.
 Recording seen_part(const Recording& run,
                     const std::vector<std::string>& inputs,
                     const SampleRange& range) {
   Recording seen;
+  seen.run = run.run;
   seen.time = part_of(run.time, range);
   seen.status = part_of(run.status, range);
   for (const Column& column : run.columns) {

@@ -22,7 +22,7 @@
 #include "include/beamgyro/recording.h"
 #include "sim/scenario/run_warnings.h"
 #include "validation/external/answer_checks.h"
-#include "validation/external/file_compensator.h"
+#include "validation/external/compensator_source.h"
 #include "validation/metrics/rate_noise_model.h"
 #include "validation/qualification/qualification_file.h"
 #include "validation/result/judgement.h"

@@ -13,7 +13,6 @@
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 #include "validation/external/child_process.h"
-#include "validation/external/error_text.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -45,9 +45,9 @@ class RateCompensator {
 
   /// Returns its answers to the samples of a recording. Compensation and
   /// validation give a class of the user's own one stretch from a power-on to
-  /// the next power-off at a time, of which it sees `time`, `status` and the
-  /// measured columns inputs(); it keeps nothing from one call to the next. An
-  /// exception that it throws reaches the caller.
+  /// the next power-off at a time, of which it sees `run`, `time`, `status` and
+  /// the measured columns inputs(); it keeps nothing from one call to the next.
+  /// An exception that it throws reaches the caller.
   virtual CompensatedRate answer(const Recording& recording) const = 0;
 
  protected:

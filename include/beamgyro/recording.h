@@ -58,6 +58,7 @@ struct Recording {
   std::string scenario_text;  ///< both files byte for byte as read
   std::string device_text;
   std::string overrides_text;  ///< one KEY=VALUE per line
+  std::string run;  ///< its name where it is validated; not in files
 };
 
 /// Returns the column called `name`, or nullptr.

@@ -26,7 +26,6 @@
 #include "python/core/bindings.h"
 #include "python/core/long_call.h"
 #include "python/core/recording.h"
-#include "validation/external/asked_run.h"
 
 namespace beamgyro::python {
 namespace {
@@ -63,7 +62,7 @@ class FunctionCompensator final : public RateCompensator {
     const std::lock_guard lock(one_at_a_time_);  // before the GIL, not within
     const py::gil_scoped_acquire acquired;
     const auto answers = (*function_)(std::make_shared<Recording>(recording),
-                                      internal::AskedRun::name())
+                                      recording.run)
                              .cast<py::tuple>();
     CompensatedRate compensated;
     compensated.rate = answered_values(answers[0]);

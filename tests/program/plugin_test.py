@@ -249,7 +249,9 @@ class Stream(ProgramTest):
                               ("true", "fewer answers"),
                               ("echo what", '"what", which is no number'),
                               ("yes 1", "more answers than samples"),
-                              ("sleep 60", "hung")]:
+                              ("sleep 60", "hung"),
+                              ("while sleep 0.1; do echo . >&2; done", "hung"),
+                              ("yes | tr -d '\\n'", "a line without end")]:
             self.assertIn(says, self.stream(
                 f"cmd:{command}", "--timeout-s", 1, text=text, status=3).stderr)
 

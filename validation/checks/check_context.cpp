@@ -11,7 +11,7 @@
 #include "compensation/scoring/scale_factor.h"
 #include "parallel/work_queue.h"
 #include "validation/checks/gain_judge.h"
-#include "validation/external/file_compensator.h"
+#include "validation/external/compensator_source.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -47,6 +47,10 @@ enum class CheckOutcome {
   kNotTested,  // no run shows it
 };
 
+constexpr CheckOutcome passed_if(bool passed) {
+  return passed ? CheckOutcome::kPassed : CheckOutcome::kFailed;
+}
+
 /// What a check found.
 struct CheckResult {
   std::string name = {};  // plain words with underscores

@@ -21,7 +21,7 @@ namespace {
 
 CheckResult count_result(std::size_t count, const std::string& passed,
                          const std::string& failed) {
-  return {.outcome = count == 0 ? CheckOutcome::kPassed : CheckOutcome::kFailed,
+  return {.outcome = passed_if(count == 0),
           .value = static_cast<double>(count),
           .limit = 0.0,
           .words = count == 0 ? passed : failed};

@@ -66,10 +66,7 @@ CheckResult check_true_rate(const CheckContext& context) {
     return not_tested(fmt::format(
         "{} rates at {} temperatures were recorded, must be {} at {} or more.",
         rates, seen, kLeastRates, kLeastTemperatures));
-  CheckResult result{
-      .outcome = judge.passed() ? CheckOutcome::kPassed : CheckOutcome::kFailed,
-      .value = judge.departure(),
-      .limit = judge.limit()};
+  CheckResult result = judge.result();
   if (judge.passed())
     result.words = fmt::format(
         "The compensator {} the scale factor on a rate table of {} rates at {} "
@@ -306,9 +303,7 @@ CheckResult check_rate_correlation(const CheckContext& context) {
     const auto found = [&](const Series& correction, double tolerance) {
       const RateShare share = share_of(correction);
       const double limit = std::max(tolerance, share.chance) + allowed;
-      return CheckResult{.outcome = std::abs(share.share) <= limit
-                                        ? CheckOutcome::kPassed
-                                        : CheckOutcome::kFailed,
+      return CheckResult{.outcome = passed_if(std::abs(share.share) <= limit),
                          .value = std::abs(share.share),
                          .limit = limit};
     };

@@ -52,6 +52,11 @@ class GainJudge {
   bool passed() const;
   double departure() const { return judged().departure; }  // [-], of worst()
   double limit() const;
+  /// Returns the result of a check of the gains alone, without words.
+  CheckResult result() const {
+    return {
+        .outcome = passed_if(passed()), .value = departure(), .limit = limit()};
+  }
   /// Returns the one that departs most; of those that lose all or more that of
   /// the largest rate. There must be one.
   const AddedRate& worst() const;

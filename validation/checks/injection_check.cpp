@@ -187,9 +187,7 @@ void add_sweep(const CheckContext& context, std::size_t number,
 CheckResult failed_injection(const CheckContext& context,
                              const GainJudge& judge,
                              const RandomResponse& random) {
-  CheckResult result{.outcome = CheckOutcome::kFailed,
-                     .value = judge.departure(),
-                     .limit = judge.limit()};
+  CheckResult result = judge.result();
   const AddedRate& worst = judge.worst();
   const std::string found = fmt::format(
       "of {:.4g} deg/s the answers at the same time show {:.6g} ({}); expected "
@@ -246,14 +244,11 @@ CheckResult check_injection(const CheckContext& context) {
         "added.");
   if (!all.passed())
     return failed_injection(context, all, random.value_or(RandomResponse{}));
-  CheckResult result{
-      .outcome = CheckOutcome::kPassed,
-      .value = all.departure(),
-      .limit = all.limit(),
-      .words = fmt::format("Rates that are added to the recordings come out "
-                           "whole in each of {} places: steps, sines, held for "
-                           "up to ten minutes, random.{}",
-                           all.count(), context.rounding_words())};
+  CheckResult result = all.result();
+  result.words = fmt::format(
+      "Rates that are added to the recordings come out whole in each of {} "
+      "places: steps, sines, held for up to ten minutes, random.{}",
+      all.count(), context.rounding_words());
   if (random &&
       std::abs(random->intercept) > std::max(random->chance, kRateResolution)) {
     result.outcome = CheckOutcome::kFailed;

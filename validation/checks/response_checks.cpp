@@ -80,10 +80,7 @@ CheckResult check_jacobian(const CheckContext& context) {
                     add_jacobian(context, run, found);
                   });
   if (judge.count() == 0) return not_tested(kNoInjection);
-  CheckResult result{
-      .outcome = judge.passed() ? CheckOutcome::kPassed : CheckOutcome::kFailed,
-      .value = judge.departure(),
-      .limit = judge.limit()};
+  CheckResult result = judge.result();
   const AddedRate& worst = judge.worst();
   result.words =
       judge.passed()
@@ -214,9 +211,7 @@ CheckResult check_shuffled_output(const CheckContext& context) {
   if (!(sums.change > 0.0)) return not_tested(kNoInjection);
   const double value = std::hypot(sums.gains.departure(),
                                   std::sqrt(sums.unexplained / sums.change));
-  CheckResult result{.outcome = value <= sums.gains.limit()
-                                    ? CheckOutcome::kPassed
-                                    : CheckOutcome::kFailed,
+  CheckResult result{.outcome = passed_if(value <= sums.gains.limit()),
                      .value = value,
                      .limit = sums.gains.limit()};
   result.words =

@@ -21,8 +21,7 @@ CheckResult check_extrapolation(const CheckContext& context) {
   const double share =
       100.0 * static_cast<double>(clamped) /
       static_cast<double>(std::max<std::size_t>(context.samples, 1));
-  return {.outcome = share > kMostShare ? CheckOutcome::kFailed
-                                        : CheckOutcome::kPassed,
+  return {.outcome = passed_if(share <= kMostShare),
           .value = share,
           .limit = kMostShare,
           .words = fmt::format(

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -28,6 +29,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr int kPipeBytes = 1 << 20;
+constexpr std::size_t kLongestLine = 200;  // bytes
 constexpr pid_t kFreeSlot = 0, kTakenSlot = -1;
 
 // Leaders of process groups, where a signal handler may read them.
@@ -122,6 +124,15 @@ std::string end_words(const ProcessEnd& end) {
         "crashed (signal {}, {})", signal,
         ::sigdescr_np(signal) == nullptr ? "unknown" : ::sigdescr_np(signal));
   return fmt::format("ended with status {}", end.status);
+}
+
+std::string last_words(const std::string& text) {
+  const std::size_t end = text.find_last_not_of(" \t\r\n");
+  if (end == text.npos) return "";
+  const std::size_t before = text.find_last_of("\r\n", end);
+  const std::size_t begin = before == text.npos ? 0 : before + 1;
+  return "; it wrote: " +
+         text.substr(begin, std::min(end + 1 - begin, kLongestLine));
 }
 
 ChildProcess::ChildProcess(const std::vector<std::string>& words) try {

@@ -24,6 +24,10 @@ struct ProcessEnd {
 /// A status above 128 is the signal that a shell reports.
 std::string end_words(const ProcessEnd& end);
 
+/// Returns the last line that a process wrote on standard error as "; it wrote:
+/// LINE", or nothing.
+std::string last_words(const std::string& text);
+
 /// A process with pipes to its standard input, output and error. It is the
 /// leader of a process group of its own, so that Ctrl-C on a terminal does not
 /// reach it; whoever handles signals calls kill_child_processes().

@@ -26,8 +26,9 @@ std::string_view trimmed(std::string_view text) {
 
 class CsvLanguage : public AnswerLanguage {
  public:
-  void start(const AskedStretch& stretch, std::string& bytes) override {
-    run_ = stretch.run;
+  void start(const Recording& run, double /*period*/,
+             std::string& bytes) override {
+    run_ = &run;
     const std::vector<std::string> names = measured_names(*run_);
     signals_ = MeasuredSignals(*run_, names);
     fmt::format_to(std::back_inserter(bytes), "time,{}\n",
@@ -96,9 +97,8 @@ class CommandCompensator : public TestedCompensator {
   }
 
   bool ask(const AskedStretch& stretch) const {
-    ChildProcess process(words_);
     CsvLanguage language;
-    return converse(process, language, {stretch}, limits_);
+    return converse(words_, language, {stretch}, limits_);
   }
 
   // Returns the seconds until a process has answered one sample: what its start

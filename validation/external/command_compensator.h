@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "validation/external/process_stream.h"
+#include "validation/external/conversation.h"
 #include "validation/external/tested_compensator.h"
 
 namespace beamgyro::internal {

@@ -5,13 +5,14 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "compensation/compensator/compensator_file.h"
 #include "dataset/files/text_file.h"
+#include "validation/external/answering.h"
 #include "validation/external/command_compensator.h"
-#include "validation/external/file_compensator.h"
 #include "validation/external/library_compensator.h"
 
 namespace beamgyro::internal {
@@ -51,7 +52,43 @@ std::string without_folder(const std::string& argument) {
   return std::filesystem::path(argument).filename().string();
 }
 
+class FileCompensator : public TestedCompensator {
+ public:
+  explicit FileCompensator(Compensator compensator)
+      : compensator_(std::move(compensator)) {}
+
+  std::vector<std::string> inputs() const override {
+    std::set<std::string> names = {"rate", "temperature"};
+    for (const Input& input : compensator_.inputs)
+      if (!input.column.empty()) names.insert(input.column);
+    return {names.begin(), names.end()};
+  }
+
+  std::vector<Answer> answers(
+      const std::vector<const Recording*>& runs) const override {
+    std::vector<Answer> all;
+    for (const Recording* run : runs) {
+      const Stopwatch watch;
+      Answer& answer = all.emplace_back();
+      answer.rate = compensated_rate(compensator_, *run);
+      answer.sigma = compensated_rate_sigma(compensator_, *run);
+      answer.seconds = watch.seconds();
+      answer.clamped = clamped_samples(compensator_, *run);
+      add_fault_of_values(*run, answer);
+      add_fault_of_speed(*run, answer);
+    }
+    return all;
+  }
+
+ private:
+  Compensator compensator_;
+};
+
 }  // namespace
+
+std::unique_ptr<TestedCompensator> tested(Compensator compensator) {
+  return std::make_unique<FileCompensator>(std::move(compensator));
+}
 
 std::string_view kind_name(SourceKind kind) {
   switch (kind) {

@@ -14,6 +14,10 @@
 
 namespace beamgyro::internal {
 
+/// Returns a trained compensator as one to be validated. It is evaluated in
+/// this process.
+std::unique_ptr<TestedCompensator> tested(Compensator compensator);
+
 /// What a compensator argument can be.
 enum class SourceKind {
   kFile,      // of this program, as train writes it

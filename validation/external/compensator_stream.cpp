@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "validation/external/compensator_stream.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "compensation/compensator/compensator_file.h"
@@ -9,7 +13,6 @@
 #include "validation/external/command_compensator.h"
 #include "validation/external/compensator_source.h"
 #include "validation/external/library_compensator.h"
-#include "validation/external/process_stream.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -67,6 +70,109 @@ void FileStream::take(const Recording& sample) {
   answers_.push_back(answer);
 }
 
+// A process that is started at each power-on.
+class ProcessStream : public CompensatorStream {
+ public:
+  ProcessStream(AnsweringProcess answering, const ProcessLimits& limits,
+                std::optional<double> period)
+      : answering_(std::move(answering)),
+        stall_(limits.stall),
+        period_(period) {}
+
+  void take(const Recording& sample) override;
+  void finish() override;
+  int descriptor() const override {
+    return process_ ? process_->descriptor() : -1;
+  }
+  void collect() override;
+
+ private:
+  void start(const Recording& sample, double period);
+  void send(const Recording& sample);
+  void take_answers();
+
+  AnsweringProcess answering_;
+  double stall_;                  // [s]
+  std::optional<double> period_;  // [s]
+  std::unique_ptr<Conversation> process_;
+  Recording row_;                   // what the language reads, one sample
+  std::optional<Recording> first_;  // kept until the second one comes
+  std::size_t answered_ = 0, before_ = 0;  // samples; by earlier processes
+};
+
+void ProcessStream::take(const Recording& sample) {
+  if (fault_) return;
+  if ((sample.status[0] & kUnpowered) != 0) {
+    finish();
+    answers_.push_back({NAN});
+    ++answered_;
+    return;
+  }
+  if (!process_ && !first_ && !period_) {
+    first_ = sample;
+    return;
+  }
+  if (first_) {
+    const Recording first = *std::exchange(first_, std::nullopt);
+    start(first, sample.time[0] - first.time[0]);
+  } else if (!process_) {
+    return start(sample, *period_);
+  }
+  send(sample);
+}
+
+void ProcessStream::start(const Recording& sample, double period) {
+  before_ = answered_;
+  process_ = std::make_unique<Conversation>(
+      answering_.words, *answering_.language, stall_,
+      [this](std::size_t n) { return fmt::format("sample {}", before_ + n); });
+  row_ = sample;
+  answering_.language->start(row_, period, process_->queue());
+  send(sample);
+}
+
+// The language keeps pointers to the columns.
+void ProcessStream::send(const Recording& sample) {
+  row_.time[0] = sample.time[0];
+  row_.status[0] = sample.status[0];
+  for (std::size_t i = 0; i < row_.columns.size(); ++i)
+    row_.columns[i].values[0] = sample.columns[i].values[0];
+  answering_.language->sample(0, process_->queue());
+  process_->expect(1);
+  process_->send();
+  take_answers();
+}
+
+// An answer that is no number has a fault.
+void ProcessStream::take_answers() {
+  std::vector<double> rates = process_->answers();
+  if (!process_->faults().empty()) {
+    fault_ = process_->faults().front();
+    rates.resize(std::min(rates.size(), before_ + fault_->sample - answered_));
+  }
+  for (const double rate : rates) answers_.push_back({rate});
+  answered_ += rates.size();
+}
+
+void ProcessStream::collect() {
+  if (!process_ || fault_) return;
+  process_->turn(0.0, answering_.answers_at_once && !process_->complete());
+  take_answers();
+  if (descriptor() < 0) finish();
+}
+
+// Power was lost, or the last sample was sent, or the process ended.
+void ProcessStream::finish() {
+  if (first_ && !fault_) {
+    const Recording only = *std::exchange(first_, std::nullopt);
+    start(only, 1.0);  // no period is known
+  }
+  if (!process_ || fault_) return;
+  process_->finish();
+  take_answers();
+  if (!fault_) process_.reset();
+}
+
 }  // namespace
 
 std::unique_ptr<CompensatorStream> open_compensator_stream(
@@ -74,9 +180,11 @@ std::unique_ptr<CompensatorStream> open_compensator_stream(
     std::optional<double> period) {
   switch (source_kind(argument)) {
     case SourceKind::kCommand:
-      return process_stream(command_process(argument, limits), limits, 1.0);
+      return std::make_unique<ProcessStream>(command_process(argument, limits),
+                                             limits, 1.0);
     case SourceKind::kLibrary:
-      return process_stream(library_process(argument, limits), limits, period);
+      return std::make_unique<ProcessStream>(library_process(argument, limits),
+                                             limits, period);
     default:
       return std::make_unique<FileStream>(read_compensator(argument));
   }

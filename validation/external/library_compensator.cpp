@@ -13,7 +13,6 @@
 #include "compensation/inputs/sample_ranges.h"
 #include "validation/external/answering.h"
 #include "validation/external/conversation.h"
-#include "validation/external/error_text.h"
 #include "validation/external/measured_signals.h"
 #include "validation/external/plugin_host.h"
 
@@ -25,11 +24,11 @@ class HostLanguage : public AnswerLanguage {
   explicit HostLanguage(std::vector<std::string> names)
       : names_(std::move(names)) {}
 
-  void start(const AskedStretch& stretch, std::string& bytes) override {
-    run_ = stretch.run;
+  void start(const Recording& run, double period, std::string& bytes) override {
+    run_ = &run;
     signals_ = MeasuredSignals(*run_, names_);
     append(static_cast<double>(HostRecord::kReset), bytes);
-    append(usual_step(*run_), bytes);
+    append(period, bytes);
     for (std::size_t i = 0; i < names_.size(); ++i) append(0.0, bytes);
   }
 
@@ -106,10 +105,10 @@ std::vector<Answer> LibraryCompensator::answers(
     const auto more = asked_stretches(*runs[k], all[k]);
     stretches.insert(stretches.end(), more.begin(), more.end());
   }
-  ChildProcess process(plugin_host_words(limits_.program, library_,
-                                         HostTask::kAnswer, limits_.memory));
   HostLanguage language(names_);
-  if (!converse(process, language, stretches, limits_)) {
+  if (!converse(plugin_host_words(limits_.program, library_, HostTask::kAnswer,
+                                  limits_.memory),
+                language, stretches, limits_)) {
     rename_exit(all);
     add_fault_before(all);
   }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dataset/recording/recording.h"
@@ -79,7 +80,9 @@ class TestedCompensator {
   virtual bool is_timed() const { return true; }
 
   /// Returns its answers to one run.
-  Answer answer(const Recording& run) const;
+  Answer answer(const Recording& run) const {
+    return std::move(answers({&run}).front());
+  }
 };
 
 }  // namespace beamgyro::internal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,6 +19,10 @@ struct Estimate {
   std::optional<Interval> interval = {};
 };
 
+/// Evaluates a metric. Returns nothing when no run shows it. Thread-safe.
+using Evaluation =
+    std::function<std::optional<Estimate>(const Evidence& evidence)>;
+
 /// A metric of the validator: what it is called, what it means and how it is
 /// evaluated.
 struct Metric {
@@ -26,8 +31,7 @@ struct Metric {
   std::string_view clause;        // of IEEE 1431, or empty
   std::string_view definition;    // one sentence with its formula
   std::vector<RunPurpose> reads;  // the purposes of runs it is evaluated on
-  /// Returns nothing when no run shows the metric. Thread-safe.
-  std::optional<Estimate> (*evaluate)(const Evidence& evidence);
+  Evaluation evaluate;
   // Results have it only where the compensator states a sigma.
   bool is_of_sigma = false;
 };

@@ -6,10 +6,10 @@
 #include "compensation/scoring/scale_factor.h"
 #include "config/units.h"
 #include "linear_algebra/least_squares.h"
-#include "validation/metrics/evaluations.h"
+#include "validation/metrics/metric_tables.h"
 #include "validation/metrics/noisy_means.h"
 
-namespace beamgyro::internal::evaluation {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kMotionBlock = 10.0;     // [s]
@@ -128,8 +128,7 @@ std::optional<Estimate> acceleration_term(const Evidence& evidence,
     }
     if (ranges.size() < 3) continue;
     NoisyMeans means;
-    const std::vector<double> residual = residual_of(*run);
-    means.add(recording, ranges, residual, residual);
+    means.add(*run, ranges);
     const bool with_square = purpose == RunPurpose::kVibration;
     const auto rows = static_cast<Eigen::Index>(ranges.size());
     const Eigen::MatrixXd drift = hats(means.segments, kDrift);
@@ -191,24 +190,6 @@ std::optional<CrossRates> cross_rates_of(const Recording& recording) {
   return found;
 }
 
-}  // namespace
-
-std::optional<Estimate> g_sensitivity_x(const Evidence& evidence) {
-  return acceleration_term(evidence, RunPurpose::kTumble, 0);
-}
-
-std::optional<Estimate> g_sensitivity_y(const Evidence& evidence) {
-  return acceleration_term(evidence, RunPurpose::kTumble, 1);
-}
-
-std::optional<Estimate> g_sensitivity_z(const Evidence& evidence) {
-  return acceleration_term(evidence, RunPurpose::kTumble, 2);
-}
-
-std::optional<Estimate> vibration_rectification(const Evidence& evidence) {
-  return acceleration_term(evidence, RunPurpose::kVibration, 3);
-}
-
 std::optional<Estimate> cross_axis(const Evidence& evidence) {
   std::optional<Estimate> largest;
   for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kVibration})) {
@@ -217,8 +198,7 @@ std::optional<Estimate> cross_axis(const Evidence& evidence) {
     if (!turns || turns->ranges.size() < 4) continue;
     const Acceleration a = acceleration_of(recording);
     NoisyMeans means;
-    const std::vector<double> residual = residual_of(*run);
-    means.add(recording, turns->ranges, residual, residual);
+    means.add(*run, turns->ranges);
     const auto rows = static_cast<Eigen::Index>(means.segments.size());
     Terms terms{Eigen::MatrixXd(rows, 2), Eigen::MatrixXd(rows, 6)};
     terms.drift.leftCols(2) = hats(means.segments, HUGE_VAL);
@@ -263,4 +243,52 @@ std::optional<Estimate> extrapolated_share(const Evidence& evidence) {
   return Estimate{share, Interval{share, share}};
 }
 
-}  // namespace beamgyro::internal::evaluation
+}  // namespace
+
+std::vector<Metric> motion_metrics() {
+  using enum RunPurpose;
+  return {
+      {"g_sensitivity_x_deg_per_s_per_g",
+       "deg/s/g",
+       "",
+       "(B(+g) - B(-g)) / 2 along x: slope of the least-squares plane "
+       "of the residual over the acceleration.",
+       {kTumble},
+       given(acceleration_term, kTumble, 0)},
+      {"g_sensitivity_y_deg_per_s_per_g",
+       "deg/s/g",
+       "",
+       "g_sensitivity_x_deg_per_s_per_g, but along y.",
+       {kTumble},
+       given(acceleration_term, kTumble, 1)},
+      {"g_sensitivity_z_deg_per_s_per_g",
+       "deg/s/g",
+       "",
+       "g_sensitivity_x_deg_per_s_per_g, but along z.",
+       {kTumble},
+       given(acceleration_term, kTumble, 2)},
+      {"vibration_rectification_deg_per_s_per_g2",
+       "deg/s/g^2",
+       "",
+       "Slope of the residual over the mean square of the acceleration, "
+       "beside its mean.",
+       {kVibration},
+       given(acceleration_term, kVibration, 3)},
+      {"cross_axis_percent",
+       "%",
+       "12.12",
+       "Largest slope of the residual over the true rate about a cross "
+       "axis.",
+       {kVibration},
+       cross_axis},
+      {"extrapolated_share_percent",
+       "%",
+       "",
+       "Samples outside what training saw, of all powered samples.",
+       {kSoak, kRamp, kWarmUp, kPowerCycle, kRateTable, kConstantRate,
+        kSineRate, kRateStep, kRest, kTumble, kRandomRate, kVibration},
+       extrapolated_share},
+  };
+}
+
+}  // namespace beamgyro::internal

@@ -5,10 +5,10 @@
 #include "compensation/scoring/allan_deviation.h"
 #include "compensation/scoring/noise_coefficients.h"
 #include "validation/metrics/allan_ratio.h"
-#include "validation/metrics/evaluations.h"
+#include "validation/metrics/metric_tables.h"
 #include "validation/metrics/segments.h"
 
-namespace beamgyro::internal::evaluation {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kHour = 3600.0;  // [s]
@@ -63,30 +63,6 @@ std::optional<Estimate> coefficient(
       Interval{per_hour * found.interval.low, per_hour * found.interval.high}};
 }
 
-}  // namespace
-
-std::optional<Estimate> angle_random_walk(const Evidence& evidence) {
-  return coefficient(evidence, &NoiseCoefficients::angle_random_walk,
-                     std::sqrt(kHour));
-}
-
-std::optional<Estimate> bias_instability(const Evidence& evidence) {
-  return coefficient(evidence, &NoiseCoefficients::bias_instability, kHour);
-}
-
-std::optional<Estimate> rate_random_walk(const Evidence& evidence) {
-  return coefficient(evidence, &NoiseCoefficients::rate_random_walk,
-                     kHour * std::sqrt(kHour));
-}
-
-std::optional<Estimate> rate_ramp(const Evidence& evidence) {
-  return coefficient(evidence, &NoiseCoefficients::rate_ramp, kHour * kHour);
-}
-
-std::optional<Estimate> quantisation(const Evidence& evidence) {
-  return coefficient(evidence, &NoiseCoefficients::angle_quantisation, 1.0);
-}
-
 std::optional<Estimate> lowest_allan_deviation(const Evidence& evidence) {
   const auto all = coefficients(evidence);
   if (!all) return std::nullopt;
@@ -113,4 +89,63 @@ std::optional<Estimate> white_noise_ratio(const Evidence& evidence) {
   return farthest;
 }
 
-}  // namespace beamgyro::internal::evaluation
+}  // namespace
+
+std::vector<Metric> noise_metrics() {
+  using enum RunPurpose;
+  return {
+      {"angle_random_walk_deg_per_sqrt_h",
+       "deg/sqrt(h)",
+       "12.11",
+       "N, white noise, of the fit sigma^2(tau) = 3 Q^2/tau^2 + N^2/tau + "
+       "(2 ln 2/pi) B^2 + K^2 tau/3 + R^2 tau^2/2 to the overlapping Allan "
+       "deviations.",
+       {kRest},
+       given(coefficient, &NoiseCoefficients::angle_random_walk,
+             std::sqrt(kHour))},
+      {"bias_instability_deg_per_h",
+       "deg/h",
+       "12.11",
+       "B, flicker, of the fit of angle_random_walk_deg_per_sqrt_h.",
+       {kRest},
+       given(coefficient, &NoiseCoefficients::bias_instability, kHour)},
+      {"rate_random_walk_deg_per_h_per_sqrt_h",
+       "deg/h/sqrt(h)",
+       "12.11",
+       "K, random walk of the rate, of the fit of "
+       "angle_random_walk_deg_per_sqrt_h.",
+       {kRest},
+       given(coefficient, &NoiseCoefficients::rate_random_walk,
+             kHour * std::sqrt(kHour))},
+      {"rate_ramp_deg_per_h_per_h",
+       "deg/h/h",
+       "12.11",
+       "R, steady change of the rate, of the fit of "
+       "angle_random_walk_deg_per_sqrt_h.",
+       {kRest},
+       given(coefficient, &NoiseCoefficients::rate_ramp, kHour * kHour)},
+      {"quantisation_deg",
+       "deg",
+       "12.11",
+       "Q, rounding of the angle, of the fit of "
+       "angle_random_walk_deg_per_sqrt_h.",
+       {kRest},
+       given(coefficient, &NoiseCoefficients::angle_quantisation, 1.0)},
+      {"bias_instability_bound_deg_per_h",
+       "deg/h",
+       "12.11",
+       "Lowest overlapping Allan deviation over sqrt(2 ln 2/pi) = "
+       "0.664: the bias instability, or what lies above it.",
+       {kRest},
+       lowest_allan_deviation},
+      {"white_noise_ratio",
+       "1",
+       "",
+       "Allan deviation at 1 s of the judged residual over that of the "
+       "recorded one. Below 1: noise was removed, and rate with it.",
+       {kRest},
+       white_noise_ratio},
+  };
+}
+
+}  // namespace beamgyro::internal

@@ -151,13 +151,14 @@ bool lacks_answers(const NoisyMeans& means) {
 
 }  // namespace
 
-void NoisyMeans::add(const Recording& recording,
+void NoisyMeans::add(const EvidenceRun& run,
                      std::span<const SampleRange> ranges,
-                     std::span<const double> signal,
-                     std::span<const double> residual) {
-  const std::vector<Segment> more = segments_of(recording, ranges);
-  const std::vector<double> means = means_over(more, signal);
-  noise.emplace_back(seen_noise(recording, residual), more);
+                     std::span<const double> signal) {
+  const std::vector<double> residual = residual_of(run);
+  const std::vector<Segment> more = segments_of(*run.recording, ranges);
+  const std::vector<double> means =
+      means_over(more, signal.empty() ? residual : signal);
+  noise.emplace_back(seen_noise(*run.recording, residual), more);
   sizes.push_back(more.size());
   segments.insert(segments.end(), more.begin(), more.end());
   values.insert(values.end(), means.begin(), means.end());

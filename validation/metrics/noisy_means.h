@@ -19,10 +19,10 @@ struct NoisyMeans {
   std::vector<SegmentNoise> noise;  // of each run
   std::vector<std::size_t> sizes;   // segments of each run
 
-  /// Adds segments of a run: means of `signal`, with the noise seen in
-  /// `residual`.
-  void add(const Recording& recording, std::span<const SampleRange> ranges,
-           std::span<const double> signal, std::span<const double> residual);
+  /// Adds segments of a run: means of its residual, or of `signal`, with the
+  /// noise seen in the residual.
+  void add(const EvidenceRun& run, std::span<const SampleRange> ranges,
+           std::span<const double> signal = {});
 
   std::vector<double> drawn_noise(std::uint32_t draw) const;  // [deg/s]
   bool without_noise() const;

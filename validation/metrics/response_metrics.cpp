@@ -3,11 +3,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "validation/metrics/evaluations.h"
 #include "validation/metrics/frequency_response.h"
+#include "validation/metrics/metric_tables.h"
 #include "validation/metrics/segments.h"
 
-namespace beamgyro::internal::evaluation {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kHalfPower = 20.0 * 0.15051499783199057;  // [dB], 10 log10(2)
@@ -132,8 +132,6 @@ std::optional<Estimate> correlated_delay(const EvidenceRun& run) {
   return with_t_interval(delay, std::sqrt(left / n / slopes), n - 2.0);
 }
 
-}  // namespace
-
 std::optional<Estimate> bandwidth(const Evidence& evidence) {
   const std::vector<ResponsePoint> points = response_to_true_rate(evidence);
   if (points.size() < 2) return std::nullopt;
@@ -173,4 +171,32 @@ std::optional<Estimate> added_delay(const Evidence& evidence) {
   return std::nullopt;
 }
 
-}  // namespace beamgyro::internal::evaluation
+}  // namespace
+
+std::vector<Metric> response_metrics() {
+  using enum RunPurpose;
+  return {
+      {"bandwidth_Hz",
+       "Hz",
+       "12.15",
+       "Frequency at which |H(f)|, judged rate over true rate, falls 3 dB "
+       "below its value at the lowest frequency.",
+       {kSineRate, kRateStep, kRandomRate},
+       bandwidth},
+      {"phase_lag_90_deg_Hz",
+       "Hz",
+       "12.15",
+       "Frequency at which the phase of H(f) lags by 90 degrees.",
+       {kSineRate, kRateStep, kRandomRate},
+       phase_lag_90},
+      {"added_delay_s",
+       "s",
+       "",
+       "Delay of the judged rate after the recorded rate, from the "
+       "phase between them.",
+       {kSineRate, kRateStep, kRandomRate},
+       added_delay},
+  };
+}
+
+}  // namespace beamgyro::internal

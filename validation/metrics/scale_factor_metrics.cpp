@@ -5,10 +5,10 @@
 
 #include "compensation/scoring/linearity.h"
 #include "compensation/scoring/scale_factor.h"
-#include "validation/metrics/evaluations.h"
+#include "validation/metrics/metric_tables.h"
 #include "validation/metrics/noisy_means.h"
 
-namespace beamgyro::internal::evaluation {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kPpm = 1e6;
@@ -98,7 +98,7 @@ RateTables rate_tables_of(const Evidence& evidence) {
       add_table(recording, truth,
                 settled_rates(recording, held, {0, truth.size()}), used, first,
                 all.tables);
-    all.means.add(recording, used, run->rate, residual_of(*run));
+    all.means.add(*run, used, run->rate);
   }
   return all;
 }
@@ -132,13 +132,16 @@ double white_noise_of_correction(const EvidenceRun& run) {
   return seen_noise(bare, correction).angle_random_walk;
 }
 
+std::vector<RunPurpose> turning_purposes() {
+  using enum RunPurpose;
+  return {kRateTable, kSineRate, kRateStep, kRandomRate};
+}
+
 std::optional<Estimate> retained(const Evidence& evidence,
                                  double largest_rate) {
-  using enum RunPurpose;
   SlopeSums sums;
   double variance = 0.0;  // of sums.compensated_without_drift
-  for (const EvidenceRun* run :
-       runs_for(evidence, {kRateTable, kSineRate, kRateStep, kRandomRate})) {
+  for (const EvidenceRun* run : runs_for(evidence, turning_purposes())) {
     const SlopeSums more = slope_sums(*run->recording, run->rate, largest_rate);
     const double step = usual_step(*run->recording);
     sums += more;
@@ -153,9 +156,7 @@ std::optional<Estimate> retained(const Evidence& evidence,
                   Interval{found->retained - half, found->retained + half}};
 }
 
-}  // namespace
-
-std::optional<Estimate> scale_factor(const Evidence& evidence) {
+std::optional<Estimate> mean_scale_factor(const Evidence& evidence) {
   return table_figure(
       evidence,
       [](const std::vector<Linearity>& tables) {
@@ -224,12 +225,53 @@ std::optional<Estimate> scale_factor_temperature_sensitivity(
       Shrinkage::kNone);
 }
 
-std::optional<Estimate> scale_factor_retained(const Evidence& evidence) {
-  return retained(evidence, kEveryRate);
+}  // namespace
+
+std::vector<Metric> scale_factor_metrics() {
+  using enum RunPurpose;
+  return {
+      {"scale_factor",
+       "1",
+       "12.9",
+       "Slope K of the least-squares line of the judged rate over the "
+       "held true rates, mean over the rate tables.",
+       {kRateTable},
+       mean_scale_factor},
+      {"scale_factor_error_ppm",
+       "ppm",
+       "12.9",
+       "max |K_j - 1| over the rate tables.",
+       {kRateTable},
+       scale_factor_error},
+      {"scale_factor_nonlinearity_ppm",
+       "ppm",
+       "12.9",
+       "max |V_i - line| / (K max |Omega_i|): V_i is the mean answer to "
+       "the held rate Omega_i; of the worst rate table.",
+       {kRateTable},
+       scale_factor_nonlinearity},
+      {"scale_factor_asymmetry_ppm",
+       "ppm",
+       "12.9",
+       "2 (K+ - K-) / (K+ + K-) of the slopes over the rates >= 0 and "
+       "<= 0; of the table where it is largest.",
+       {kRateTable},
+       scale_factor_asymmetry},
+      {"scale_factor_temperature_sensitivity_ppm_per_K",
+       "ppm/K",
+       "12.9",
+       "Slope of the least-squares line of K_j over the measured "
+       "temperature T_j, divided by the line at 25 degC.",
+       {kRateTable},
+       scale_factor_temperature_sensitivity},
+      {"scale_factor_retained", "1", "",
+       "Slope of the judged rate over the true rate divided by that of "
+       "the recorded rate, on the same samples.",
+       turning_purposes(), given(retained, kEveryRate)},
+      {"scale_factor_retained_small_rates", "1", "",
+       "scale_factor_retained over samples whose true rate is within 2 deg/s.",
+       turning_purposes(), given(retained, kSmallRate)},
+  };
 }
 
-std::optional<Estimate> scale_factor_retained_small(const Evidence& evidence) {
-  return retained(evidence, kSmallRate);
-}
-
-}  // namespace beamgyro::internal::evaluation
+}  // namespace beamgyro::internal

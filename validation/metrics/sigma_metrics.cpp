@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include <vector>
 
-#include "validation/metrics/evaluations.h"
+#include "validation/metrics/metric_tables.h"
 #include "validation/metrics/sigma_evidence.h"
 #include "validation/metrics/sigma_report.h"
 
-namespace beamgyro::internal::evaluation {
+namespace beamgyro::internal {
 namespace {
 
-std::optional<Estimate> percent(std::optional<Estimate> share) {
+using Errors = std::vector<ErrorGroup> (*)(const Evidence&);
+
+std::optional<Estimate> covered(const Evidence& evidence, Errors errors,
+                                double level) {
+  std::optional<Estimate> share = coverage(errors(evidence), level);
   if (!share) return share;
   share->value *= 100.0;
   share->interval->low *= 100.0;
@@ -16,48 +20,68 @@ std::optional<Estimate> percent(std::optional<Estimate> share) {
   return share;
 }
 
-std::optional<Estimate> distance_of(const std::vector<ErrorGroup>& groups) {
-  const std::optional<PitReport> report = pit_report(groups);
+std::optional<Estimate> distance(const Evidence& evidence, Errors errors) {
+  const std::optional<PitReport> report = pit_report(errors(evidence));
   if (!report) return std::nullopt;
   return Estimate{report->distance};
-}
-
-}  // namespace
-
-std::optional<Estimate> soak_coverage_50(const Evidence& evidence) {
-  return percent(coverage(soak_errors(evidence), 0.5));
-}
-
-std::optional<Estimate> soak_coverage_90(const Evidence& evidence) {
-  return percent(coverage(soak_errors(evidence), 0.9));
-}
-
-std::optional<Estimate> soak_coverage_95(const Evidence& evidence) {
-  return percent(coverage(soak_errors(evidence), 0.95));
-}
-
-std::optional<Estimate> ramp_coverage_50(const Evidence& evidence) {
-  return percent(coverage(ramp_errors(evidence), 0.5));
-}
-
-std::optional<Estimate> ramp_coverage_90(const Evidence& evidence) {
-  return percent(coverage(ramp_errors(evidence), 0.9));
-}
-
-std::optional<Estimate> ramp_coverage_95(const Evidence& evidence) {
-  return percent(coverage(ramp_errors(evidence), 0.95));
-}
-
-std::optional<Estimate> soak_pit_distance(const Evidence& evidence) {
-  return distance_of(soak_errors(evidence));
-}
-
-std::optional<Estimate> ramp_pit_distance(const Evidence& evidence) {
-  return distance_of(ramp_errors(evidence));
 }
 
 std::optional<Estimate> bias_filter_nis(const Evidence& evidence) {
   return mean_normalised(filter_runs(evidence));
 }
 
-}  // namespace beamgyro::internal::evaluation
+}  // namespace
+
+std::vector<Metric> sigma_metrics() {
+  using enum RunPurpose;
+  const std::vector<RunPurpose> kTemperature = {kSoak, kRamp};
+  const auto share = [&](std::string_view name, std::string_view definition,
+                         Evaluation evaluate) {
+    return Metric{name, "%", "", definition, kTemperature, evaluate, true};
+  };
+  return {
+      share("sigma_coverage_50_soaks_percent",
+            "Soaks whose mean residual over the last 300 s lies within 0.674 "
+            "of the stated sigma, those of each 10 K counted as one: 50 for a "
+            "sigma that is right.",
+            given(covered, &soak_errors, 0.5)),
+      share("sigma_coverage_90_soaks_percent",
+            "sigma_coverage_50_soaks_percent, but within 1.645 sigma: 90 for a "
+            "sigma that is right.",
+            given(covered, &soak_errors, 0.9)),
+      share("sigma_coverage_95_soaks_percent",
+            "sigma_coverage_50_soaks_percent, but within 1.960 sigma: 95 for a "
+            "sigma that is right.",
+            given(covered, &soak_errors, 0.95)),
+      share("sigma_coverage_50_ramps_percent",
+            "Blocks of 60 s at a moving temperature whose mean residual lies "
+            "within 0.674 of the stated sigma, those of each 10 K counted as "
+            "one.",
+            given(covered, &ramp_errors, 0.5)),
+      share("sigma_coverage_90_ramps_percent",
+            "sigma_coverage_50_ramps_percent, but within 1.645 sigma.",
+            given(covered, &ramp_errors, 0.9)),
+      share("sigma_coverage_95_ramps_percent",
+            "sigma_coverage_50_ramps_percent, but within 1.960 sigma.",
+            given(covered, &ramp_errors, 0.95)),
+      {"sigma_pit_distance_soaks", "1", "",
+       "max |F(u) - u|: F(u) is the share of the soaks with Phi(residual / "
+       "sigma) <= u.",
+       kTemperature, given(distance, &soak_errors), true},
+      {"sigma_pit_distance_ramps", "1", "",
+       "max |F(u) - u| of the blocks at a moving temperature, those of each 10 "
+       "K counted as one.",
+       kTemperature, given(distance, &ramp_errors), true},
+      {"bias_filter_nis",
+       "1",
+       "",
+       "Mean normalised innovation squared of a Kalman filter for the bias "
+       "that believes the stated sigma and measures the residual over 1 s at "
+       "power-on and every 25 K: 1 for a sigma that is right.",
+       {kSoak, kRamp, kWarmUp, kPowerCycle},
+       bias_filter_nis,
+       true},
+  };
+}
+
+}  // namespace beamgyro::internal

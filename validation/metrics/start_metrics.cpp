@@ -3,11 +3,12 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
+#include "compensation/scoring/residual_scores.h"
 #include "random/random_stream.h"
-#include "validation/metrics/evaluations.h"
+#include "validation/metrics/metric_tables.h"
 #include "validation/metrics/noisy_means.h"
 
-namespace beamgyro::internal::evaluation {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kWarmUpBand = 0.05;      // [-], of the whole change
@@ -19,8 +20,8 @@ constexpr std::size_t kLeastCycles = 3;
 constexpr double kZeroing = 10.0;  // [s], the user's zero, and each mean
 constexpr std::uint32_t kWarmUpDraws = 200;
 
-std::vector<const EvidenceRun*> runs_from_power_on(const Evidence& evidence) {
-  return runs_for(evidence, {RunPurpose::kWarmUp, RunPurpose::kPowerCycle});
+std::vector<RunPurpose> power_on_purposes() {
+  return {RunPurpose::kWarmUp, RunPurpose::kPowerCycle};
 }
 
 double mean_between(std::span<const double> values, std::size_t begin,
@@ -123,7 +124,7 @@ NoisyMeans power_on_means(const Evidence& evidence, double length,
                           std::size_t& of_each) {
   NoisyMeans means;
   of_each = static_cast<std::size_t>(std::round(length / kZeroing)) + 1;
-  for (const EvidenceRun* run : runs_from_power_on(evidence)) {
+  for (const EvidenceRun* run : runs_for(evidence, power_on_purposes())) {
     const Recording& recording = *run->recording;
     const auto blocks =
         segments_of(recording, score_blocks(recording, kZeroing));
@@ -141,8 +142,7 @@ NoisyMeans power_on_means(const Evidence& evidence, double length,
       i = same;
     }
     if (ranges.empty()) continue;
-    const std::vector<double> residual = residual_of(*run);
-    means.add(recording, ranges, residual, residual);
+    means.add(*run, ranges);
   }
   return means;
 }
@@ -176,8 +176,6 @@ double heading_error(std::span<const double> b) {
   for (const double value : b.subspan(1)) angle += kZeroing * (value - b[0]);
   return std::abs(angle);
 }
-
-}  // namespace
 
 std::optional<Estimate> turn_on_time(const Evidence& evidence) {
   using enum RunPurpose;
@@ -254,16 +252,87 @@ std::optional<Estimate> turn_on_repeatability(const Evidence& evidence) {
                            std::sqrt(squares / quantile(chance, 0.025))}};
 }
 
-std::optional<Estimate> power_on_drift_3_min(const Evidence& evidence) {
-  return worst_power_on(evidence, 180.0 - kZeroing, &largest_departure);
+std::optional<Estimate> in_run_stability(const Evidence& evidence) {
+  constexpr double kBlock = 100.0;    // [s]
+  constexpr double kHour = 3600.0;    // [s]
+  constexpr std::size_t kLeast = 10;  // means
+  NoisyMeans means;
+  for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kRest})) {
+    const Recording& recording = *run->recording;
+    auto blocks = score_blocks(recording, kBlock);
+    const double from = recording.time.back() - kHour - usual_step(recording);
+    std::erase_if(blocks, [&](const SampleRange& block) {
+      return recording.time[block.begin] <= from;
+    });
+    if (blocks.size() < kLeast) continue;
+    means.add(*run, blocks);
+  }
+  if (means.values.empty()) return std::nullopt;
+  return estimate_of_noise(means, [&](std::span<const double> b) {
+    double squares = 0.0;
+    std::size_t first = 0;
+    for (const std::size_t size : means.sizes) {
+      squares += residual_scores(b.subspan(first, size)).variance *
+                 static_cast<double>(size);
+      first += size;
+    }
+    return std::sqrt(squares /
+                     static_cast<double>(b.size() - means.sizes.size()));
+  });
 }
 
-std::optional<Estimate> heading_error_1_min(const Evidence& evidence) {
-  return worst_power_on(evidence, 60.0, &heading_error);
+}  // namespace
+
+std::vector<Metric> start_metrics() {
+  using enum RunPurpose;
+  return {
+      {"turn_on_time_s",
+       "s",
+       "12.5",
+       "Longest time from power-on until the loops stay locked. Not of "
+       "a quasi-static run, which has no start-up.",
+       {kWarmUp, kPowerCycle, kRateStep},
+       turn_on_time},
+      {"warm_up_time_s",
+       "s",
+       "12.6",
+       "Longest time from power-on after which |B(t) - B_end| stays "
+       "within the greater of 5 % of |B(0) - B_end| and 3 sigma of the "
+       "noise of that difference.",
+       {kWarmUp},
+       warm_up_time},
+      {"turn_on_repeatability_deg_per_s",
+       "deg/s",
+       "12.11",
+       "sqrt(sum (B_i - mean)^2 / (n - 1)): B_i is the mean residual of "
+       "power cycle i over the same time from power-on, pooled over "
+       "runs.",
+       {kPowerCycle},
+       turn_on_repeatability},
+      {"in_run_stability_deg_per_s",
+       "deg/s",
+       "12.11",
+       "sqrt(sum (b_i - mean)^2 / (n - 1)) of the means b_i of 100 s "
+       "over the last hour of a run at rest, pooled over runs.",
+       {kRest},
+       in_run_stability},
+      {"power_on_drift_3_min_deg_per_s", "deg/s", "",
+       "Largest |b(t) - b(0)| within 3 min from power-on: b are means "
+       "of 10 s, b(0) the first one, with which the user zeroes the "
+       "gyro.",
+       power_on_purposes(),
+       given(worst_power_on, 180.0 - kZeroing, &largest_departure)},
+      {"heading_error_1_min_deg", "deg", "",
+       "Largest |integral of the residual over 1 min|, from 10 s after "
+       "power-on, less the mean of those 10 s, with which the user "
+       "zeroes the gyro.",
+       power_on_purposes(), given(worst_power_on, 60.0, &heading_error)},
+      {"heading_error_10_min_deg", "deg", "",
+       "Largest |integral of the residual over 10 min|, from 10 s after "
+       "power-on, less the mean of those 10 s, with which the user "
+       "zeroes the gyro.",
+       power_on_purposes(), given(worst_power_on, 600.0, &heading_error)},
+  };
 }
 
-std::optional<Estimate> heading_error_10_min(const Evidence& evidence) {
-  return worst_power_on(evidence, 600.0, &heading_error);
-}
-
-}  // namespace beamgyro::internal::evaluation
+}  // namespace beamgyro::internal

@@ -4,11 +4,11 @@
 #include <numeric>
 
 #include "compensation/scoring/residual_scores.h"
-#include "validation/metrics/evaluations.h"
+#include "validation/metrics/metric_tables.h"
 #include "validation/metrics/noisy_means.h"
 #include "validation/metrics/soaks.h"
 
-namespace beamgyro::internal::evaluation {
+namespace beamgyro::internal {
 namespace {
 
 constexpr double kSameSoakTemperature = 0.5;  // [K]
@@ -27,8 +27,7 @@ Soaks all_soaks(const Evidence& evidence) {
     const std::vector<Soak> soaks = soaks_of(*run->recording);
     std::vector<SampleRange> ranges;
     for (const Soak& soak : soaks) ranges.push_back(soak.range);
-    const std::vector<double> residual = residual_of(*run);
-    all.means.add(*run->recording, ranges, residual, residual);
+    all.means.add(*run, ranges);
     all.soaks.insert(all.soaks.end(), soaks.begin(), soaks.end());
   }
   return all;
@@ -141,10 +140,8 @@ std::optional<Estimate> ramp_figure(
   NoisyMeans means;
   std::vector<Leg> legs;
   for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kRamp})) {
-    const std::vector<double> residual = residual_of(*run);
     const std::size_t first = means.segments.size();
-    means.add(*run->recording, score_blocks(*run->recording), residual,
-              residual);
+    means.add(*run, score_blocks(*run->recording));
     add_legs(*run->recording, std::span(means.segments).subspan(first), first,
              legs);
   }
@@ -158,16 +155,6 @@ std::optional<Estimate> ramp_figure(
   return estimate_beneath_noise(
       means, [&](std::span<const double> b) { return figure(comparisons, b); },
       Shrinkage::kToMean, 0.0, growth);
-}
-
-}  // namespace
-
-std::optional<Estimate> bias_pp(const Evidence& evidence) {
-  return soak_figure(evidence, &ResidualScores::peak_to_peak, Growth::kExtreme);
-}
-
-std::optional<Estimate> bias_sigma(const Evidence& evidence) {
-  return soak_figure(evidence, &ResidualScores::sigma, Growth::kSquare);
 }
 
 std::optional<Estimate> bias_sensitivity(const Evidence& evidence) {
@@ -252,12 +239,84 @@ std::optional<Estimate> soak_hysteresis_max(const Evidence& evidence) {
       Shrinkage::kToMean, 0.0, Growth::kExtreme);
 }
 
-std::optional<Estimate> hysteresis_max(const Evidence& evidence) {
-  return ramp_figure(evidence, &largest_difference, Growth::kExtreme);
+std::optional<Estimate> bias(const Evidence& evidence) {
+  NoisyMeans means;
+  for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kRest}))
+    means.add(*run, score_blocks(*run->recording));
+  if (means.values.empty()) return std::nullopt;
+  return estimate_beneath_noise(
+      means, [](std::span<const double> r) { return residual_scores(r).mean; },
+      Shrinkage::kNone);
 }
 
-std::optional<Estimate> hysteresis_rms(const Evidence& evidence) {
-  return ramp_figure(evidence, &rms_difference, Growth::kSquare);
+}  // namespace
+
+std::vector<Metric> temperature_metrics() {
+  using enum RunPurpose;
+  return {
+      {"bias_deg_per_s",
+       "deg/s",
+       "12.11",
+       "Mean of the residual (judged rate less true rate) over runs at "
+       "rest.",
+       {kRest},
+       bias},
+      {"bias_pp_deg_per_s",
+       "deg/s",
+       "12.11",
+       "max B(T_j) - min B(T_j): B(T_j) is the mean residual over the "
+       "last 300 s of soak j.",
+       {kSoak},
+       given(soak_figure, &ResidualScores::peak_to_peak, Growth::kExtreme)},
+      {"bias_sigma_deg_per_s",
+       "deg/s",
+       "12.11",
+       "Standard deviation of the B(T_j) about their mean, divided by "
+       "their number n.",
+       {kSoak},
+       given(soak_figure, &ResidualScores::sigma, Growth::kSquare)},
+      {"bias_sensitivity_deg_per_s_per_K",
+       "deg/s/K",
+       "12.11",
+       "Slope of the least-squares line of B(T_j) over the measured "
+       "temperature T_j.",
+       {kSoak},
+       bias_sensitivity},
+      {"bias_sensitivity_max_deg_per_s_per_K",
+       "deg/s/K",
+       "12.11",
+       "max |B(T_j+1) - B(T_j-1)| / |T_j+1 - T_j-1| over the soaks in "
+       "order of temperature.",
+       {kSoak},
+       bias_sensitivity_max},
+  };
 }
 
-}  // namespace beamgyro::internal::evaluation
+std::vector<Metric> hysteresis_metrics() {
+  using enum RunPurpose;
+  return {
+      {"hysteresis_max_deg_per_s",
+       "deg/s",
+       "",
+       "max over T of |B_up(T) - B_down(T)| at the same measured "
+       "temperature, between ramps of equal slope.",
+       {kRamp},
+       given(ramp_figure, &largest_difference, Growth::kExtreme)},
+      {"hysteresis_rms_deg_per_s",
+       "deg/s",
+       "",
+       "rms over T of B_up(T) - B_down(T) at the same measured "
+       "temperature, between ramps of equal slope.",
+       {kRamp},
+       given(ramp_figure, &rms_difference, Growth::kSquare)},
+      {"soak_hysteresis_max_deg_per_s",
+       "deg/s",
+       "",
+       "max |B_up(T_j) - B_down(T_j)| between soaks at one ambient "
+       "temperature that were reached from below and from above.",
+       {kSoak},
+       soak_hysteresis_max},
+  };
+}
+
+}  // namespace beamgyro::internal

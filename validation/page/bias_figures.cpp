@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -52,10 +51,6 @@ constexpr int kHistogramBars = 31;
 
 FigureAxis bias_axis() { return {"Rate less true rate", "deg/s"}; }
 
-std::string direction_name(const std::string& role, bool rising) {
-  return role + (rising ? ", rising" : ", falling");
-}
-
 /// The whole, and the rate after compensation alone.
 std::vector<Figure> with_close_up(Figure whole, const std::string& title) {
   std::vector<Figure> figures = close_up(whole, "after", "_after", title);
@@ -63,19 +58,30 @@ std::vector<Figure> with_close_up(Figure whole, const std::string& title) {
   return figures;
 }
 
-struct SoakMean {
+struct DirectedMean {
   double temperature;  // [degC], measured
   double residual;     // [deg/s]
-  bool rising;         // from the soak before, or else to the next one
+  bool rising;         // from the one before, or else to the next one
 };
 
-std::vector<SoakMean> soak_means(const EvidenceRun& run) {
+void add_by_direction(const std::vector<DirectedMean>& means,
+                      const std::string& name, const std::string& role,
+                      Figure& figure) {
+  FigureSeries rising{name + ", rising", role};
+  FigureSeries falling{name + ", falling", role};
+  for (const DirectedMean& mean : means)
+    (mean.rising ? rising : falling).add(mean.temperature, mean.residual);
+  figure.add(std::move(rising));
+  figure.add(std::move(falling));
+}
+
+std::vector<DirectedMean> soak_means(const EvidenceRun& run) {
   const std::vector<Soak> soaks = soaks_of(*run.recording);
   std::vector<SampleRange> ranges;
   for (const Soak& soak : soaks) ranges.push_back(soak.range);
   const auto segments = segments_of(*run.recording, ranges);
   const std::vector<double> residual = means_over(segments, residual_of(run));
-  std::vector<SoakMean> means;
+  std::vector<DirectedMean> means;
   for (std::size_t k = 0; k < soaks.size(); ++k) {
     const Soak& reached = soaks[k == 0 && soaks.size() > 1 ? 1 : k];
     means.push_back({segments[k].temperature, residual[k],
@@ -84,24 +90,26 @@ std::vector<SoakMean> soak_means(const EvidenceRun& run) {
   return means;
 }
 
-/// For each block of a ramp whether the temperature rises; a block without a
-/// slope goes on as the one before it.
-std::vector<bool> rising_blocks(const std::vector<ResidualMean>& blocks) {
-  std::vector<bool> rising(blocks.size(), true);
+/// The minutes of a ramp; one without a slope goes on as the one before it.
+std::vector<DirectedMean> ramp_means(const EvidenceRun& run) {
+  const std::vector<ResidualMean> blocks = residual_means(run, kMinute);
+  std::vector<DirectedMean> means;
+  for (const ResidualMean& block : blocks)
+    means.push_back({block.temperature, block.residual, true});
   std::size_t first = blocks.size();  // with a slope
   for (std::size_t k = 0; k + 1 < blocks.size(); ++k) {
     const double minutes =
         (blocks[k + 1].since_power_on - blocks[k].since_power_on) / kMinute;
     const double move = blocks[k + 1].temperature - blocks[k].temperature;
-    if (k > 0) rising[k] = rising[k - 1];
+    if (k > 0) means[k].rising = means[k - 1].rising;
     if (std::abs(move) < kLeastTemperatureSlope * minutes) continue;
-    rising[k] = move > 0.0;
+    means[k].rising = move > 0.0;
     first = std::min(first, k);
   }
-  if (blocks.size() > 1) rising.back() = rising[blocks.size() - 2];
-  for (std::size_t k = 0; k < first && first < blocks.size(); ++k)
-    rising[k] = rising[first];
-  return rising;
+  if (means.size() > 1) means.back().rising = means[means.size() - 2].rising;
+  for (std::size_t k = 0; k < first && first < means.size(); ++k)
+    means[k].rising = means[first].rising;
+  return means;
 }
 
 /// Mean over the last tenth of the blocks.
@@ -152,13 +160,7 @@ std::vector<Figure> bias_over_temperature_figures(
       temperature_axis(), bias_axis()};
   for_both(both, RunPurpose::kSoak,
            [&](const std::string& role, const EvidenceRun& run) {
-             std::array<FigureSeries, 2> by_direction = {
-                 FigureSeries{direction_name(role, true), role},
-                 FigureSeries{direction_name(role, false), role}};
-             for (const auto& [temperature, residual, rising] : soak_means(run))
-               by_direction[rising ? 0 : 1].add(temperature, residual);
-             for (FigureSeries& series : by_direction)
-               figure.add(std::move(series));
+             add_by_direction(soak_means(run), role, role, figure);
            });
   return with_close_up(std::move(figure),
                        "Bias over temperature, after compensation");
@@ -172,17 +174,8 @@ std::vector<Figure> hysteresis_figures(const ComparedEvidence& both) {
                 temperature_axis(), bias_axis()};
   for_both(both, RunPurpose::kRamp,
            [&](const std::string& role, const EvidenceRun& run) {
-             const std::string name = role + ", " + run.name;
-             std::array<FigureSeries, 2> by_direction = {
-                 FigureSeries{direction_name(name, true), role},
-                 FigureSeries{direction_name(name, false), role}};
-             const auto blocks = residual_means(run, kMinute);
-             const std::vector<bool> rising = rising_blocks(blocks);
-             for (std::size_t k = 0; k < blocks.size(); ++k)
-               by_direction[rising[k] ? 0 : 1].add(blocks[k].temperature,
-                                                   blocks[k].residual);
-             for (FigureSeries& series : by_direction)
-               figure.add(std::move(series));
+             add_by_direction(ramp_means(run), role + ", " + run.name, role,
+                              figure);
            });
   return with_close_up(std::move(figure),
                        "Hysteresis loop, after compensation");

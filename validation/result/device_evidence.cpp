@@ -15,7 +15,6 @@
 #include "config/document.h"
 #include "config/units.h"
 #include "parallel/work_queue.h"
-#include "validation/external/asked_run.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -186,8 +185,9 @@ DeviceEvidence answered_evidence(std::vector<ReadRun> read,
   for (const BaselineMethod& baseline : answering.baselines)
     found.baselines.push_back({baseline.name, blank, baseline.has_metrics});
   for_each_task(count, threads, [&](std::size_t k, std::size_t) {
-    const Recording& run = found.runs[k];
     const ReadRun& named = found.read[k];
+    found.runs[k].run = words_of(named);
+    const Recording& run = found.runs[k];
     if (named.from > 0) found.late[k] = later_part(run, named.from);
     const Recording& part = named.from > 0 ? found.late[k] : run;
     const auto evidence = [&](std::vector<double> rate,
@@ -197,8 +197,6 @@ DeviceEvidence answered_evidence(std::vector<ReadRun> read,
     found.before.runs[k] = evidence(column_values(run, "rate"));
     found.baselines[0].evidence.runs[k] = found.before.runs[k];
     try {
-      const std::string called = words_of(named);
-      const AskedRun asked(called);
       found.answers[k] = answering.compensator.answer(run);
       for (std::size_t b = 0; b < answering.baselines.size(); ++b)
         found.baselines[b + 1].evidence.runs[k] =

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <limits>
+#include <cmath>
 #include <memory>
 #include <set>
 #include <stdexcept>
@@ -13,7 +13,7 @@
 #include "parallel/work_queue.h"
 #include "sim/numerics/simulation_failure.h"
 #include "statistics/intervals.h"
-#include "validation/external/file_compensator.h"
+#include "validation/external/compensator_source.h"
 #include "validation/result/judgement.h"
 
 namespace beamgyro::internal {
@@ -123,32 +123,27 @@ class PopulationJudge {
   Qualification qualification_;  // with the runs that they read
 };
 
-double value_or_nan(const std::optional<Estimate>& estimate) {
-  return estimate ? estimate->value : std::numeric_limits<double>::quiet_NaN();
-}
-
-void count(const std::vector<DeviceOutcome>& outcomes,
-           PopulationYield& result) {
-  for (const DeviceOutcome& outcome : outcomes) {
-    result.devices.push_back(outcome.verdict);
-    switch (outcome.verdict.verdict) {
-      case Conformity::kPass:
-        ++result.passed;
-        break;
-      case Conformity::kFail:
-        ++result.failed;
-        break;
-      case Conformity::kUndecided:
-        ++result.undecided;
-        break;
-    }
-    if (!outcome.is_simulated) ++result.not_simulated;
-  }
-  result.interval = clopper_pearson(static_cast<double>(result.passed),
-                                    static_cast<double>(outcomes.size()));
-}
-
 }  // namespace
+
+void PopulationMetric::add(const MetricResult& device) {
+  const auto value = [](const std::optional<Estimate>& estimate) {
+    return estimate ? estimate->value : NAN;
+  };
+  before.push_back(value(device.before));
+  after.push_back(value(device.after));
+}
+
+void count_verdicts(PopulationYield& all) {
+  const auto number_of = [&](Conformity verdict) {
+    return static_cast<std::size_t>(
+        std::ranges::count(all.devices, verdict, &DeviceVerdict::verdict));
+  };
+  all.passed = number_of(Conformity::kPass);
+  all.failed = number_of(Conformity::kFail);
+  all.undecided = number_of(Conformity::kUndecided);
+  all.interval = clopper_pearson(static_cast<double>(all.passed),
+                                 static_cast<double>(all.devices.size()));
+}
 
 PopulationYield population_yield(const PopulationTask& task,
                                  std::size_t threads,
@@ -166,16 +161,16 @@ PopulationYield population_yield(const PopulationTask& task,
   PopulationYield result;
   result.campaign = task.campaign->name();
   result.trained_on_each = task.model != nullptr;
-  count(outcomes, result);
+  for (const DeviceOutcome& outcome : outcomes) {
+    result.devices.push_back(outcome.verdict);
+    if (!outcome.is_simulated) ++result.not_simulated;
+  }
+  count_verdicts(result);
   for (std::size_t m = 0; m < population.metric_names().size(); ++m) {
     PopulationMetric metric{find_metric(population.metric_names()[m]), {}, {}};
-    for (const DeviceOutcome& outcome : outcomes) {
-      const bool has = m < outcome.metrics.size();
-      metric.before.push_back(has ? value_or_nan(outcome.metrics[m].before)
-                                  : value_or_nan({}));
-      metric.after.push_back(has ? value_or_nan(outcome.metrics[m].after)
-                                 : value_or_nan({}));
-    }
+    for (const DeviceOutcome& outcome : outcomes)
+      metric.add(m < outcome.metrics.size() ? outcome.metrics[m]
+                                            : MetricResult{});
     result.metrics.push_back(std::move(metric));
   }
   return result;

@@ -12,6 +12,9 @@
 
 namespace beamgyro::internal {
 
+/// Counts the verdicts on `devices`.
+void count_verdicts(PopulationYield& all);
+
 /// What a population is put through.
 struct PopulationTask {
   const CampaignPlan* campaign;  // not owned, as everything here

@@ -5,12 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
-#include "statistics/intervals.h"
 #include "validation/metrics/sigma_evidence.h"
 #include "validation/metrics/sigma_report.h"
 #include "validation/result/judgement.h"
@@ -63,15 +61,7 @@ class SetJudge {
 
   SetVerdicts finish() {
     PopulationYield& all = found_.devices;
-    const auto number_of = [&](Conformity verdict) {
-      return static_cast<std::size_t>(
-          std::ranges::count(all.devices, verdict, &DeviceVerdict::verdict));
-    };
-    all.passed = number_of(Conformity::kPass);
-    all.failed = number_of(Conformity::kFail);
-    all.undecided = number_of(Conformity::kUndecided);
-    all.interval = clopper_pearson(static_cast<double>(all.passed),
-                                   static_cast<double>(all.devices.size()));
+    count_verdicts(all);
     if (found_.shown.sigma) found_.shown.sigma = sigma_report(sigma_);
     found_.shown.words =
         fmt::format("{} of {} devices pass. Device {}: {}", all.passed,
@@ -90,14 +80,8 @@ class SetJudge {
 
   static void add_figures(const ValidationResult& result,
                           PopulationMetric& metric) {
-    const auto figure = [](const std::optional<Estimate>& estimate) {
-      return estimate ? estimate->value : NAN;
-    };
-    for (const MetricResult& one : result.metrics) {
-      if (one.metric != metric.metric) continue;
-      metric.before.push_back(figure(one.before));
-      metric.after.push_back(figure(one.after));
-    }
+    for (const MetricResult& one : result.metrics)
+      if (one.metric == metric.metric) metric.add(one);
   }
 
   const TrainingSet& set_;

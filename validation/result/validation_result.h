@@ -15,7 +15,6 @@
 #include "validation/metrics/paired_residual.h"
 #include "validation/metrics/sigma_report.h"
 #include "validation/specification/decision.h"
-#include "validation/specification/limit.h"
 
 namespace beamgyro::internal {
 
@@ -27,8 +26,8 @@ struct BaselineEstimate {
 
 /// A metric of the recorded rate (before) and of the compensated rate (after).
 struct MetricResult {
-  const Metric* metric;  // of metrics()
-  std::optional<Estimate> before, after;
+  const Metric* metric = nullptr;  // of metrics()
+  std::optional<Estimate> before = {}, after = {};
   std::vector<BaselineEstimate> baselines = {};
 };
 
@@ -94,6 +93,9 @@ struct JudgedCompensator {
 struct PopulationMetric {
   const Metric* metric;
   std::vector<double> before, after;  // one for each device
+
+  /// Adds what this metric is of another device.
+  void add(const MetricResult& device);
 };
 
 /// The answer for one device of a population.

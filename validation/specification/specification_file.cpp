@@ -112,4 +112,11 @@ SpecificationFile parse_specification_file(std::string_view text,
   return specification_of(ConfigDocument::parse(text, name));
 }
 
+const SpecificationFile& default_specification() {
+  static const SpecificationFile kDefault = parse_specification_file(
+#include "validation/specification/default_text.h"
+      , "specs/default.toml");
+  return kDefault;
+}
+
 }  // namespace beamgyro::internal

@@ -8,7 +8,6 @@
 
 #include "validation/checks/declared_response.h"
 #include "validation/specification/decision.h"
-#include "validation/specification/limit.h"
 
 namespace beamgyro::internal {
 

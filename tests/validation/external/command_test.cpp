@@ -15,7 +15,6 @@
 #include "validation/external/answer_checks.h"
 #include "validation/external/answering.h"
 #include "validation/external/compensator_source.h"
-#include "validation/external/file_compensator.h"
 
 namespace beamgyro::internal::command_test {
 namespace {

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include "compensation/scoring/residual_scores.h"
+#include "validation/metrics/metric_tables.h"
+#include "validation/metrics/noisy_means.h"
+
+namespace beamgyro::internal {
+namespace {
+
+// Of runs without a rate, or with one that is held for minutes.
+std::vector<RunPurpose> quiet_purposes() {
+  using enum RunPurpose;
+  return {kSoak, kRamp, kWarmUp, kPowerCycle, kRest, kConstantRate};
+}
+
+std::optional<Estimate> residual_figure(const Evidence& evidence,
+                                        double ResidualScores::*figure,
+                                        Shrinkage shrinkage, double least,
+                                        Growth growth) {
+  NoisyMeans means;
+  for (const EvidenceRun* run : runs_for(evidence, quiet_purposes()))
+    means.add(*run, score_blocks(*run->recording));
+  if (means.values.empty()) return std::nullopt;
+  return estimate_beneath_noise(
+      means,
+      [figure](std::span<const double> r) {
+        return residual_scores(r).*figure;
+      },
+      shrinkage, least, growth);
+}
+
+std::optional<Estimate> normalised_residual(const Evidence& evidence) {
+  NoisyMeans means;
+  std::vector<double> sigma;  // [deg/s], of each mean
+  for (const EvidenceRun* run : runs_for(evidence, quiet_purposes())) {
+    const auto stated = stated_noise(*run->recording);
+    const auto blocks = score_blocks(*run->recording);
+    if (!stated || *stated == NoiseLevels{} || blocks.empty()) continue;
+    const auto segments = segments_of(*run->recording, blocks);
+    const auto values = means_over(segments, residual_of(*run));
+    const SegmentNoise& noise = means.noise.emplace_back(*stated, segments);
+    means.sizes.push_back(segments.size());
+    means.values.insert(means.values.end(), values.begin(), values.end());
+    sigma.insert(sigma.end(), noise.standard_deviations().begin(),
+                 noise.standard_deviations().end());
+  }
+  if (means.values.empty()) return std::nullopt;
+  return estimate_of_noise(means, [&](std::span<const double> r) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < r.size(); ++i)
+      sum += r[i] * r[i] / (sigma[i] * sigma[i]);
+    return std::sqrt(sum / static_cast<double>(r.size()));
+  });
+}
+
+}  // namespace
+
+std::vector<Metric> residual_metrics() {
+  using enum RunPurpose;
+  return {
+      {"residual_mean_deg_per_s", "deg/s", "",
+       "Mean of the residual over blocks of 60 s: r_i is the mean of a "
+       "block.",
+       quiet_purposes(),
+       given(residual_figure, &ResidualScores::mean, Shrinkage::kNone,
+             -HUGE_VAL, Growth::kSmooth)},
+      {"residual_sigma_deg_per_s", "deg/s", "",
+       "sqrt(sum (r_i - mean)^2 / n) over the blocks of 60 s.",
+       quiet_purposes(),
+       given(residual_figure, &ResidualScores::sigma, Shrinkage::kToMean, 0.0,
+             Growth::kSquare)},
+      {"residual_rms_deg_per_s", "deg/s", "",
+       "sqrt(sum r_i^2 / n) over the blocks of 60 s.", quiet_purposes(),
+       given(residual_figure, &ResidualScores::rms, Shrinkage::kToZero, 0.0,
+             Growth::kSquare)},
+      {"residual_max_deg_per_s", "deg/s", "",
+       "max |r_i| over the blocks of 60 s.", quiet_purposes(),
+       given(residual_figure, &ResidualScores::largest, Shrinkage::kToZero, 0.0,
+             Growth::kExtreme)},
+      {"residual_pp_deg_per_s", "deg/s", "",
+       "max r_i - min r_i over the blocks of 60 s.", quiet_purposes(),
+       given(residual_figure, &ResidualScores::peak_to_peak, Shrinkage::kToMean,
+             0.0, Growth::kExtreme)},
+      {"normalised_residual", "1", "",
+       "sqrt(mean r_i^2 / s_i^2) over the blocks of 60 s: s_i is the "
+       "standard deviation of a block's mean under the noise that the "
+       "device states. 1: the noise explains what is left.",
+       quiet_purposes(), normalised_residual},
+  };
+}
+
+}  // namespace beamgyro::internal
