@@ -42,9 +42,7 @@ nlohmann::ordered_json json_of(const CompletedValidation& validation) {
   if (!validation.result.population) return json;
   for (const PopulationMetric& metric : validation.result.population->metrics)
     json["figures"].push_back(population_figure(
-        {std::string(metric.metric->name), std::string(metric.metric->unit),
-         metric.before, metric.after,
-         largest_allowed(validation.result, metric.metric->name)}));
+        metric, largest_allowed(validation.result, metric.metric->name)));
   return json;
 }
 

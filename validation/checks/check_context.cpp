@@ -226,7 +226,7 @@ std::string CheckContext::rounding_words() const {
 
 std::vector<std::string> CheckContext::untested_by_replay() const {
   const Compensator* trained = checked.trained;
-  const auto range = temperatures_of(*this, runs_of(thermal_purposes()));
+  const auto range = temperatures_of(runs_of(thermal_purposes()));
   if (trained == nullptr || !range) return {};
   std::vector<std::string> names;
   const auto add = [&names](const std::string& name) {
@@ -274,21 +274,11 @@ void CheckContext::for_each(
                 [&work](std::size_t k, std::size_t) { work(k); });
 }
 
-std::optional<TemperatureRange> temperatures_of(
-    const CheckContext& context, const std::vector<std::size_t>& runs) {
-  TemperatureRange range = {HUGE_VAL, -HUGE_VAL};
-  for (const std::size_t number : runs) {
-    const Recording& run = *context.checked.runs[number].recording;
-    const Column* temperature = find_column(run, "temperature");
-    if (temperature == nullptr) return std::nullopt;
-    for (const SampleRange& stretch : powered_stretches(run))
-      for (std::size_t k = stretch.begin; k < stretch.end; ++k) {
-        range.lowest = std::min(range.lowest, temperature->values[k]);
-        range.highest = std::max(range.highest, temperature->values[k]);
-      }
-  }
-  if (!(range.lowest <= range.highest)) return std::nullopt;
-  return range;
+std::optional<TemperatureRange> CheckContext::temperatures_of(
+    const std::vector<std::size_t>& runs) const {
+  std::vector<const Recording*> all;
+  for (const std::size_t k : runs) all.push_back(checked.runs[k].recording);
+  return internal::temperatures_of(all);
 }
 
 std::vector<RunPurpose> thermal_purposes() {

@@ -156,15 +156,13 @@ struct CheckContext {
   /// runs if there is none.
   std::vector<std::size_t> runs_of(
       const std::vector<RunPurpose>& purposes) const;
+  /// Returns the temperatures_of() those runs.
+  std::optional<TemperatureRange> temperatures_of(
+      const std::vector<std::size_t>& runs) const;
   /// Calls `work` with the position in `runs` of every run, on all threads.
   void for_each(const std::vector<std::size_t>& runs,
                 const std::function<void(std::size_t)>& work) const;
 };
-
-/// Returns the lowest and highest measured temperature [degC] of the powered
-/// samples of the runs; nothing where a run has none.
-std::optional<TemperatureRange> temperatures_of(
-    const CheckContext& context, const std::vector<std::size_t>& runs);
 
 /// Purposes of runs that show the temperatures, most of them at rest.
 std::vector<RunPurpose> thermal_purposes();

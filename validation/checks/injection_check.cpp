@@ -166,7 +166,7 @@ void add_sweep(const CheckContext& context, std::size_t number,
     return;
   const auto range = trained != nullptr
                          ? std::optional(trained->temperature_range)
-                         : temperatures_of(context, {number});
+                         : context.temperatures_of({number});
   if (!range) return;
   RateEstimator estimator = std::cref(context.altered);
   if (trained != nullptr)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace beamgyro::internal {
@@ -45,6 +46,26 @@ std::vector<const EvidenceRun*> runs_for(
     if (std::ranges::find(purposes, run.purpose) != purposes.end())
       found.push_back(&run);
   return found;
+}
+
+std::vector<RunPurpose> quiet_purposes() {
+  using enum RunPurpose;
+  return {kSoak, kRamp, kWarmUp, kPowerCycle, kRest, kConstantRate};
+}
+
+std::optional<TemperatureRange> temperatures_of(
+    const std::vector<const Recording*>& runs) {
+  TemperatureRange range = {HUGE_VAL, -HUGE_VAL};
+  for (const Recording* run : runs) {
+    const Column* temperature = find_column(*run, "temperature");
+    if (temperature == nullptr) return std::nullopt;
+    for (std::size_t k = 0; k < run->time.size(); ++k)
+      if ((run->status[k] & kUnpowered) == 0) {
+        range.lowest = std::min(range.lowest, temperature->values[k]);
+        range.highest = std::max(range.highest, temperature->values[k]);
+      }
+  }
+  return range.lowest <= range.highest ? std::optional(range) : std::nullopt;
 }
 
 }  // namespace beamgyro::internal

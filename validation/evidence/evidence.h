@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compensation/inputs/features.h"
 #include "dataset/recording/recording.h"
 
 namespace beamgyro::internal {
@@ -55,5 +56,14 @@ struct Evidence {
 /// Returns the runs with one of these purposes.
 std::vector<const EvidenceRun*> runs_for(
     const Evidence& evidence, const std::vector<RunPurpose>& purposes);
+
+/// Returns the purposes of runs without a rate, or with one that is held for
+/// minutes.
+std::vector<RunPurpose> quiet_purposes();
+
+/// Returns the lowest and highest measured temperature [degC] of the powered
+/// samples of the runs; nothing where a run has none.
+std::optional<TemperatureRange> temperatures_of(
+    const std::vector<const Recording*>& runs);
 
 }  // namespace beamgyro::internal

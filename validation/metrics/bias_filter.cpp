@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/uncertainty/bias_process.h"
@@ -47,10 +48,10 @@ std::optional<std::size_t> end_of_measurement(const FilterInput& in,
 
 Innovation measured(const FilterInput& in, SampleRange range,
                     BiasFilter& filter) {
-  double sum = 0.0;
-  for (std::size_t k = range.begin; k < range.end; ++k) sum += in.residual[k];
   const auto count = static_cast<double>(range.size());
-  return filter.measure(sum / count, in.white * in.white / (count * in.step));
+  return filter.measure(
+      mean_of(std::span(in.residual).subspan(range.begin, range.size())),
+      in.white * in.white / (count * in.step));
 }
 
 void add_innovations(const FilterInput& in, const SampleRange& stretch,

@@ -8,6 +8,7 @@
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/scale_factor.h"
 #include "linear_algebra/least_squares.h"
+#include "validation/metrics/segments.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -112,12 +113,6 @@ std::optional<std::size_t> jump_of(const Recording& recording,
   return std::nullopt;
 }
 
-double mean_of_samples(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
 }  // namespace
 
 std::optional<ResponsePoint> sine_response(const Recording& recording,
@@ -167,6 +162,17 @@ std::optional<ResponsePoint> sine_response(const Recording& recording,
   return ResponsePoint{frequency, gain, sigma, 2.0 * neighbours};
 }
 
+std::vector<ResponsePoint> sine_responses(const Evidence& evidence,
+                                          std::string_view input) {
+  std::vector<ResponsePoint> points;
+  for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kSineRate}))
+    if (const auto point = sine_response(
+            *run->recording, column_values(*run->recording, input), run->rate))
+      points.push_back(*point);
+  std::ranges::sort(points, {}, &ResponsePoint::frequency);
+  return points;
+}
+
 std::vector<ResponsePoint> step_response(const Recording& recording,
                                          std::span<const double> output,
                                          std::span<const double> frequencies) {
@@ -186,10 +192,9 @@ std::vector<ResponsePoint> step_response(const Recording& recording,
   const std::size_t before = samples(kBeforeJump);
   if (end_part < 2 || before < 2 || before > *jump) return {};
   const auto rest = output.subspan(*jump - before, before);
-  const double start = mean_of_samples(rest);
+  const double start = mean_of(rest);
   const double height =
-      mean_of_samples(output.subspan(*jump + after - end_part, end_part)) -
-      start;
+      mean_of(output.subspan(*jump + after - end_part, end_part)) - start;
   double variance = 0.0;
   for (const double value : rest)
     variance +=
@@ -217,13 +222,7 @@ std::vector<ResponsePoint> step_response(const Recording& recording,
 }
 
 std::vector<ResponsePoint> response_to_true_rate(const Evidence& evidence) {
-  std::vector<ResponsePoint> points;
-  for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kSineRate})) {
-    const auto& truth = column_values(*run->recording, "true_rate");
-    if (const auto point = sine_response(*run->recording, truth, run->rate))
-      points.push_back(*point);
-  }
-  std::ranges::sort(points, {}, &ResponsePoint::frequency);
+  std::vector<ResponsePoint> points = sine_responses(evidence, "true_rate");
   const double highest = points.empty() ? 0.0 : points.back().frequency;
   for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kRateStep})) {
     std::vector<double> frequencies;

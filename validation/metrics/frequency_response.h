@@ -4,6 +4,7 @@
 #include <complex>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "validation/evidence/evidence.h"
@@ -27,6 +28,11 @@ struct ResponsePoint {
 std::optional<ResponsePoint> sine_response(const Recording& recording,
                                            std::span<const double> input,
                                            std::span<const double> output);
+
+/// Returns the responses of the judged rate to a column of the sine runs, by
+/// rising frequency.
+std::vector<ResponsePoint> sine_responses(const Evidence& evidence,
+                                          std::string_view input);
 
 /// Returns the response of `output` to the first step of true_rate that comes
 /// kLeastRest [s] or more after the power-on, at `frequencies` [Hz]:

@@ -33,12 +33,6 @@ const Draws& draws_of(const NoisyMeans& means) {
   return draws;
 }
 
-double mean_of(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
 double mean_square(std::span<const double> values, double about) {
   double sum = 0.0;
   for (const double value : values) sum += (value - about) * (value - about);

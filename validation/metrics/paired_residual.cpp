@@ -15,11 +15,6 @@ namespace {
 
 constexpr std::size_t kClustersOfRun = 8;
 
-double mean_of_drift(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) /
-         static_cast<double>(values.size());
-}
-
 double rms_of_drift(const std::vector<double>& values) {
   return std::sqrt(
       std::inner_product(values.begin(), values.end(), values.begin(), 0.0) /
@@ -29,9 +24,7 @@ double rms_of_drift(const std::vector<double>& values) {
 }  // namespace
 
 LeftDrift left_drift(const Evidence& evidence) {
-  using enum RunPurpose;
-  std::vector<const EvidenceRun*> runs = runs_for(
-      evidence, {kSoak, kRamp, kWarmUp, kPowerCycle, kRest, kConstantRate});
+  std::vector<const EvidenceRun*> runs = runs_for(evidence, quiet_purposes());
   if (runs.empty())
     for (const EvidenceRun& run : evidence.runs) runs.push_back(&run);
   LeftDrift left;
@@ -52,7 +45,7 @@ LeftDrift left_drift(const Evidence& evidence) {
 
 LeftDrift without_mean(LeftDrift drift) {
   if (drift.means.empty()) return drift;
-  const double mean = mean_of_drift(drift.means);
+  const double mean = mean_of(drift.means);
   for (double& value : drift.means) value -= mean;
   return drift;
 }

@@ -56,11 +56,8 @@ ThirdDifferences third_differences(const Recording& recording,
   std::vector<double> sizes;
   for (const SampleRange& stretch : powered_stretches(recording)) {
     std::vector<double> means;
-    for (std::size_t k = stretch.begin; k + n <= stretch.end; k += n) {
-      double sum = 0.0;
-      for (std::size_t i = k; i < k + n; ++i) sum += values[i];
-      means.push_back(sum / static_cast<double>(n));
-    }
+    for (std::size_t k = stretch.begin; k + n <= stretch.end; k += n)
+      means.push_back(mean_of(values.subspan(k, n)));
     for (std::size_t i = 3; i < means.size(); ++i) {
       const double d =
           means[i] - 3.0 * means[i - 1] + 3.0 * means[i - 2] - means[i - 3];

@@ -9,12 +9,6 @@
 namespace beamgyro::internal {
 namespace {
 
-// Of runs without a rate, or with one that is held for minutes.
-std::vector<RunPurpose> quiet_purposes() {
-  using enum RunPurpose;
-  return {kSoak, kRamp, kWarmUp, kPowerCycle, kRest, kConstantRate};
-}
-
 std::optional<Estimate> residual_figure(const Evidence& evidence,
                                         double ResidualScores::*figure,
                                         Shrinkage shrinkage, double least,
@@ -58,7 +52,6 @@ std::optional<Estimate> normalised_residual(const Evidence& evidence) {
 }  // namespace
 
 std::vector<Metric> residual_metrics() {
-  using enum RunPurpose;
   return {
       {"residual_mean_deg_per_s", "deg/s", "",
        "Mean of the residual over blocks of 60 s: r_i is the mean of a "

@@ -157,13 +157,7 @@ std::optional<Estimate> phase_lag_90(const Evidence& evidence) {
 }
 
 std::optional<Estimate> added_delay(const Evidence& evidence) {
-  std::vector<ResponsePoint> points;
-  for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kSineRate})) {
-    const auto& raw = column_values(*run->recording, "rate");
-    if (const auto point = sine_response(*run->recording, raw, run->rate))
-      points.push_back(*point);
-  }
-  std::ranges::sort(points, {}, &ResponsePoint::frequency);
+  const std::vector<ResponsePoint> points = sine_responses(evidence, "rate");
   if (!points.empty()) return delay_of(points);
   for (const EvidenceRun* run :
        runs_for(evidence, {RunPurpose::kRandomRate, RunPurpose::kRateStep}))

@@ -9,12 +9,16 @@ namespace beamgyro::internal {
 namespace {
 
 double mean_over(const SampleRange& range, std::span<const double> values) {
-  double sum = 0.0;
-  for (std::size_t k = range.begin; k < range.end; ++k) sum += values[k];
-  return sum / static_cast<double>(range.size());
+  return mean_of(values.subspan(range.begin, range.size()));
 }
 
 }  // namespace
+
+double mean_of(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
 
 std::vector<Segment> segments_of(const Recording& recording,
                                  std::span<const SampleRange> ranges) {

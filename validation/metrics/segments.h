@@ -22,6 +22,9 @@ struct Segment {
   std::size_t power_on = 0;  // number of the power-on
 };
 
+/// Returns the mean, summed in order.
+double mean_of(std::span<const double> values);
+
 /// Returns a segment for each range. A range lies in one powered stretch.
 std::vector<Segment> segments_of(const Recording& recording,
                                  std::span<const SampleRange> ranges);

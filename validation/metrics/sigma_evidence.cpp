@@ -44,10 +44,8 @@ void add_groups(std::span<const Segment> segments, std::span<const double> z,
 }
 
 void add_soaks(const EvidenceRun& run, std::vector<ErrorGroup>& groups) {
-  std::vector<SampleRange> ranges;
-  for (const Soak& soak : soaks_of(*run.recording))
-    ranges.push_back(soak.range);
-  const std::vector<Segment> soaks = segments_of(*run.recording, ranges);
+  const std::vector<Segment> soaks =
+      segments_of(*run.recording, ranges_of(soaks_of(*run.recording)));
   add_groups(soaks, normalised_errors(run, soaks),
              std::vector<bool>(soaks.size(), true), groups);
 }

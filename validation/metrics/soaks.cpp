@@ -54,4 +54,10 @@ std::vector<Soak> soaks_of(const Recording& recording) {
   return soaks;
 }
 
+std::vector<SampleRange> ranges_of(const std::vector<Soak>& soaks) {
+  std::vector<SampleRange> ranges;
+  for (const Soak& soak : soaks) ranges.push_back(soak.range);
+  return ranges;
+}
+
 }  // namespace beamgyro::internal

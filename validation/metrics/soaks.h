@@ -23,4 +23,7 @@ struct Soak {
 /// no longer moves from minute to minute.
 std::vector<Soak> soaks_of(const Recording& recording);
 
+/// Returns the samples of each.
+std::vector<SampleRange> ranges_of(const std::vector<Soak>& soaks);
+
 }  // namespace beamgyro::internal

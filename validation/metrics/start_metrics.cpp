@@ -24,30 +24,23 @@ std::vector<RunPurpose> power_on_purposes() {
   return {RunPurpose::kWarmUp, RunPurpose::kPowerCycle};
 }
 
-double mean_between(std::span<const double> values, std::size_t begin,
-                    std::size_t end) {
-  double sum = 0.0;
-  for (std::size_t i = begin; i < end; ++i) sum += values[i];
-  return sum / static_cast<double>(end - begin);
-}
-
-/// Blocks at the end of a warm-up whose mean is B_end.
-std::size_t end_blocks(std::size_t blocks) {
-  return std::max<std::size_t>(
-      1, static_cast<std::size_t>(
-             std::round(kEndShare * static_cast<double>(blocks))));
+/// B_end, the mean of the blocks at the end of a warm-up.
+double settled_mean(std::span<const double> blocks) {
+  const double share = kEndShare * static_cast<double>(blocks.size());
+  return mean_of(blocks.last(
+      std::max<std::size_t>(1, static_cast<std::size_t>(std::round(share)))));
 }
 
 /// B(t) - B_end of a warm-up, smoothed over 5 % of the time from power-on.
 std::vector<double> distances(std::span<const double> blocks) {
   const std::size_t n = blocks.size();
-  const double settled = mean_between(blocks, n - end_blocks(n), n);
+  const double settled = settled_mean(blocks);
   std::vector<double> d;
   for (std::size_t i = 0; i < n; ++i) {
     const auto reach =
         static_cast<std::size_t>(kSmoothing * (static_cast<double>(i) + 0.5));
     const std::size_t side = std::min(reach, n - 1 - i);
-    d.push_back(mean_between(blocks, i - side, i + side + 1) - settled);
+    d.push_back(mean_of(blocks.subspan(i - side, 2 * side + 1)) - settled);
   }
   return d;
 }
@@ -71,15 +64,12 @@ double whole_change(const Recording& recording,
                     std::span<const double> residual,
                     std::span<const Segment> blocks,
                     std::span<const double> values) {
-  const std::size_t n = values.size();
-  const double settled = mean_between(values, n - end_blocks(n), n);
   const auto zeroing = static_cast<std::size_t>(
       std::max(1.0, std::round(kZeroing / usual_step(recording))));
   const std::size_t first = blocks[0].samples.begin;
-  const double early = mean_between(residual, first, first + zeroing);
-  const double later =
-      mean_between(residual, first + zeroing, first + 2 * zeroing);
-  return std::abs(1.5 * early - 0.5 * later - settled);
+  const double early = mean_of(residual.subspan(first, zeroing));
+  const double later = mean_of(residual.subspan(first + zeroing, zeroing));
+  return std::abs(1.5 * early - 0.5 * later - settled_mean(values));
 }
 
 /// Warm-up time of one power-on.
@@ -239,8 +229,8 @@ std::optional<Estimate> turn_on_repeatability(const Evidence& evidence) {
     std::vector<double> means;
     for (const SampleRange& cycle : cycles)
       means.push_back(
-          mean_between(residual, cycle.begin, cycle.begin + shortest));
-    const double mean = mean_between(means, 0, means.size());
+          mean_of(std::span(residual).subspan(cycle.begin, shortest)));
+    const double mean = mean_of(means);
     for (const double m : means) squares += (m - mean) * (m - mean);
     freedom += static_cast<double>(means.size() - 1);
   }

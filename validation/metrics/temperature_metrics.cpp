@@ -25,9 +25,7 @@ Soaks all_soaks(const Evidence& evidence) {
   Soaks all;
   for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kSoak})) {
     const std::vector<Soak> soaks = soaks_of(*run->recording);
-    std::vector<SampleRange> ranges;
-    for (const Soak& soak : soaks) ranges.push_back(soak.range);
-    all.means.add(*run, ranges);
+    all.means.add(*run, ranges_of(soaks));
     all.soaks.insert(all.soaks.end(), soaks.begin(), soaks.end());
   }
   return all;

@@ -77,9 +77,7 @@ void add_by_direction(const std::vector<DirectedMean>& means,
 
 std::vector<DirectedMean> soak_means(const EvidenceRun& run) {
   const std::vector<Soak> soaks = soaks_of(*run.recording);
-  std::vector<SampleRange> ranges;
-  for (const Soak& soak : soaks) ranges.push_back(soak.range);
-  const auto segments = segments_of(*run.recording, ranges);
+  const auto segments = segments_of(*run.recording, ranges_of(soaks));
   const std::vector<double> residual = means_over(segments, residual_of(run));
   std::vector<DirectedMean> means;
   for (std::size_t k = 0; k < soaks.size(); ++k) {

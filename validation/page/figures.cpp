@@ -72,30 +72,27 @@ nlohmann::ordered_json figures_of(const Evidence& before,
   return figures;
 }
 
-nlohmann::ordered_json population_figure(const PopulationFigure& population) {
-  const std::size_t devices = population.after.size();
-  const std::string name = spoken_name(population.name, population.unit);
-  Figure figure{"population_" + population.name,
+nlohmann::ordered_json population_figure(const PopulationMetric& metric,
+                                         const std::optional<double>& limit) {
+  const std::string unit(metric.metric->unit), id(metric.metric->name);
+  const std::string name = spoken_name(id, unit);
+  Figure figure{"population_" + id,
                 "Yield: " + name,
                 fmt::format("Share of {} devices whose {} is at most the value "
                             "on the axis.",
-                            devices, name),
-                {name, population.unit},
+                            metric.after.size(), name),
+                {name, unit},
                 {"Share of the devices", "%"}};
   figure.x.label[0] = static_cast<char>(std::toupper(figure.x.label[0]));
-  FigureSeries before = share_of_devices("before", population.before);
-  FigureSeries after = share_of_devices("after", population.after);
+  FigureSeries before = share_of_devices("before", metric.before);
+  FigureSeries after = share_of_devices("after", metric.after);
   // Values of one sign that differ much are told apart by their ratios.
   figure.x.logarithmic = !before.x.empty() && !after.x.empty() &&
                          before.x.front() > 0.0 && after.x.front() > 0.0 &&
-                         (!population.limit || *population.limit > 0.0);
+                         (!limit || *limit > 0.0);
   figure.add(std::move(before));
   figure.add(std::move(after));
-  if (population.limit)
-    figure.add({"limit",
-                "limit",
-                {*population.limit, *population.limit},
-                {0.0, 100.0}});
+  if (limit) figure.add({"limit", "limit", {*limit, *limit}, {0.0, 100.0}});
   return to_json(figure);
 }
 

@@ -4,11 +4,10 @@
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <span>
-#include <string>
 
 #include "validation/evidence/evidence.h"
 #include "validation/metrics/sigma_report.h"
+#include "validation/result/validation_result.h"
 
 namespace beamgyro::internal {
 
@@ -24,16 +23,11 @@ constexpr std::size_t kFigurePoints = 300;
 nlohmann::ordered_json figures_of(const Evidence& before,
                                   const Evidence& after);
 
-/// A figure of merit of each device of a population; NaN: it has none.
-struct PopulationFigure {
-  std::string name, unit;  // bias over temperature, peak to peak; deg/s
-  std::span<const double> before, after;
-  std::optional<double> limit = {};  // the most that is allowed
-};
-
 /// Returns the figure of a yield, "population_" and the name: the share of the
-/// devices whose metric is at most x, before and after, and the limit.
-nlohmann::ordered_json population_figure(const PopulationFigure& figure);
+/// devices whose metric is at most x, before and after, and the most that is
+/// allowed.
+nlohmann::ordered_json population_figure(const PopulationMetric& metric,
+                                         const std::optional<double>& limit);
 
 /// Returns the figures of a sigma, "sigma_pit" and "sigma_coverage".
 nlohmann::ordered_json sigma_figures(const SigmaReport& report);

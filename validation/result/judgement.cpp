@@ -34,33 +34,19 @@ std::optional<Estimate> evaluated(const Metric& metric, const Evidence& all,
   return metric.evaluate(read);
 }
 
-const Estimate* estimate_of(const MetricResult& result,
-                            const std::string& reference) {
-  const auto pointer = [](const std::optional<Estimate>& estimate) {
-    return estimate ? &*estimate : nullptr;
-  };
-  if (reference == "before") return pointer(result.before);
+std::optional<Estimate> estimate_of(const MetricResult& result,
+                                    const std::string& reference) {
+  if (reference == "before") return result.before;
   for (const BaselineEstimate& baseline : result.baselines)
-    if (baseline.name == reference) return pointer(baseline.estimate);
-  return nullptr;
-}
-
-std::optional<Estimate> copied(const Estimate* estimate) {
-  return estimate == nullptr ? std::nullopt : std::optional(*estimate);
+    if (baseline.name == reference) return baseline.estimate;
+  return std::nullopt;
 }
 
 double temperature_span(const std::vector<Recording>& runs) {
-  double lowest = HUGE_VAL, highest = -HUGE_VAL;
-  for (const Recording& run : runs) {
-    const Column* temperature = find_column(run, "temperature");
-    if (temperature == nullptr) return 0.0;
-    for (std::size_t k = 0; k < run.time.size(); ++k)
-      if ((run.status[k] & kUnpowered) == 0) {
-        lowest = std::min(lowest, temperature->values[k]);
-        highest = std::max(highest, temperature->values[k]);
-      }
-  }
-  return highest - lowest;
+  std::vector<const Recording*> all;
+  for (const Recording& run : runs) all.push_back(&run);
+  const auto range = temperatures_of(all);
+  return range ? range->highest - range->lowest : 0.0;
 }
 
 bool is_required(const SpecificationFile& specification,
@@ -265,7 +251,7 @@ std::vector<DecidedLimit> decided_limits(
     std::optional<Estimate> after, reference;
     if (result != metrics.end()) {
       after = result->after;
-      reference = copied(estimate_of(*result, limit.relative_to));
+      reference = estimate_of(*result, limit.relative_to);
     }
     decided.push_back({limit, decide(limit, after, reference,
                                      specification.false_accept_risk)});

@@ -288,8 +288,8 @@ TEST(Figures, AYieldRisesToTheShareOfDevicesThatHaveAFigure) {
   std::vector<double> before, after;
   for (int k = 1; k <= 1000; ++k) before.push_back(k);
   after = {0.1, std::numeric_limits<double>::quiet_NaN(), 0.3, 0.2};
-  const auto figure =
-      population_figure({"bias_pp_deg_per_s", "deg/s", before, after, 0.25});
+  const auto figure = population_figure(
+      {find_metric("bias_pp_deg_per_s"), before, after}, 0.25);
   EXPECT_EQ(figure["x"]["label"], "Bias pp");
   EXPECT_EQ(figure["x"]["scale"], "log");
   EXPECT_LE(figure["series"][0]["x"].size(), kFigurePoints + 1);
