@@ -21,7 +21,7 @@ std::string rejection_by(const std::string& map, const std::string& text,
 }
 
 void expect_says(const std::string& message, const std::string& part) {
-  EXPECT_NE(message.find(part), std::string::npos) << message;
+  EXPECT_TRUE(holds(message, part));
 }
 
 std::string time_map(const std::string& keys) {
