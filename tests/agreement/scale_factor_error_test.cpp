@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <vector>
 
 #include "sim/dynamics/gyro.h"
 #include "sim/scenario/simulation.h"

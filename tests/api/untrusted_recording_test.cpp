@@ -8,10 +8,8 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
-#include <memory>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "include/beamgyro/allan.h"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <iterator>
 
 #include "compensation/scoring/scale_factor.h"
 #include "compensation/training/train.h"

@@ -8,7 +8,6 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
-#include <string>
 #include <thread>
 #include <utility>
 #include <vector>

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include "tests/config/rejection.h"
 #include "tests/sim/signal/allan_deviation.h"

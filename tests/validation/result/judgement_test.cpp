@@ -8,6 +8,7 @@
 
 #include "statistics/intervals.h"
 #include "tests/compensation/recorded_run.h"
+#include "tests/config/rejection.h"
 #include "validation/result/result_json.h"
 
 namespace beamgyro::internal::judgement_test {
@@ -69,8 +70,7 @@ TEST(DecideOn, WhatIsNotTestedDecidesWhereItIsAskedFor) {
   EXPECT_EQ(strict.words, "No run could decide on jacobian.");
   const ValidationResult plain = decide_between({}, untested, true);
   EXPECT_EQ(plain.verdict, kPass);
-  EXPECT_NE(plain.words.find("2 not tested (jacobian, hold_out)"),
-            std::string::npos);
+  EXPECT_TRUE(holds(plain.words, "2 not tested (jacobian, hold_out)"));
   EXPECT_EQ(decide_between({decided("a", kUndecided)}, {}, true).verdict,
             kUndecided);
 }

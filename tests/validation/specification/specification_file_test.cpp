@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "tests/config/rejection.h"
 #include "validation/metrics/metric.h"
 
 namespace beamgyro::internal::specification_file_test {
@@ -80,12 +81,7 @@ void PrintTo(const BadFile& bad, std::ostream* out) { *out << bad.text; }
 class BadSpecification : public testing::TestWithParam<BadFile> {};
 
 TEST_P(BadSpecification, IsRefusedWithItsPlace) {
-  try {
-    parsed(GetParam().text);
-    FAIL() << "read without an error";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), GetParam().message);
-  }
+  EXPECT_EQ(rejection([] { parsed(GetParam().text); }), GetParam().message);
 }
 
 INSTANTIATE_TEST_SUITE_P(
