@@ -6,21 +6,14 @@
 #include <numbers>
 
 #include "tests/config/rejection.h"
+#include "tests/dataset/log/imported_log.h"
 
 namespace beamgyro::internal::log_map_test {
 namespace {
 
-const std::string kMap = R"(powered_s = 5
-[time]
-column = "t"
-unit = "ms"
-[gyro]
-column = "w"
-unit = "deg/s"
-[temperature]
-column = "T"
-unit = "degC"
-)";
+const std::string kMap =
+    "powered_s = 5\n[time]\ncolumn = \"t\"\nunit = \"ms\"\n" +
+    kGyroAndTemperature;
 
 std::string changed(const std::string& from, const std::string& to) {
   const std::size_t at = kMap.find(from);
@@ -190,28 +183,23 @@ TEST(LogMap, AxesAreChosenAndAllAreRead) {
             "axis = z: map.toml:5:1: gyro: has no axes; expected no axis");
 }
 
+void refused(const std::string& text, const std::string& why) {
+  EXPECT_TRUE(holds(rejection_of(text), why));
+}
+
 TEST(LogMap, UnitsAreNeverGuessed) {
-  EXPECT_TRUE(holds(rejection_of(changed("unit = \"deg/s\"\n", "")),
-                    "gyro.unit: missing; expected one of \"deg/s\""));
-  EXPECT_TRUE(holds(rejection_of(changed("unit = \"degC\"\n", "")),
-                    "temperature.unit: missing"));
-  EXPECT_TRUE(holds(rejection_of(changed("unit = \"ms\"\n", "")),
-                    "time.unit: missing"));
-  EXPECT_TRUE(holds(rejection_of(changed("\"degC\"", "\"C\"")),
-                    "temperature.unit: \"C\" is not known"));
+  refused(changed("unit = \"deg/s\"\n", ""),
+          "gyro.unit: missing; expected one of \"deg/s\"");
+  refused(changed("unit = \"degC\"\n", ""), "temperature.unit: missing");
+  refused(changed("unit = \"ms\"\n", ""), "time.unit: missing");
+  refused(changed("\"degC\"", "\"C\""), "temperature.unit: \"C\" is not known");
   for (const char* unit : {"V", "counts"})
-    EXPECT_TRUE(holds(rejection_of(changed("deg/s", unit)),
-                      "gyro.scale_deg_per_s: missing"));
-  EXPECT_TRUE(
-      holds(rejection_of(changed("\"degC\"", "\"counts\"\nscale_K = 1")),
-            "temperature.offset_degC: missing"));
+    refused(changed("deg/s", unit), "gyro.scale_deg_per_s: missing");
+  refused(changed("\"degC\"", "\"counts\"\nscale_K = 1"),
+          "temperature.offset_degC: missing");
 }
 
 TEST(LogMap, RefusesKeysThatMeanNothing) {
-  const auto refused = [](const std::string& text, const std::string& why) {
-    const std::string message = rejection_of(text);
-    EXPECT_TRUE(holds(message, why));
-  };
   refused(changed("\"deg/s\"", "\"rad/s\"\nscale_deg_per_s = 2"),
           "gyro.scale_deg_per_s: not used together");
   refused(changed("\"degC\"", "\"degC\"\nwrap_bits = 16"),

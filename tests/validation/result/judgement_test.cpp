@@ -26,9 +26,7 @@ CheckResult check(const char* name, CheckOutcome outcome) {
   return {.name = name, .outcome = outcome, .words = "Words."};
 }
 
-constexpr Conformity kPass = Conformity::kPass;
-constexpr Conformity kFail = Conformity::kFail;
-constexpr Conformity kUndecided = Conformity::kUndecided;
+using enum Conformity;
 constexpr CheckOutcome kPassed = CheckOutcome::kPassed;
 constexpr CheckOutcome kNotTested = CheckOutcome::kNotTested;
 
