@@ -252,10 +252,7 @@ TEST(BadCampaign, HasRunThatIsNone) {
 
 TEST(CampaignFile, TheBaseFilesAreCheckedAsAnyOther) {
   const CampaignFolder folder;
-  folder.write("rest.toml",
-               "name = \"rest\"\ndevice = \"nominal.toml\"\nfidelity = "
-               "\"quasistatic\"\nduration_s = 10\noutput_rate_Hz = 10\nseed = "
-               "7\nspeed = 1\n[ambient]\nconstant_degC = 25\n");
+  folder.write_rest("speed = 1\n[ambient]\nconstant_degC = 25\n");
   EXPECT_TRUE(holds(rejection([&] { folder.campaign(campaign_text("")); }),
                     "rest.toml:7:1: speed: unknown key"));
 }
@@ -270,10 +267,7 @@ TEST(CampaignFile, CopiesOfTheSourcesMakeTheSameCampaign) {
                  std::string("time_s,temperature_degC,rate_deg_per_s\n0,1") +
                      std::to_string(name[0] % 10) + ".5,1\n5,20,2\n");
   }
-  folder.write("rest.toml",
-               "name = \"rest\"\ndevice = \"nominal.toml\"\nfidelity = "
-               "\"quasistatic\"\nduration_s = 10\noutput_rate_Hz = 10\nseed = "
-               "7\n[ambient]\nfile = \"profiles/a.csv\"\n");
+  folder.write_rest("[ambient]\nfile = \"profiles/a.csv\"\n");
   const std::string text = campaign_text(
       "[tolerances]\n" + std::string(kOffset), "",
       "[run.vary]\n\"ambient.file\" = { discrete = { values = "

@@ -10,6 +10,7 @@
 #include "sim/dynamics/loop_noise.h"
 #include "sim/numerics/explicit_rk.h"
 #include "tests/sim/device/nominal_device.h"
+#include "tests/sim/dynamics/loop_response.h"
 
 namespace beamgyro::internal {
 
@@ -29,8 +30,7 @@ struct CarrierUnit {
   double T_beam, T_board;
   CaseMotion motion;
   CarrierOde ode{gyro};
-  ModalParameters modal{
-      modal_parameters(gyro.device, gyro.beam, T_beam, gyro.stiffness_trim)};
+  ModalParameters modal{modal_at(gyro, T_beam)};
 
   explicit CarrierUnit(const DeviceParameters& device,
                        double beam = kCalibrationTemperature,

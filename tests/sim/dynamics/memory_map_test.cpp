@@ -26,12 +26,10 @@ Gyro lifelike(std::vector<std::string> more = {}) {
 
 BeamSignal exact(const Gyro& gyro, double T, double rate,
                  const MemoryState& memory) {
-  CaseMotion motion;
-  motion.z = rate;
   return beam_signal(
       gyro,
       modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim, memory),
-      motion);
+      {.z = rate});
 }
 
 // T_f - T_f,ref of a bond that has been cooled slowly, or is being heated: the

@@ -45,19 +45,6 @@ std::vector<Recording> runs(const ScenarioPlan& scenario, int threads) {
   return all;
 }
 
-bool same_bits(const Recording& a, const Recording& b) {
-  if (a.time != b.time || a.status != b.status ||
-      a.columns.size() != b.columns.size())
-    return false;
-  for (std::size_t i = 0; i < a.columns.size(); ++i) {
-    const auto &x = a.columns[i].values, &y = b.columns[i].values;
-    if (x.size() != y.size() ||
-        std::memcmp(x.data(), y.data(), x.size() * sizeof(double)) != 0)
-      return false;
-  }
-  return true;
-}
-
 class RunThreads : public testing::TestWithParam<Fidelity> {};
 
 TEST_P(RunThreads, EightDevicesGiveTheSameBitsOnOneThreadAndOnFour) {
