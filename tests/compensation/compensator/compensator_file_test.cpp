@@ -12,6 +12,7 @@
 #include "tests/compensation/recorded_run.h"
 #include "tests/compensation/sample_compensators.h"
 #include "tests/config/rejection.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::compensator_file_test {
 namespace {
@@ -203,12 +204,11 @@ TEST(CompensatorFile, NestingThatOverflowsTheStackIsRejected) {
 }
 
 TEST(CompensatorFile, FilesLargerThanACompensatorAreNotRead) {
-  const std::filesystem::path file =
-      std::filesystem::path(::testing::TempDir()) / "large.json";
+  const TestDirectory made;
+  const std::filesystem::path file = made.directory / "large.json";
   write_text_file(file, "{}");
   std::filesystem::resize_file(file, std::uintmax_t{50} << 30);
   const std::string message = rejection([&] { read_compensator(file); });
-  std::filesystem::remove(file);
   EXPECT_TRUE(holds(message, "53687091200 bytes; expected a compensator"));
 }
 

@@ -219,12 +219,6 @@ TrainingRows parabolas(int devices, std::uint32_t stream,
   });
 }
 
-std::vector<double> every_five_kelvins() {
-  std::vector<double> temperatures;
-  for (int T = -40; T <= 50; T += 5) temperatures.push_back(T);
-  return temperatures;
-}
-
 // Nothing tells the slope beyond the range: the steepest within it stands for
 // it, that of a device of the population where the own curve is flat.
 TEST(AdaptedSigma, GrowsByTheSteepestBiasOfThePopulation) {

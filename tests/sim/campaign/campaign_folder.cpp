@@ -2,9 +2,7 @@
 #include "tests/sim/campaign/campaign_folder.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <atomic>
 #include <fstream>
 
 namespace beamgyro::internal {
