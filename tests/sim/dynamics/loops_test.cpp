@@ -209,23 +209,5 @@ TEST(Verification, V46ErrorsShrinkWithTheTolerance) {
   }
 }
 
-TEST(Carrier, PhaseIsKeptOverAChangeOfWindow) {
-  const Gyro gyro = make_gyro(nominal_device());
-  CarrierOde whole(gyro), cut(gyro);
-  ExplicitRkOptions options;
-  options.absolute_tolerance.setConstant(1e-10);
-  const auto integrator = [&](CarrierOde& ode) {
-    return ExplicitRk([&ode](double t, const auto& y,
-                             auto dydt) { ode.rate(t, {}, y, dydt); },
-                      0, CarrierOde::at_rest(), options);
-  };
-  ExplicitRk a = integrator(whole), b = integrator(cut);
-  const VectorXd end = a.advance_to(0.02);
-  b.advance_to(0.0123);
-  cut.begin_window(0.0123);
-  b.restart(0, VectorXd(b.state()));
-  EXPECT_LT((b.advance_to(0.02 - 0.0123) - end).cwiseAbs().maxCoeff(), 1e-6);
-}
-
 }  // namespace
 }  // namespace beamgyro::internal::loops_test
