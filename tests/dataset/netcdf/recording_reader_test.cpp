@@ -3,10 +3,8 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <bit>
-#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <stdexcept>
