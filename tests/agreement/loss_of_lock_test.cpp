@@ -3,10 +3,7 @@
 // what the fidelities say there is the same.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <string>
-#include <vector>
 
 #include "sim/dynamics/gyro.h"
 #include "sim/numerics/simulation_failure.h"

@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <vector>
 
 #include "sim/dynamics/gyro.h"
 #include "sim/scenario/simulation.h"
 #include "tests/sim/device/nominal_device.h"
+#include "tests/sim/dynamics/loop_response.h"
 #include "tests/sim/scenario/scenario_text.h"
 
 namespace beamgyro::internal::scale_factor_error_test {
@@ -60,8 +60,7 @@ TEST_P(ScaleFactorError, TrimsHoldWhateverItIs) {
   EXPECT_NEAR(at_rest(wrong).quadrature / at_rest(exact).quadrature, 1 + kError,
               1e-9);
   // Relative to T_0 the slope is that of any unit.
-  const ModalParameters modal = modal_parameters(
-      wrong.device, wrong.beam, kCalibrationTemperature, wrong.stiffness_trim);
+  const ModalParameters modal = modal_at(wrong, kCalibrationTemperature);
   EXPECT_NEAR(rate_slope(wrong, modal, kCalibrationTemperature), 1, 1e-6);
 }
 

@@ -12,6 +12,7 @@
 #include "sim/scenario/simulation.h"
 #include "tests/linear_algebra/reference_algebra.h"
 #include "tests/sim/device/nominal_device.h"
+#include "tests/sim/dynamics/loop_response.h"
 #include "tests/sim/scenario/scenario_text.h"
 
 namespace beamgyro::internal::shipped_devices_test {
@@ -31,10 +32,7 @@ std::vector<double> bias_curve(const Gyro& gyro) {
   std::vector<double> curve;
   for (int celsius = -40; celsius <= 50; ++celsius) {
     const double T = celsius + kZeroCelsius;
-    curve.push_back(electronics_at(gyro, T)
-                        .output(beam_signal(gyro, T, {}).demodulated)
-                        .rate /
-                    kDegree);
+    curve.push_back(zero_rate_output(gyro, T) / kDegree);
   }
   return curve;
 }
@@ -103,9 +101,7 @@ TEST(ShippedDevices, HardCeramicDoublesQ) {
   const auto loss = [](const std::string& name) {
     const Gyro gyro = make_gyro(shipped(name));
     return gyro.beam.timoshenko_frequency *
-           modal_parameters(gyro.device, gyro.beam, kCalibrationTemperature,
-                            gyro.stiffness_trim)
-               .damping(0, 0);
+           modal_at(gyro, kCalibrationTemperature).damping(0, 0);
   };
   EXPECT_NEAR(loss("nominal") / loss("hard_pzt"), 2.1, 0.2);
 }
@@ -131,9 +127,7 @@ TEST(ShippedDevices, TheOvenHoldsTheBeamOverTheAmbientRange) {
 TEST(ShippedDevices, RebalancePaysWithThePatchThatPushesBack) {
   const Gyro gyro = make_gyro(shipped("rebalance"));
   const auto slope = [&](double T) {
-    return rate_slope(
-        gyro, modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim),
-        T);
+    return rate_slope(gyro, modal_at(gyro, T), T);
   };
   const double per_kelvin = (slope(308.15) - slope(288.15)) / 20;
   EXPECT_NEAR(per_kelvin, -0.003, 0.0005);

@@ -4,15 +4,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "include/beamgyro/set.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::campaign_api_test {
 namespace {
@@ -20,21 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path kScenarios = BEAMGYRO_SCENARIOS;
-
-/// A directory that vanishes.
-class Folder {
- public:
-  Folder() { fs::remove_all(path_); }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  // Tests run at the same time, each in a process of its own.
-  fs::path path_ = fs::temp_directory_path() /
-                   ("beamgyro_api_test_set_" + std::to_string(getpid()));
-};
 
 beamgyro::Campaign six() {
   return beamgyro::Campaign::read(kScenarios / "campaigns/small.toml", 6);
@@ -62,28 +46,28 @@ TEST(PublicCampaign, HasNoDeviceBeyondItsNumber) {
 }
 
 TEST(PublicSet, ACancelledGenerationGoesOnToTheSameBytes) {
-  const Folder folder;
+  const TestDirectory folder;
   const auto campaign = six();
-  EXPECT_THROW(generate(campaign, folder.path(),
+  EXPECT_THROW(generate(campaign, folder.directory,
                         {.jobs = 1,
                          .progress = [](double share) { return share < 0.9; }}),
                Cancelled);
-  EXPECT_THROW(beamgyro::Set::open(folder.path()), std::invalid_argument);
+  EXPECT_THROW(beamgyro::Set::open(folder.directory), std::invalid_argument);
   const GenerationOutcome outcome =
-      generate(campaign, folder.path(), {.jobs = 2, .resume = true});
+      generate(campaign, folder.directory, {.jobs = 2, .resume = true});
   EXPECT_EQ(outcome.files, outcome.planned_files);
   EXPECT_LT(outcome.files_made, outcome.files);  // one was there
-  const std::string manifest = bytes_of(folder.path() / "manifest.jsonl");
-  fs::remove_all(folder.path());
-  generate(campaign, folder.path());
-  EXPECT_EQ(bytes_of(folder.path() / "manifest.jsonl"), manifest);
+  const std::string manifest = bytes_of(folder.directory / "manifest.jsonl");
+  fs::remove_all(folder.directory);
+  generate(campaign, folder.directory);
+  EXPECT_EQ(bytes_of(folder.directory / "manifest.jsonl"), manifest);
 }
 
 TEST(PublicSet, GivesRecordingsPartsAndDrawnNumbers) {
-  const Folder folder;
+  const TestDirectory folder;
   const auto campaign = six();
-  generate(campaign, folder.path());
-  const auto set = beamgyro::Set::open(folder.path());
+  generate(campaign, folder.directory);
+  const auto set = beamgyro::Set::open(folder.directory);
   EXPECT_EQ(set.devices(), 6U);
   EXPECT_EQ(set.runs(), campaign.runs());
   std::size_t together = 0;

@@ -16,6 +16,7 @@
 #include "include/beamgyro/train.h"
 #include "include/beamgyro/validate.h"
 #include "tests/config/rejection.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::compensate_api_test {
 namespace {
@@ -26,6 +27,10 @@ Recording run_of(const std::vector<std::string>& overrides = {}) {
   return simulate(beamgyro::Scenario::read(kScenarios / "ten_minutes.toml",
                                            overrides))
       .recording;
+}
+
+std::vector<double> recorded_rate(const Recording& run) {
+  return column_values(run, "rate");
 }
 
 TEST(UserCompensator, SeesTheMeasuredSignalsOfEachPoweredStretchOnly) {
@@ -61,18 +66,14 @@ TEST(UserCompensator, SeesTheMeasuredSignalsOfEachPoweredStretchOnly) {
 TEST(UserCompensator, IsNotGivenWhatCouldNotBeWritten) {
   Recording run = run_of();
   run.time[200] = run.time[100];
-  const auto user = compensator_of("mine", {}, [](const Recording& seen) {
-    return column_values(seen, "rate");
-  });
+  const auto user = compensator_of("mine", {}, recorded_rate);
   EXPECT_THROW(compensate(*user, run), std::invalid_argument);
   const auto model = beamgyro::Model::read(kScenarios / "models/cubic.toml");
   EXPECT_THROW(train(model, {{"run", run}}), std::invalid_argument);
 }
 
 TEST(UserCompensator, TheFullScaleOfAValidationIsAPositiveNumber) {
-  const auto user = compensator_of("mine", {}, [](const Recording& seen) {
-    return column_values(seen, "rate");
-  });
+  const auto user = compensator_of("mine", {}, recorded_rate);
   for (const double wrong : {0.0, -1.0, std::nan(""), HUGE_VAL})
     EXPECT_THROW(
         validate(*user, {.recordings = {"absent.h5"}, .full_scale = wrong}),
@@ -144,8 +145,8 @@ TEST(PublicCompensator, TextTrainsReadsAndAnswersAlike) {
 }
 
 TEST(PublicValidation, JudgesAUserCompensatorOnRecordings) {
-  const auto file =
-      std::filesystem::temp_directory_path() / "beamgyro_api_test_run.h5";
+  const TestDirectory folder;
+  const auto file = folder.directory / "run.h5";
   write_recording(run_of(), file);
   std::atomic<int> calls = 0;
   const auto nothing =
@@ -154,7 +155,6 @@ TEST(PublicValidation, JudgesAUserCompensatorOnRecordings) {
         return column_values(seen, "rate");
       });
   const ValidationOutcome outcome = validate(*nothing, {.recordings = {file}});
-  std::filesystem::remove(file);
   EXPECT_GT(calls, 0);
   EXPECT_NE(outcome.verdict, Verdict::kPass);  // it removes nothing
   EXPECT_FALSE(outcome.metrics.empty());

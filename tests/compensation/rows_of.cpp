@@ -33,6 +33,12 @@ TrainingRows rows_of(const std::vector<Leg>& legs,
   return rows;
 }
 
+std::vector<double> every_five_kelvins() {
+  std::vector<double> temperatures;
+  for (int T = -40; T <= 50; T += 5) temperatures.push_back(T);
+  return temperatures;
+}
+
 std::vector<double> white(int count, std::uint32_t run) {
   RandomStream random(17, 0, run, RandomPurpose{0});
   std::vector<double> values(static_cast<std::size_t>(count));

@@ -20,6 +20,9 @@ struct Leg {
 TrainingRows rows_of(const std::vector<Leg>& legs,
                      const std::function<double(double, int)>& bias);
 
+/// -40, -35, ... 50 degC.
+std::vector<double> every_five_kelvins();
+
 /// Normal numbers of mean 0 and deviation 1, the same for the same `run`.
 std::vector<double> white(int count, std::uint32_t run);
 

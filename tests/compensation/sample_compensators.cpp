@@ -48,13 +48,6 @@ Compensator with_inputs(const std::vector<std::string>& names,
   return c;
 }
 
-BpNetwork random_network(const std::vector<int>& layers) {
-  RandomStream random(5, 0, 0, kInitialWeightsStream);
-  BpNetwork network(layers);
-  network.randomise(random);
-  return network;
-}
-
 Compensator every_input() {
   Compensator c = with_inputs(
       {"temperature", "temperature_lowpass(100)", "temperature_rate(60)",
@@ -76,6 +69,20 @@ Compensator every_input() {
 }
 
 }  // namespace
+
+BpNetwork random_network(const std::vector<int>& layers, std::uint64_t seed,
+                         std::uint32_t run) {
+  RandomStream random(seed, 0, run, kInitialWeightsStream);
+  BpNetwork network(layers);
+  network.randomise(random);
+  return network;
+}
+
+Eigen::ArrayXXd wavy_inputs(Eigen::Index rows, Eigen::Index inputs) {
+  return Eigen::ArrayXXd::NullaryExpr(rows, inputs, [](auto i, auto j) {
+    return std::sin(1.0 + 3.0 * double(i) + double(j));
+  });
+}
 
 Compensator network_compensator() {
   Compensator c = with_inputs(

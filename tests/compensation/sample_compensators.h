@@ -8,6 +8,13 @@
 
 namespace beamgyro::internal {
 
+/// A network with the initial weights of a training.
+BpNetwork random_network(const std::vector<int>& layers, std::uint64_t seed = 5,
+                         std::uint32_t run = 0);
+
+/// Irregular numbers in [-1, 1], a row for each sample.
+Eigen::ArrayXXd wavy_inputs(Eigen::Index rows, Eigen::Index inputs);
+
 /// Network 3-6-4-1 on temperature, a low-pass and the time since power-on.
 Compensator network_compensator();
 

@@ -8,7 +8,6 @@
 
 #include <cerrno>
 #include <cstdarg>
-#include <cstdio>
 #include <mutex>
 #include <optional>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A compensator file; one that is accepted is written, read and evaluated, and
 // must come out the same.
-#include <cmath>
 #include <string>
 
 #include "compensation/compensator/compensator_file.h"

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/config/rejection.h"
+
 namespace beamgyro::internal::sensitivity_report_test {
 namespace {
 
@@ -31,22 +33,20 @@ MeritResult merit(double sum_of_first) {
 
 TEST(SensitivityReport, SaysWhenInteractionsDominate) {
   const std::string text = sensitivity_table(merit(0.19));
-  EXPECT_NE(text.find("Sum of the first orders: 0.19. Interactions dominate: "
-                      "81 % of the variance"),
-            std::string::npos)
-      << text;
-  EXPECT_NE(text.find("Mostly together with others: mount.axis_angle_deg.\n"),
-            std::string::npos);
-  EXPECT_EQ(sensitivity_table(merit(0.71)).find("dominate"), std::string::npos);
+  EXPECT_TRUE(holds(text,
+                    "Sum of the first orders: 0.19. Interactions dominate: "
+                    "81 % of the variance"));
+  EXPECT_TRUE(
+      holds(text, "Mostly together with others: mount.axis_angle_deg.\n"));
+  EXPECT_FALSE(holds(sensitivity_table(merit(0.71)), "dominate"));
 }
 
 // Each first order is known to 0.02, their sum to 0.028.
 TEST(SensitivityReport, InteractionsHaveAnInterval) {
-  EXPECT_NE(
-      sensitivity_table(merit(0.71)).find("interactions 29 % (26 to 32 %).\n"),
-      std::string::npos);
-  EXPECT_NE(sensitivity_table(merit(0.98)).find("interactions at most 5 %.\n"),
-            std::string::npos);
+  EXPECT_TRUE(holds(sensitivity_table(merit(0.71)),
+                    "interactions 29 % (26 to 32 %).\n"));
+  EXPECT_TRUE(
+      holds(sensitivity_table(merit(0.98)), "interactions at most 5 %.\n"));
 }
 
 TEST(SensitivityReport, ALongKeyStandsAboveItsRow) {
@@ -54,7 +54,7 @@ TEST(SensitivityReport, ALongKeyStandsAboveItsRow) {
   const std::string key = "readout.offset_tc_deg_per_s_per_K + beam.side_m";
   result.factors.push_back(factor(key, 0.01, 0.02));
   const std::string text = sensitivity_table(result);
-  EXPECT_NE(text.find('\n' + key + '\n'), std::string::npos) << text;
+  EXPECT_TRUE(holds(text, '\n' + key + '\n'));
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = text.find('\n', begin);
     EXPECT_LE(end - begin, 100U) << text;
@@ -66,8 +66,8 @@ TEST(SensitivityReport, AnIndexByRanksMayHaveNoInterval) {
   MeritResult result = merit(0.71);
   result.factors[0].first_by_rank = {0.11, Interval{0.09, 0.13}};
   const std::string text = sensitivity_table(result);
-  EXPECT_NE(text.find(" 0.110  0.09 .. 0.13\n"), std::string::npos) << text;
-  EXPECT_NE(text.find(" 0.000             -\n"), std::string::npos) << text;
+  EXPECT_TRUE(holds(text, " 0.110  0.09 .. 0.13\n"));
+  EXPECT_TRUE(holds(text, " 0.000             -\n"));
   const nlohmann::ordered_json json = to_json(DeviceSample{}, {}, {result});
   const auto& indices = json["figures"]["bias_pp_deg_per_s"]["indices"];
   EXPECT_EQ(indices[0]["first_by_rank_interval"][1], 0.13);
@@ -77,8 +77,7 @@ TEST(SensitivityReport, AnIndexByRanksMayHaveNoInterval) {
 TEST(SensitivityReport, SaysWhenNothingVaries) {
   MeritResult result = merit(0);
   result.variance = 0;
-  EXPECT_NE(sensitivity_table(result).find("No tolerance of the campaign"),
-            std::string::npos);
+  EXPECT_TRUE(holds(sensitivity_table(result), "No tolerance of the campaign"));
 }
 
 TEST(SensitivityReport, AYieldOfAChoiceHasNoHalf) {
@@ -86,9 +85,9 @@ TEST(SensitivityReport, AYieldOfAChoiceHasNoHalf) {
   result.yield = {
       10, {0.75, {0.6, 0.9}}, {{"a.b", {{0.9375, {0.8, 1}}}}, {"c.d", {}}}};
   const std::string text = sensitivity_table(result);
-  EXPECT_NE(text.find("as they are"), std::string::npos);
-  EXPECT_NE(text.find("a.b/2         93.8 %"), std::string::npos) << text;
-  EXPECT_NE(text.find("c.d/2              -\n"), std::string::npos) << text;
+  EXPECT_TRUE(holds(text, "as they are"));
+  EXPECT_TRUE(holds(text, "a.b/2         93.8 %"));
+  EXPECT_TRUE(holds(text, "c.d/2              -\n"));
   const nlohmann::ordered_json json = to_json(DeviceSample{}, {}, {result});
   const auto& found = json["figures"]["bias_pp_deg_per_s"];
   EXPECT_EQ(found["of"], "ln bias_pp_deg_per_s");

@@ -10,6 +10,7 @@
 
 #include "compensation/compensator/run_comparison.h"
 #include "tests/compensation/recorded_run.h"
+#include "tests/config/rejection.h"
 
 namespace beamgyro::internal::training_use_test {
 namespace {
@@ -134,9 +135,8 @@ TEST(NoiseSeed, OfTrainingIsToldOfOtherRuns) {
   EXPECT_EQ(shared_seed(provenance, "x.h5", simulated_run(7)),
             "x.h5 shares its seed of noise with the training run a.h5: turn-on "
             "offset and noise are the same");
-  EXPECT_NE(shared_seed(provenance, "x.h5", simulated_run(8))
-                .find("held-out run b.h5"),
-            std::string::npos);
+  EXPECT_TRUE(holds(shared_seed(provenance, "x.h5", simulated_run(8)),
+                    "held-out run b.h5"));
   EXPECT_EQ(shared_seed(provenance, "x.h5", simulated_run(9)), "");
   EXPECT_EQ(shared_seed(provenance, "x.h5", simulated_run(7, kQuiet)), "");
   EXPECT_EQ(shared_seed(provenance, "x.h5", some_run()), "");
@@ -200,8 +200,8 @@ TEST(RunComparison, RefusesARunTwiceAndPartsOfOne) {
   EXPECT_EQ(rejected({second_half(run), run}),
             "a: half or more of its samples are those of b; expected each "
             "once: leave one of them out");
-  EXPECT_NE(rejected({other}, {run, run}).find("y: is the same recording as x"),
-            std::string::npos);
+  EXPECT_TRUE(
+      holds(rejected({other}, {run, run}), "y: is the same recording as x"));
   EXPECT_EQ(rejected({other, run}, {second_half(run)}),
             "x: half or more of its samples are those of b; a held-out "
             "recording must be another run than those that are trained on");

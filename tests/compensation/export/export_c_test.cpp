@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <limits>
 
 #include "compensation/export/firmware_difference.h"
@@ -15,10 +14,6 @@
 
 namespace beamgyro::internal::export_c_test {
 namespace {
-
-bool holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 Compensator one_of_kind(const std::string& name) {
   for (const NamedCompensator& each : one_of_each_kind())
@@ -94,8 +89,7 @@ TEST(ExportedC, DifferencesBeyondTheLimitAreRefusedOrCarriedInTheCode) {
   const std::string refusal = rejection([&] { export_c(c, "g"); });
   EXPECT_TRUE(holds(refusal,
                     "from those of compensate, and 0.0001 deg/s is "
-                    "the most"))
-      << refusal;
+                    "the most"));
   EXPECT_TRUE(holds(refusal, "; force exports it")) << refusal;
   const ExportedC forced = export_c(c, "g", true);
   ASSERT_EQ(forced.warnings.size(), 1u);
@@ -110,8 +104,7 @@ TEST(ExportedC, CompensatorsThatCancelTheRateAreRefusedOrWarnedOfInTheCode) {
   const std::string refusal = rejection([&] { export_c(c, "g"); });
   EXPECT_TRUE(holds(refusal,
                     "it cancels the rate: of a small rate it lets "
-                    "0.0200 through"))
-      << refusal;
+                    "0.0200 through"));
   const ExportedC forced = export_c(c, "g", true);
   for (const std::string& text : {forced.header, forced.source})
     EXPECT_TRUE(holds(text, "/* WARNING: it cancels the rate"));

@@ -110,6 +110,27 @@ TEST(FitAsPx4, ALongHotEndDoesNotOutweighTheCold) {
             0.1);
 }
 
+// The cubic through points of temperature and bias about a reference, in units
+// of `scale` [K].
+void expect_least_squares(const BiasModel& model,
+                          const std::vector<std::pair<double, double>>& points,
+                          double centre, double scale, double tolerance) {
+  Eigen::MatrixXd A(static_cast<Eigen::Index>(points.size()), 4);
+  Eigen::VectorXd b(A.rows());
+  for (Eigen::Index k = 0; k < A.rows(); ++k) {
+    const auto& [T, mean] = points[static_cast<std::size_t>(k)];
+    const double x = (T - centre) / scale;
+    A.row(k) << 1.0, x, x * x, x * x * x;
+    b(k) = mean;
+  }
+  const Eigen::VectorXd c = reference::least_squares(A, b);
+  for (int n = 0; n < 4; ++n)
+    EXPECT_NEAR(
+        coefficients(model)[static_cast<std::size_t>(n)] * std::pow(scale, n),
+        c(n), tolerance)
+        << n;
+}
+
 double median_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
@@ -136,28 +157,18 @@ TEST(FitAsPx4, EqualsLeastSquaresOverTheBinsOfTheFilteredSamples) {
     bins[std::min(std::lround(std::floor(place)), 1999L)].push_back(
         {rows.temperature(k), median_of(window)});
   }
-  const auto count = static_cast<Eigen::Index>(bins.size());
-  Eigen::MatrixXd A(count, 4);
-  Eigen::VectorXd b(count);
-  Eigen::Index row = 0;
+  std::vector<std::pair<double, double>> means;
   for (const auto& [number, points] : bins) {
     double T = 0.0, mean = 0.0;
     for (const auto& [here, value] : points) {
       T += here / double(points.size());
       mean += value / double(points.size());
     }
-    const double x = (T - 0.5 * (low + high)) / 40.0;
-    A.row(row) << 1.0, x, x * x, x * x * x;
-    b(row++) = mean;
+    means.push_back({T, mean});
   }
-  const Eigen::VectorXd c = reference::least_squares(A, b);
   const BiasModel model = fit_as_px4(rows);
   EXPECT_EQ(model.input_scales[0].centre, 0.5 * (low + high));
-  for (int n = 0; n < 4; ++n)
-    EXPECT_NEAR(
-        coefficients(model)[static_cast<std::size_t>(n)] * std::pow(40.0, n),
-        c(n), 1e-11)
-        << n;
+  expect_least_squares(model, means, 0.5 * (low + high), 40.0, 1e-11);
 }
 
 TEST(FitAsPx4, NeedsARangeOfTemperatures) {
@@ -220,21 +231,7 @@ TEST(FitAsArduPilot, EqualsLeastSquaresOverTheRisesOfHalfAKelvin) {
   const TrainingRows rows = samples_of(run.recording());
   const auto points = points_of(rows, 30);
   ASSERT_GT(points.size(), 80u);
-  Eigen::MatrixXd A(static_cast<Eigen::Index>(points.size()), 4);
-  Eigen::VectorXd b(A.rows());
-  for (Eigen::Index k = 0; k < A.rows(); ++k) {
-    const auto& [T, mean] = points[static_cast<std::size_t>(k)];
-    const double x = (T - 35.0) / 55.0;
-    A.row(k) << 1.0, x, x * x, x * x * x;
-    b(k) = mean;
-  }
-  const Eigen::VectorXd c = reference::least_squares(A, b);
-  const BiasModel model = fit_as_ardupilot(rows, 30);
-  for (int n = 0; n < 4; ++n)
-    EXPECT_NEAR(
-        coefficients(model)[static_cast<std::size_t>(n)] * std::pow(55.0, n),
-        c(n), 1e-8)
-        << n;
+  expect_least_squares(fit_as_ardupilot(rows, 30), points, 35.0, 55.0, 1e-8);
 }
 
 TEST(FitAsArduPilot, LearnsNothingWhileCooling) {

@@ -58,15 +58,9 @@ TrainingRows with_temperature_only(TrainingRows rows) {
   return rows;
 }
 
-std::vector<double> grid_temperatures() {
-  std::vector<double> temperatures;
-  for (int T = -40; T <= 50; T += 5) temperatures.push_back(T);
-  return temperatures;
-}
-
 Population of_parabolas() {
-  return fit_population(kWithQuadrature, rows_at(kDevices, grid_temperatures()),
-                        5.0);
+  return fit_population(kWithQuadrature,
+                        rows_at(kDevices, every_five_kelvins()), 5.0);
 }
 
 // mu = 1 + T / 10, one mode: bias 2 c, quadrature 10 c.
@@ -179,7 +173,7 @@ TEST(Population, NoisyRowsLeaveTheMean) {
 }
 
 TEST(Population, GridCoversWhatAllDevicesHave) {
-  TrainingRows rows = rows_at(kDevices, grid_temperatures());
+  TrainingRows rows = rows_at(kDevices, every_five_kelvins());
   for (Index k = 0; k < rows.size(); ++k) rows.temperature(k) += rows.device(k);
   const Population p = fit_population(kWithQuadrature, rows, 5.0);
   EXPECT_EQ(p.range(), (TemperatureRange{-36.0, 50.0}));
@@ -187,9 +181,9 @@ TEST(Population, GridCoversWhatAllDevicesHave) {
 }
 
 TEST(Population, EqualDevicesLeaveNothingOpen) {
-  const Population p =
-      fit_population(kWithQuadrature,
-                     rows_at({{1, 0, 0}, {1, 0, 0}}, grid_temperatures()), 5.0);
+  const Population p = fit_population(
+      kWithQuadrature, rows_at({{1, 0, 0}, {1, 0, 0}}, every_five_kelvins()),
+      5.0);
   const AdaptedBias b =
       adapted_bias(p, kWithQuadrature, rows_at({{3, 0, 0}}, {20.0}), {});
   EXPECT_LT((b.mean - 1.0).abs().maxCoeff(), 1e-9);
@@ -200,7 +194,7 @@ TEST(Population, RefusesWhatTellsNothingOfDevices) {
   const auto message = [](const TrainingRows& rows) {
     return rejection([&] { fit_population(kWithQuadrature, rows, 5.0); });
   };
-  EXPECT_TRUE(holds(message(rows_at({kDevices[0]}, grid_temperatures())),
+  EXPECT_TRUE(holds(message(rows_at({kDevices[0]}, every_five_kelvins())),
                     "two devices or more"));
   EXPECT_TRUE(holds(message(rows_at(kDevices, {20.0, 24.0, 28.0})),
                     "share the temperatures 20.00 to 28.00 degC"));

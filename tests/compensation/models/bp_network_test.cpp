@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "random/random_stream.h"
+#include "tests/compensation/sample_compensators.h"
 #include "tests/config/rejection.h"
 
 namespace beamgyro::internal::bp_network_test {
@@ -14,19 +14,6 @@ namespace {
 using Eigen::ArrayXd;
 using Eigen::ArrayXXd;
 using Eigen::VectorXd;
-
-BpNetwork random_network(const std::vector<int>& sizes, std::uint64_t seed) {
-  RandomStream random(seed, 0, 0, kInitialWeightsStream);
-  BpNetwork network(sizes);
-  network.randomise(random);
-  return network;
-}
-
-ArrayXXd some_inputs(Eigen::Index rows, Eigen::Index inputs) {
-  return ArrayXXd::NullaryExpr(rows, inputs, [](auto i, auto j) {
-    return std::sin(1.0 + 3.0 * double(i) + double(j));
-  });
-}
 
 // Central differences of f over every weight; one column per weight.
 template <class F>
@@ -67,7 +54,7 @@ const std::vector<std::vector<int>> kSizes = {
 TEST(BpNetwork, JacobianMatchesCentralDifferences) {
   for (const std::vector<int>& sizes : kSizes) {
     const BpNetwork network = random_network(sizes, 7);
-    const ArrayXXd x = some_inputs(9, sizes.front());
+    const ArrayXXd x = wavy_inputs(9, sizes.front());
     Eigen::MatrixXd jacobian;
     const ArrayXd y = network.predict_with_jacobian(x, jacobian);
     EXPECT_TRUE((y == network.predict(x)).all());
@@ -81,7 +68,7 @@ TEST(BpNetwork, JacobianMatchesCentralDifferences) {
 TEST(BpNetwork, GradientMatchesCentralDifferences) {
   for (const std::vector<int>& sizes : kSizes) {
     const BpNetwork network = random_network(sizes, 8);
-    const ArrayXXd x = some_inputs(11, sizes.front());
+    const ArrayXXd x = wavy_inputs(11, sizes.front());
     const ArrayXd target = x.col(0).square() - 0.4;
     VectorXd gradient;
     network.predict_with_gradient(x, target, gradient);
@@ -96,7 +83,7 @@ TEST(BpNetwork, GradientMatchesCentralDifferences) {
 
 TEST(BpNetwork, SampleGivesTheSameBitsAloneAndInABlock) {
   const BpNetwork network = random_network({3, 14, 1}, 9);
-  const ArrayXXd x = some_inputs(1003, 3);
+  const ArrayXXd x = wavy_inputs(1003, 3);
   const ArrayXd together = network.predict(x);
   for (Eigen::Index k = 0; k < x.rows(); ++k)
     EXPECT_EQ(network.predict(x.middleRows(k, 1))(0), together(k)) << k;

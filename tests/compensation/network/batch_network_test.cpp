@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "random/random_stream.h"
+#include "tests/compensation/sample_compensators.h"
 
 namespace beamgyro::internal::batch_network_test {
 namespace {
@@ -16,18 +16,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-BpNetwork random_network(const std::vector<int>& sizes) {
-  RandomStream random(8, 0, 0, kInitialWeightsStream);
-  BpNetwork network(sizes);
-  network.randomise(random);
-  return network;
-}
-
 ScaledRows some_rows(Index count, Index inputs) {
   ScaledRows rows;
-  rows.inputs = Eigen::ArrayXXd::NullaryExpr(count, inputs, [](auto i, auto j) {
-    return std::sin(1.0 + 3.0 * double(i) + double(j));
-  });
+  rows.inputs = wavy_inputs(count, inputs);
   rows.target = rows.inputs.col(0).square() - 0.3;
   return rows;
 }
@@ -39,7 +30,7 @@ const std::vector<std::vector<int>> kSizes = {
 TEST(BatchNetwork, NormalEquationsAreThoseOfTheJacobian) {
   for (const std::vector<int>& sizes : kSizes) {
     for (const Index count : {1, 37, 64, 3001}) {
-      const BpNetwork network = random_network(sizes);
+      const BpNetwork network = random_network(sizes, 8);
       const ScaledRows rows = some_rows(count, sizes.front());
       MatrixXd jacobian, matrix;
       VectorXd gradient;
@@ -65,7 +56,7 @@ TEST(BatchNetwork, NormalEquationsAreThoseOfTheJacobian) {
 // 4e-16 y / h^2.
 TEST(BatchNetwork, CurvatureMatchesSecondDifferences) {
   for (const std::vector<int>& sizes : kSizes) {
-    const BpNetwork network = random_network(sizes);
+    const BpNetwork network = random_network(sizes, 8);
     const ScaledRows rows = some_rows(37, sizes.front());
     const VectorXd w = network.weights();
     const VectorXd v = VectorXd::NullaryExpr(
@@ -89,7 +80,7 @@ TEST(BatchNetwork, CurvatureMatchesSecondDifferences) {
 
 TEST(BatchNetwork, ThreadsDoNotChangeABit) {
   const std::vector<int> sizes = {3, 14, 1};
-  const VectorXd w = random_network(sizes).weights();
+  const VectorXd w = random_network(sizes, 8).weights();
   const ScaledRows rows = some_rows(20000, 3);
   MatrixXd one, several;
   VectorXd one_gradient, gradient;

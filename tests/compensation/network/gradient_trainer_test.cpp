@@ -8,6 +8,7 @@
 
 #include "random/random_stream.h"
 #include "tests/compensation/bias_curve.h"
+#include "tests/compensation/sample_compensators.h"
 
 namespace beamgyro::internal::gradient_trainer_test {
 namespace {
@@ -46,9 +47,7 @@ TEST(AdaptiveRate, KeepsAndDiscardsByThePapersThreeRules) {
 // (-0.25, 0.2), so one step of rate eta is eta (0.25, -0.2).
 TEST(GradientAdaptive, FirstStepFollowsTheMeanGradient) {
   BpNetwork network({1, 1});
-  TrainOptions options;
-  options.max_epochs = 1;
-  options.learning_rate = 0.3;
+  const TrainOptions options{.max_epochs = 1, .learning_rate = 0.3};
   train_gradient_adaptive(straight_line(), {}, options, network);
   EXPECT_NEAR(network.weights()(0), 0.3 * 0.25, 1e-15);
   EXPECT_NEAR(network.weights()(1), -0.3 * 0.2, 1e-15);
@@ -56,10 +55,8 @@ TEST(GradientAdaptive, FirstStepFollowsTheMeanGradient) {
 
 TEST(GradientAdaptive, SecondStepCarriesTheMomentum) {
   BpNetwork network({1, 1});
-  TrainOptions options;
-  options.max_epochs = 2;
-  options.learning_rate = 0.1;
-  options.momentum = 0.9;
+  const TrainOptions options{
+      .max_epochs = 2, .learning_rate = 0.1, .momentum = 0.9};
   train_gradient_adaptive(straight_line(), {}, options, network);
   // The error fell in step 1, so step 2 has the rate 0.105; the two weights
   // do not mix: gradients are (w0 - 0.5) / 2 and w1 + 0.2.
@@ -70,10 +67,8 @@ TEST(GradientAdaptive, SecondStepCarriesTheMomentum) {
 
 TEST(GradientAdaptive, HugeRateIsDiscardedUntilTheErrorFalls) {
   BpNetwork network({1, 1});
-  TrainOptions options;
-  options.learning_rate = 1e6;
-  options.max_epochs = 2000;
-  options.goal = 1e-6;
+  const TrainOptions options{
+      .max_epochs = 2000, .goal = 1e-6, .learning_rate = 1e6};
   const TrainSummary summary =
       train_gradient_adaptive(straight_line(), {}, options, network);
   EXPECT_EQ(summary.stop_reason, StopReason::kGoalReached);
@@ -86,10 +81,8 @@ TEST(Incremental, ChangesTheWeightsAfterEverySample) {
   one.inputs = ArrayXd::Constant(1, 0.5);
   one.target = ArrayXd::Constant(1, 1.0);
   BpNetwork network({1, 1});
-  TrainOptions options;
-  options.max_epochs = 2;
-  options.learning_rate = 0.1;
-  options.momentum = 0.5;
+  const TrainOptions options{
+      .max_epochs = 2, .learning_rate = 0.1, .momentum = 0.5};
   RandomStream order = sample_order();
   train_incremental(one, {}, options, order, network);
   const double w1 = 0.1 * 0.5, b1 = 0.1;  // from e = -1
@@ -100,9 +93,7 @@ TEST(Incremental, ChangesTheWeightsAfterEverySample) {
 
 TEST(Incremental, StopsAtTheGoalOverTheWholeSet) {
   BpNetwork network({1, 1});
-  TrainOptions options;
-  options.goal = 1e-4;
-  options.max_epochs = 5000;
+  const TrainOptions options{.max_epochs = 5000, .goal = 1e-4};
   RandomStream order = sample_order();
   const TrainSummary summary =
       train_incremental(straight_line(), {}, options, order, network);
@@ -113,12 +104,9 @@ TEST(Incremental, StopsAtTheGoalOverTheWholeSet) {
 TEST(Incremental, OrderOfTheSamplesComesFromItsStream) {
   const ScaledRows rows = curve_rows(grid(-40.0, 50.0, 5.0), 0.0, 1);
   const auto trained = [&](std::uint64_t seed) {
-    RandomStream initial(1, 0, 0, kInitialWeightsStream);
     RandomStream order(seed, 0, 0, kSampleOrderStream);
-    BpNetwork network({1, 6, 1});
-    network.randomise(initial);
-    TrainOptions options;
-    options.max_epochs = 20;
+    BpNetwork network = random_network({1, 6, 1}, 1);
+    const TrainOptions options{.max_epochs = 20};
     train_incremental(rows, {}, options, order, network);
     return network.weights();
   };
@@ -128,9 +116,7 @@ TEST(Incremental, OrderOfTheSamplesComesFromItsStream) {
 
 TEST(Incremental, DivergenceIsAnErrorThatNamesTheLearningRate) {
   BpNetwork network({1, 1});
-  TrainOptions options;
-  options.learning_rate = 50.0;
-  options.max_epochs = 5000;
+  const TrainOptions options{.max_epochs = 5000, .learning_rate = 50.0};
   RandomStream order = sample_order();
   EXPECT_THROW(train_incremental(straight_line(), {}, options, order, network),
                std::runtime_error);
@@ -141,14 +127,10 @@ TEST(GradientTrainers, BothLearnTheBiasCurveFarBetterThanACubic) {
   const ScaledRows held_out = curve_rows(grid(-38.75, 48.75, 2.5), 0.0, 2);
   for (const Trainer trainer :
        {Trainer::kIncremental, Trainer::kGradientAdaptive}) {
-    TrainOptions options;
-    options.trainer = trainer;
-    options.max_epochs = 4000;
-    options.patience = kGradientPatience;
-    RandomStream initial(1, 0, 0, kInitialWeightsStream);
+    const TrainOptions options{
+        .trainer = trainer, .max_epochs = 4000, .patience = kGradientPatience};
     RandomStream order = sample_order();
-    BpNetwork network({1, 6, 1});
-    network.randomise(initial);
+    BpNetwork network = random_network({1, 6, 1}, 1);
     const TrainSummary summary =
         train_network(rows, held_out, options, order, network);
     EXPECT_LT(kCurveUnit * *summary.held_out_rms, 0.1)

@@ -6,31 +6,22 @@
 #include <cmath>
 
 #include "compensation/network/restarts.h"
-#include "random/random_stream.h"
 #include "tests/compensation/bias_curve.h"
+#include "tests/compensation/sample_compensators.h"
 
 namespace beamgyro::internal::levenberg_marquardt_test {
 namespace {
 
 using Eigen::ArrayXd;
 
-BpNetwork random_network(const std::vector<int>& sizes, std::uint32_t run) {
-  RandomStream random(21, 0, run, kInitialWeightsStream);
-  BpNetwork network(sizes);
-  network.randomise(random);
-  return network;
-}
-
 TEST(LevenbergMarquardt, FindsANetworkThatMadeTheData) {
-  const BpNetwork truth = random_network({2, 3, 1}, 0);
+  const BpNetwork truth = random_network({2, 3, 1}, 21, 0);
   ScaledRows rows;
   rows.inputs = Eigen::ArrayXXd::NullaryExpr(200, 2, [](auto i, auto j) {
     return std::sin(0.7 * double(i) * double(j + 1));
   });
   rows.target = truth.predict(rows.inputs);
-  TrainOptions options;
-  options.max_epochs = 500;
-  options.restarts = 6;
+  const TrainOptions options{.restarts = 6, .max_epochs = 500};
   const Restarts found = train_from_restarts({2, 3, 1}, rows, {}, options, 4);
   EXPECT_LT(found.summaries[found.chosen].in_sample_rms, 1e-9);
 }
@@ -51,8 +42,7 @@ TEST(LevenbergMarquardt, WeightDecayShrinksTheSlopeOfALine) {
   rows.inputs = ArrayXd::LinSpaced(30, -1.0, 1.0);
   rows.target = rows.inputs.col(0);
   const double power = rows.target.square().mean(), decay = 0.1;
-  TrainOptions options;
-  options.weight_decay = decay;
+  const TrainOptions options{.weight_decay = decay};
   BpNetwork network({1, 1});
   train_levenberg_marquardt(rows, {}, options, network);
   EXPECT_NEAR(network.weights()(0), power / (power + decay), 1e-9);
@@ -60,9 +50,8 @@ TEST(LevenbergMarquardt, WeightDecayShrinksTheSlopeOfALine) {
 
 TEST(LevenbergMarquardt, StopsAtTheGoal) {
   const ScaledRows rows = curve_rows(grid(-40.0, 50.0, 2.5), 0.0, 1);
-  TrainOptions options;
-  options.goal = 0.01 / kCurveUnit;
-  BpNetwork network = random_network({1, 6, 1}, 0);
+  const TrainOptions options{.goal = 0.01 / kCurveUnit};
+  BpNetwork network = random_network({1, 6, 1}, 21, 0);
   const TrainSummary summary =
       train_levenberg_marquardt(rows, {}, options, network);
   EXPECT_EQ(summary.stop_reason, StopReason::kGoalReached);
@@ -72,9 +61,8 @@ TEST(LevenbergMarquardt, StopsAtTheGoal) {
 
 TEST(LevenbergMarquardt, StopsAtTheLargestNumberOfEpochs) {
   const ScaledRows rows = curve_rows(grid(-40.0, 50.0, 2.5), 0.0, 1);
-  TrainOptions options;
-  options.max_epochs = 3;
-  BpNetwork network = random_network({1, 6, 1}, 0);
+  const TrainOptions options{.max_epochs = 3};
+  BpNetwork network = random_network({1, 6, 1}, 21, 0);
   const TrainSummary summary =
       train_levenberg_marquardt(rows, {}, options, network);
   EXPECT_EQ(summary.stop_reason, StopReason::kMaxEpochs);
@@ -89,10 +77,10 @@ TEST(LevenbergMarquardt, HeldOutErrorStopsItBeforeItLearnsTheNoise) {
   const ScaledRows rows = curve_rows(grid(-40.0, 50.0, 2.5), noise, 1);
   const ScaledRows held_out = curve_rows(grid(-38.75, 48.75, 2.5), noise, 2);
   const ScaledRows truth = curve_rows(grid(-40.0, 50.0, 0.1), 0.0, 3);
-  TrainOptions options;
-  options.max_epochs = 2000;
+  const TrainOptions options{.max_epochs = 2000};
   for (std::uint32_t run = 0; run < 4; ++run) {
-    BpNetwork stopped = random_network({1, 14, 1}, run), overfitted = stopped;
+    BpNetwork stopped = random_network({1, 14, 1}, 21, run),
+              overfitted = stopped;
     const TrainSummary early =
         train_levenberg_marquardt(rows, held_out, options, stopped);
     const TrainSummary late =
@@ -108,9 +96,8 @@ TEST(LevenbergMarquardt, HeldOutErrorStopsItBeforeItLearnsTheNoise) {
 
 TEST(LevenbergMarquardt, ThreadsDoNotChangeABit) {
   const ScaledRows rows = curve_rows(grid(-40.0, 50.0, 0.02), 0.005, 1);
-  TrainOptions options;
-  options.max_epochs = 20;
-  BpNetwork one = random_network({1, 6, 1}, 0), three = one;
+  TrainOptions options{.max_epochs = 20};
+  BpNetwork one = random_network({1, 6, 1}, 21, 0), three = one;
   train_levenberg_marquardt(rows, {}, options, one);
   options.threads = 3;
   train_levenberg_marquardt(rows, {}, options, three);
@@ -150,8 +137,7 @@ TEST(NoWorse, AsksForTwiceTheStandardErrorOfTheStretches) {
 TEST(Restarts, WhereHeldOutRowsCannotTellAllRowsChoose) {
   const ScaledRows rows = curve_rows(grid(-40.0, 50.0, 5.0), 0.005, 1);
   const ScaledRows held_out = curve_rows(grid(-37.5, 47.5, 5.0), 0.005, 2);
-  TrainOptions options;
-  options.restarts = 7;
+  const TrainOptions options{.restarts = 7};
   const Restarts a = train_from_restarts({1, 6, 1}, rows, held_out, options, 9);
   const Restarts b = train_from_restarts({1, 6, 1}, rows, held_out, options, 9);
   EXPECT_EQ(a.network.weights(), b.network.weights());

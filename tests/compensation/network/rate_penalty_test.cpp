@@ -4,27 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <iterator>
 
 #include "compensation/scoring/scale_factor.h"
 #include "compensation/training/train.h"
-#include "random/random_stream.h"
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/injected_scale_factor.h"
 #include "tests/compensation/recorded_run.h"
+#include "tests/compensation/sample_compensators.h"
 #include "tests/config/rejection.h"
 
 namespace beamgyro::internal::rate_penalty_test {
 namespace {
 
 using Eigen::VectorXd;
-
-BpNetwork random_network(const std::vector<int>& layers) {
-  RandomStream random(5, 0, 0, kInitialWeightsStream);
-  BpNetwork network(layers);
-  network.randomise(random);
-  return network;
-}
 
 // Two inputs over the unit square, output scaled like the bias.
 ScaledRows some_rows(Eigen::Index count) {

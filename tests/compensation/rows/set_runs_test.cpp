@@ -12,6 +12,7 @@
 #include "dataset/set/shard/shard_builder.h"
 #include "tests/compensation/recorded_run.h"
 #include "tests/config/rejection.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::set_runs_test {
 namespace {
@@ -39,12 +40,9 @@ DeviceRow row_of(std::uint32_t device) {
   return row;
 }
 
-class SetRuns : public testing::Test {
+class SetRuns : public DirectoryFixture {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(folder_);
+  SetRuns() {
     manifest_.head = ManifestHead{};
     manifest_.head->devices = kDevices;
     manifest_.head->devices_per_file = kPerFile;
@@ -52,10 +50,8 @@ class SetRuns : public testing::Test {
     manifest_.head->sources = {{"source/campaign.toml", "abc"}};
     for (std::uint32_t index = 0; index < file_count(*manifest_.head); ++index)
       manifest_.entries.push_back(write_file(index));
-    write_manifest(folder_, kManifestName, manifest_);
+    write_manifest(directory, kManifestName, manifest_);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   ManifestEntry write_file(std::uint32_t index) const {
     ManifestEntry entry = expected_entry(*manifest_.head, index);
     const std::size_t run = index % 2;
@@ -78,14 +74,14 @@ class SetRuns : public testing::Test {
     }
     const auto bytes = builder.finish();
     entry.bytes = bytes.size();
-    publish_file(folder_, entry.file, bytes);
-    entry.sha256 = sha256_of_file(folder_ / entry.file);
+    publish_file(directory, entry.file, bytes);
+    entry.sha256 = sha256_of_file(directory / entry.file);
     return entry;
   }
 
   // First bias of each run visited.
   std::vector<double> biases(const SetSelection& selection) const {
-    const RunSource source = runs_of_set(folder_, selection);
+    const RunSource source = runs_of_set(directory, selection);
     std::vector<double> found;
     source.for_each([&](const TrainingRun& run) {
       found.push_back(column_values(run.recording, "rate")[0]);
@@ -95,7 +91,6 @@ class SetRuns : public testing::Test {
     return found;
   }
 
-  std::filesystem::path folder_;
   Manifest manifest_;
 };
 
@@ -112,21 +107,21 @@ TEST_F(SetRuns, ComeByPartRunAndDevice) {
 TEST_F(SetRuns, RowsKnowTheirDeviceAndTheProvenanceTheManifest) {
   const ModelSpec spec{.inputs = {parse_input("temperature")},
                        .kind = ConstantSpec{}};
-  const RunSource training = runs_of_set(folder_, {SetPartNumber::kTrain});
+  const RunSource training = runs_of_set(directory, {SetPartNumber::kTrain});
   const TrainingRows rows = training_rows(training, spec.inputs, spec.rows);
   ASSERT_EQ(rows.size(), 6 * 5);               // minutes
   EXPECT_EQ(rows.device(0), rows.device(10));  // device 0 in both runs
   EXPECT_NE(rows.device(0), rows.device(5));
   EXPECT_EQ(rows.device.maxCoeff(), 2);
   const Provenance p =
-      train(spec, training, runs_of_set(folder_, {SetPartNumber::kValidation}),
-            1)
+      train(spec, training,
+            runs_of_set(directory, {SetPartNumber::kValidation}), 1)
           .compensator.provenance;
   EXPECT_TRUE(p.training.empty());
   ASSERT_TRUE(p.training_set && p.held_out_set);
   EXPECT_EQ(*p.training_set,
-            (TrainingSet{folder_.filename().string(),
-                         sha256_of_file(folder_ / kManifestName),
+            (TrainingSet{directory.filename().string(),
+                         sha256_of_file(directory / kManifestName),
                          3,
                          4,
                          "",
@@ -139,30 +134,30 @@ TEST_F(SetRuns, RowsKnowTheirDeviceAndTheProvenanceTheManifest) {
 
 TEST_F(SetRuns, RefuseFilesThatAreNotWhatTheManifestSays) {
   const auto message = [&](const SetSelection& selection) {
-    return rejection([&] { runs_of_set(folder_, selection); });
+    return rejection([&] { runs_of_set(directory, selection); });
   };
   // Whole, of the same devices, and of the other run.
-  std::filesystem::copy_file(folder_ / manifest_.entries[1].file,
-                             folder_ / manifest_.entries[0].file,
+  std::filesystem::copy_file(directory / manifest_.entries[1].file,
+                             directory / manifest_.entries[0].file,
                              std::filesystem::copy_options::overwrite_existing);
   EXPECT_TRUE(
       holds(message({{}, {"soaks"}}), "other bytes than the manifest says"));
   EXPECT_EQ(biases({{}, {"ramp"}, {0}}), std::vector<double>{0.5});
   manifest_.entries.pop_back();
-  write_manifest(folder_, kManifestName, manifest_);
+  write_manifest(directory, kManifestName, manifest_);
   EXPECT_TRUE(holds(message({{}, {"ramp"}}), "the manifest is damaged"));
 }
 
 TEST_F(SetRuns, RefuseWhatTheSetDoesNotHave) {
   const auto message = [&](const SetSelection& selection) {
-    return rejection([&] { runs_of_set(folder_, selection); });
+    return rejection([&] { runs_of_set(directory, selection); });
   };
   EXPECT_TRUE(holds(message({{}, {"warm_up"}}),
                     "no run \"warm_up\"; its runs are soaks, ramp"));
   EXPECT_TRUE(holds(message({{}, {}, {6}}), "the set has devices 0 to 5"));
-  start_manifest(folder_, kManifestName, *manifest_.head);
+  start_manifest(directory, kManifestName, *manifest_.head);
   EXPECT_TRUE(holds(message({}), "the set is not finished"));
-  std::filesystem::remove(folder_ / kManifestName);
+  std::filesystem::remove(directory / kManifestName);
   EXPECT_TRUE(holds(message({}), "holds no set"));
 }
 

@@ -18,6 +18,11 @@ std::vector<TrainingRun> one(const Recording& recording) {
   return {{"run.h5", "", recording}};
 }
 
+TrainingRows rows_from(const Recording& recording,
+                       const RowOptions& options = {}) {
+  return training_rows(one(recording), kTemperature, options);
+}
+
 RecordedRun drifting_run() {
   RecordedRun run{.duration = 600.0, .step = 0.5};
   run.temperature = [](double t) { return 20.0 + 0.01 * t; };
@@ -27,8 +32,7 @@ RecordedRun drifting_run() {
 }
 
 TEST(TrainingRows, AreMeansOverBlocksWithTheTrueRateTakenOff) {
-  const TrainingRows rows =
-      training_rows(one(drifting_run().recording()), kTemperature, {});
+  const TrainingRows rows = rows_from(drifting_run().recording());
   ASSERT_EQ(rows.size(), 10);
   for (Eigen::Index k = 0; k < 10; ++k) {
     const double middle = 60.0 * double(k) + 29.75;  // [s] of 120 samples
@@ -45,8 +49,7 @@ TEST(TrainingRows, BlocksAreCountedFromEachPowerOn) {
   run.powered = [](double t) {
     return t >= 30.0 && !(t >= 170.0 && t < 200.0);
   };
-  const TrainingRows rows =
-      training_rows(one(run.recording()), kTemperature, {});
+  const TrainingRows rows = rows_from(run.recording());
   // 30..90, 90..150, (150..170 is less than half a block), 200..260, ..., and
   // 560..600, which is more than half.
   ASSERT_EQ(rows.size(), 2 + 7);
@@ -60,7 +63,7 @@ TEST(TrainingRows, SaturatedAndUnlockedSamplesAreLeftOut) {
     recording.status[k] = k == 3 ? kOutputSaturated : kLoopNotLocked;
     recording.columns[1].values[k] = 1e6;
   }
-  const TrainingRows rows = training_rows(one(recording), kTemperature, {});
+  const TrainingRows rows = rows_from(recording);
   EXPECT_NEAR(rows.bias(0), 0.5 + 1e-3 * 29.75, 1e-3);
 }
 
@@ -70,11 +73,9 @@ TEST(TrainingRows, SteadyRowsOnlyWhenAsked) {
     return t < 600.0 ? 20.0 : 20.0 + (t - 600.0) / 60.0;  // 1 K/min
   };
   RowOptions options;
-  EXPECT_EQ(training_rows(one(run.recording()), kTemperature, options).size(),
-            20);
+  EXPECT_EQ(rows_from(run.recording(), options).size(), 20);
   options.steady_K_per_min = 0.5;
-  const TrainingRows rows =
-      training_rows(one(run.recording()), kTemperature, options);
+  const TrainingRows rows = rows_from(run.recording(), options);
   EXPECT_EQ(rows.size(), 10);
   EXPECT_EQ(rows.range.highest, 20.0);
 }
@@ -85,8 +86,7 @@ TEST(TrainingRows, HaveTheTemperatureThatTheSensorWouldSettleTo) {
   run.temperature = [](double t) { return 20.0 + 4.0 * std::exp(-t / 480.0); };
   RowOptions options;
   options.lag_min = 8.0;
-  const TrainingRows rows =
-      training_rows(one(run.recording()), kTemperature, options);
+  const TrainingRows rows = rows_from(run.recording(), options);
   ASSERT_EQ(rows.size(), 30);
   for (Eigen::Index k = 2; k < rows.size() - 2; ++k)
     // The chord of the exponential over four minutes is 1 % steeper.
@@ -98,7 +98,7 @@ TEST(TrainingRows, HaveTheTemperatureThatTheSensorWouldSettleTo) {
 TEST(TrainingRows, BadRunsAreNamedWithWhatIsWrong) {
   const Recording good = drifting_run().recording();
   const auto message = [](const Recording& recording) {
-    return rejection([&] { training_rows(one(recording), kTemperature, {}); });
+    return rejection([&] { rows_from(recording); });
   };
   Recording no_truth = good;
   no_truth.columns.pop_back();
@@ -116,13 +116,10 @@ TEST(TrainingRows, BadRunsAreNamedWithWhatIsWrong) {
 }
 
 TEST(TrainingRows, NoSteadyRowIsAnError) {
-  RowOptions options;
-  options.steady_K_per_min = 0.1;
-  EXPECT_TRUE(holds(rejection([&] {
-                      training_rows(one(drifting_run().recording()),
-                                    kTemperature, options);
-                    }),
-                    "no row whose temperature changes by 0.1 K/min or less"));
+  const RowOptions options{.steady_K_per_min = 0.1};
+  EXPECT_TRUE(
+      holds(rejection([&] { rows_from(drifting_run().recording(), options); }),
+            "no row whose temperature changes by 0.1 K/min or less"));
 }
 
 std::vector<int> numbers(const Eigen::ArrayXi& values) {
@@ -154,7 +151,7 @@ TrainingRows rows_at(const std::vector<double>& temperatures) {
   run.temperature = [&](double t) {
     return temperatures[static_cast<std::size_t>(t / 60.0)];
   };
-  return training_rows(one(run.recording()), kTemperature, {});
+  return rows_from(run.recording());
 }
 
 TEST(TrainingRows, LegsEndWhereTheTemperatureTurns) {
@@ -190,8 +187,7 @@ TEST(TrainingRows, WithoutSecondsEverySampleIsARow) {
   recording.status[1] |= kOutputSaturated;
   RowOptions options;
   options.seconds = 0.0;
-  const TrainingRows rows =
-      training_rows(one(recording), kTemperature, options);
+  const TrainingRows rows = rows_from(recording, options);
   ASSERT_EQ(rows.size(), 20 - 2 - 1);
   EXPECT_EQ(rows.time(0), 0.0);
   EXPECT_EQ(rows.time(1), 1.0);
@@ -208,17 +204,15 @@ TEST(TrainingRows, RateAndOutputTellVoltsPerDegreeEvenWithGapsInPower) {
     run.powered = [gap](double t) {
       return !gap || (t > 10.0 && t < 200.0) || t > 300.0;
     };
-    const TrainingRows rows =
-        training_rows(one(run.recording()), kTemperature, {});
+    const TrainingRows rows = rows_from(run.recording());
     EXPECT_NEAR(rows.output_per_rate, 0.0125, 1e-9) << gap;
     EXPECT_NEAR(rows.true_rate_span, 20.0, 0.02);
   }
   Recording turned = run.recording();  // output falls with the rate
   for (double& volts : turned.columns[0].values) volts = 5.0 - volts;
-  EXPECT_NEAR(training_rows(one(turned), kTemperature, {}).output_per_rate,
-              -0.0125, 1e-9);
+  EXPECT_NEAR(rows_from(turned).output_per_rate, -0.0125, 1e-9);
   turned.columns.erase(turned.columns.begin());
-  EXPECT_EQ(training_rows(one(turned), kTemperature, {}).output_per_rate, 0.0);
+  EXPECT_EQ(rows_from(turned).output_per_rate, 0.0);
 }
 
 TEST(TrainingRows, WithAScaleFactorTheLabelIsWhatItLeaves) {

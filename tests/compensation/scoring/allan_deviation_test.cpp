@@ -90,10 +90,8 @@ TEST(AllanDeviation, OfAThousandRatesHasTheDigitsOfNistSp1065) {
 }
 
 TEST(AllanDeviation, OfAnUnknownKindNamesTheKnownOnes) {
-  EXPECT_NE(rejection([] {
-              deviation_kind("tdev");
-            }).find("\"tdev\": not known; expected adev, oadev, mdev"),
-            std::string::npos);
+  EXPECT_TRUE(holds(rejection([] { deviation_kind("tdev"); }),
+                    "\"tdev\": not known; expected adev, oadev, mdev"));
 }
 
 TEST(AllanDeviation, TausAreOctavesDecadesOrAll) {
@@ -219,12 +217,7 @@ TEST(AllanDeviation, RefusesWhatIsNoSeries) {
   const std::array long_tau{5.0};
   auto holed = kNbs14;
   holed[3] = std::numeric_limits<double>::quiet_NaN();
-  try {
-    adev(holed, 1.0, one);
-    FAIL() << "a hole was accepted";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("rate 3"), std::string::npos);
-  }
+  EXPECT_TRUE(holds(rejection([&] { adev(holed, 1.0, one); }), "rate 3"));
   EXPECT_THROW(adev(kNbs14, 1.0, half), std::invalid_argument);
   EXPECT_THROW(adev(kNbs14, 1.0, long_tau), std::invalid_argument);
   EXPECT_THROW(adev(kNbs14, 0.0, one), std::invalid_argument);

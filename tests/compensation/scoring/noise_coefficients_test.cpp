@@ -293,7 +293,9 @@ using Find = std::optional<CoefficientEstimate> NoiseCoefficients::*;
 /// their 95 % intervals, which are no more than twice as wide as the scatter
 /// asks for.
 template <typename Make>
-void expect_coverage(Find coefficient, double truth, Make rates) {
+void expect_coverage(const char* what, Find coefficient, double truth,
+                     Make rates) {
+  SCOPED_TRACE(what);
   constexpr std::uint32_t kRecords = 100;
   int covered = 0, found = 0;
   double squares = 0.0, uncertainties = 0.0;
@@ -314,37 +316,20 @@ void expect_coverage(Find coefficient, double truth, Make rates) {
 }
 
 TEST(ManyDrawsOfCoefficients, HaveIntervalsThatHoldTheTruth) {
-  {
-    SCOPED_TRACE("quantisation");
-    expect_coverage(&NoiseCoefficients::angle_quantisation, 0.5,
-                    [](const auto& s) { return times(s.quantisation(), 0.5); });
-  }
-  {
-    SCOPED_TRACE("white");
-    expect_coverage(&NoiseCoefficients::angle_random_walk, 0.5,
-                    [](const auto& s) { return times(s.white(), 0.5); });
-  }
-  {
-    SCOPED_TRACE("flicker");
-    expect_coverage(&NoiseCoefficients::bias_instability, 0.5,
-                    [](const auto& s) { return times(s.flicker(), 0.5); });
-  }
-  {
-    SCOPED_TRACE("random walk");
-    expect_coverage(&NoiseCoefficients::rate_random_walk, 0.5,
-                    [](const auto& s) { return times(s.random_walk(), 0.5); });
-  }
-  {
-    SCOPED_TRACE("ramp");
-    expect_coverage(&NoiseCoefficients::rate_ramp, 0.2, [](const auto& s) {
-      return sum(s.white(), times(s.ramp(), 0.2));
-    });
-  }
-  {
-    SCOPED_TRACE("white noise on flicker");
-    expect_coverage(&NoiseCoefficients::bias_instability, 1.0,
-                    [](const auto& s) { return sum(s.white(), s.flicker()); });
-  }
+  expect_coverage("quantisation", &NoiseCoefficients::angle_quantisation, 0.5,
+                  [](const auto& s) { return times(s.quantisation(), 0.5); });
+  expect_coverage("white", &NoiseCoefficients::angle_random_walk, 0.5,
+                  [](const auto& s) { return times(s.white(), 0.5); });
+  expect_coverage("flicker", &NoiseCoefficients::bias_instability, 0.5,
+                  [](const auto& s) { return times(s.flicker(), 0.5); });
+  expect_coverage("random walk", &NoiseCoefficients::rate_random_walk, 0.5,
+                  [](const auto& s) { return times(s.random_walk(), 0.5); });
+  expect_coverage(
+      "ramp", &NoiseCoefficients::rate_ramp, 0.2,
+      [](const auto& s) { return sum(s.white(), times(s.ramp(), 0.2)); });
+  expect_coverage("white noise on flicker",
+                  &NoiseCoefficients::bias_instability, 1.0,
+                  [](const auto& s) { return sum(s.white(), s.flicker()); });
 }
 
 TEST(NoiseCoefficients, AreReportedInSecondsAndInHours) {

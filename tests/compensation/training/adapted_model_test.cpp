@@ -2,13 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/training/train.h"
 #include "dataset/files/atomic_file.h"
 #include "tests/compensation/recorded_run.h"
+#include "tests/compensation/rows_of.h"
 #include "tests/config/rejection.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::adapted_model_test {
 namespace {
@@ -37,10 +38,9 @@ TrainingRun unit_run(int unit, const std::vector<double>& temperatures) {
 }
 
 std::vector<TrainingRun> units(int first, int count) {
-  std::vector<double> sweep;
-  for (int T = -40; T <= 50; T += 5) sweep.push_back(T);
   std::vector<TrainingRun> runs;
-  for (int k = 0; k < count; ++k) runs.push_back(unit_run(first + k, sweep));
+  for (int k = 0; k < count; ++k)
+    runs.push_back(unit_run(first + k, every_five_kelvins()));
   return runs;
 }
 
@@ -53,23 +53,16 @@ Compensator population() {
   return train(population_spec(), units(0, 20), units(20, 4), 1).compensator;
 }
 
-class AdaptedModel : public testing::Test {
+class AdaptedModel : public DirectoryFixture {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(folder_);
-    write_text_file(folder_ / "population.json",
+  AdaptedModel() {
+    write_text_file(directory / "population.json",
                     compensator_text(population()));
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   ModelSpec model(const std::string& text) const {
-    write_text_file(folder_ / "model.toml", text);
-    return read_model(folder_ / "model.toml");
+    write_text_file(directory / "model.toml", text);
+    return read_model(directory / "model.toml");
   }
-
-  std::filesystem::path folder_;
 };
 
 const char* const kAdapted =
@@ -157,7 +150,7 @@ TEST_F(AdaptedModel, RefusesWhatIsNoPopulation) {
       "takes what a soak shows");
   Compensator plain = population();
   plain.population.reset();
-  write_text_file(folder_ / "population.json", compensator_text(plain));
+  write_text_file(directory / "population.json", compensator_text(plain));
   says(kAdapted, "is a compensator without a population");
 }
 

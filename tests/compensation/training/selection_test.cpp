@@ -61,10 +61,6 @@ std::string explanation(const Selected& selected, const std::string& name) {
   return line == lines.end() ? "nothing" : *line;
 }
 
-bool says(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 double curved(double T, int /*row*/) { return bias_curve(T); }
 
 std::vector<Leg> runs_up(int count) {
@@ -79,11 +75,10 @@ TEST(Selection, OneLegTakesCurvesUpToTheCubicAndSaysWhy) {
                       rows_of({kUp}, curved));
   EXPECT_EQ(selected.candidate.name, "cubic");
   for (const std::string name : {"spline", "bp(3)"})
-    EXPECT_TRUE(says(explanation(selected, name),
-                     "passed over, the recordings are "
-                     "one leg of temperature"))
-        << explanation(selected, name);
-  EXPECT_TRUE(says(explanation(selected, "cubic"), "over 5 unseen segments"));
+    EXPECT_TRUE(holds(explanation(selected, name),
+                      "passed over, the recordings are "
+                      "one leg of temperature"));
+  EXPECT_TRUE(holds(explanation(selected, "cubic"), "over 5 unseen segments"));
   EXPECT_TRUE(explanation(selected, "kept cubic").starts_with("kept cubic"));
 }
 
@@ -94,7 +89,7 @@ TEST(Selection, OneLegIsAConstantWhenOnlyNoiseMoves) {
         return 1.0 + 0.01 * noise[static_cast<std::size_t>(k)];
       }));
   EXPECT_EQ(selected.candidate.name, "constant");
-  EXPECT_TRUE(says(explanation(selected, "cubic"), "no more than slow noise"));
+  EXPECT_TRUE(holds(explanation(selected, "cubic"), "no more than slow noise"));
 }
 
 // A straight line is in the cubic too; segments excuse no simplicity.
@@ -115,9 +110,8 @@ TEST(Selection, PassesOverWhatTheRowsDoNotDetermine) {
       [](double T, int) { return T; });
   const Selected selected = select_by_folds({kConstant, kLinear, kCubic}, rows);
   EXPECT_EQ(selected.candidate.name, "linear");
-  EXPECT_TRUE(says(explanation(selected, "cubic"),
-                   "passed over, without run 1: temperature"))
-      << explanation(selected, "cubic");
+  EXPECT_TRUE(holds(explanation(selected, "cubic"),
+                    "passed over, without run 1: temperature"));
 }
 
 // Slopes of three legs, T from -1 to 1: what two of them leave of the third,
@@ -169,9 +163,8 @@ TEST(Selection, AveragesWithAConstantByWhatLegsAgreeOn) {
       selected.fit.model.predict(Eigen::ArrayXd{{-40.0, 50.0}});
   EXPECT_NEAR(ends(1) - ends(0), 2.0 * 0.65 * selected.weight, 1e-9);
   EXPECT_NEAR(ends.mean(), 0.0, 1e-9);
-  EXPECT_TRUE(says(explanation(selected, "linear"),
-                   "averaged with a constant, weight 0.44"))
-      << explanation(selected, "linear");
+  EXPECT_TRUE(holds(explanation(selected, "linear"),
+                    "averaged with a constant, weight 0.44"));
   EXPECT_FALSE(
       objection_to_claim(selected.errors, selected.constant_errors).empty());
 }
@@ -184,9 +177,10 @@ TEST(Selection, ThreeLegsThatDisagreeClaimNothingThoughTheAverageGains) {
   ASSERT_LT(selected.weight, 1.0);
   EXPECT_EQ(selected.errors->size(), 3);
   EXPECT_EQ(objection_to_claim(selected.errors, selected.constant_errors), "");
-  EXPECT_TRUE(says(objection_to_claim(selected.errors, selected.constant_errors,
-                                      selected.weight),
-                   "the groups disagree"));
+  EXPECT_TRUE(
+      holds(objection_to_claim(selected.errors, selected.constant_errors,
+                               selected.weight),
+            "the groups disagree"));
 }
 
 TEST(Selection, LegsThatAgreeKeepTheWholeCurve) {
@@ -210,8 +204,7 @@ TEST(Selection, AGainThatIsOfNoUseKeepsTheConstant) {
   };
   const Selected small = choice(0.65);
   EXPECT_EQ(small.candidate.name, "constant");
-  EXPECT_TRUE(says(explanation(small, "kept"), "less than 10 %"))
-      << explanation(small, "kept");
+  EXPECT_TRUE(holds(explanation(small, "kept"), "less than 10 %"));
   EXPECT_EQ(choice(1.0).candidate.name, "linear");
 }
 
@@ -219,9 +212,8 @@ TEST(Selection, TwoLegsAreTooFewForANetwork) {
   const Selected selected = select_by_folds(
       {kConstant, kCubic, kSpline, kNetwork}, rows_of({kUp, kDown}, curved));
   EXPECT_EQ(selected.candidate.name, "spline");
-  EXPECT_TRUE(says(explanation(selected, "bp(3)"),
-                   "passed over, 3 legs or more judge a network"))
-      << explanation(selected, "bp(3)");
+  EXPECT_TRUE(holds(explanation(selected, "bp(3)"),
+                    "passed over, 3 legs or more judge a network"));
 }
 
 TEST(Selection, ThreeRunsAreEnoughForANetwork) {
@@ -229,7 +221,7 @@ TEST(Selection, ThreeRunsAreEnoughForANetwork) {
                                             rows_of(runs_up(3), curved));
   EXPECT_EQ(selected.candidate.name, "bp(3)");
   EXPECT_TRUE(
-      says(explanation(selected, "kept"), "kept bp(3): the lowest residual"));
+      holds(explanation(selected, "kept"), "kept bp(3): the lowest residual"));
   EXPECT_LT(rms_of(*selected.errors), 0.2 * rms_of(*selected.constant_errors));
 }
 
@@ -263,10 +255,9 @@ TEST(Selection, TimeSincePowerOnNeedsPowerOnsAtSeveralTemperatures) {
   };
   const Selected same = choice({-40.0, -39.0, -35.0});
   EXPECT_EQ(same.candidate.name, "linear");
-  EXPECT_TRUE(says(explanation(same, "slopes"),
-                   "power-ons at 3 temperatures 10 K apart; the recordings "
-                   "have 1"))
-      << explanation(same, "slopes");
+  EXPECT_TRUE(holds(explanation(same, "slopes"),
+                    "power-ons at 3 temperatures 10 K apart; the recordings "
+                    "have 1"));
   const Selected several = choice({-40.0, -30.0, -20.0});
   EXPECT_EQ(several.candidate.name, "slopes");
 }
@@ -277,7 +268,7 @@ TEST(Selection, WithoutGroupsHeldOutRowsJudge) {
   const Selected selected =
       select({kConstant, kLinear, kSpline}, rows, {}, held_out);
   EXPECT_EQ(selected.candidate.name, "spline");
-  EXPECT_TRUE(says(explanation(selected, "spline"), "unseen segments"));
+  EXPECT_TRUE(holds(explanation(selected, "spline"), "unseen segments"));
   // Equal groups or not, the means are over about the same rows.
   EXPECT_NEAR(rms_of(*selected.errors),
               rms_residual(selected.fit.model, held_out),
@@ -299,16 +290,15 @@ TEST(Selection, RefusesWhenNoCandidateIsLeft) {
   const std::string one_leg = rejection([] {
     select_by_folds({kSpline, kNetwork}, rows_of({kUp}, curved));
   });
-  EXPECT_TRUE(says(one_leg, "no candidate can be judged: spline: passed over"))
-      << one_leg;
+  EXPECT_TRUE(
+      holds(one_leg, "no candidate can be judged: spline: passed over"));
   const std::string narrow = rejection([] {
     std::vector<Leg> legs = runs_up(3);
     for (Leg& leg : legs) leg.from = leg.to = 20.0;
     const TrainingRows rows = rows_of(legs, curved);
     select({kLinear, kCubic}, rows, group_rows(rows, Grouping::kRun));
   });
-  EXPECT_TRUE(says(narrow, "no candidate can be fitted: linear: passed over"))
-      << narrow;
+  EXPECT_TRUE(holds(narrow, "no candidate can be fitted: linear: passed over"));
 }
 
 }  // namespace

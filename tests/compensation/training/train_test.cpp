@@ -190,15 +190,13 @@ TEST(Train, AnAverageWithAConstantIsStoredAndExportedAsItsKind) {
   EXPECT_NEAR(coefficients_about(c.bias, 0.0)[1], slope, 1e-3);
   EXPECT_NEAR(coefficients_about(autopilot_cubic(c, false), 0.0)[1], slope,
               1e-3);
-  EXPECT_NE(export_c(c, "average").source.find("coefficients"),
-            std::string::npos);
+  EXPECT_TRUE(holds(export_c(c, "average").source, "coefficients"));
   const Recording unseen = leg(-40.0, 40.0, 0.5);
   const Compensator again = parse_compensator(compensator_text(c), "c.json");
   EXPECT_EQ(again.provenance, c.provenance);
   EXPECT_EQ(compensated_rate(again, unseen), compensated_rate(c, unseen));
   ASSERT_FALSE(c.provenance.warnings.empty());
-  EXPECT_NE(c.provenance.warnings.back().find("no improvement to claim"),
-            std::string::npos);
+  EXPECT_TRUE(holds(c.provenance.warnings.back(), "no improvement to claim"));
 }
 
 TEST(Train, RefusesWhatCannotBeTrainedOn) {
@@ -207,28 +205,22 @@ TEST(Train, RefusesWhatCannotBeTrainedOn) {
                           const auto& held_out) {
     return rejection([&] { train(spec, training, held_out, 1); });
   };
-  EXPECT_NE(message(network, kSoaks, std::vector<TrainingRun>{})
-                .find("pass held_out = RUN.h5"),
-            std::string::npos);
-  EXPECT_NE(message(network, std::vector<TrainingRun>{}, kOffGrid)
-                .find("at least one recording"),
-            std::string::npos);
-  EXPECT_NE(message(network, kSoaks, kSoaks).find("must be another run"),
-            std::string::npos);
+  EXPECT_TRUE(holds(message(network, kSoaks, std::vector<TrainingRun>{}),
+                    "pass held_out = RUN.h5"));
+  EXPECT_TRUE(holds(message(network, std::vector<TrainingRun>{}, kOffGrid),
+                    "at least one recording"));
+  EXPECT_TRUE(holds(message(network, kSoaks, kSoaks), "must be another run"));
   const auto narrow = runs({soaks(20.0, 23.0, 1.5)}, "narrow");
-  EXPECT_NE(message(curve_spec(PolynomialSpec{3}), narrow, kOffGrid)
-                .find("between 20.00 and 23.00 degC"),
-            std::string::npos);
+  EXPECT_TRUE(holds(message(curve_spec(PolynomialSpec{3}), narrow, kOffGrid),
+                    "between 20.00 and 23.00 degC"));
   const std::string missing =
       message(network_spec({"temperature", "quadrature"}, 6), kSoaks, kOffGrid);
-  EXPECT_NE(missing.find("soaks0.h5: input \"quadrature\""), std::string::npos)
-      << missing;
+  EXPECT_TRUE(holds(missing, "soaks0.h5: input \"quadrature\""));
   RecordedRun still{.duration = 600.0, .step = 1.0};
   still.temperature = [](double t) { return -40.0 + 0.1 * t; };
-  EXPECT_NE(message(network_spec({"output"}, 6),
-                    runs({still.recording()}, "still"), kOffGrid)
-                .find("input output is 2.5 in all 10 training rows"),
-            std::string::npos);
+  EXPECT_TRUE(holds(message(network_spec({"output"}, 6),
+                            runs({still.recording()}, "still"), kOffGrid),
+                    "input output is 2.5 in all 10 training rows"));
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ TEST(BiasSigmaJson, EveryBrokenMemberIsNamed) {
     EXPECT_TRUE(holds(error, "mine.json: sigma"));
     EXPECT_TRUE(holds(error, one.place));
     EXPECT_TRUE(holds(error, one.words));
-    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+    EXPECT_FALSE(holds(error, "\n"));
   }
 }
 
@@ -128,16 +128,6 @@ TEST(BiasSigmaJson, ASigmaThatIsNoObjectIsNamed) {
               "mine.json: sigma: "))
         << value;
   }
-}
-
-TEST(BiasSigmaJson, NumbersBeyondDoubleAreNamed) {
-  std::string text = compensator_text(with_sigma(spline_compensator()));
-  const std::string good = "\"factor\": 1.1";
-  const std::size_t place = text.find(good);
-  ASSERT_NE(place, std::string::npos);
-  text.replace(place, good.size(), "\"factor\": 1e999");
-  EXPECT_TRUE(holds(rejection([&] { parse_compensator(text, "mine.json"); }),
-                    "mine.json"));
 }
 
 }  // namespace

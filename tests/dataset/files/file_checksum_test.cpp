@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <random>
@@ -17,22 +16,20 @@
 #include "tests/config/rejection.h"
 #include "tests/dataset/overwrite.h"
 #include "tests/dataset/sample_recording.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::file_checksum_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-class FileChecksumLine : public ::testing::Test {
- protected:
-  void SetUp() override {
-    file = fs::path(::testing::TempDir()) /
-           ("checksum " + std::to_string(getpid()) + ".h5");
-    write_recording(sample_recording(500), file);
-    bytes = read_text_file(file);
-  }
-  void TearDown() override { fs::remove(file); }
+fs::path recorded(const fs::path& file) {
+  write_recording(sample_recording(500), file);
+  return file;
+}
 
+class FileChecksumLine : public DirectoryFixture {
+ protected:
   std::string rejected() const {
     return rejection([&] { read_recording(file); });
   }
@@ -49,8 +46,8 @@ class FileChecksumLine : public ::testing::Test {
     return message;
   }
 
-  fs::path file;
-  std::string bytes;
+  const fs::path file = recorded(directory / "checksum.h5");
+  const std::string bytes = read_text_file(file);
 };
 
 constexpr std::size_t kLine = 95;  // [bytes]

@@ -2,12 +2,10 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/mount.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 
@@ -16,6 +14,7 @@
 #include "dataset/netcdf/recording_file.h"
 #include "tests/config/rejection.h"
 #include "tests/dataset/sample_recording.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::full_disk_test {
 namespace {
@@ -29,12 +28,10 @@ constexpr std::size_t kPage = 4096;  // [bytes]
 
 /// A file system of a few pages, seen by this process and its children only.
 /// Mounting takes a superuser.
-class FullDisk : public ::testing::TestWithParam<std::string> {
+class FullDisk : public ::testing::TestWithParam<std::string>,
+                 public TestDirectory {
  protected:
   void SetUp() override {
-    folder = fs::path(::testing::TempDir()) /
-             ("full disk " + std::to_string(getpid()));
-    fs::create_directory(folder);
     if (unshare(CLONE_NEWNS) != 0 ||
         mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
         !mount_pages(1))
@@ -43,23 +40,16 @@ class FullDisk : public ::testing::TestWithParam<std::string> {
   }
   void TearDown() override {
     if (is_mounted_) {
-      EXPECT_EQ(umount(folder.c_str()), 0);
+      EXPECT_EQ(umount(directory.c_str()), 0);
     }
-    fs::remove_all(folder);
   }
 
   bool mount_pages(std::size_t pages) const {
     const std::string size = "size=" + std::to_string(pages * kPage);
-    return mount("tmpfs", folder.c_str(), "tmpfs", is_mounted_ ? MS_REMOUNT : 0,
-                 size.c_str()) == 0;
+    return mount("tmpfs", directory.c_str(), "tmpfs",
+                 is_mounted_ ? MS_REMOUNT : 0, size.c_str()) == 0;
   }
-  fs::path file() const { return folder / ("run" + GetParam()); }
-  std::size_t files_there() const {
-    return static_cast<std::size_t>(std::distance(
-        fs::directory_iterator(folder), fs::directory_iterator()));
-  }
-
-  fs::path folder;
+  fs::path file() const { return directory / ("run" + GetParam()); }
 
  private:
   bool is_mounted_ = false;
@@ -84,12 +74,12 @@ TEST_P(FullDisk, EndsTheProgramInOrderWhereverItStrikes) {
     EXPECT_EXIT(write_and_exit(recording, file()), testing::ExitedWithCode(1),
                 "run.*: cannot .*: No space left on device")
         << pages;
-    EXPECT_EQ(files_there(), 0u) << pages;
+    EXPECT_EQ(names().size(), 0u) << pages;
   }
   ASSERT_TRUE(mount_pages(200));
   EXPECT_EXIT(write_and_exit(recording, file()), testing::ExitedWithCode(0),
               "^$");
-  EXPECT_EQ(files_there(), 1u);
+  EXPECT_EQ(names().size(), 1u);
 }
 
 TEST_P(FullDisk, ABlockThatFailedMayComeAgain) {
@@ -104,9 +94,9 @@ TEST_P(FullDisk, ABlockThatFailedMayComeAgain) {
   ASSERT_TRUE(mount_pages(2000));
   written.append(recording);
   written.finish();
-  write_recording(recording, folder / ("whole" + GetParam()));
+  write_recording(recording, directory / ("whole" + GetParam()));
   EXPECT_EQ(read_text_file(file()),
-            read_text_file(folder / ("whole" + GetParam())));
+            read_text_file(directory / ("whole" + GetParam())));
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, FullDisk, testing::Values(".h5", ".csv"));

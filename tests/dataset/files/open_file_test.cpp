@@ -13,20 +13,17 @@
 #include "config/document.h"
 #include "config/file_error.h"
 #include "dataset/files/text_file.h"
-#include "tests/config/rejection.h"
 #include "tests/dataset/system_calls.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::open_file_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-class OpenFileTest : public ::testing::Test {
+class OpenFileTest : public DirectoryFixture {
  protected:
-  void TearDown() override { fs::remove(path); }
-
-  fs::path path = fs::path(::testing::TempDir()) /
-                  ("open file " + std::to_string(getpid()));
+  const fs::path path = directory / "file";
 };
 
 void write_x(const fs::path& path) {

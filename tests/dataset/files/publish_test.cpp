@@ -10,17 +10,17 @@
 
 #include <csignal>
 #include <exception>
-#include <vector>
 
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/text_file.h"
 #include "tests/config/rejection.h"
-#include "tests/dataset/set/set_directory.h"
+#include "tests/dataset/child_process.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::publish_test {
 namespace {
 
-using Publish = SetDirectory;
+using Publish = DirectoryFixture;
 using ::testing::HasSubstr;
 
 std::span<const std::byte> bytes_of(const std::string& text) {
@@ -77,14 +77,6 @@ TEST_F(Publish, AFullDiskTellsWhatIsNeededAndWhatIsFree) {
   EXPECT_EQ(names(), std::set<std::string>{"a.h5"});
   publish_file(directory, "b.h5", bytes_of(std::string(40000, 'x')));
   EXPECT_EQ(umount(directory.c_str()), 0);
-}
-
-/// The process number of a child that is gone.
-pid_t dead_process() {
-  const pid_t child = fork();
-  if (child == 0) _exit(0);
-  waitpid(child, nullptr, 0);
-  return child;
 }
 
 TEST_F(Publish, OnlyPartialFilesOfTheDeadAreRemoved) {

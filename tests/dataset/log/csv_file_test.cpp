@@ -7,21 +7,17 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include "dataset/netcdf/recording_file.h"
 #include "tests/config/rejection.h"
 #include "tests/dataset/sample_recording.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::csv_file_test {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path test_file(const char* name) {
-  return fs::path(::testing::TempDir()) / name;
-}
 
 std::string rejection_of(const std::string& text) {
   return rejection([&] { parse_csv(text, "log.csv"); });
@@ -54,17 +50,27 @@ TEST(CsvFile, AcceptsByteOrderMarkCarriageReturnsBlanksAndQuotedNames) {
   EXPECT_EQ(table.column("b"), (std::vector<double>{2.0, 4.0}));
 }
 
-TEST(CsvFile, NamesThePlaceOfABadCell) {
-  EXPECT_EQ(rejection_of("a,b\n1,2\n3,x4\n"),
-            "log.csv:3:3: 'x4' is not a number; expected one such as -12.5");
-  EXPECT_EQ(rejection_of("1,2\n3, 4;5\n"),
-            "log.csv:2:4: '4;5' is not a number; expected one such as -12.5");
-  EXPECT_EQ(rejection_of("a,b\n1,\n"),
-            "log.csv:2:3: '' is not a number; expected one such as -12.5");
-  EXPECT_EQ(rejection_of("1,b\n3,4\n"),
-            "log.csv:1:3: 'b' is not a number; expected one such as -12.5");
-  EXPECT_EQ(rejection_of("a\n0x10\n"),
-            "log.csv:2:1: '0x10' is not a number; expected one such as -12.5");
+TEST(CsvFile, NamesThePlaceOfWhatIsWrong) {
+  const std::pair<std::string, std::string> texts[] = {
+      {"a,b\n1,2\n3,x4\n",
+       "3:3: 'x4' is not a number; expected one such as -12.5"},
+      {"1,2\n3, 4;5\n",
+       "2:4: '4;5' is not a number; expected one such as -12.5"},
+      {"a,b\n1,\n", "2:3: '' is not a number; expected one such as -12.5"},
+      {"1,b\n3,4\n", "1:3: 'b' is not a number; expected one such as -12.5"},
+      {"a\n0x10\n", "2:1: '0x10' is not a number; expected one such as -12.5"},
+      {"a,b\n1,2\n3\n", "3:1: 1 cells; expected 2 as in the first line"},
+      {"a,b\n1,2,3\n", "2:5: 3 cells; expected 2 as in the first line"},
+      {"a,b\n1,2\n\n3,4\n", "3:1: 1 cells; expected 2 as in the first line"},
+      {"", "1:1: the file is empty; expected rows of numbers"},
+      {"\r\n \n", "1:1: the file is empty; expected rows of numbers"},
+      {"a,b\n", "1:1: only a line of names; expected rows of numbers below it"},
+      {"a,a\n1,2", "1:3: two columns are called 'a'"},
+      {"a,\n1,2", "1:3: a column without a name"}};
+  for (const auto& [text, message] : texts)
+    EXPECT_EQ(rejection_of(text), "log.csv:" + message);
+  EXPECT_TRUE(rejection_of(std::string("\x89HDF\r\n\0\0\1", 9))
+                  .starts_with("log.csv:2:1: "));
 }
 
 TEST(CsvFile, RejectsNumbersThatAreNotFinite) {
@@ -74,33 +80,6 @@ TEST(CsvFile, RejectsNumbersThatAreNotFinite) {
                   "' is nan, infinite or out of range; expected a finite "
                   "number");
   }
-}
-
-TEST(CsvFile, RejectsRaggedRows) {
-  EXPECT_EQ(rejection_of("a,b\n1,2\n3\n"),
-            "log.csv:3:1: 1 cells; expected 2 as in the first line");
-  EXPECT_EQ(rejection_of("a,b\n1,2,3\n"),
-            "log.csv:2:5: 3 cells; expected 2 as in the first line");
-  EXPECT_EQ(rejection_of("a,b\n1,2\n\n3,4\n"),
-            "log.csv:3:1: 1 cells; expected 2 as in the first line");
-}
-
-TEST(CsvFile, RejectsFilesWithoutNumbers) {
-  EXPECT_EQ(rejection_of(""),
-            "log.csv:1:1: the file is empty; expected rows of numbers");
-  EXPECT_EQ(rejection_of("\r\n \n"),
-            "log.csv:1:1: the file is empty; expected rows of numbers");
-  EXPECT_EQ(rejection_of("a,b\n"),
-            "log.csv:1:1: only a line of names; expected rows of numbers below "
-            "it");
-}
-
-TEST(CsvFile, RejectsUnclearNames) {
-  EXPECT_EQ(rejection_of("a,a\n1,2"),
-            "log.csv:1:3: two columns are called 'a'");
-  EXPECT_EQ(rejection_of("a,\n1,2"), "log.csv:1:3: a column without a name");
-  EXPECT_TRUE(rejection_of(std::string("\x89HDF\r\n\0\0\1", 9))
-                  .starts_with("log.csv:2:1: "));
 }
 
 TEST(CsvFile, AMissingColumnIsNamedWithThoseThereAre) {
@@ -113,11 +92,12 @@ TEST(CsvFile, AMissingColumnIsNamedWithThoseThereAre) {
 }
 
 TEST(CsvFile, AMissingFileIsNamed) {
-  const fs::path file = test_file("nowhere.csv");
+  const TestDirectory folder;
+  const fs::path file = folder.directory / "nowhere.csv";
   EXPECT_EQ(rejection([&] { read_csv(file); }),
             file.string() + ": cannot read: No such file or directory");
-  EXPECT_EQ(rejection([&] { read_csv(::testing::TempDir()); }),
-            ::testing::TempDir() + ": cannot read: Is a directory");
+  EXPECT_EQ(rejection([&] { read_csv(folder.directory); }),
+            folder.directory.string() + ": cannot read: Is a directory");
 }
 
 TEST(CsvFile, ARecordingReadsBackToTheSameBits) {
@@ -133,7 +113,8 @@ TEST(CsvFile, ARecordingReadsBackToTheSameBits) {
   recording.columns[0].values[0] = std::numeric_limits<double>::denorm_min();
   recording.columns[0].values[1] = 1e12;  // the largest that files may hold
   recording.columns[0].values[2] = -0.0;
-  const fs::path file = test_file("bits.csv");
+  const TestDirectory folder;
+  const fs::path file = folder.directory / "bits.csv";
   write_recording(recording, file);
   const CsvTable table = read_csv(file);
   EXPECT_EQ(table.column("time"), recording.time);
@@ -144,18 +125,6 @@ TEST(CsvFile, ARecordingReadsBackToTheSameBits) {
       EXPECT_EQ(std::bit_cast<std::uint64_t>(values[k]),
                 std::bit_cast<std::uint64_t>(column.values[k]));
   }
-}
-
-TEST(CsvFile, ADefectiveRecordingIsNotWritten) {
-  Recording recording = sample_recording(10);
-  recording.columns[7].values[3] = std::nan("");
-  const fs::path file = test_file("defect.csv");
-  EXPECT_EQ(
-      rejection<std::runtime_error>([&] { write_recording(recording, file); }),
-      file.string() +
-          ": not written: true_bias: sample 3 is nan; a truth is always "
-          "finite");
-  EXPECT_FALSE(fs::exists(file));
 }
 
 }  // namespace

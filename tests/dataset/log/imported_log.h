@@ -20,6 +20,17 @@ column = "T"
 unit = "degC"
 )";
 
+/// A map whose log has the time "t" and the rate "w" and is joined, over at
+/// most `gap` s, with one of the time "t" and the temperature "T".
+inline std::string joining_map(const std::string& time,
+                               const std::string& second_time,
+                               const std::string& gap) {
+  return "[time]\ncolumn = \"t\"\n" + time +
+         "[gyro]\ncolumn = \"w\"\nunit = \"deg/s\"\n[join]\nmax_gap_s = " +
+         gap + "\n[join.time]\ncolumn = \"t\"\n" + second_time +
+         "[join.temperature]\ncolumn = \"T\"\nunit = \"degC\"\n";
+}
+
 /// Imports a log "log.csv" by a map "map.toml", with a second log "second.csv"
 /// unless that is empty. Expects a recording without a defect.
 inline ImportedLog imported(const std::string& map, const std::string& text,

@@ -13,8 +13,9 @@ using Readings = std::vector<double>;
 const std::string kSeconds =
     "[time]\ncolumn = \"t\"\nunit = \"s\"\n" + kGyroAndTemperature;
 
-std::string refusal(const std::string& map, const std::string& log) {
-  return rejection([&] { imported(map, log); });
+std::string refusal(const std::string& map, const std::string& log,
+                    const std::string& second = "") {
+  return rejection([&] { imported(map, log, second); });
 }
 
 void expect_advice(const std::string& message,
@@ -163,17 +164,10 @@ TEST(LogTime, MinutesAndHoursBecomeSeconds) {
 }
 
 TEST(LogAdvice, AGapLongerThanMaxGapIsNoMissingOverlap) {
-  const std::string map =
-      "[time]\ncolumn = \"t\"\nunit = \"s\"\n[gyro]\ncolumn "
-      "= \"w\"\nunit = \"deg/s\"\n[join]\nmax_gap_s = 0.5\n"
-      "[join.time]\ncolumn = \"t\"\nunit = \"s\"\n"
-      "[join.temperature]\ncolumn = \"T\"\nunit = \"degC\"\n";
+  const std::string seconds = "unit = \"s\"\n";
   const auto joined = [&](const std::string& second) {
-    return rejection([&] {
-      import_log("t,w\n0.1,1\n0.2,1\n1.7,1\n", "log.csv",
-                 read_log_map(ConfigDocument::parse(map, "map.toml"), ""),
-                 SecondLog{second, "second.csv"});
-    });
+    return refusal(joining_map(seconds, seconds, "0.5"),
+                   "t,w\n0.1,1\n0.2,1\n1.7,1\n", second);
   };
   const std::string message = joined("t,T\n0,20\n1,20\n2,20\n");
   expect_advice(message, {"map.toml:7:1: join", "0.5 s", "period of 1 s",
@@ -185,19 +179,10 @@ TEST(LogAdvice, AGapLongerThanMaxGapIsNoMissingOverlap) {
 TEST(LogAdvice, ABadValueInTheSecondLogIsNoDriftOfTheFirst) {
   std::string gyro = "t,w\n";
   for (int k = 0; k < 2000; ++k) gyro += std::to_string(5 * k) + ",1\n";
-  const LogMap map = read_log_map(
-      ConfigDocument::parse("[time]\ncolumn = \"t\"\nunit = \"ms\"\n[gyro]\n"
-                            "column = \"w\"\nunit = \"deg/s\"\n[join]\n"
-                            "max_gap_s = 2\n[join.time]\ncolumn = \"t\"\n"
-                            "unit = \"s\"\n[join.temperature]\ncolumn = \"T\""
-                            "\nunit = \"degC\"\n",
-                            "map.toml"),
-      "");
   const std::string second =
       "t,T\n0,20\n1,20\n2,120\n3,20\n4,20\n5,20\n6,20\n7,20\n";
-  EXPECT_EQ(import_log(gyro, "log.csv", map, SecondLog{second, "second.csv"})
-                .counts.kept,
-            1401u);
+  const std::string map = joining_map("unit = \"ms\"\n", "unit = \"s\"\n", "2");
+  EXPECT_EQ(imported(map, gyro, second).counts.kept, 1401u);
 }
 
 TEST(LogAdvice, AColumnThatIsMostlyBlankIsNamed) {

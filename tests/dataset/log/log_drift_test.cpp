@@ -10,6 +10,7 @@
 
 #include "dataset/log/log_import.h"
 #include "tests/config/rejection.h"
+#include "tests/dataset/log/imported_log.h"
 
 namespace beamgyro::internal::log_drift_test {
 namespace {
@@ -20,17 +21,13 @@ using Temperature = std::function<double(double)>;  // [degC] over [s]
 // times are printed in s and read in `unit`. Empty: it takes them.
 std::string said(const std::string& unit, int rows, double step,
                  const Temperature& temperature, const std::string& more = "") {
-  const std::string map = fmt::format(
-      "[time]\ncolumn = \"t\"\nunit = \"{}\"\n[gyro]\ncolumn = \"w\""
-      "\nunit = \"deg/s\"\n[temperature]\ncolumn = \"T\"\nunit = "
-      "\"degC\"\n{}",
-      unit, more);
+  const std::string map = "[time]\ncolumn = \"t\"\nunit = \"" + unit + "\"\n" +
+                          kGyroAndTemperature + more;
   std::string log = "t,w,T\n";
   for (int k = 0; k < rows; ++k)
     log += fmt::format("{:.6g},0.1,{:.2f}\n", k * step, temperature(k * step));
   try {
-    import_log(log, "log.csv",
-               read_log_map(ConfigDocument::parse(map, "map.toml"), ""));
+    imported(map, log);
   } catch (const std::invalid_argument& error) {
     return error.what();
   }

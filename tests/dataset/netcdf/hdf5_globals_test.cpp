@@ -3,7 +3,6 @@
 #include <hdf5.h>
 
 #include <filesystem>
-#include <string>
 
 #include "dataset/netcdf/recording_file.h"
 #include "dataset/netcdf/recording_reader.h"

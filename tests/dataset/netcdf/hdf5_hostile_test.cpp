@@ -2,80 +2,30 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <array>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/text_file.h"
-#include "dataset/netcdf/hdf5_id.h"
-#include "dataset/netcdf/recording_file.h"
-#include "dataset/netcdf/recording_reader.h"
-#include "tests/config/rejection.h"
-#include "tests/dataset/sample_recording.h"
+#include "dataset/netcdf/hdf5_write.h"
+#include "tests/dataset/netcdf/changed_hdf5.h"
 
 namespace beamgyro::internal::hdf5_hostile_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr hsize_t kSamples = 20;
+/// Changes that somebody made in order to do harm.
+using HostileHdf5 = ChangedHdf5;
 
-/// A recording that somebody changed with HDF5 in order to do harm, so that it
-/// has no checksum any more.
-class HostileHdf5 : public ::testing::Test {
- protected:
-  void SetUp() override {
-    folder = fs::path(::testing::TempDir()) /
-             ("hostile " + std::to_string(getpid()));
-    fs::create_directory(folder);
-    file = folder / "run.h5";
-    write_recording(sample_recording(kSamples), file);
-  }
-  void TearDown() override { fs::remove_all(folder); }
-
-  void change(const std::function<void(hid_t)>& work) const {
-    const hid_t id = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-    ASSERT_GE(id, 0);
-    work(id);
-    ASSERT_GE(H5Fclose(id), 0);
-  }
-
-  std::string rejected() const {
-    const std::string message = rejection([&] { read_recording(file); });
-    EXPECT_TRUE(message.starts_with(file.string() + ": ")) << message;
-    return message.substr(std::min(message.size(), file.string().size() + 2));
-  }
-
-  fs::path folder, file;
-};
-
-/// /rate anew, of `type` and `length`, with `properties`. Returns its id.
-hid_t make_rate(hid_t file, hid_t type, hsize_t length, hid_t properties) {
+/// /rate anew, of `type` and `length`, with `properties`.
+H5Id make_rate(hid_t file, hid_t type, hsize_t length, hid_t properties) {
   H5Ldelete(file, "rate", H5P_DEFAULT);
-  const hid_t space = H5Screate_simple(1, &length, nullptr);
-  const hid_t rate = H5Dcreate2(file, "rate", type, space, H5P_DEFAULT,
-                                properties, H5P_DEFAULT);
-  EXPECT_GE(rate, 0);
-  H5Sclose(space);
-  for (const auto& [name, value] :
-       {std::pair("units", "degree/s"), std::pair("long_name", "rate"),
-        std::pair("role", "measured")}) {
-    const hid_t text = H5Tcopy(H5T_C_S1);
-    H5Tset_size(text, std::string(value).size());
-    const hid_t scalar = H5Screate(H5S_SCALAR);
-    const hid_t attribute =
-        H5Acreate2(rate, name, text, scalar, H5P_DEFAULT, H5P_DEFAULT);
-    H5Awrite(attribute, text, value);
-    H5Aclose(attribute);
-    H5Sclose(scalar);
-    H5Tclose(text);
-  }
-  return rate;
+  return make_variable(file, {"rate", "degree/s", "rate"}, type,
+                       space_of(std::array{length}), properties, {});
 }
 
 void write_zeros(hid_t rate, hsize_t length) {
@@ -85,10 +35,16 @@ void write_zeros(hid_t rate, hsize_t length) {
             0);
 }
 
-hid_t chunked(hsize_t chunk) {
-  const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+H5Id chunked(hsize_t chunk) {
+  H5Id properties = property_list(H5P_DATASET_CREATE);
   H5Pset_chunk(properties, 1, &chunk);
   return properties;
+}
+
+H5Id text_of_variable_length() {
+  H5Id type(H5Tcopy(H5T_C_S1), H5Tclose, "make a type");
+  H5Tset_size(type, H5T_VARIABLE);
+  return type;
 }
 
 long peak_memory() {  // [KiB]
@@ -104,96 +60,78 @@ TEST_F(HostileHdf5, AFileThatAnotherProgramChangedIsRead) {
 
 TEST_F(HostileHdf5, ShuffleDeflateAndFletcherAreRead) {
   change([](hid_t id) {
-    const hid_t properties = chunked(7);
+    const H5Id properties = chunked(7);
     H5Pset_shuffle(properties);
     H5Pset_deflate(properties, 9);
     H5Pset_fletcher32(properties);
-    const hid_t rate = make_rate(id, H5T_IEEE_F32BE, kSamples, properties);
+    const H5Id rate = make_rate(id, H5T_IEEE_F32BE, kSamples, properties);
     write_zeros(rate, kSamples);
-    H5Dclose(rate);
-    H5Pclose(properties);
   });
   const Recording recording = read_recording(file);
   EXPECT_EQ(column_values(recording, "rate"), std::vector<double>(kSamples));
 }
 
 TEST_F(HostileHdf5, LinksAreNotFollowed) {
-  const fs::path other = folder / "other.h5";
+  const fs::path other = directory / "other.h5";
   fs::copy_file(file, other);
-  change([&](hid_t id) {
-    H5Ldelete(id, "rate", H5P_DEFAULT);
-    H5Lcreate_external(other.c_str(), "/rate", id, "rate", H5P_DEFAULT,
-                       H5P_DEFAULT);
-  });
-  EXPECT_EQ(rejected(),
+  EXPECT_EQ(rejected([&](hid_t id) {
+              H5Ldelete(id, "rate", H5P_DEFAULT);
+              H5Lcreate_external(other.c_str(), "/rate", id, "rate",
+                                 H5P_DEFAULT, H5P_DEFAULT);
+            }),
             "rate is a link to another place; expected the variable itself");
-  change([](hid_t id) {
-    H5Ldelete(id, "rate", H5P_DEFAULT);
-    H5Lcreate_soft("/output", id, "rate", H5P_DEFAULT, H5P_DEFAULT);
-  });
-  EXPECT_EQ(rejected(),
+  EXPECT_EQ(rejected([](hid_t id) {
+              H5Ldelete(id, "rate", H5P_DEFAULT);
+              H5Lcreate_soft("/output", id, "rate", H5P_DEFAULT, H5P_DEFAULT);
+            }),
             "rate is a link to another place; expected the variable itself");
-  change([&](hid_t id) {
-    H5Ldelete(id, "rate", H5P_DEFAULT);
-    H5Ldelete(id, "meta/device", H5P_DEFAULT);
-    H5Lcreate_external(other.c_str(), "/meta/device", id, "meta/device",
-                       H5P_DEFAULT, H5P_DEFAULT);
-  });
-  EXPECT_EQ(rejected(),
+  EXPECT_EQ(rejected([&](hid_t id) {
+              H5Ldelete(id, "rate", H5P_DEFAULT);
+              H5Ldelete(id, "meta/device", H5P_DEFAULT);
+              H5Lcreate_external(other.c_str(), "/meta/device", id,
+                                 "meta/device", H5P_DEFAULT, H5P_DEFAULT);
+            }),
             "meta/device is a link to another place; expected the variable "
             "itself");
 }
 
 TEST_F(HostileHdf5, AMetaThatIsALinkIsNotFollowed) {
-  const fs::path other = folder / "other.h5";
+  const fs::path other = directory / "other.h5";
   fs::copy_file(file, other);
-  change([&](hid_t id) {
-    H5Ldelete(id, "meta", H5P_DEFAULT);
-    H5Lcreate_external(other.c_str(), "/meta", id, "meta", H5P_DEFAULT,
-                       H5P_DEFAULT);
-  });
-  EXPECT_EQ(rejected(),
+  EXPECT_EQ(rejected([&](hid_t id) {
+              H5Ldelete(id, "meta", H5P_DEFAULT);
+              H5Lcreate_external(other.c_str(), "/meta", id, "meta",
+                                 H5P_DEFAULT, H5P_DEFAULT);
+            }),
             "meta is a link to another place; expected the group itself");
 }
 
 TEST_F(HostileHdf5, ValuesInOtherFilesAreNotRead) {
-  const fs::path other = folder / "other.bin";
+  const fs::path other = directory / "other.bin";
   write_text_file(other, std::string(kSamples * 8, '\0'));
-  change([&](hid_t id) {
-    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
-    H5Pset_external(properties, other.c_str(), 0, kSamples * 8);
-    H5Dclose(make_rate(id, H5T_IEEE_F64LE, kSamples, properties));
-    H5Pclose(properties);
-  });
-  EXPECT_EQ(rejected(),
+  EXPECT_EQ(rejected([&](hid_t id) {
+              const H5Id properties = property_list(H5P_DATASET_CREATE);
+              H5Pset_external(properties, other.c_str(), 0, kSamples * 8);
+              make_rate(id, H5T_IEEE_F64LE, kSamples, properties);
+            }),
             "the values of rate are in another file; expected them in this");
   change([&](hid_t id) {
-    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
-    const hid_t space = H5Screate_simple(1, &kSamples, nullptr);
+    const H5Id properties = property_list(H5P_DATASET_CREATE);
+    const H5Id space = space_of(std::array{kSamples});
     H5Pset_virtual(properties, space, "other.h5", "rate", space);
-    H5Dclose(make_rate(id, H5T_IEEE_F64LE, kSamples, properties));
-    H5Sclose(space);
-    H5Pclose(properties);
+    make_rate(id, H5T_IEEE_F64LE, kSamples, properties);
   });
   EXPECT_TRUE(rejected().starts_with("rate is a view of other files"));
 }
 
 TEST_F(HostileHdf5, TextsOfVariableLengthAreNotRead) {
+  const char* text = "degree/s";
   const auto set_text = [&](const char* owner, const char* name) {
     change([&](hid_t id) {
       H5Adelete_by_name(id, owner, name, H5P_DEFAULT);
-      const hid_t type = H5Tcopy(H5T_C_S1);
-      H5Tset_size(type, H5T_VARIABLE);
-      const hid_t object = H5Oopen(id, owner, H5P_DEFAULT);
-      const hid_t scalar = H5Screate(H5S_SCALAR);
-      const hid_t attribute =
-          H5Acreate2(object, name, type, scalar, H5P_DEFAULT, H5P_DEFAULT);
-      const char* text = "degree/s";
-      H5Awrite(attribute, type, &text);
-      H5Aclose(attribute);
-      H5Sclose(scalar);
-      H5Oclose(object);
-      H5Tclose(type);
+      const H5Id object(H5Oopen(id, owner, H5P_DEFAULT), H5Oclose, "open");
+      write_attribute(object, name, text_of_variable_length(), scalar_space(),
+                      &text);
     });
   };
   set_text("/rate", "units");
@@ -207,16 +145,12 @@ TEST_F(HostileHdf5, TextsOfVariableLengthAreNotRead) {
 TEST_F(HostileHdf5, AMetaTextOfVariableLengthAsOfVersion1IsNotRead) {
   change([](hid_t id) {
     H5Ldelete(id, "meta/device", H5P_DEFAULT);
-    const hid_t type = H5Tcopy(H5T_C_S1);
-    H5Tset_size(type, H5T_VARIABLE);
-    const hid_t scalar = H5Screate(H5S_SCALAR);
-    const hid_t text = H5Dcreate2(id, "meta/device", type, scalar, H5P_DEFAULT,
-                                  H5P_DEFAULT, H5P_DEFAULT);
+    const H5Id type = text_of_variable_length();
+    const H5Id text(H5Dcreate2(id, "meta/device", type, scalar_space(),
+                               H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                    H5Dclose, "make text");
     const char* value = "text";
     H5Dwrite(text, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value);
-    H5Dclose(text);
-    H5Sclose(scalar);
-    H5Tclose(type);
   });
   EXPECT_TRUE(
       rejected().starts_with("/meta/device is text of variable length"));
@@ -232,17 +166,15 @@ TEST_F(HostileHdf5, FiltersOfOthersAreNotRun) {
   const H5Z_class2_t filter = {H5Z_CLASS_T_VERS, kForeign, 1,       1,
                                "foreign",        nullptr,  nullptr, pass};
   ASSERT_GE(H5Zregister(&filter), 0);
-  change([](hid_t id) {
-    const hid_t properties = chunked(kSamples);
-    H5Pset_filter(properties, kForeign, H5Z_FLAG_MANDATORY, 0, nullptr);
-    const hid_t rate = make_rate(id, H5T_IEEE_F64LE, kSamples, properties);
-    write_zeros(rate, kSamples);
-    H5Dclose(rate);
-    H5Pclose(properties);
-  });
-  EXPECT_EQ(rejected(),
-            "rate is stored through filter 300; expected shuffle, deflate and "
-            "fletcher32, each once at most");
+  EXPECT_EQ(
+      rejected([](hid_t id) {
+        const H5Id properties = chunked(kSamples);
+        H5Pset_filter(properties, kForeign, H5Z_FLAG_MANDATORY, 0, nullptr);
+        const H5Id rate = make_rate(id, H5T_IEEE_F64LE, kSamples, properties);
+        write_zeros(rate, kSamples);
+      }),
+      "rate is stored through filter 300; expected shuffle, deflate and "
+      "fletcher32, each once at most");
 }
 
 TEST_F(HostileHdf5, PlugInsAreNotLoaded) {
@@ -255,13 +187,11 @@ TEST_F(HostileHdf5, PlugInsAreNotLoaded) {
 TEST_F(HostileHdf5, DeflateWithinDeflateIsNotInflated) {
   change([](hid_t id) {
     static constexpr hsize_t kLong = hsize_t{1} << 20;
-    const hid_t properties = chunked(kLong);
+    const H5Id properties = chunked(kLong);
     H5Pset_deflate(properties, 9);
     H5Pset_deflate(properties, 9);
-    const hid_t rate = make_rate(id, H5T_IEEE_F64LE, kLong, properties);
+    const H5Id rate = make_rate(id, H5T_IEEE_F64LE, kLong, properties);
     write_zeros(rate, kLong);
-    H5Dclose(rate);
-    H5Pclose(properties);
   });
   EXPECT_TRUE(rejected().starts_with("rate is stored through filter 1;"));
 }
@@ -270,11 +200,10 @@ TEST_F(HostileHdf5, ClaimsBeyondTheFileTakeNoMemory) {
   const long before = peak_memory();
   // Contiguous, as large as the file system likes, over a short file.
   change([](hid_t id) {
-    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+    const H5Id properties = property_list(H5P_DATASET_CREATE);
     H5Pset_alloc_time(properties, H5D_ALLOC_TIME_EARLY);
     H5Pset_fill_time(properties, H5D_FILL_TIME_NEVER);
-    H5Dclose(make_rate(id, H5T_IEEE_F64LE, hsize_t{1} << 30, properties));
-    H5Pclose(properties);
+    make_rate(id, H5T_IEEE_F64LE, hsize_t{1} << 30, properties);
   });
   const std::uintmax_t size = fs::file_size(file);
   ASSERT_GT(size, std::uintmax_t{1} << 33);
@@ -287,15 +216,16 @@ TEST_F(HostileHdf5, ValuesThatInflateToMoreThanAFileMayAskForAreNotRead) {
   const long before = peak_memory();
   static constexpr hsize_t kLong = hsize_t{1} << 28;  // 2 GB of zeros in 2 MB
   change([](hid_t id) {
-    const hid_t properties = chunked(hsize_t{1} << 20);
+    const H5Id properties = chunked(hsize_t{1} << 20);
     H5Pset_deflate(properties, 9);
-    const hid_t space = H5Screate_simple(1, &kLong, nullptr);
+    const H5Id space = space_of(std::array{kLong});
     H5Ldelete(id, "time", H5P_DEFAULT);
-    const hid_t time = H5Dcreate2(id, "time", H5T_IEEE_F64LE, space,
-                                  H5P_DEFAULT, properties, H5P_DEFAULT);
+    const H5Id time(H5Dcreate2(id, "time", H5T_IEEE_F64LE, space, H5P_DEFAULT,
+                               properties, H5P_DEFAULT),
+                    H5Dclose, "make time");
     const std::vector<double> zeros(std::size_t{1} << 20);
     const hsize_t count = zeros.size();
-    const hid_t memory = H5Screate_simple(1, &count, nullptr);
+    const H5Id memory = space_of(std::array{count});
     hsize_t start = 0;
     H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count,
                         nullptr);
@@ -313,10 +243,6 @@ TEST_F(HostileHdf5, ValuesThatInflateToMoreThanAFileMayAskForAreNotRead) {
       ASSERT_GE(H5Dwrite_chunk(time, H5P_DEFAULT, skipped_filters, &start,
                                deflated, chunk.data()),
                 0);
-    H5Dclose(time);
-    H5Sclose(memory);
-    H5Sclose(space);
-    H5Pclose(properties);
   });
   ASSERT_LT(fs::file_size(file), 4'000'000u);
   EXPECT_TRUE(
@@ -328,27 +254,23 @@ TEST_F(HostileHdf5, ValuesThatInflateToMoreThanAFileMayAskForAreNotRead) {
 }
 
 TEST_F(HostileHdf5, ChunksThatAreNotThereAreNoValues) {
-  change([](hid_t id) {
-    const hid_t properties = chunked(5);
-    H5Dclose(make_rate(id, H5T_IEEE_F64LE, kSamples, properties));
-    H5Pclose(properties);
-  });
-  EXPECT_EQ(rejected(),
+  EXPECT_EQ(rejected([](hid_t id) {
+              const H5Id properties = chunked(5);
+              make_rate(id, H5T_IEEE_F64LE, kSamples, properties);
+            }),
             "rate claims 160 bytes of values, and the file has 0 "
             "for them");
 }
 
 TEST_F(HostileHdf5, NumbersOfKindsThatNoProcessorHasAreNotConverted) {
-  change([](hid_t id) {
-    const hid_t type = H5Tcopy(H5T_IEEE_F64LE);
-    H5Tset_fields(type, 60, 50, 10, 0, 50);
-    H5Tset_precision(type, 61);
-    const hid_t rate = make_rate(id, type, kSamples, H5P_DEFAULT);
-    write_zeros(rate, kSamples);
-    H5Dclose(rate);
-    H5Tclose(type);
-  });
-  EXPECT_EQ(rejected(), "rate has another type; expected floating point");
+  EXPECT_EQ(rejected([](hid_t id) {
+              const H5Id type(H5Tcopy(H5T_IEEE_F64LE), H5Tclose, "make a type");
+              H5Tset_fields(type, 60, 50, 10, 0, 50);
+              H5Tset_precision(type, 61);
+              const H5Id rate = make_rate(id, type, kSamples, H5P_DEFAULT);
+              write_zeros(rate, kSamples);
+            }),
+            "rate has another type; expected floating point");
 }
 
 }  // namespace

@@ -3,21 +3,21 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/text_file.h"
 #include "tests/config/rejection.h"
+#include "tests/dataset/child_process.h"
 #include "tests/dataset/sample_recording.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::recording_file_test {
 namespace {
@@ -39,25 +39,13 @@ Recording cut(const Recording& whole, std::size_t begin, std::size_t end) {
   return block;
 }
 
-class RecordingFileOf : public testing::TestWithParam<std::string> {
+class RecordingFileOf : public testing::TestWithParam<std::string>,
+                        public TestDirectory {
  protected:
-  RecordingFileOf() {
-    folder = fs::path(testing::TempDir()) /
-             ("recording_file" + std::to_string(getpid()));
-    fs::remove_all(folder);
-    fs::create_directory(folder);
-  }
-  ~RecordingFileOf() override { fs::remove_all(folder); }
-
   fs::path named(const std::string& stem) const {
-    return folder / (stem + GetParam());
-  }
-  std::size_t files_there() const {
-    return static_cast<std::size_t>(std::distance(
-        fs::directory_iterator(folder), fs::directory_iterator()));
+    return directory / (stem + GetParam());
   }
 
-  fs::path folder;
   Recording whole = sample_recording(1000);
 };
 
@@ -81,7 +69,7 @@ TEST_P(RecordingFileOf, NothingAppearsBeforeItsEndAndNothingWithoutIt) {
     EXPECT_TRUE(holds(rejection<std::runtime_error>([&] { file.finish(); }),
                       "500 samples; expected 1000"));
   }
-  EXPECT_EQ(files_there(), 0u);
+  EXPECT_EQ(names().size(), 0u);
 }
 
 TEST_P(RecordingFileOf, DefectsAreNamedWithTheirPlaceInTheWhole) {
@@ -94,6 +82,16 @@ TEST_P(RecordingFileOf, DefectsAreNamedWithTheirPlaceInTheWhole) {
   Recording broken = cut(whole, 500, 600);
   broken.columns[7].values[3] = std::nan("");
   EXPECT_TRUE(holds(says(broken), "sample 503 is nan"));
+}
+
+TEST_P(RecordingFileOf, ADefectiveRecordingIsNotWritten) {
+  whole.columns[6].values[9] = std::nan("");
+  EXPECT_EQ(rejection<std::runtime_error>(
+                [&] { write_recording(whole, named("run")); }),
+            named("run").string() +
+                ": not written: true_rate: sample 9 is nan; a truth is always "
+                "finite");
+  EXPECT_TRUE(names().empty());
 }
 
 TEST_P(RecordingFileOf, ABlockHasTheColumnsOfTheHeadInTheirOrder) {
@@ -133,23 +131,18 @@ TEST_P(RecordingFileOf, SamplesAreAsManyAsAnnounced) {
 }
 
 TEST_P(RecordingFileOf, AnInterruptWhileAppendingLeavesNothing) {
-  const pid_t child = fork();
-  if (child == 0) {
+  const int status = status_of_child([&] {
     std::signal(SIGINT, [](int) {
       remove_partial_files();
       _exit(130);
     });
     RecordingFile file(whole, 1000, named("run"));
     file.append(cut(whole, 0, 500));
-    if (files_there() != 1) _exit(1);
-    std::raise(SIGINT);
-    _exit(0);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_EQ(files_there(), 0u);
+    if (names().size() != 1) return 1;
+    return std::raise(SIGINT);
+  });
+  EXPECT_EQ(status, 130);
+  EXPECT_EQ(names().size(), 0u);
 }
 
 #ifndef BEAMGYRO_SANITIZED  // which keeps memory that was freed

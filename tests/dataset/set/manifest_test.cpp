@@ -3,20 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/sha256.h"
 #include "dataset/files/text_file.h"
 #include "tests/config/rejection.h"
 #include "tests/dataset/overwrite.h"
-#include "tests/dataset/set/sample_set.h"
-#include "tests/dataset/set/set_directory.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::manifest_test {
 namespace {
 
-class ManifestFile : public SetDirectory {
+class ManifestFile : public DirectoryFixture {
  protected:
   std::filesystem::path file() const { return directory / kManifestName; }
 };

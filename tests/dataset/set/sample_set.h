@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "dataset/recording/recording.h"
 #include "dataset/set/manifest.h"
 #include "dataset/set/shard/shard.h"
 

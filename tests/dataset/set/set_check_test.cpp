@@ -10,19 +10,15 @@
 #include "dataset/files/text_file.h"
 #include "tests/dataset/overwrite.h"
 #include "tests/dataset/set/sample_set.h"
-#include "tests/dataset/set/set_directory.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::set_check_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-class CheckSet : public SetDirectory {
+class CheckSet : public DirectoryFixture {
  protected:
-  void SetUp() override {
-    SetDirectory::SetUp();
-    manifest = write_sample_set(directory);
-  }
   std::vector<FileDefect> defects() const {
     return check_set(directory, read_manifest(directory, kManifestName));
   }
@@ -39,7 +35,7 @@ class CheckSet : public SetDirectory {
     overwrite(file, byte, {&flipped, 1});
   }
 
-  Manifest manifest;
+  Manifest manifest = write_sample_set(directory);
 };
 
 TEST_F(CheckSet, FindsNothingInAWholeSet) {

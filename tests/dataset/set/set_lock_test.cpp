@@ -2,31 +2,27 @@
 #include "dataset/set/set_lock.h"
 
 #include <gtest/gtest.h>
-#include <linux/filter.h>
-#include <linux/seccomp.h>
-#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
-#include <cstddef>
 #include <thread>
 #include <vector>
 
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/text_file.h"
 #include "tests/config/rejection.h"
-#include "tests/dataset/set/set_directory.h"
+#include "tests/dataset/child_process.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::set_lock_test {
 namespace {
 
-using Lock = SetDirectory;
+using Lock = DirectoryFixture;
 
 TEST_F(Lock, ASecondStartIsToldWhoIsThere) {
   {
@@ -190,41 +186,24 @@ TEST_F(Lock, ALockThatIsSomebodyElsesFileIsNotTouched) {
   }
 }
 
-/// From now on the file systems of this process have no flock.
-bool forbid_flock() {
-  std::array<sock_filter, 4> filter = {
-      {BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
-       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_flock, 0, 1),
-       BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EOPNOTSUPP),
-       BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)}};
-  const sock_fprog program{filter.size(), filter.data()};
-  return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
-         prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
-}
-
 TEST_F(Lock, WithoutFlockTheLivingOfThisHostAreRespected) {
   const auto holds = [&](const std::string& who, const std::string& task) {
     write_text_file(directory / (task.empty() ? "set.lock" : task + ".lock"),
                     who);
-    const pid_t child = fork();
-    if (child == 0) {
-      if (!forbid_flock()) _exit(2);
+    return status_of_child([&] {
+      // The file systems of that process have no flock.
+      if (!forbid_call(SYS_flock, EOPNOTSUPP)) return 2;
       try {
         const SetLock lock(directory, task);
         const bool is_right =
             !lock.is_held_by_kernel() && lock.dead_holder() == who;
-        _exit(is_right ? 0 : 3);
+        return is_right ? 0 : 3;
       } catch (const std::runtime_error&) {
-        _exit(1);
+        return 1;
       }
-    }
-    int status = 0;
-    waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    });
   };
-  const pid_t dead = fork();
-  if (dead == 0) _exit(0);
-  waitpid(dead, nullptr, 0);
+  const pid_t dead = dead_process();
   const std::string here = "host " + host_name() + ", process ";
   for (const char* task : {"", "1-of-2"}) {
     EXPECT_EQ(holds(here + std::to_string(getpid()), task), 1) << task;

@@ -7,12 +7,12 @@
 #include "dataset/set/shard/shard_reader.h"
 #include "tests/config/rejection.h"
 #include "tests/dataset/set/sample_set.h"
-#include "tests/dataset/set/set_directory.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::set_view_test {
 namespace {
 
-using SetView = SetDirectory;
+using SetView = DirectoryFixture;
 
 TEST_F(SetView, IsTheSameEveryTimeAndNoFileOfTheSet) {
   const Manifest manifest = write_sample_set(directory);

@@ -10,7 +10,7 @@
 #include "dataset/files/text_file.h"
 #include "dataset/set/set_check.h"
 #include "tests/dataset/set/sample_set.h"
-#include "tests/dataset/set/set_directory.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::set_writer_test {
 namespace {
@@ -18,12 +18,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // A set of six files made again in another directory.
-class WriteSet : public SetDirectory {
+class WriteSet : public DirectoryFixture {
  protected:
   void SetUp() override {
-    SetDirectory::SetUp();
-    original_ = directory / "original";
-    copy_ = directory / "copy";
     fs::create_directory(original_);
     manifest_ = write_sample_set(original_);
     for (const SourceEntry& source : manifest_.head->sources)
@@ -56,7 +53,8 @@ class WriteSet : public SetDirectory {
     return check_set(copy_, read_manifest(copy_, kManifestName)).empty();
   }
 
-  fs::path original_, copy_;
+  const fs::path original_ = directory / "original";
+  const fs::path copy_ = directory / "copy";
   Manifest manifest_;
   ManifestHead head_;
   std::vector<SourceText> sources_;

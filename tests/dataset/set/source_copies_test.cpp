@@ -7,12 +7,12 @@
 #include "dataset/files/sha256.h"
 #include "dataset/files/text_file.h"
 #include "tests/config/rejection.h"
-#include "tests/dataset/set/set_directory.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::source_copies_test {
 namespace {
 
-using Sources = SetDirectory;
+using Sources = DirectoryFixture;
 
 TEST_F(Sources, KeepTheirPlacesToEachOther) {
   const std::vector<SourceText> files = {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <stdexcept>
 
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/text_file.h"
@@ -12,20 +11,15 @@
 #include "dataset/set/set_writer.h"
 #include "dataset/set/shard/shard_reader.h"
 #include "tests/dataset/set/sample_set.h"
-#include "tests/dataset/set/set_directory.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::view_check_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-class ViewCheck : public SetDirectory {
+class ViewCheck : public DirectoryFixture {
  protected:
-  void SetUp() override {
-    SetDirectory::SetUp();
-    manifest = write_sample_set(directory);
-  }
-
   std::vector<ManifestEntry> entries_of(const std::string& run) const {
     std::vector<ManifestEntry> entries;
     for (const ManifestEntry& entry : manifest.entries) {
@@ -52,7 +46,7 @@ class ViewCheck : public SetDirectory {
     return found;
   }
 
-  Manifest manifest;
+  Manifest manifest = write_sample_set(directory);
 };
 
 TEST_F(ViewCheck, FindsNothingWhereViewsShowTheirFiles) {

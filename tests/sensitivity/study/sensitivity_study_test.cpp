@@ -6,11 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "tests/sensitivity/indices/sampled_function.h"

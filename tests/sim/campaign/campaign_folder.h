@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sim/campaign/campaign.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal {
 
@@ -13,17 +14,16 @@ namespace beamgyro::internal {
 class CampaignFolder {
  public:
   CampaignFolder();
-  ~CampaignFolder();
-  CampaignFolder(const CampaignFolder&) = delete;
-  CampaignFolder& operator=(const CampaignFolder&) = delete;
 
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return folder_.directory; }
   void write(const std::string& file, const std::string& text) const;
+  /// Writes rest.toml: ten seconds, with `more` behind the other keys.
+  void write_rest(const std::string& more) const;
   /// Writes c.toml and reads it.
   CampaignPlan campaign(const std::string& text) const;
 
  private:
-  std::filesystem::path path_;
+  TestDirectory folder_;
 };
 
 /// A campaign of 100 devices and one run "rest" of that scenario. `keys` are

@@ -14,6 +14,7 @@
 #include "sim/dynamics/gyro.h"
 #include "tests/sim/campaign/kolmogorov_smirnov.h"
 #include "tests/sim/device/nominal_device.h"
+#include "tests/sim/dynamics/loop_response.h"
 
 namespace beamgyro::internal::population_test {
 namespace {
@@ -96,10 +97,7 @@ double drift(const DeviceParameters& device) {
   double low = 1e9, high = -1e9;
   for (int celsius = -40; celsius <= 50; celsius += 5) {
     const double T = celsius + kZeroCelsius;
-    const double bias = electronics_at(gyro, T)
-                            .output(beam_signal(gyro, T, {}).demodulated)
-                            .rate /
-                        kDegree;
+    const double bias = zero_rate_output(gyro, T) / kDegree;
     low = std::min(low, bias);
     high = std::max(high, bias);
   }

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <set>
 #include <stdexcept>
-#include <vector>
 
 #include "random/random_stream.h"
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/config/rejection.h"
 #include "tests/sim/campaign/campaign_folder.h"
 
 namespace beamgyro::internal::shard_making_test {
@@ -30,15 +31,10 @@ TEST(ShardMaking, RefusesAVariableThatWasNotPlanned) {
   GenerationCounts counts;
   EXPECT_EQ(ShardMaker(plan).make(0, counts).failures.size(), 0U);
   campaign = folder.campaign(about_x("5, 5"));
-  try {
-    ShardMaker(plan).make(0, counts);
-    ADD_FAILURE() << "made a file without true_cross_rate_x";
-  } catch (const std::logic_error& error) {
-    EXPECT_EQ(
-        std::string(error.what()),
-        "device 0, run rest: true_cross_rate_x is not among the variables "
-        "planned for the set");
-  }
+  EXPECT_EQ(
+      rejection<std::logic_error>([&] { ShardMaker(plan).make(0, counts); }),
+      "device 0, run rest: true_cross_rate_x is not among the variables "
+      "planned for the set");
 }
 
 // The base device has no errors of its channels, so its recording does not show

@@ -12,13 +12,12 @@
 
 #include "tests/linear_algebra/reference_algebra.h"
 #include "tests/sim/dynamics/carrier_unit.h"
+#include "tests/sim/dynamics/loop_response.h"
 
 namespace beamgyro::internal::carrier_loops_test {
 namespace {
 
-using Eigen::Matrix4d;
 using Eigen::Vector2cd;
-using Eigen::Vector4d;
 using Eigen::VectorXd;
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
@@ -141,41 +140,7 @@ TEST(Carrier, AmplitudeOfTheStartUp) {
   EXPECT_NEAR(amplitude(0.3), 0.999, 0.001);
 }
 
-struct StepResponse {
-  double overshoot, settling;  // of the step; last time outside 5 % [s]
-};
-
-constexpr double kSample = 1e-4;  // [s]
 constexpr int kSamples = 1500;
-
-StepResponse judged(const std::function<double(int)>& response) {
-  StepResponse found{0, 0};
-  for (int k = 1; k <= kSamples; ++k) {
-    const double value = response(k);
-    found.overshoot = std::max(found.overshoot, value - 1);
-    if (std::abs(value - 1) > 0.05) found.settling = k * kSample;
-  }
-  return found;
-}
-
-// PI controller, plant gain/(s + 1/tau), two poles w_f: the states follow the
-// exponential of the closed loop's matrix.
-StepResponse linear_loop(double P, double I, double gain, double tau,
-                         double wf) {
-  Matrix4d A;
-  A << 0, 0, 0, -1,                      //
-      gain * I, -1 / tau, 0, -gain * P,  //
-      0, wf, -wf, 0,                     //
-      0, 0, wf, -wf;
-  const Vector4d b(1, gain * P, 0, 0);
-  const Vector4d rest = -reference::solution(A, b);
-  const Matrix4d sample = reference::exponential(A * kSample);
-  Vector4d x = -rest;
-  return judged([&](int) {
-    x = sample * x;
-    return (rest + x)(3);
-  });
-}
 
 // `rest` plus the difference of two carriers per step: the ripple they share is
 // gone.
@@ -184,19 +149,9 @@ StepResponse answer(CarrierUnit& unit, const VectorXd& stepped,
                     const std::function<double(const VectorXd&)>& signal,
                     double step, double rest) {
   ExplicitRk a = unit.from(stepped), b = twin.from(unstepped);
-  return judged([&](int k) {
-    const double t = k * kSample;
+  return judged(kSamples, [&](double t) {
     return rest + (signal(a.advance_to(t)) - signal(b.advance_to(t))) / step;
   });
-}
-
-void expect_alike(const StepResponse& found, const StepResponse& model) {
-  EXPECT_NEAR(found.overshoot, model.overshoot, 0.05);
-  EXPECT_NEAR(found.settling / model.settling, 1, 0.05);
-}
-
-double decay_time(const CarrierUnit& unit) {
-  return 2 * unit.modal.mass / unit.modal.damping(0, 0);
 }
 
 TEST(Verification, V32PhaseLoopOfTheCarrierAnswersAStepAsItsLinearModel) {
@@ -214,8 +169,9 @@ TEST(Verification, V32PhaseLoopOfTheCarrierAnswersAStepAsItsLinearModel) {
         return std::atan2(y(kFeedback2), y(kFeedback2 + 1));
       },
       kStep, 0);
-  expect_alike(found, linear_loop(loops.pll_proportional, loops.pll_integral, 1,
-                                  decay_time(after), loops.demodulator_corner));
+  expect_linear_loop(kSamples, found, loops.pll_proportional,
+                     loops.pll_integral, 1, decay_time(after.modal),
+                     loops.demodulator_corner);
 }
 
 TEST(Verification, V32AmplitudeLoopOfTheCarrierAnswersAStepAsItsLinearModel) {
@@ -232,9 +188,10 @@ TEST(Verification, V32AmplitudeLoopOfTheCarrierAnswersAStepAsItsLinearModel) {
         return std::hypot(y(kFeedback2), y(kFeedback2 + 1));
       },
       kStep, 1);
-  const double tau = decay_time(unit);
-  expect_alike(found, linear_loop(loops.agc_proportional, loops.agc_integral,
-                                  1 / tau, tau, loops.demodulator_corner));
+  const double tau = decay_time(unit.modal);
+  expect_linear_loop(kSamples, found, loops.agc_proportional,
+                     loops.agc_integral, 1 / tau, tau,
+                     loops.demodulator_corner);
 }
 
 }  // namespace

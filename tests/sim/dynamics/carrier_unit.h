@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cmath>
 #include <complex>
 #include <functional>
 #include <numbers>
@@ -11,6 +10,7 @@
 #include "sim/dynamics/loop_noise.h"
 #include "sim/numerics/explicit_rk.h"
 #include "tests/sim/device/nominal_device.h"
+#include "tests/sim/dynamics/loop_response.h"
 
 namespace beamgyro::internal {
 
@@ -30,8 +30,7 @@ struct CarrierUnit {
   double T_beam, T_board;
   CaseMotion motion;
   CarrierOde ode{gyro};
-  ModalParameters modal{
-      modal_parameters(gyro.device, gyro.beam, T_beam, gyro.stiffness_trim)};
+  ModalParameters modal{modal_at(gyro, T_beam)};
 
   explicit CarrierUnit(const DeviceParameters& device,
                        double beam = kCalibrationTemperature,

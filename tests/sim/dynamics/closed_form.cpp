@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "tests/sim/dynamics/loop_response.h"
+
 namespace beamgyro::internal {
 namespace {
 
@@ -57,8 +59,7 @@ ClosedForm closed_form(const ModalParameters& modal, const DriveLoop& loop,
 double closed_form_output(const Gyro& gyro, double T) {
   const ReadoutParameters& readout = gyro.device.readout;
   const auto at = [&](double temperature) {
-    const ModalParameters modal = modal_parameters(
-        gyro.device, gyro.beam, temperature, gyro.stiffness_trim);
+    const ModalParameters modal = modal_at(gyro, temperature);
     return closed_form(modal, gyro.loop, readout.feedthrough,
                        beam_signal(gyro, modal, {}).drive_frequency);
   };

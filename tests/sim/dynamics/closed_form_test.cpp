@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "tests/sim/device/nominal_device.h"
+#include "tests/sim/dynamics/loop_response.h"
 
 namespace beamgyro::internal::closed_form_test {
 namespace {
@@ -37,8 +37,7 @@ struct IdealGyro {
   // Exact B_0 - i Q_0 [rad/s] against (2.21), (2.22), to 0.5 %, and what a
   // board makes of it that is off in phase by `delta` against (2.23).
   void expect_closed_form(double feedthrough = 0, double delta = 0) const {
-    CaseMotion slow;
-    slow.z = 1e-3;
+    const CaseMotion slow{.z = 1e-3};
     const StaticSolution at_rest =
         static_solution(modal, loop, feedthrough, {});
     const StaticSolution turning =
@@ -100,9 +99,7 @@ TEST(Verification, V42ClosedFormOverTemperature) {
   double largest = 0;
   for (double celsius = -40; celsius <= 60; celsius += 1) {
     const double T = celsius + kZeroCelsius;
-    const double exact = electronics_at(gyro, T)
-                             .output(beam_signal(gyro, T, {}).demodulated)
-                             .rate;
+    const double exact = zero_rate_output(gyro, T);
     largest = std::max(largest,
                        std::abs(exact - closed_form_output(gyro, T)) / kDegree);
   }

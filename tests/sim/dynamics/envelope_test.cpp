@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "sim/dynamics/loop_noise.h"
 #include "tests/linear_algebra/reference_algebra.h"

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "tests/sim/device/nominal_device.h"
+#include "tests/sim/dynamics/loop_response.h"
 
 namespace beamgyro::internal::gyro_test {
 namespace {
@@ -16,10 +16,7 @@ constexpr double kT0 = kCalibrationTemperature;
 
 double bias(const Gyro& gyro, double celsius) {  // [deg/s]
   const double T = celsius + kZeroCelsius;
-  return electronics_at(gyro, T)
-             .output(beam_signal(gyro, T, {}).demodulated)
-             .rate /
-         kDegree;
+  return zero_rate_output(gyro, T) / kDegree;
 }
 
 TEST(Verification, V41ZeroRateOutputOfTheNominalUnit) {
@@ -44,8 +41,7 @@ TEST(Gyro, DriveFrequencyAndQualityOfTheNominalUnit) {
   const std::pair<double, double> table[] = {
       {-40, 1012}, {-20, 828}, {0, 775}, {25, 763}, {50, 777}, {60, 621}};
   for (const auto& [celsius, expected] : table) {
-    const ModalParameters modal = modal_parameters(
-        gyro.device, gyro.beam, celsius + kZeroCelsius, gyro.stiffness_trim);
+    const ModalParameters modal = modal_at(gyro, celsius + kZeroCelsius);
     const double Q = 2 * std::numbers::pi * frequency(celsius) * modal.mass /
                      modal.damping(0, 0);
     EXPECT_NEAR(Q / expected, 1, 0.005) << celsius << " degC";
@@ -57,8 +53,7 @@ TEST(Gyro, TrimsAreWhatTheFactoryWouldMeasure) {
       nominal_device({"readout.quadrature_trim_deg_per_s=-25",
                       "readout.offset_trim_deg_per_s=-1.5",
                       "bond.thickness_m=[20e-6, 31e-6, 25e-6, 40e-6]"}));
-  const ModalParameters modal =
-      modal_parameters(gyro.device, gyro.beam, kT0, gyro.stiffness_trim);
+  const ModalParameters modal = modal_at(gyro, kT0);
   EXPECT_NEAR(-zero_rate_terms(gyro, modal).imag() / kDegree, -25, 1e-6);
   EXPECT_NEAR(bias(gyro, 25), -1.5, 1e-9);
   EXPECT_NEAR(rate_slope(gyro, modal, kT0), 1, 1e-12);
@@ -70,9 +65,7 @@ TEST(Gyro, AmplitudeControlCancelsThePiezoConstantInTheScaleFactor) {
   const Gyro strong = make_gyro(nominal_device({"patches.d31_tc_per_K=5e-3"}));
   const auto slope = [](const Gyro& gyro) {
     const double T = kT0 + 20;
-    return rate_slope(
-        gyro, modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim),
-        T);
+    return rate_slope(gyro, modal_at(gyro, T), T);
   };
   EXPECT_NEAR(slope(strong) / slope(plain), 1, 6e-4);
 }

@@ -19,6 +19,7 @@
 #include "sim/dynamics/static_map.h"
 #include "tests/linear_algebra/reference_algebra.h"
 #include "tests/sim/device/nominal_device.h"
+#include "tests/sim/dynamics/loop_response.h"
 
 namespace beamgyro::internal::lock_path_test {
 namespace {
@@ -33,11 +34,6 @@ std::vector<std::string> coupled(double side, double share, double angle) {
 
 Gyro strongly_coupled() {
   return make_gyro(nominal_device(coupled(-0.003, 0.01, 20)));
-}
-
-ModalParameters modal_at(const Gyro& gyro, double celsius) {
-  return modal_parameters(gyro.device, gyro.beam, celsius + kZeroCelsius,
-                          gyro.stiffness_trim);
 }
 
 struct Shown {
@@ -96,7 +92,7 @@ TEST(LockPath, IsContinuous) {
 }
 
 StaticSolution lowest_voltage(const Gyro& gyro, double celsius) {
-  return static_solution(modal_at(gyro, celsius), gyro.loop,
+  return static_solution(modal_at(gyro, celsius + kZeroCelsius), gyro.loop,
                          gyro.device.readout.feedthrough, {});
 }
 
@@ -107,7 +103,7 @@ TEST(LockPath, MayNeedMoreVoltageThanTheOtherLock) {
   const StaticSolution other = lowest_voltage(gyro, -40);
   EXPECT_FALSE(other.only_lock);
   const StaticSolution continued =
-      static_solution(gyro, modal_at(gyro, -40), {});
+      static_solution(gyro, modal_at(gyro, -40 + kZeroCelsius), {});
   EXPECT_LT(continued.drive_frequency, other.drive_frequency - 50 * kHertz);
   EXPECT_GT(continued.drive_voltage, 1.5 * other.drive_voltage);
 }
@@ -118,7 +114,8 @@ TEST(LockPath, WhereItEndsTheLockOfTheLowestVoltageIsTaken) {
   LockPath path;
   EXPECT_GT(path.at(gyro, 25 + kZeroCelsius), 0);
   EXPECT_EQ(path.at(gyro, -30 + kZeroCelsius), 0);
-  const StaticSolution s = static_solution(gyro, modal_at(gyro, -30), {});
+  const StaticSolution s =
+      static_solution(gyro, modal_at(gyro, -30 + kZeroCelsius), {});
   EXPECT_FALSE(s.only_lock);
   EXPECT_EQ(s.drive_frequency, lowest_voltage(gyro, -30).drive_frequency);
 }
@@ -171,7 +168,7 @@ TEST_P(AllLocks, AreKnown) {
     keys.push_back("readout.mode=\"" + GetParam() + "\"");
     const Gyro gyro = make_gyro(nominal_device(keys));
     for (double celsius = -40; celsius <= 60; celsius += 5) {
-      const ModalParameters modal = modal_at(gyro, celsius);
+      const ModalParameters modal = modal_at(gyro, celsius + kZeroCelsius);
       const std::vector<double> locks = locks_found(gyro, modal);
       const StaticSolution s = static_solution(gyro, modal, {});
       EXPECT_EQ(s.only_lock, locks.size() == 1)
@@ -196,8 +193,7 @@ TEST(StaticMap, OfStronglyCoupledModesAgreesWithTheExactSolution) {
   const StaticMap map(gyro, 233.15, 333.15, 10 * kDegree);
   for (int i = 0; i < 200; ++i) {
     const double T = 233.15 + 0.5 * i;
-    CaseMotion motion;
-    motion.z = 9 * kDegree * std::cos(i);
+    const CaseMotion motion{.z = 9 * kDegree * std::cos(i)};
     const Complex exact = beam_signal(gyro, T, motion).demodulated;
     EXPECT_LT(std::abs(map.at(T, motion.z).at_rate.demodulated - exact),
               1e-5 * kDegree)

@@ -17,6 +17,7 @@
 #include "tests/config/rejection.h"
 #include "tests/linear_algebra/reference_algebra.h"
 #include "tests/sim/device/nominal_device.h"
+#include "tests/sim/dynamics/loop_response.h"
 #include "tests/sim/signal/allan_deviation.h"
 
 namespace beamgyro::internal::mechanical_noise_test {
@@ -42,7 +43,7 @@ struct Modes {
 
   explicit Modes(double T = kT0, const std::vector<std::string>& overrides = {})
       : gyro(make_gyro(verification_device(overrides))),
-        modal(modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim)),
+        modal(modal_at(gyro, T)),
         solution(static_solution(modal, gyro.loop,
                                  gyro.device.readout.feedthrough, {})),
         density(

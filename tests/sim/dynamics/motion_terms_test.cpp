@@ -6,6 +6,7 @@
 
 #include "sim/dynamics/gyro.h"
 #include "tests/sim/device/nominal_device.h"
+#include "tests/sim/dynamics/loop_response.h"
 
 namespace beamgyro::internal::motion_terms_test {
 namespace {
@@ -25,8 +26,7 @@ double drive_frequency(const Gyro& gyro) {
 
 TEST(Verification, V29EulerForceShowsAsQuadrature) {
   const Gyro gyro = make_gyro(verification_device());
-  CaseMotion motion;
-  motion.z_acceleration = 1000;  // [rad/s2]
+  const CaseMotion motion{.z_acceleration = 1000};  // [rad/s2]
   const double expected = 1000 / (2 * drive_frequency(gyro));
   EXPECT_NEAR(expected, 8.76e-3, 0.01e-3);
   EXPECT_NEAR(change_by(gyro, motion).quadrature / expected, 1, 0.02);
@@ -51,8 +51,7 @@ TEST(Verification, V31RebalanceNullsTheChargeUnderAnyMotion) {
   const double feedthrough = closed.device.readout.feedthrough;
   ASSERT_GT(feedthrough, 0);
   const auto charge = [&](const Gyro& gyro, const CaseMotion& motion) {
-    const ModalParameters modal =
-        modal_parameters(gyro.device, gyro.beam, kT0, gyro.stiffness_trim);
+    const ModalParameters modal = modal_at(gyro, kT0);
     const StaticSolution s =
         static_solution(modal, gyro.loop, feedthrough, motion);
     const Complex readout = modal.coupling[kReadout].transpose() * s.amplitude;
@@ -84,8 +83,7 @@ TEST(CentrifugalForce, SoftensTheModeAcrossTheAxisOfRotation) {
   EXPECT_NEAR((w - solved({.x = kFast}).drive_frequency) / shift, 0, 0.01);
 
   // About x: the sense mode, which comes nearer: SF ~ 1/D (2.20).
-  const ModalParameters modal =
-      modal_parameters(gyro.device, gyro.beam, kT0, gyro.stiffness_trim);
+  const ModalParameters modal = modal_at(gyro, kT0);
   const double split = (modal.stiffness(1, 1) / modal.mass - w * w) / (2 * w);
   const double rate = modal.damping(1, 1) / (2 * modal.mass);  // 1/tau_y
   const double expected =

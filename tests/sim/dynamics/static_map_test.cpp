@@ -26,9 +26,7 @@ TEST_P(StaticMapAccuracy, AgreesWithTheExactSolutionEverywhere) {
         kCold + (kHot - kCold) * std::fmod(i * 0.7548776662466927, 1.0);
     const double rate =
         limit * (2 * std::fmod(i * 0.5698402909980532, 1.0) - 1);
-    CaseMotion rotation;
-    rotation.z = rate;
-    const BeamSignal exact = beam_signal(gyro, T, rotation);
+    const BeamSignal exact = beam_signal(gyro, T, {.z = rate});
     const StaticMap::Signals s = map.at(T, rate);
     signal =
         std::max(signal, std::abs(s.at_rate.demodulated - exact.demodulated));

@@ -31,19 +31,13 @@ TEST(PiecewiseLinear, IsLinearBetweenItsPointsAndHeldOutside) {
 }
 
 TEST(PiecewiseLinear, HasBothLimitsAtAJump) {
-  const PiecewiseLinear profile({0, 5, 5, 10}, {0, 10, 20, 30});
-  EXPECT_EQ(profile.value_before(5), 10);
-  EXPECT_EQ(profile.value(5), 20);
-  EXPECT_EQ(profile.value(2.5), 5);
-  EXPECT_EQ(profile.value(7.5), 25);
-}
-
-TEST(PiecewiseLinear, HasBothLimitsAtAJumpAtEitherEnd) {
-  const PiecewiseLinear profile({0, 0, 1, 1}, {1, 2, 3, 4});
-  EXPECT_EQ(profile.value_before(0), 1);
-  EXPECT_EQ(profile.value(0), 2);
-  EXPECT_EQ(profile.value_before(1), 3);
-  EXPECT_EQ(profile.value(1), 4);
+  const PiecewiseLinear profile({0, 0, 1, 1, 2, 2}, {1, 2, 3, 4, 5, 6});
+  for (const double t : {0.0, 1.0, 2.0}) {
+    EXPECT_EQ(profile.value_before(t), 1 + 2 * t);
+    EXPECT_EQ(profile.value(t), 2 + 2 * t);
+  }
+  EXPECT_EQ(profile.value(0.5), 2.5);
+  EXPECT_EQ(profile.value(1.5), 4.5);
 }
 
 TEST(PiecewiseLinear, LimitsAgreeWhereNothingJumps) {

@@ -15,6 +15,7 @@
 #include "sim/signal/readout.h"
 #include "tests/config/rejection.h"
 #include "tests/sim/device/nominal_device.h"
+#include "tests/sim/dynamics/loop_response.h"
 #include "tests/sim/scenario/scenario_text.h"
 
 namespace beamgyro::internal::loop_channel_run_test {
@@ -61,13 +62,11 @@ class PhaseLoop {
       : gyro_(make_gyro(device)) {
     EnvelopeOde ode(gyro_, drive_heating(gyro_));
     loops_ = ode.loops();
-    const ModalParameters modal =
-        modal_parameters(gyro_.device, gyro_.beam, kCalibrationTemperature,
-                         gyro_.stiffness_trim);
+    const ModalParameters modal = modal_at(gyro_, kCalibrationTemperature);
     const double w = loops_.nominal_frequency;
     const NoiseDensities density =
         noise_densities(gyro_.device, modal, kCalibrationTemperature, w);
-    tau_ = 2 * modal.mass / modal.damping(0, 0);
+    tau_ = decay_time(modal);
     phase_ = 2 * (density.dielectric + density.amplifier) /
              (loops_.feedback_scale * loops_.feedback_scale);
     const double momentum =

@@ -22,19 +22,6 @@ const std::vector<double>& values(const Recording& recording,
   return column_values(recording, name);
 }
 
-bool same_bits(const Recording& a, const Recording& b) {
-  if (a.columns.size() != b.columns.size() || a.status != b.status)
-    return false;
-  for (std::size_t i = 0; i < a.columns.size(); ++i) {
-    const auto& x = a.columns[i].values;
-    const auto& y = b.columns[i].values;
-    if (x.size() != y.size() ||
-        std::memcmp(x.data(), y.data(), x.size() * sizeof(double)) != 0)
-      return false;
-  }
-  return true;
-}
-
 constexpr const char* kQuiet = "[noise]\nenabled = false\n";
 // A unit that makes no heat stays at the temperature of its trims.
 const std::vector<std::string> kCold = {"thermal.electronics_power_W=0.0"};

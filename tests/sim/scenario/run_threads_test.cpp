@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cstring>
 #include <string>
 #include <thread>
 #include <vector>
@@ -43,19 +42,6 @@ std::vector<Recording> runs(const ScenarioPlan& scenario, int threads) {
   }
   for (std::thread& worker : workers) worker.join();
   return all;
-}
-
-bool same_bits(const Recording& a, const Recording& b) {
-  if (a.time != b.time || a.status != b.status ||
-      a.columns.size() != b.columns.size())
-    return false;
-  for (std::size_t i = 0; i < a.columns.size(); ++i) {
-    const auto &x = a.columns[i].values, &y = b.columns[i].values;
-    if (x.size() != y.size() ||
-        std::memcmp(x.data(), y.data(), x.size() * sizeof(double)) != 0)
-      return false;
-  }
-  return true;
 }
 
 class RunThreads : public testing::TestWithParam<Fidelity> {};

@@ -14,7 +14,6 @@ namespace beamgyro::internal::scenario_file_test {
 namespace {
 
 constexpr double kZeroCelsius = 273.15;  // [K]
-constexpr double kDegree = 3.14159265358979323846 / 180;
 
 TEST(ScenarioFile, SoaksHoldAndRampInTurn) {
   const ScenarioPlan scenario = scenario_from(
@@ -38,22 +37,6 @@ TEST(ScenarioFile, AKeyInPlaceOfThePointsOfAHistoryIsNamed) {
   EXPECT_TRUE(
       holds(rejection([] { scenario_from("[history]\npoint = [[0, 20]]\n"); }),
             "history.points: missing, beside point; expected one of points"));
-}
-
-TEST(ScenarioFile, StepsAreHeldAndPointsAreJoined) {
-  const auto rate = [](const std::string& text, double t) {
-    const ScenarioPlan scenario = scenario_from(text);
-    return std::get<PiecewiseLinear>(scenario.rate).value(t) / kDegree;
-  };
-  const std::string steps = "[rate]\nsteps = [[10, 5], [20, -3]]\n";
-  EXPECT_DOUBLE_EQ(rate(steps, 0), 5);  // the first value before its time
-  EXPECT_DOUBLE_EQ(rate(steps, 19.999), 5);
-  EXPECT_DOUBLE_EQ(rate(steps, 20), -3);
-  EXPECT_DOUBLE_EQ(rate(steps, 1000), -3);
-  const std::string points = "[rate]\npoints = [[10, 5], [20, -3]]\n";
-  EXPECT_DOUBLE_EQ(rate(points, 0), 5);
-  EXPECT_DOUBLE_EQ(rate(points, 15), 1);
-  EXPECT_DOUBLE_EQ(rate(points, 1000), -3);
 }
 
 TEST(ScenarioFile, WithoutRateAndPowerItRestsAndIsOnFromTheStart) {
@@ -82,54 +65,44 @@ TEST(ScenarioFile, CountsSamplesAsDurationTimesRate) {
 }
 
 struct BadScenario {
-  const char* ambient;
-  const char* extra;
-  const char* expected;  // part of the message
+  std::string ambient, extra, message;  // a part of it
 };
-
-class ScenarioFileRejects : public testing::TestWithParam<BadScenario> {};
-
-TEST_P(ScenarioFileRejects, NamesTheKeyAndThePlace) {
-  const std::string message =
-      rejection([] { scenario_from(GetParam().extra, GetParam().ambient); });
-  EXPECT_TRUE(holds(message, GetParam().expected));
-  EXPECT_TRUE(holds(message, "test.toml:"));
-}
 
 constexpr const char* kAmbient = "[ambient]\nconstant_degC = 25\n";
 
-INSTANTIATE_TEST_SUITE_P(
-    EveryTable, ScenarioFileRejects,
-    testing::Values(
-        BadScenario{"[ambient]\n", "", "expected one of"},
-        BadScenario{"[ambient]\nconstant_degC=1\nfile=\"a.csv\"\n", "",
-                    "expected only one of"},
-        BadScenario{"[ambient]\npoints=[]\n", "", "empty"},
-        BadScenario{"[ambient]\npoints=[[0,1],[0,2]]\n", "", "increasing"},
-        BadScenario{"[ambient]\npoints=[[0,1],[5,999]]\n", "", "out of range"},
-        BadScenario{"[ambient]\nfile=\"no_such.csv\"\n", "", "no_such.csv"},
-        BadScenario{"[ambient.soaks]\ntemperatures_degC=[]\nhold_s=1\n"
-                    "ramp_K_per_min=1\n",
-                    "", "temperatures_degC"},
-        BadScenario{"[ambient.soaks]\ntemperatures_degC=[1]\nhold_s=0\n"
-                    "ramp_K_per_min=1\n",
-                    "", "hold_s"},
-        BadScenario{kAmbient, "[rate]\nsteps=[[5,1],[4,1]]\n", "rate.steps"},
-        BadScenario{kAmbient,
-                    "[rate.sine]\namplitude_deg_per_s=1\nfrequency_Hz=0\n",
-                    "frequency_Hz"},
-        BadScenario{kAmbient,
-                    "[rate.random]\nrms_deg_per_s=1\nbandwidth_Hz=1e9\n",
-                    "bandwidth_Hz"},
-        BadScenario{kAmbient, "[rate]\nconstant_degps=3\n", "expected one of"},
-        BadScenario{kAmbient, "[power]\non_s=[0, 10]\noff_s=[20]\n", "in turn"},
-        BadScenario{kAmbient, "[power]\non_s=[0, 10]\n", "one off"},
-        BadScenario{kAmbient, "[power]\non_s=[5]\noff_s=[2]\n", "in turn"},
-        BadScenario{kAmbient, "[noise]\nenabled=1\n", "noise.enabled"},
-        BadScenario{kAmbient, "[age]\nhours=-1\n", "age.hours"},
-        BadScenario{kAmbient, "[chamber]\nstirred=\"yes\"\n",
-                    "chamber.stirred"},
-        BadScenario{kAmbient, "[chamber]\nstired=true\n", "stirred"}));
+TEST(ScenarioFile, WhatIsWrongIsNamedWithItsPlace) {
+  const BadScenario scenarios[] = {
+      {"[ambient]\n", "", "expected one of"},
+      {"[ambient]\nconstant_degC=1\nfile=\"a.csv\"\n", "",
+       "expected only one of"},
+      {"[ambient]\npoints=[]\n", "", "empty"},
+      {"[ambient]\npoints=[[0,1],[0,2]]\n", "", "increasing"},
+      {"[ambient]\npoints=[[0,1],[5,999]]\n", "", "out of range"},
+      {"[ambient]\nfile=\"no_such.csv\"\n", "", "no_such.csv"},
+      {"[ambient.soaks]\ntemperatures_degC=[]\nhold_s=1\nramp_K_per_min=1\n",
+       "", "temperatures_degC"},
+      {"[ambient.soaks]\ntemperatures_degC=[1]\nhold_s=0\nramp_K_per_min=1\n",
+       "", "hold_s"},
+      {kAmbient, "[rate]\nsteps=[[5,1],[4,1]]\n", "rate.steps"},
+      {kAmbient, "[rate.sine]\namplitude_deg_per_s=1\nfrequency_Hz=0\n",
+       "frequency_Hz"},
+      {kAmbient, "[rate.random]\nrms_deg_per_s=1\nbandwidth_Hz=1e9\n",
+       "bandwidth_Hz"},
+      {kAmbient, "[rate]\nconstant_degps=3\n", "expected one of"},
+      {kAmbient, "[power]\non_s=[0, 10]\noff_s=[20]\n", "in turn"},
+      {kAmbient, "[power]\non_s=[0, 10]\n", "one off"},
+      {kAmbient, "[power]\non_s=[5]\noff_s=[2]\n", "in turn"},
+      {kAmbient, "[noise]\nenabled=1\n", "noise.enabled"},
+      {kAmbient, "[age]\nhours=-1\n", "age.hours"},
+      {kAmbient, "[chamber]\nstirred=\"yes\"\n", "chamber.stirred"},
+      {kAmbient, "[chamber]\nstired=true\n", "stirred"}};
+  for (const BadScenario& bad : scenarios) {
+    const std::string message =
+        rejection([&] { scenario_from(bad.extra, bad.ambient); });
+    EXPECT_TRUE(holds(message, bad.message));
+    EXPECT_TRUE(holds(message, "test.toml:"));
+  }
+}
 
 TEST(ScenarioFile, AnAmbientOffsetShiftsEveryForm) {
   const auto at = [](const std::string& ambient, double t) {

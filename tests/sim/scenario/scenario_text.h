@@ -1,11 +1,24 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <cstring>
 #include <string>
 
+#include "dataset/recording/recording.h"
 #include "sim/scenario/scenario_file.h"
 
 namespace beamgyro::internal {
+
+inline bool same_bits(const Recording& a, const Recording& b) {
+  return a.time == b.time && a.status == b.status &&
+         std::ranges::equal(
+             a.columns, b.columns, [](const Column& x, const Column& y) {
+               return x.values.size() == y.values.size() &&
+                      std::memcmp(x.values.data(), y.values.data(),
+                                  x.values.size() * sizeof(double)) == 0;
+             });
+}
 
 /// A short scenario at 25 degC and rest with `extra` TOML after it.
 inline ScenarioPlan scenario_from(

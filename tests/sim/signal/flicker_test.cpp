@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include "tests/config/rejection.h"
 #include "tests/sim/signal/allan_deviation.h"
@@ -150,18 +149,6 @@ TEST(Verification, V40FlickerHasTheBanksAllanDeviation) {
           << rate << " Hz, " << m << " samples";
     }
   }
-}
-
-TEST(FlickerNoise, DoesNotDependOnHowTheRunIsCut) {
-  std::vector<double> whole(3000), cut(3000);
-  FlickerNoise(kB, 10.0, 1, 2, 3).add_next(whole);
-  FlickerNoise noise(kB, 10.0, 1, 2, 3);
-  for (std::size_t i = 0; i < cut.size();) {
-    const std::size_t piece = std::min<std::size_t>(i / 2 + 1, 3000 - i);
-    noise.add_next(std::span(cut).subspan(i, piece));
-    i += piece;
-  }
-  EXPECT_EQ(whole, cut);
 }
 
 TEST(FlickerFilter, RejectsBadParameters) {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <vector>
 
 #include "random/random_stream.h"
 #include "tests/config/rejection.h"

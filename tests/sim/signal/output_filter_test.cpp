@@ -8,7 +8,6 @@
 #include <numbers>
 #include <span>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "random/random_stream.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "tests/compensation/recorded_run.h"
 #include "validation/checks/check_context.h"
 #include "validation/checks/temperature_sweep.h"

@@ -5,12 +5,11 @@
 
 #include <cerrno>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
-#include <stdexcept>
 
 #include "tests/compensation/sample_compensators.h"
 #include "tests/config/rejection.h"
+#include "tests/dataset/test_directory.h"
 #include "tests/validation/external/tested_run.h"
 #include "validation/external/answer_checks.h"
 #include "validation/external/answering.h"
@@ -18,6 +17,8 @@
 
 namespace beamgyro::internal::command_test {
 namespace {
+
+using enum AnswerFault;
 
 // A Python program that corrects 0.01 deg/s/K. {} are what it does before the
 // first sample, what answers rate r of sample k, and what it does at the end.
@@ -33,29 +34,21 @@ for k, line in enumerate(sys.stdin):
 {}
 )";
 
-class CommandCompensator : public ::testing::Test {
+class CommandCompensator : public DirectoryFixture {
  protected:
-  CommandCompensator()
-      : file_(std::filesystem::temp_directory_path() /
-              fmt::format("beamgyro command {}.py", ::getpid())) {}
-  ~CommandCompensator() override { std::filesystem::remove(file_); }
-
   std::shared_ptr<const TestedCompensator> program(
       const std::string& answer = "print(repr(r))",
       const std::string& before = "", const std::string& at_end = "",
       const std::string& options = "") const {
-    std::ofstream(file_) << fmt::format(fmt::runtime(kProgram), before, answer,
-                                        at_end);
-    return command(
-        fmt::format("/usr/bin/python3 {} '{}'", options, file_.string()));
+    std::ofstream(directory / "a program.py")
+        << fmt::format(fmt::runtime(kProgram), before, answer, at_end);
+    return command(fmt::format("/usr/bin/python3 {} '{}'", options,
+                               (directory / "a program.py").string()));
   }
   static std::shared_ptr<const TestedCompensator> command(
       const std::string& text) {
     return open_tested_compensator("cmd:" + text, test_limits());
   }
-
- private:
-  std::filesystem::path file_;
 };
 
 void expect_right_answers(const TestedCompensator& compensator) {
@@ -106,33 +99,28 @@ TEST_F(CommandCompensator, IsGivenWhatIsMeasuredAndNothingElse) {
 TEST_F(CommandCompensator, ACrashIsReportedWithItsLastWords) {
   const SeenFault raised =
       only_fault(*program("print(r, flush=True); 700 / (700 - k)"));
-  EXPECT_EQ(raised.fault, AnswerFault::kCrashed);
+  EXPECT_EQ(raised.fault, kCrashed);
   EXPECT_EQ(raised.sample, 701u);
-  EXPECT_NE(raised.words.find("ZeroDivisionError"), std::string::npos)
-      << raised.words;
+  EXPECT_TRUE(holds(raised.words, "ZeroDivisionError"));
   const SeenFault killed = only_fault(
       *program("print(r, flush=True); k == 700 and os.kill(os.getpid(), 11)",
                "import os"));
-  EXPECT_EQ(killed.fault, AnswerFault::kCrashed);
-  EXPECT_NE(killed.words.find("signal 11, Segmentation fault"),
-            std::string::npos)
-      << killed.words;
-  EXPECT_EQ(fault_of(*command("beamgyro_no_such_program")),
-            AnswerFault::kCrashed);
-  EXPECT_EQ(fault_of(*program("print(r)", "", "sys.exit(3)")),
-            AnswerFault::kCrashed);
+  EXPECT_EQ(killed.fault, kCrashed);
+  EXPECT_TRUE(holds(killed.words, "signal 11, Segmentation fault"));
+  EXPECT_EQ(fault_of(*command("beamgyro_no_such_program")), kCrashed);
+  EXPECT_EQ(fault_of(*program("print(r)", "", "sys.exit(3)")), kCrashed);
 }
 
 TEST_F(CommandCompensator, AHangIsStoppedWithAllItsProcesses) {
   const Stopwatch watch;
   const SeenFault hang = only_fault(
       *program("print(r, flush=True); k == 700 and time.sleep(1000)"));
-  EXPECT_EQ(hang.fault, AnswerFault::kTimedOut);
+  EXPECT_EQ(hang.fault, kTimedOut);
   EXPECT_EQ(hang.sample, 701u);
-  EXPECT_EQ(fault_of(*command("sleep 1000 | cat")), AnswerFault::kTimedOut);
+  EXPECT_EQ(fault_of(*command("sleep 1000 | cat")), kTimedOut);
   EXPECT_EQ(fault_of(*program("print(r)", "",
                               "sys.stdout.close(); time.sleep(1000)")),
-            AnswerFault::kTimedOut);
+            kTimedOut);
   // A guard against a limit that does not hold; a busy machine stays far below.
   EXPECT_LT(watch.seconds(), 60.0 * test_limits().stall);
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
@@ -143,8 +131,7 @@ TEST_F(CommandCompensator, AProcessLeftBehindHoldsNothingUp) {
   constexpr const char* kLeave =
       "import subprocess; subprocess.Popen(['sleep', '1000'])";
   expect_right_answers(*program("print(repr(r))", kLeave));
-  EXPECT_EQ(fault_of(*program("k == 700 or print(r)", kLeave)),
-            AnswerFault::kTooFew);
+  EXPECT_EQ(fault_of(*program("k == 700 or print(r)", kLeave)), kTooFew);
 }
 
 TEST_F(CommandCompensator, TooMuchMemoryIsRefused) {
@@ -152,45 +139,43 @@ TEST_F(CommandCompensator, TooMuchMemoryIsRefused) {
   limits.memory = std::size_t{512} << 20;
   const auto python = open_tested_compensator(
       "cmd:/usr/bin/python3 -c 'x = bytearray(1 << 30)'", limits);
-  EXPECT_EQ(fault_of(*python), AnswerFault::kOutOfMemory);
+  EXPECT_EQ(fault_of(*python), kOutOfMemory);
 }
 
 TEST_F(CommandCompensator, TooFewAndTooManyAnswersAreSaid) {
   const SeenFault few = only_fault(*program("k == 700 or print(r)"));
-  EXPECT_EQ(few.fault, AnswerFault::kTooFew);
-  EXPECT_EQ(fault_of(*command("true")), AnswerFault::kTooFew);
+  EXPECT_EQ(few.fault, kTooFew);
+  EXPECT_EQ(fault_of(*command("true")), kTooFew);
   EXPECT_EQ(fault_of(*command("head -n 3 | tail -n 1 | cut -d , -f 2")),
-            AnswerFault::kTooFew);
-  EXPECT_EQ(fault_of(*program("print(r)", "", "print(0)")),
-            AnswerFault::kTooMany);
-  EXPECT_EQ(fault_of(*command("yes 1")), AnswerFault::kTooMany);
+            kTooFew);
+  EXPECT_EQ(fault_of(*program("print(r)", "", "print(0)")), kTooMany);
+  EXPECT_EQ(fault_of(*command("yes 1")), kTooMany);
 }
 
 TEST_F(CommandCompensator, NonsenseIsQuoted) {
   const SeenFault word =
       only_fault(*program("print('ready' if k == 700 else r)"));
-  EXPECT_EQ(word.fault, AnswerFault::kNotANumber);
+  EXPECT_EQ(word.fault, kNotANumber);
   EXPECT_EQ(word.sample, 700u);
-  EXPECT_NE(word.words.find("\"ready\""), std::string::npos) << word.words;
+  EXPECT_TRUE(holds(word.words, "\"ready\""));
   for (const char* line : {"''", "'1,5'", "'1 2'", "'0x1p3'", "'1e999'"})
-    EXPECT_EQ(fault_of(*program(fmt::format("print({})", line))),
-              AnswerFault::kNotANumber)
+    EXPECT_EQ(fault_of(*program(fmt::format("print({})", line))), kNotANumber)
         << line;
   EXPECT_EQ(fault_of(*command("tr -d '\\n' </dev/zero | tr '\\0' x")),
-            AnswerFault::kNotANumber);
+            kNotANumber);
 }
 
 TEST_F(CommandCompensator, OneNaNOfAHundredThousandAnswersIsFound) {
   const SeenFault nan = only_fault(*program("print('nan' if k == 700 else r)"),
                                    tested_run(1000.0));
-  EXPECT_EQ(nan.fault, AnswerFault::kNotFinite);
+  EXPECT_EQ(nan.fault, kNotFinite);
   EXPECT_EQ(nan.sample, 700u);
-  EXPECT_EQ(fault_of(*program("print('-inf')")), AnswerFault::kNotFinite);
+  EXPECT_EQ(fault_of(*program("print('-inf')")), kNotFinite);
 }
 
 TEST_F(CommandCompensator, SlowerThanRealTimeIsSaid) {
   const auto slow = program("time.sleep(0.02); print(r)");
-  EXPECT_EQ(only_fault(*slow, tested_run(1.0)).fault, AnswerFault::kTooSlow);
+  EXPECT_EQ(only_fault(*slow, tested_run(1.0)).fault, kTooSlow);
 }
 
 TEST_F(CommandCompensator, ALoneSampleIsNoSlowness) {
@@ -212,7 +197,7 @@ TEST_F(CommandCompensator, PeekingOneSampleAheadIsFound) {
   EXPECT_TRUE(peeks->answer(tested_run()).faults.empty());
   const auto seen = later_samples_used(*peeks, tested_run());
   ASSERT_TRUE(seen);
-  EXPECT_EQ(seen->fault, AnswerFault::kUsesLaterSamples);
+  EXPECT_EQ(seen->fault, kUsesLaterSamples);
   EXPECT_FALSE(state_kept_over_reset(*peeks, tested_run()));
   const auto mean = program("all.append(r)", "all = []",
                             "m = sum(all) / len(all)\n"
@@ -234,16 +219,12 @@ TEST_F(CommandCompensator, StateInAFileIsFound) {
       "before = 1e-9 * len(kept.read_text()) if kept.exists() else 0.0\n"
       "kept.write_text('x' * (int(before * 1e9) + 1))");
   const auto kept = state_kept_over_reset(*keeps, tested_run());
-  std::filesystem::remove(
-      std::filesystem::temp_directory_path() /
-      fmt::format("beamgyro command {}.py.kept", ::getpid()));
   ASSERT_TRUE(kept);
-  EXPECT_EQ(kept->fault, AnswerFault::kKeepsState);
+  EXPECT_EQ(kept->fault, kKeepsState);
 }
 
 TEST_F(CommandCompensator, AnEmptyCommandIsRefused) {
-  EXPECT_NE(rejection([] { command(" "); }).find("no command"),
-            std::string::npos);
+  EXPECT_TRUE(holds(rejection([] { command(" "); }), "no command"));
 }
 
 TEST(FileCompensator, AnswersAsCompensate) {

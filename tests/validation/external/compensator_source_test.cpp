@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "validation/external/compensator_source.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::compensator_source_test {
 namespace {
 
 TEST(SourceKind, IsWhatTheBytesAreWhateverTheName) {
-  const auto folder = std::filesystem::temp_directory_path() /
-                      fmt::format("beamgyro sources {}", ::getpid());
-  std::filesystem::create_directory(folder);
+  const TestDirectory made;
+  const std::filesystem::path& folder = made.directory;
   const auto kind = [&](const std::string& name, const std::string& bytes) {
     std::ofstream(folder / name) << bytes;
     return source_kind(folder / name);
@@ -36,7 +35,6 @@ TEST(SourceKind, IsWhatTheBytesAreWhateverTheName) {
   EXPECT_EQ(source_kind("cmd:python3 mine.py x.json"), SourceKind::kCommand);
   EXPECT_EQ(source_kind("cmd:./mine lib.so"), SourceKind::kCommand);
   EXPECT_EQ(source_kind(folder), SourceKind::kFile);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

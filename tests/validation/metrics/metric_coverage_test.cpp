@@ -98,12 +98,10 @@ double bias_curve(double T) {
 TEST(ManyDrawsOfMetrics, CoverABiasAtRest) {
   expect_coverage_beneath_noise(
       {{"bias_deg_per_s"}}, [](const NoiseLevels& noise, std::uint64_t seed) {
-        Scene scene;
-        scene.add(
+        return Scene(
             {kRest,
              {.duration = 3600, .step = 2, .bias = [](double) { return 0.4; }}},
             noise, seed);
-        return scene;
       });
 }
 
@@ -111,19 +109,17 @@ TEST(ManyDrawsOfMetrics, CoverTheFiguresOfSoaks) {
   const auto T = soak_temperatures({-40, -20, 0, 20, 40, 20, 0, -20, -40}, 900);
   const MakeNoisyScene make = [T](const NoiseLevels& noise,
                                   std::uint64_t seed) {
-    Scene scene;
-    scene.add({kSoak,
-               {.duration = 10500,
-                .step = 10,
-                .bias =
-                    [T](double t) {
-                      const double loop = 2e-3 * (40 - T(t));
-                      return bias_curve(T(t)) + (t > 5300 ? loop : 0.0);
-                    },
-                .temperature = T},
-               {{"true_ambient_temperature", T}}},
-              noise, seed);
-    return scene;
+    return Scene({kSoak,
+                  {.duration = 10500,
+                   .step = 10,
+                   .bias =
+                       [T](double t) {
+                         const double loop = 2e-3 * (40 - T(t));
+                         return bias_curve(T(t)) + (t > 5300 ? loop : 0.0);
+                       },
+                   .temperature = T},
+                  {{"true_ambient_temperature", T}}},
+                 noise, seed);
   };
   expect_coverage_beneath_noise(
       {{"bias_pp_deg_per_s", "bias_sigma_deg_per_s",
@@ -137,27 +133,23 @@ TEST(ManyDrawsOfMetrics, CoverTheFiguresOfSoaks) {
 }
 
 TEST(ManyDrawsOfMetrics, CoverTheHysteresisOfRamps) {
-  const auto T = [](double t) {
-    const double up = std::clamp((t - 600.0) / 60.0, 0.0, 60.0);
-    return -20.0 + up - std::clamp((t - 4800.0) / 60.0, 0.0, 60.0);
-  };
   expect_coverage_beneath_noise(
       {{"hysteresis_max_deg_per_s", "hysteresis_rms_deg_per_s"}},
-      [T](const NoiseLevels& noise, std::uint64_t seed) {
-        Scene scene;
-        scene.add({kRamp,
-                   {.duration = 9000,
-                    .step = 5,
-                    .bias =
-                        [T](double t) {
-                          const double loop =
-                              0.2 * std::sin(pi * (T(t) + 20) / 60);
-                          return bias_curve(T(t)) + (t < 4500 ? loop : -loop);
-                        },
-                    .temperature = T},
-                   {{"true_ambient_temperature", T}}},
-                  noise, seed);
-        return scene;
+      [](const NoiseLevels& noise, std::uint64_t seed) {
+        return Scene({kRamp,
+                      {.duration = 9000,
+                       .step = 5,
+                       .bias =
+                           [](double t) {
+                             const double loop =
+                                 0.2 *
+                                 std::sin(pi * (ramp_temperature(t) + 20) / 60);
+                             return bias_curve(ramp_temperature(t)) +
+                                    (t < 4500 ? loop : -loop);
+                           },
+                       .temperature = ramp_temperature},
+                      {{"true_ambient_temperature", ramp_temperature}}},
+                     noise, seed);
       });
 }
 
@@ -168,14 +160,12 @@ TEST(ManyDrawsOfMetrics, CoverTheFiguresOfStarts) {
        {"heading_error_1_min_deg"},
        {"heading_error_10_min_deg"}},
       [](const NoiseLevels& noise, std::uint64_t seed) {
-        Scene scene;
-        scene.add(
+        return Scene(
             {kWarmUp,
              {.duration = 5400,
               .step = 2,
               .bias = [](double t) { return 0.3 + 2.0 * std::exp(-t / 600); }}},
             noise, seed);
-        return scene;
       });
 }
 
@@ -198,23 +188,19 @@ TEST(ManyDrawsOfMetrics, CoverTheSpreadOfPowerCycles) {
   expect_coverage(
       {{"turn_on_repeatability_deg_per_s", std::hypot(0.03, 0.01 / 30)}},
       [](std::uint64_t seed) {
-        Scene scene;
-        scene.add(
+        return Scene(
             {kPowerCycle,
              {.duration = 5900,
               .step = 5,
               .powered = [](double t) { return std::fmod(t, 1000) < 900; }}},
             {.angle_random_walk = 0.01, .turn_on = 0.03}, seed);
-        return scene;
       });
 }
 
 TEST(ManyDrawsOfMetrics, CoverTheStabilityInARun) {
   const std::string stability = "in_run_stability_deg_per_s";
   const MakeNoisyScene make = [](const NoiseLevels& noise, std::uint64_t seed) {
-    Scene scene;
-    scene.add({kRest, {.duration = 3600, .step = 2}}, noise, seed);
-    return scene;
+    return Scene({kRest, {.duration = 3600, .step = 2}}, noise, seed);
   };
   // White noise alone: N/sqrt(100 s).
   expect_coverage({{stability, 1e-3}},
@@ -228,25 +214,21 @@ TEST(ManyDrawsOfMetrics, CoverTheStabilityInARun) {
 }
 
 TEST(ManyDrawsOfMetrics, CoverTheFiguresOfRateTables) {
-  const auto rate = [](double t) {
-    const int step = static_cast<int>(t / 20);
-    return 20.0 * (step < 11 ? step : 21 - step) - 100.0;
-  };
   expect_coverage_beneath_noise(
       {{"scale_factor", "scale_factor_error_ppm",
         "scale_factor_nonlinearity_ppm", "scale_factor_asymmetry_ppm",
         "scale_factor_temperature_sensitivity_ppm_per_K"}},
-      [rate](const NoiseLevels& noise, std::uint64_t seed) {
+      [](const NoiseLevels& noise, std::uint64_t seed) {
         Scene scene;
         for (const double T : {-30.0, 0.0, 30.0}) {
           const double error = 1e-3 + 1e-4 * T;
           scene.add({kRateTable,
                      {.duration = 440,
                       .step = 0.5,
-                      .true_rate = rate,
+                      .true_rate = table_rate,
                       .bias =
                           [=](double t) {
-                            const double r = rate(t);
+                            const double r = table_rate(t);
                             return error * r + (2 + 0.01 * T) * r * r * 1e-5;
                           },
                       .temperature = [T](double) { return T; }}},
@@ -288,9 +270,7 @@ TEST(ManyDrawsOfMetrics, CoverTheWhiteNoiseRatio) {
 
 TEST(ManyDrawsOfMetrics, CoverTheNoiseCoefficients) {
   const MakeNoisyScene make = [](const NoiseLevels& noise, std::uint64_t seed) {
-    Scene scene;
-    scene.add({kRest, {.duration = 1800, .step = 0.5}}, noise, seed);
-    return scene;
+    return Scene({kRest, {.duration = 1800, .step = 0.5}}, noise, seed);
   };
   const double root_hour = 60;
   expect_coverage({{"angle_random_walk_deg_per_sqrt_h", 0.01 * root_hour}},
@@ -307,17 +287,16 @@ TEST(ManyDrawsOfMetrics, CoverTheNoiseCoefficients) {
 
 TEST(ManyDrawsOfMetrics, CoverTheRateRamp) {
   const double ramp = 5e-5;  // [deg/s2]
-  expect_coverage(
-      {{"rate_ramp_deg_per_h_per_h", ramp * 3600 * 3600}},
-      [ramp](std::uint64_t seed) {
-        Scene scene;
-        scene.add({kRest,
-                   {.duration = 7200,
-                    .step = 0.5,
-                    .bias = [ramp](double t) { return ramp * t; }}},
-                  {.angle_random_walk = 0.01, .bias_instability = 0.005}, seed);
-        return scene;
-      });
+  expect_coverage({{"rate_ramp_deg_per_h_per_h", ramp * 3600 * 3600}},
+                  [ramp](std::uint64_t seed) {
+                    return Scene(
+                        {kRest,
+                         {.duration = 7200,
+                          .step = 0.5,
+                          .bias = [ramp](double t) { return ramp * t; }}},
+                        {.angle_random_walk = 0.01, .bias_instability = 0.005},
+                        seed);
+                  });
 }
 
 // The angle is rounded to steps of sqrt(12) Q.
@@ -348,10 +327,8 @@ TEST(ManyDrawsOfMetrics, CoverTheLowestAllanDeviation) {
       3600 * std::sqrt(variance / (2 * std::numbers::ln2 / pi));
   expect_coverage(
       {{"bias_instability_bound_deg_per_h", bound}}, [=](std::uint64_t seed) {
-        Scene scene;
-        scene.add({kRest, {.duration = 1800, .step = 0.5}},
-                  {.angle_random_walk = N, .rate_random_walk = K}, seed);
-        return scene;
+        return Scene({kRest, {.duration = 1800, .step = 0.5}},
+                     {.angle_random_walk = N, .rate_random_walk = K}, seed);
       });
 }
 
@@ -362,9 +339,7 @@ TEST(ManyDrawsOfMetrics, CoverTheSensitivityToGravity) {
        {"g_sensitivity_y_deg_per_s_per_g", 0.01},
        {"g_sensitivity_z_deg_per_s_per_g", 0.005}},
       scenes_of([](std::uint64_t seed) {
-        Scene scene;
-        scene.add(tumble_run(0, {0.02, 0.01, 0.005}), kNominalNoise, seed);
-        return scene;
+        return Scene(tumble_run(0, {0.02, 0.01, 0.005}), kNominalNoise, seed);
       }));
   const int covered = of_axes[0] + of_axes[1] + of_axes[2];
   EXPECT_GE(covered, 270);
@@ -379,19 +354,17 @@ TEST(ManyDrawsOfMetrics, CoverTheFiguresOfVibration) {
         const auto turn = [](double t) {
           return t < 900 ? 0.0 : t < 1200 ? 60.0 : t < 1500 ? -60.0 : 0.0;
         };
-        Scene scene;
-        scene.add({kVibration,
-                   {.duration = 2100,
-                    .step = 0.5,
-                    .bias =
-                        [=](double t) {
-                          return 0.002 * y(t) * y(t) + 0.003 * turn(t);
-                        }},
-                   {{"true_acceleration_y",
-                     [=](double t) { return kStandardGravity * y(t); }},
-                    {"true_cross_rate_x", turn}}},
-                  noise, seed);
-        return scene;
+        return Scene({kVibration,
+                      {.duration = 2100,
+                       .step = 0.5,
+                       .bias =
+                           [=](double t) {
+                             return 0.002 * y(t) * y(t) + 0.003 * turn(t);
+                           }},
+                      {{"true_acceleration_y",
+                        [=](double t) { return kStandardGravity * y(t); }},
+                       {"true_cross_rate_x", turn}}},
+                     noise, seed);
       });
 }
 

@@ -87,6 +87,16 @@ SignalOfTime soak_temperatures(std::vector<double> temperatures, double hold) {
   };
 }
 
+double ramp_temperature(double t) {
+  const double up = std::clamp((t - 600.0) / 60.0, 0.0, 60.0);
+  return -20.0 + up - std::clamp((t - 4800.0) / 60.0, 0.0, 60.0);
+}
+
+double table_rate(double t) {
+  const int step = static_cast<int>(t / 20);
+  return 20.0 * (step < 11 ? step : 21 - step) - 100.0;
+}
+
 SceneRun tumble_run(double drift, const std::array<double, 3>& sensitivities) {
   const auto axis = [](int number) {
     return [number](double t) {

@@ -25,6 +25,12 @@ struct SceneRun {
 /// Runs that metrics are evaluated on; the judged rate is the recorded one.
 class Scene {
  public:
+  Scene() = default;
+  explicit Scene(const SceneRun& run, const NoiseLevels& noise = {},
+                 std::uint64_t seed = 0) {
+    add(run, noise, seed);
+  }
+
   /// Adds a run with noise from the streams of `seed`. Without noise the
   /// recording has no device file.
   EvidenceRun& add(const SceneRun& run, const NoiseLevels& noise = {},
@@ -45,6 +51,13 @@ Estimate evaluated(const std::string& metric, const Evidence& evidence);
 
 /// Soaks of `hold` [s] at each temperature, joined by slopes of 300 s.
 SignalOfTime soak_temperatures(std::vector<double> temperatures, double hold);
+
+/// 600 s at -20 degC, then 1 K/min to 40 degC and, after 10 minutes there,
+/// back.
+double ramp_temperature(double t);
+
+/// Eleven rates over +-100 deg/s, up and down, 20 s each.
+double table_rate(double t);
 
 /// Each axis in turn up and down four times, 60 s each. The bias is 0.3 deg/s,
 /// drifts by `drift` [deg/s/s], and follows the acceleration of each axis by

@@ -50,8 +50,7 @@ TEST(MetricTable, NothingIsFoundWithoutARun) {
 }
 
 TEST(MetricValues, BiasAtRest) {
-  Scene scene;
-  scene.add({kRest, {.bias = [](double) { return 0.4; }}});
+  const Scene scene({kRest, {.bias = [](double) { return 0.4; }}});
   expect_exact("bias_deg_per_s", scene, 0.4, 1e-12);
   expect_exact("residual_mean_deg_per_s", scene, 0.4, 1e-12);
   expect_exact("residual_rms_deg_per_s", scene, 0.4, 1e-12);
@@ -62,19 +61,16 @@ TEST(MetricValues, BiasAtRest) {
 
 /// Soaks up and down over a bias of 0.1 + 0.02 T, 0.03 more on the way down.
 Scene soak_scene() {
-  Scene scene;
   const auto T = soak_temperatures({-20, 0, 20, 40, 20, 0, -20}, 900);
-  SceneRun run{kSoak,
-               {.duration = 8100,
-                .step = 5,
-                .bias =
-                    [T](double t) {
-                      return 0.1 + 0.02 * T(t) + (t > 4600 ? 0.03 : 0.0);
-                    },
-                .temperature = T},
-               {{"true_ambient_temperature", T}}};
-  scene.add(run);
-  return scene;
+  return Scene({kSoak,
+                {.duration = 8100,
+                 .step = 5,
+                 .bias =
+                     [T](double t) {
+                       return 0.1 + 0.02 * T(t) + (t > 4600 ? 0.03 : 0.0);
+                     },
+                 .temperature = T},
+                {{"true_ambient_temperature", T}}});
 }
 
 TEST(MetricValues, BiasOverTemperature) {
@@ -96,21 +92,14 @@ TEST(MetricValues, BiasOverTemperature) {
 }
 
 TEST(MetricValues, SoaksOfALogAreFoundByItsTemperature) {
-  Scene scene;
   const auto T = soak_temperatures({-20, 0, 20, 40}, 900);
-  scene.add({kSoak,
-             {.duration = 4500,
-              .step = 5,
-              .bias = [T](double t) { return 0.02 * T(t); },
-              .temperature = T}});
+  const Scene scene({kSoak,
+                     {.duration = 4500,
+                      .step = 5,
+                      .bias = [T](double t) { return 0.02 * T(t); },
+                      .temperature = T}});
   expect_exact("bias_pp_deg_per_s", scene, 1.2, 1e-12);
   expect_exact("bias_sensitivity_deg_per_s_per_K", scene, 0.02, 1e-12);
-}
-
-/// 1 K/min from -20 to 40 degC and back, after 600 s.
-double ramp_temperature(double t) {
-  const double up = std::clamp((t - 600.0) / 60.0, 0.0, 60.0);
-  return -20.0 + up - std::clamp((t - 4800.0) / 60.0, 0.0, 60.0);
 }
 
 TEST(MetricValues, HysteresisOfARamp) {
@@ -157,9 +146,8 @@ TEST(MetricValues, WarmUpOfTheSimulatedGyro) {
 }
 
 TEST(MetricValues, StartsFromPowerOn) {
-  Scene scene;
   const auto bias = [](double t) { return 0.2 + 1e-4 * t; };
-  scene.add({kWarmUp, {.duration = 700, .step = 0.5, .bias = bias}});
+  const Scene scene({kWarmUp, {.duration = 700, .step = 0.5, .bias = bias}});
   // Means of 10 s are 1e-3 deg/s apart.
   expect_exact("power_on_drift_3_min_deg_per_s", scene, 17e-3, 1e-9);
   expect_exact("heading_error_1_min_deg", scene, 10 * 1e-3 * 21, 1e-9);
@@ -195,17 +183,16 @@ TEST(MetricValues, TurnOnTimeIsThatOfTheLoops) {
   EXPECT_NEAR(evaluated("turn_on_time_s", scene.evidence).value, 0.30, 1e-12);
 }
 
-/// Eleven rates over +-100 deg/s, up and down, 20 s each, at one temperature.
+/// The table of rates at one temperature.
 SceneRun table_run(double temperature, const SignalOfTime& rate_to_answer) {
-  const auto rate = [](double t) {
-    const int step = static_cast<int>(t / 20);
-    return 20.0 * (step < 11 ? step : 21 - step) - 100.0;
-  };
   return {kRateTable,
           {.duration = 440,
            .step = 0.5,
-           .true_rate = rate,
-           .bias = [=](double t) { return rate_to_answer(rate(t)) - rate(t); },
+           .true_rate = table_rate,
+           .bias =
+               [=](double t) {
+                 return rate_to_answer(table_rate(t)) - table_rate(t);
+               },
            .temperature = [=](double) { return temperature; }}};
 }
 
@@ -264,8 +251,7 @@ TEST(MetricValues, TheNoiseOfEveryStretchCounts) {
 }
 
 TEST(MetricValues, WithoutNoiseThereIsNoRatio) {
-  Scene scene;
-  scene.add({kRest, {.duration = 2000, .step = 0.25}});
+  const Scene scene({kRest, {.duration = 2000, .step = 0.25}});
   EXPECT_FALSE(find_metric("white_noise_ratio")->evaluate(scene.evidence));
 }
 
@@ -374,14 +360,8 @@ TEST(MetricValues, DelayOfARandomRate) {
   }
 }
 
-Scene tumble_scene(const NoiseLevels& noise, std::uint64_t seed) {
-  Scene scene;
-  scene.add(tumble_run(1e-5, {0.02, -0.01, 0.005}), noise, seed);
-  return scene;
-}
-
 TEST(MetricValues, GSensitivityOfEachAxis) {
-  const Scene scene = tumble_scene({}, 0);
+  const Scene scene(tumble_run(1e-5, {0.02, -0.01, 0.005}));
   expect_exact("g_sensitivity_x_deg_per_s_per_g", scene, 0.02, 1e-6);
   expect_exact("g_sensitivity_y_deg_per_s_per_g", scene, -0.01, 1e-6);
   expect_exact("g_sensitivity_z_deg_per_s_per_g", scene, 0.005, 1e-6);
@@ -398,19 +378,17 @@ TEST(MetricValues, GSensitivityOfTheSimulatedGyro) {
   scene.add(kTumble, simulated(scenario, nominal_device()));
   // 0.02, 0.02 and 0.005 deg/s/g; the converter's step of 4.6e-3 deg/s does not
   // average without noise: half of it.
-  EXPECT_NEAR(
-      evaluated("g_sensitivity_x_deg_per_s_per_g", scene.evidence).value, 0.02,
-      2.3e-3);
-  EXPECT_NEAR(
-      evaluated("g_sensitivity_y_deg_per_s_per_g", scene.evidence).value, 0.02,
-      2.3e-3);
-  EXPECT_NEAR(
-      evaluated("g_sensitivity_z_deg_per_s_per_g", scene.evidence).value, 0.005,
-      2.3e-3);
+  const std::pair<const char*, double> axes[] = {
+      {"x", 0.02}, {"y", 0.02}, {"z", 0.005}};
+  for (const auto& [axis, sensitivity] : axes)
+    EXPECT_NEAR(evaluated(fmt::format("g_sensitivity_{}_deg_per_s_per_g", axis),
+                          scene.evidence)
+                    .value,
+                sensitivity, 2.3e-3);
 }
 
 /// 5 g along y that swings once in 100 s, and turns about the cross axes.
-Scene vibration_scene(const NoiseLevels& noise, std::uint64_t seed) {
+Scene vibration_scene() {
   const auto y = [](double t) { return 5 * std::sin(2 * pi * t / 100); };
   const auto turn_x = [](double t) {
     return t < 900 ? 0.0 : t < 1200 ? 60.0 : t < 1500 ? -60.0 : 0.0;
@@ -418,25 +396,22 @@ Scene vibration_scene(const NoiseLevels& noise, std::uint64_t seed) {
   const auto turn_y = [](double t) {
     return t < 1500 ? 0.0 : t < 1800 ? 60.0 : -60.0;
   };
-  Scene scene;
-  scene.add({kVibration,
-             {.duration = 2100,
-              .step = 0.5,
-              .bias =
-                  [=](double t) {
-                    return 0.3 + 0.02 * y(t) + 0.002 * y(t) * y(t) +
-                           0.001 * turn_x(t) - 0.003 * turn_y(t);
-                  }},
-             {{"true_acceleration_y",
-               [=](double t) { return kStandardGravity * y(t); }},
-              {"true_cross_rate_x", turn_x},
-              {"true_cross_rate_y", turn_y}}},
-            noise, seed);
-  return scene;
+  return Scene({kVibration,
+                {.duration = 2100,
+                 .step = 0.5,
+                 .bias =
+                     [=](double t) {
+                       return 0.3 + 0.02 * y(t) + 0.002 * y(t) * y(t) +
+                              0.001 * turn_x(t) - 0.003 * turn_y(t);
+                     }},
+                {{"true_acceleration_y",
+                  [=](double t) { return kStandardGravity * y(t); }},
+                 {"true_cross_rate_x", turn_x},
+                 {"true_cross_rate_y", turn_y}}});
 }
 
 TEST(MetricValues, RectificationAndCrossAxis) {
-  const Scene scene = vibration_scene({}, 0);
+  const Scene scene = vibration_scene();
   expect_exact("vibration_rectification_deg_per_s_per_g2", scene, 0.002, 1e-5);
   expect_exact("cross_axis_percent", scene, 0.3, 3e-4);
 }

@@ -117,30 +117,28 @@ TEST(SigmaReport, TheRightSigmaCoversAsStatedAndTheFilterExpectsWhatComes) {
   EXPECT_GE(report.nis->interval->high, 1.0);
 }
 
-TEST(SigmaReport, ASigmaOfHalfTheSizeIsCaught) {
-  const SigmaReport report =
-      sigma_report(sigma_evidence(drawn_scene(0.5)->evidence));
-  for (std::size_t k = 0; k < kCoverageLevels.size(); ++k) {
-    expect_share(report.soaks.coverage[k], normal_share(kLimits[k], 2.0),
-                 4 * kRuns);
-    EXPECT_LT(report.soaks.coverage[k]->interval->high, kCoverageLevels[k]);
-    EXPECT_LT(report.ramps.coverage[k]->interval->high, kCoverageLevels[k]);
+TEST(SigmaReport, ASigmaOfHalfOrTwiceTheSizeIsCaught) {
+  for (const double size : {0.5, 2.0}) {
+    SCOPED_TRACE(size);
+    const SigmaReport report =
+        sigma_report(sigma_evidence(drawn_scene(size)->evidence));
+    for (std::size_t k = 0; k < kCoverageLevels.size(); ++k) {
+      expect_share(report.soaks.coverage[k], normal_share(kLimits[k], 1 / size),
+                   4 * kRuns);
+      for (const SigmaFit* of : {&report.soaks, &report.ramps}) {
+        const Interval interval = *of->coverage[k]->interval;
+        if (size < 1)
+          EXPECT_LT(interval.high, kCoverageLevels[k]);
+        else
+          EXPECT_GT(interval.low, kCoverageLevels[k]);
+      }
+    }
+    EXPECT_LT(report.soaks.pit->p_value, 1e-6);
+    if (size < 1)
+      EXPECT_GT(report.nis->interval->low, 1.1);
+    else
+      EXPECT_LT(report.nis->interval->high, 0.9);
   }
-  EXPECT_LT(report.soaks.pit->p_value, 1e-6);
-  EXPECT_GT(report.nis->interval->low, 1.1);
-}
-
-TEST(SigmaReport, ASigmaOfTwiceTheSizeIsCaught) {
-  const SigmaReport report =
-      sigma_report(sigma_evidence(drawn_scene(2.0)->evidence));
-  for (std::size_t k = 0; k < kCoverageLevels.size(); ++k) {
-    expect_share(report.soaks.coverage[k], normal_share(kLimits[k], 0.5),
-                 4 * kRuns);
-    EXPECT_GT(report.soaks.coverage[k]->interval->low, kCoverageLevels[k]);
-    EXPECT_GT(report.ramps.coverage[k]->interval->low, kCoverageLevels[k]);
-  }
-  EXPECT_LT(report.soaks.pit->p_value, 1e-6);
-  EXPECT_LT(report.nis->interval->high, 0.9);
 }
 
 TEST(SigmaReport, SoaksWithinTenKelvinsCountAsOne) {

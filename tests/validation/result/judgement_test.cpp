@@ -8,6 +8,7 @@
 
 #include "statistics/intervals.h"
 #include "tests/compensation/recorded_run.h"
+#include "tests/config/rejection.h"
 #include "validation/result/result_json.h"
 
 namespace beamgyro::internal::judgement_test {
@@ -25,9 +26,7 @@ CheckResult check(const char* name, CheckOutcome outcome) {
   return {.name = name, .outcome = outcome, .words = "Words."};
 }
 
-constexpr Conformity kPass = Conformity::kPass;
-constexpr Conformity kFail = Conformity::kFail;
-constexpr Conformity kUndecided = Conformity::kUndecided;
+using enum Conformity;
 constexpr CheckOutcome kPassed = CheckOutcome::kPassed;
 constexpr CheckOutcome kNotTested = CheckOutcome::kNotTested;
 
@@ -69,8 +68,7 @@ TEST(DecideOn, WhatIsNotTestedDecidesWhereItIsAskedFor) {
   EXPECT_EQ(strict.words, "No run could decide on jacobian.");
   const ValidationResult plain = decide_between({}, untested, true);
   EXPECT_EQ(plain.verdict, kPass);
-  EXPECT_NE(plain.words.find("2 not tested (jacobian, hold_out)"),
-            std::string::npos);
+  EXPECT_TRUE(holds(plain.words, "2 not tested (jacobian, hold_out)"));
   EXPECT_EQ(decide_between({decided("a", kUndecided)}, {}, true).verdict,
             kUndecided);
 }

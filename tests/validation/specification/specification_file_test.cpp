@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "tests/config/rejection.h"
 #include "validation/metrics/metric.h"
 
 namespace beamgyro::internal::specification_file_test {
@@ -68,94 +69,69 @@ TEST(SpecificationFile, LimitsSayWhatTheyAskIn) {
   EXPECT_EQ(text_of(limit), "at most 0.27 times the cubic's");
 }
 
-struct BadFile {
-  const char* text;
-  const char* message;
-};
-
-// GoogleTest looks for this name.
-// NOLINTNEXTLINE(readability-identifier-naming)
-void PrintTo(const BadFile& bad, std::ostream* out) { *out << bad.text; }
-
-class BadSpecification : public testing::TestWithParam<BadFile> {};
-
-TEST_P(BadSpecification, IsRefusedWithItsPlace) {
-  try {
-    parsed(GetParam().text);
-    FAIL() << "read without an error";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), GetParam().message);
-  }
+TEST(SpecificationFile, WhatIsWrongIsRefusedWithItsPlace) {
+  const std::pair<std::string, std::string> files[] = {
+      {"name = ",
+       "1:8: not TOML: Error while parsing key-value pair: encountered "
+       "end-of-file"},
+      {"[limits]\n", "1:1: name: missing; expected a text in quotes"},
+      {"name = \"a\"\n", "1:1: limits: empty, must limit one metric or more"},
+      {"name = \"a\"\n[limit]\n",
+       "2:2: limit: unknown key; did you mean 'limits'?"},
+      {"name = \"a\"\n[limits]\nresidual_rms_deg_per_h = 1\n",
+       "3:26: limits.residual_rms_deg_per_h: not a metric; did you mean "
+       "'residual_rms_deg_per_s'?"},
+      {"name = \"a\"\n[limits]\nspeed = { max = 1 }\n",
+       "3:9: limits.speed: not a metric; the table of validate names all of "
+       "them"},
+      {"name = \"a\"\n[limits]\nscale_factor = 1\n",
+       "3:16: limits.scale_factor: 1 is wrong here; expected a table"},
+      {"name = \"a\"\n[limits]\nscale_factor = { source = \"s\" }\n",
+       "3:16: limits.scale_factor: no limit; must have max, min or both"},
+      {"name = \"a\"\n[limits]\nscale_factor = { max = 1 }\n",
+       "3:16: limits.scale_factor.source: missing; expected a text in quotes"},
+      {"name = \"a\"\n[limits]\nscale_factor = { max = 1, source = \"\" }\n",
+       "3:36: limits.scale_factor.source: empty, must say where the number "
+       "comes from"},
+      {"name = \"a\"\n[limits]\nscale_factor = { min = 2, max = 1, source = "
+       "\"s\" }\n",
+       "3:24: limits.scale_factor.min: 2 is above max = 1, must be at most "
+       "that"},
+      {"name = \"a\"\n[limits]\nscale_factor = { maximum = 1, source = \"s\" "
+       "}\n",
+       "3:16: limits.scale_factor: no limit; must have max, min or both"},
+      {"name = \"a\"\n[limits]\nscale_factor = { max = 1, sorce = \"s\" }\n",
+       "3:16: limits.scale_factor.source: missing; expected a text in quotes; "
+       "there is a 'sorce' in line 3"},
+      {"name = \"a\"\n[limits]\nscale_factor = { max = \"1\", source = \"s\" "
+       "}\n",
+       "3:24: limits.scale_factor.max: \"1\" is wrong here; expected a finite "
+       "number"},
+      {"name = \"a\"\n[limits]\nscale_factor = { max = nan, source = \"s\" }\n",
+       "3:24: limits.scale_factor.max: nan is not finite; expected a finite "
+       "number"},
+      {"name = \"a\"\n[limits]\nscale_factor = { max = 1, absolute = 1, source "
+       "= \"s\" }\n",
+       "3:38: limits.scale_factor.absolute: 1 is wrong here; expected true or "
+       "false"},
+      {"name = \"a\"\nfalse_accept_risk = 0\n",
+       "2:21: false_accept_risk: 0 is out of range; expected a number in (0, "
+       "0.5]"},
+      {"name = \"a\"\nfalse_accept_risk = 0.6\n",
+       "2:21: false_accept_risk: 0.6 is out of range; expected a number in (0, "
+       "0.5]"},
+      {"name = \"a\"\n[limits_relative_to.raw]\n",
+       "2:21: limits_relative_to.raw: unknown key; [limits_relative_to] takes "
+       "before, constant, cubic, spline"},
+      {"name = \"a\"\n[limits]\nscale_factor = { max = 1, source = \"s\" "
+       "}\nscale_factor = { max = 2, source = \"s\" }\n",
+       "4:16: not TOML: Error while parsing key-value pair: cannot redefine "
+       "existing table 'scale_factor'"}};
+  for (const auto& file : files)
+    EXPECT_EQ(rejection([&] { parsed(file.first); }),
+              "spec.toml:" + file.second)
+        << file.first;
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, BadSpecification,
-    testing::Values(
-        BadFile{"name = ",
-                "spec.toml:1:8: not TOML: Error while parsing key-value pair: "
-                "encountered end-of-file"},
-        BadFile{"[limits]\n",
-                "spec.toml:1:1: name: missing; expected a text in quotes"},
-        BadFile{"name = \"a\"\n",
-                "spec.toml:1:1: limits: empty, must limit one metric or more"},
-        BadFile{"name = \"a\"\n[limit]\n",
-                "spec.toml:2:2: limit: unknown key; did you mean 'limits'?"},
-        BadFile{"name = \"a\"\n[limits]\nresidual_rms_deg_per_h = 1\n",
-                "spec.toml:3:26: limits.residual_rms_deg_per_h: not a metric; "
-                "did you mean 'residual_rms_deg_per_s'?"},
-        BadFile{"name = \"a\"\n[limits]\nspeed = { max = 1 }\n",
-                "spec.toml:3:9: limits.speed: not a metric; the "
-                "table of validate names all of them"},
-        BadFile{"name = \"a\"\n[limits]\nscale_factor = 1\n",
-                "spec.toml:3:16: limits.scale_factor: 1 is wrong here; "
-                "expected a table"},
-        BadFile{"name = \"a\"\n[limits]\nscale_factor = { source = \"s\" }\n",
-                "spec.toml:3:16: limits.scale_factor: no limit; must have max, "
-                "min or both"},
-        BadFile{"name = \"a\"\n[limits]\nscale_factor = { max = 1 }\n",
-                "spec.toml:3:16: limits.scale_factor.source: missing; expected "
-                "a text in quotes"},
-        BadFile{"name = \"a\"\n[limits]\n"
-                "scale_factor = { max = 1, source = \"\" }\n",
-                "spec.toml:3:36: limits.scale_factor.source: empty, must say "
-                "where the number comes from"},
-        BadFile{"name = \"a\"\n[limits]\n"
-                "scale_factor = { min = 2, max = 1, source = \"s\" }\n",
-                "spec.toml:3:24: limits.scale_factor.min: 2 is above max = 1, "
-                "must be at most that"},
-        BadFile{"name = \"a\"\n[limits]\n"
-                "scale_factor = { maximum = 1, source = \"s\" }\n",
-                "spec.toml:3:16: limits.scale_factor: no limit; must have max, "
-                "min or both"},
-        BadFile{"name = \"a\"\n[limits]\n"
-                "scale_factor = { max = 1, sorce = \"s\" }\n",
-                "spec.toml:3:16: limits.scale_factor.source: missing; expected "
-                "a text in quotes; there is a 'sorce' in line 3"},
-        BadFile{"name = \"a\"\n[limits]\n"
-                "scale_factor = { max = \"1\", source = \"s\" }\n",
-                "spec.toml:3:24: limits.scale_factor.max: \"1\" is wrong here; "
-                "expected a finite number"},
-        BadFile{"name = \"a\"\n[limits]\n"
-                "scale_factor = { max = nan, source = \"s\" }\n",
-                "spec.toml:3:24: limits.scale_factor.max: nan is not finite; "
-                "expected a finite number"},
-        BadFile{"name = \"a\"\n[limits]\n"
-                "scale_factor = { max = 1, absolute = 1, source = \"s\" }\n",
-                "spec.toml:3:38: limits.scale_factor.absolute: 1 is wrong "
-                "here; expected true or false"},
-        BadFile{"name = \"a\"\nfalse_accept_risk = 0\n",
-                "spec.toml:2:21: false_accept_risk: 0 is out of range; "
-                "expected a number in (0, 0.5]"},
-        BadFile{"name = \"a\"\nfalse_accept_risk = 0.6\n",
-                "spec.toml:2:21: false_accept_risk: 0.6 is out of range; "
-                "expected a number in (0, 0.5]"},
-        BadFile{"name = \"a\"\n[limits_relative_to.raw]\n",
-                "spec.toml:2:21: limits_relative_to.raw: unknown key; "
-                "[limits_relative_to] takes before, constant, cubic, spline"},
-        BadFile{"name = \"a\"\n[limits]\nscale_factor = { max = 1, source = "
-                "\"s\" }\nscale_factor = { max = 2, source = \"s\" }\n",
-                "spec.toml:4:16: not TOML: Error while parsing key-value pair: "
-                "cannot redefine existing table 'scale_factor'"}));
 
 TEST(SpecificationFile, AMissingFileIsNamed) {
   EXPECT_THROW(read_specification_file("no/such/spec.toml"),

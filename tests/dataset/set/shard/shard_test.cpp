@@ -13,12 +13,12 @@
 #include "dataset/set/shard/shard_reader.h"
 #include "tests/config/rejection.h"
 #include "tests/dataset/set/sample_set.h"
-#include "tests/dataset/set/set_directory.h"
+#include "tests/dataset/test_directory.h"
 
 namespace beamgyro::internal::shard_test {
 namespace {
 
-class Shard : public SetDirectory {
+class Shard : public DirectoryFixture {
  protected:
   std::filesystem::path file() const { return directory / "rest_00000.h5"; }
 
