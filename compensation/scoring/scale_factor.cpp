@@ -41,18 +41,13 @@ SlopeSums sums_of(const Plateau& plateau) {
   if (truth.isZero(0.0)) {
     return none;
   }
-  const Eigen::VectorXd raw = centred(plateau.raw);
-  const Eigen::VectorXd compensated = centred(plateau.compensated);
   const Eigen::VectorXd temperature = centred(plateau.temperature);
-  const Eigen::VectorXd w = without_temperature(truth, temperature);
   const Eigen::VectorXd v = without_drift(truth, temperature, plateau.time);
-  return {.compensated = w.dot(compensated),
-          .raw = w.dot(raw),
-          .truth = w.dot(truth),
-          .compensated_without_drift = v.dot(compensated),
-          .raw_without_drift = v.dot(raw),
-          .truth_without_drift = v.dot(truth),
-          .largest_departure = w.cwiseAbs().maxCoeff(),
+  return {.compensated = v.dot(centred(plateau.compensated)),
+          .raw = v.dot(centred(plateau.raw)),
+          .truth = v.dot(truth),
+          .largest_departure =
+              without_temperature(truth, temperature).cwiseAbs().maxCoeff(),
           .samples = plateau.time.size()};
 }
 
@@ -99,9 +94,6 @@ SlopeSums& SlopeSums::operator+=(const SlopeSums& other) {
   compensated += other.compensated;
   raw += other.raw;
   truth += other.truth;
-  compensated_without_drift += other.compensated_without_drift;
-  raw_without_drift += other.raw_without_drift;
-  truth_without_drift += other.truth_without_drift;
   largest_departure = std::max(largest_departure, other.largest_departure);
   samples += other.samples;
   return *this;
@@ -132,9 +124,8 @@ std::vector<PlateauSlope> plateau_slopes(const Recording& recording,
          plateaus_of(recording, compensated, kEveryRate, largest_step)) {
       const SlopeSums sums = sums_of(plateau);
       if (sums.largest_departure >= least_departure) {
-        slopes.push_back({array_view(plateau.temperature).mean(),
-                          sums.raw_without_drift, sums.truth_without_drift,
-                          sums.compensated_without_drift});
+        slopes.push_back({array_view(plateau.temperature).mean(), sums.raw,
+                          sums.truth, sums.compensated});
       }
     }
     if (!slopes.empty()) {
@@ -144,15 +135,9 @@ std::vector<PlateauSlope> plateau_slopes(const Recording& recording,
   return slopes;
 }
 
-std::optional<ScaleFactor> scale_factor(const SlopeSums& sums) {
-  if (sums.largest_departure < kLeastRateDeparture) {
-    return std::nullopt;
-  }
-  return ScaleFactor{
-      .retained = sums.compensated_without_drift / sums.raw_without_drift,
-      .slope = sums.compensated / sums.truth,
-      .raw_slope = sums.raw / sums.truth,
-      .largest_departure = sums.largest_departure};
+std::optional<double> share_retained(const SlopeSums& sums) {
+  if (sums.largest_departure < kLeastRateDeparture) return std::nullopt;
+  return sums.compensated / sums.raw;
 }
 
 }  // namespace beamgyro::internal

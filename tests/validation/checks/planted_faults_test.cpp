@@ -10,7 +10,7 @@
 #include <fstream>
 #include <memory>
 
-#include "compensation/compensator/training_use.h"
+#include "compensation/compensator/run_comparison.h"
 #include "random/random_stream.h"
 #include "tests/compensation/recorded_run.h"
 #include "tests/validation/checks/simulated_runs.h"
