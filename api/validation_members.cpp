@@ -8,7 +8,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "compensation/rows/recorded_runs.h"
+#include "compensation/rows/run_source.h"
 #include "config/option_message.h"
 
 namespace beamgyro::internal {

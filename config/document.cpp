@@ -15,7 +15,6 @@
 
 #include "config/document_state.h"
 #include "config/file_error.h"
-#include "config/toml_extent.h"
 #include "config/toml_parser.h"
 
 namespace beamgyro::internal {
@@ -56,9 +55,10 @@ std::string read_file(const std::filesystem::path& file) {
   return read_rest(descriptor, file);
 }
 
-void insert_all(const OverrideSet& sets, DocumentState& state) {
-  for (std::size_t i = 0; i < sets.overrides.size(); ++i)
-    insert_override(sets.overrides[i], i, state.name, state.root);
+void insert_all(DocumentState& state) {
+  const std::vector<Override>& all = state.overrides->overrides;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    insert_override(all[i], i, state.name, state.root);
 }
 
 }  // namespace
@@ -67,33 +67,18 @@ ConfigDocument::ConfigDocument(std::shared_ptr<DocumentState> state)
     : state_(std::move(state)), root_(state_, state_->root, "", true) {}
 
 ConfigDocument ConfigDocument::read(const std::filesystem::path& file,
-                                    Overrides& overrides) {
-  return parse(read_file(file), file, overrides.state_);
-}
-
-ConfigDocument ConfigDocument::read(const std::filesystem::path& file) {
-  return parse(read_file(file), file, Overrides().state_);
+                                    const Overrides& overrides) {
+  return parse(read_file(file), file.string(), overrides);
 }
 
 ConfigDocument ConfigDocument::parse(std::string_view text,
                                      const std::string& name,
-                                     Overrides& overrides) {
-  return parse(std::string(text), name, overrides.state_);
-}
-
-ConfigDocument ConfigDocument::parse(std::string_view text,
-                                     const std::string& name) {
-  return parse(std::string(text), name, Overrides().state_);
-}
-
-ConfigDocument ConfigDocument::parse(std::string text,
-                                     const std::filesystem::path& path,
-                                     const std::shared_ptr<OverrideSet>& sets) {
+                                     const Overrides& overrides) {
   auto state = std::make_shared<DocumentState>();
-  state->path = path;
-  state->name = path.string();
-  state->text = std::move(text);
-  state->overrides = sets;
+  state->path = name;
+  state->name = name;
+  state->text = text;
+  state->overrides = overrides.state_;
   try {
     state->root = parse_toml(state->text);
   } catch (const TomlError& error) {
@@ -102,11 +87,11 @@ ConfigDocument ConfigDocument::parse(std::string text,
                     error.position.column, error.what()));
   }
   state->file_root = std::make_shared<const ConfigNode>(state->root);
-  insert_all(*sets, *state);
+  insert_all(*state);
   return ConfigDocument(std::move(state));
 }
 
-ConfigDocument ConfigDocument::with(Overrides& overrides,
+ConfigDocument ConfigDocument::with(const Overrides& overrides,
                                     const std::string& name) const {
   auto state = std::make_shared<DocumentState>();
   state->path = state_->path;
@@ -115,7 +100,7 @@ ConfigDocument ConfigDocument::with(Overrides& overrides,
   state->file_root = state_->file_root;
   state->root = *state_->file_root;
   state->overrides = overrides.state_;
-  insert_all(*overrides.state_, *state);
+  insert_all(*state);
   return ConfigDocument(std::move(state));
 }
 

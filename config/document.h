@@ -20,16 +20,15 @@ class ConfigDocument {
   /// Reads a file. Throws std::invalid_argument for a missing file, and with
   /// line and column for text that is not TOML or not UTF-8.
   static ConfigDocument read(const std::filesystem::path& file,
-                             Overrides& overrides);
-  static ConfigDocument read(const std::filesystem::path& file);
+                             const Overrides& overrides = {});
   /// The same for a text in memory, called `name` in messages.
   static ConfigDocument parse(std::string_view text, const std::string& name,
-                              Overrides& overrides);
-  static ConfigDocument parse(std::string_view text, const std::string& name);
+                              const Overrides& overrides = {});
 
   /// Returns the same text with other overrides, with no key read yet. It is
   /// called `name` in messages unless `name` is empty.
-  ConfigDocument with(Overrides& overrides, const std::string& name = "") const;
+  ConfigDocument with(const Overrides& overrides,
+                      const std::string& name = "") const;
 
   /// Returns the value of a dotted key, or null. This does not count as reading
   /// the key.
@@ -46,10 +45,6 @@ class ConfigDocument {
 
  private:
   explicit ConfigDocument(std::shared_ptr<DocumentState> state);
-  static ConfigDocument parse(std::string text,
-                              const std::filesystem::path& path,
-                              const std::shared_ptr<OverrideSet>& sets);
-
   std::shared_ptr<DocumentState> state_;
   ConfigTable root_;
 };

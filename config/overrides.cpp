@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "config/document_state.h"
 #include "config/option_message.h"
-#include "config/override_set.h"
 #include "config/suggestion.h"
 #include "config/toml_parser.h"
 

@@ -26,13 +26,21 @@ std::string read_choice(const ConfigValue& value,
       fmt::join(allowed, "\", \"")));
 }
 
+template <class Read>
+auto read_elements(const ConfigValue& value, const std::string& expected,
+                   const Read& read) {
+  std::vector<decltype(read(value))> elements;
+  const std::size_t count = read_array(value, expected).children.size();
+  for (std::size_t i = 0; i < count; ++i)
+    elements.push_back(read(value.element(i)));
+  return elements;
+}
+
 std::vector<double> read_numbers(const ConfigValue& value, const Range& range,
                                  const std::string& expected) {
-  const std::size_t count = read_array(value, expected).children.size();
-  std::vector<double> numbers(count);
-  for (std::size_t i = 0; i < count; ++i)
-    numbers[i] = read_number(value.element(i), range);
-  return numbers;
+  return read_elements(value, expected, [&](const ConfigValue& element) {
+    return read_number(element, range);
+  });
 }
 
 std::vector<double> read_numbers(const ConfigValue& value, std::size_t count,
@@ -96,10 +104,6 @@ ConfigValue ConfigTable::require(std::string_view key,
 bool ConfigTable::has(std::string_view key) const {
   document_->note_known(path_of(key));
   return peek(key) != nullptr;
-}
-
-bool ConfigTable::holds_text(std::string_view key) const {
-  return has(key) && peek(key)->kind == ConfigNode::Kind::kText;
 }
 
 bool ConfigTable::holds_number(std::string_view key) const {
@@ -189,32 +193,25 @@ std::vector<double> ConfigTable::numbers(std::string_view key,
 std::vector<long> ConfigTable::integers(std::string_view key, long low,
                                         long high) const {
   const std::string expected = "an array of integers";
-  const ConfigValue value = require(key, expected);
-  std::vector<long> integers(read_array(value, expected).children.size());
-  for (std::size_t i = 0; i < integers.size(); ++i)
-    integers[i] = read_integer(value.element(i), low, high);
-  return integers;
+  return read_elements(require(key, expected), expected,
+                       [&](const ConfigValue& element) {
+                         return read_integer(element, low, high);
+                       });
 }
 
 std::vector<std::string> ConfigTable::texts(std::string_view key) const {
   const std::string expected = "an array of texts";
-  const ConfigValue value = require(key, expected);
-  std::vector<std::string> texts(read_array(value, expected).children.size());
-  for (std::size_t i = 0; i < texts.size(); ++i)
-    texts[i] = read_text(value.element(i));
-  return texts;
+  return read_elements(require(key, expected), expected, read_text);
 }
 
 std::vector<std::vector<double>> ConfigTable::rows(std::string_view key,
                                                    std::size_t width) const {
   const std::string expected =
       fmt::format("an array of arrays of {} numbers", width);
-  const ConfigValue value = require(key, expected);
-  std::vector<std::vector<double>> rows(
-      read_array(value, expected).children.size());
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    rows[i] = read_numbers(value.element(i), width, any());
-  return rows;
+  return read_elements(require(key, expected), expected,
+                       [&](const ConfigValue& element) {
+                         return read_numbers(element, width, any());
+                       });
 }
 
 std::vector<std::string> ConfigTable::keys() const {

@@ -27,9 +27,8 @@ class ConfigTable {
   /// Returns whether the key is there. This does not count as reading it, so a
   /// key that is never read is rejected in the end.
   bool has(std::string_view key) const;
-  /// Returns whether the key is there and holds a text, or a number. This does
-  /// not count as reading it either.
-  bool holds_text(std::string_view key) const;
+  /// Returns whether the key is there and holds a number. This does not count
+  /// as reading it either.
   bool holds_number(std::string_view key) const;
 
   /// Reads an integer or a float. NaN and infinities are rejected.

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "config/toml_extent.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "config/toml_extent.h"
 #include "config/toml_library.h"
 
 namespace beamgyro::internal {

@@ -7,12 +7,11 @@
 #include <optional>
 #include <vector>
 
-#include "planning/chamber_time.h"
+#include "planning/chamber.h"
 #include "planning/residual_forecast.h"
 #include "planning/soak_design.h"
 #include "planning/soak_length.h"
 #include "planning/soak_model.h"
-#include "planning/soak_noise.h"
 
 namespace beamgyro::internal {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "planning/chamber_time.h"
+#include "planning/chamber.h"
 #include "planning/soak_length.h"
 
 namespace beamgyro::internal {

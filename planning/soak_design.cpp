@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "linear_algebra/cholesky.h"
-#include "planning/chamber_time.h"
+#include "planning/chamber.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "config/units.h"
-#include "planning/chamber_view.h"
+#include "planning/chamber.h"
 #include "sim/numerics/piecewise_linear.h"
 #include "sim/thermal/thermal_network.h"
 #include "sim/thermal/thermal_run.h"

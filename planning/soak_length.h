@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "planning/chamber_time.h"
+#include "planning/chamber.h"
 #include "sim/thermal/thermal_parameters.h"
 
 namespace beamgyro::internal {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compensation/inputs/features.h"
-#include "planning/chamber_time.h"
+#include "planning/chamber.h"
 #include "planning/planner.h"
 #include "planning/residual_forecast.h"
 #include "planning/soak_length.h"

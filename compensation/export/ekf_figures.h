@@ -6,7 +6,7 @@
 
 #include "compensation/compensator/compensator.h"
 #include "compensation/scoring/noise_coefficients.h"
-#include "compensation/uncertainty/bias_process.h"
+#include "compensation/uncertainty/bias_sigma.h"
 #include "dataset/recording/recording.h"
 
 namespace beamgyro::internal {

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "compensation/export/export_header.h"
-#include "compensation/export/export_self_test.h"
 #include "compensation/export/firmware_model.h"
 #include "compensation/firmware/c_text.h"
 #include "compensation/firmware/runtime.h"

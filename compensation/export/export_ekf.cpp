@@ -45,63 +45,6 @@ int place_of(char axis) { return (kFirstRate + axis - 'x') * (kStates + 1); }
 
 std::string six_digits(double value) { return fmt::format("{:.6g}", value); }
 
-FilterParameter limited(FilterParameter parameter, double low, double high) {
-  parameter.range = {low, high};
-  parameter.written = std::clamp(parameter.value, low, high);
-  return parameter;
-}
-
-// What filters are told, in rad.
-struct Densities {
-  double noise, walk, sigma;  // N, sqrt(Q), sigma_0
-};
-
-Densities densities(const EkfFigures& f) {
-  return {f.noise_density * kDegree, f.bias_walk * kDegree,
-          f.power_on_sigma * kDegree};
-}
-
-// Both autopilots add (dt p)^2 a step.
-void add_autopilots(const Densities& d, std::vector<FilterParameter>& all) {
-  const auto add = [&](const char* filter, const char* name, const char* unit,
-                       double value, double low, double high,
-                       const char* formula, const char* source) {
-    all.push_back(limited(
-        {filter, name, unit, value, value, {}, formula, source}, low, high));
-  };
-  const double two = std::sqrt(kEkf2Period), three = std::sqrt(kEkf3Period);
-  add(kPx4, "EKF2_GYR_NOISE", "rad/s", d.noise / two, 1e-4, 0.1,
-      "N / sqrt(0.01 s)", kPx4Source);
-  add(kPx4, "EKF2_GYR_B_NOISE", "rad/s^2", d.walk / two, 0.0, 0.01,
-      "sqrt(Q / 0.01 s)", kPx4Source);
-  add(kPx4, "EKF2_GBIAS_INIT", "rad/s", d.sigma, 0.0, 0.2, "sigma_0",
-      kPx4Source);
-  add(kArduPilot, "EK3_GYRO_P_NSE", "rad/s", d.noise / three, 1e-4, 0.1,
-      "N / sqrt(0.012 s)", kArduPilotSource);
-  add(kArduPilot, "EK3_GBIAS_P_NSE", "rad/s/s", d.walk / three, 1e-5, 1e-3,
-      "sqrt(Q / 0.012 s)", kArduPilotSource);
-}
-
-void add_ros(const Densities& d, double sample_rate,
-             std::vector<FilterParameter>& all) {
-  const auto add = [&](const char* filter, const char* name, const char* unit,
-                       double value, const char* formula, const char* source) {
-    all.push_back({filter, name, unit, value, value, {}, formula, source});
-  };
-  add(kKalibr, "gyroscope_noise_density", "rad/s/sqrt(Hz)", d.noise, "N",
-      kKalibrSource);
-  add(kKalibr, "gyroscope_random_walk", "rad/s^2/sqrt(Hz)", d.walk, "sqrt(Q)",
-      kKalibrSource);
-  add(kKalibr, "update_rate", "Hz", sample_rate, "f", kKalibrSource);
-  const double measured = d.noise * d.noise * sample_rate + d.sigma * d.sigma;
-  add(kRobotLocalization, "angular_velocity_covariance", "(rad/s)^2", measured,
-      "N^2 f + sigma_0^2", kRobotSource);
-  add(kRobotLocalization, "process_noise_covariance", "(rad/s)^2/s",
-      d.walk * d.walk, "Q", kRobotSource);
-  add(kRobotLocalization, "initial_estimate_covariance", "(rad/s)^2", measured,
-      "N^2 f + sigma_0^2", kRobotSource);
-}
-
 std::string filter_heading(const EkfExport& given, const char* filter) {
   return fmt::format(
       "# {}: noise of the gyro about {}, from {} and {}.\n"
@@ -239,10 +182,40 @@ std::string parameter_document(const EkfExport& given) {
 }  // namespace
 
 std::vector<FilterParameter> filter_parameters(const EkfExport& given) {
-  const Densities d = densities(given.figures);
-  std::vector<FilterParameter> all;
-  add_autopilots(d, all);
-  add_ros(d, given.noise.sample_rate, all);
+  const double noise = given.figures.noise_density * kDegree;   // N
+  const double walk = given.figures.bias_walk * kDegree;        // sqrt(Q)
+  const double sigma = given.figures.power_on_sigma * kDegree;  // sigma_0
+  const double rate = given.noise.sample_rate;
+  const double measured = noise * noise * rate + sigma * sigma;
+  // Both autopilots add (dt p)^2 a step.
+  const double two = std::sqrt(kEkf2Period), three = std::sqrt(kEkf3Period);
+  using Limits = std::pair<double, double>;
+  std::vector<FilterParameter> all = {
+      {kPx4, "EKF2_GYR_NOISE", "rad/s", noise / two, 0.0, Limits{1e-4, 0.1},
+       "N / sqrt(0.01 s)", kPx4Source},
+      {kPx4, "EKF2_GYR_B_NOISE", "rad/s^2", walk / two, 0.0, Limits{0.0, 0.01},
+       "sqrt(Q / 0.01 s)", kPx4Source},
+      {kPx4, "EKF2_GBIAS_INIT", "rad/s", sigma, 0.0, Limits{0.0, 0.2},
+       "sigma_0", kPx4Source},
+      {kArduPilot, "EK3_GYRO_P_NSE", "rad/s", noise / three, 0.0,
+       Limits{1e-4, 0.1}, "N / sqrt(0.012 s)", kArduPilotSource},
+      {kArduPilot, "EK3_GBIAS_P_NSE", "rad/s/s", walk / three, 0.0,
+       Limits{1e-5, 1e-3}, "sqrt(Q / 0.012 s)", kArduPilotSource},
+      {kKalibr, "gyroscope_noise_density", "rad/s/sqrt(Hz)", noise, 0.0,
+       std::nullopt, "N", kKalibrSource},
+      {kKalibr, "gyroscope_random_walk", "rad/s^2/sqrt(Hz)", walk, 0.0,
+       std::nullopt, "sqrt(Q)", kKalibrSource},
+      {kKalibr, "update_rate", "Hz", rate, 0.0, {}, "f", kKalibrSource},
+      {kRobotLocalization, "angular_velocity_covariance", "(rad/s)^2", measured,
+       0.0, std::nullopt, "N^2 f + sigma_0^2", kRobotSource},
+      {kRobotLocalization, "process_noise_covariance", "(rad/s)^2/s",
+       walk * walk, 0.0, std::nullopt, "Q", kRobotSource},
+      {kRobotLocalization, "initial_estimate_covariance", "(rad/s)^2", measured,
+       0.0, std::nullopt, "N^2 f + sigma_0^2", kRobotSource}};
+  for (FilterParameter& each : all)
+    each.written = each.range ? std::clamp(each.value, each.range->first,
+                                           each.range->second)
+                              : each.value;
   return all;
 }
 

@@ -8,7 +8,7 @@
 #include <iterator>
 #include <sstream>
 
-#include "compensation/export/firmware_difference.h"
+#include "compensation/export/export_findings.h"
 #include "compensation/firmware/c_text.h"
 
 namespace beamgyro::internal {
@@ -55,7 +55,7 @@ std::string about(const Compensator& c, const FirmwareParts& parts,
 }
 
 std::string macros(const std::string& name, const FirmwareModel& model,
-                   double difference, double sigma_difference) {
+                   const FirmwareDifference& difference) {
   const std::vector<float>& range = model.arrays().values("range");
   std::string text = fmt::format(
       "/* CRC-32 of the parameters. */\n#define {0}_CRC 0x{1:08x}u\n\n"
@@ -67,13 +67,13 @@ std::string macros(const std::string& name, const FirmwareModel& model,
       "#define {0}_DIFFERENCE {4}\n"
       "#define {0}_PERIOD_SHORTEST {5}\n#define {0}_PERIOD_LONGEST {6}\n\n",
       name, model.crc(), c_literal(range[0]), c_literal(range[1]),
-      c_literal(static_cast<float>(difference)),
+      c_literal(static_cast<float>(difference.rate)),
       c_literal(*std::ranges::min_element(kComparedPeriods)),
       c_literal(*std::ranges::max_element(kComparedPeriods)));
   if (model.states_sigma())
     text += fmt::format(
         "/* The same of {0}_sigma. */\n#define {0}_SIGMA_DIFFERENCE {1}\n\n",
-        name, c_literal(static_cast<float>(sigma_difference)));
+        name, c_literal(static_cast<float>(difference.sigma)));
   if (model.reads(kFirmwareDriveFrequency))
     text += fmt::format(
         "/* [Hz]; samples hold the difference from it. */\n"
@@ -175,10 +175,10 @@ std::string header_text(const Compensator& compensator, const std::string& name,
   });
   return fmt::format("#ifndef {0}\n#define {0}\n\n", guard) +
          warning_comments(found.objections) +
-         about(compensator, parts, found.difference) +
+         about(compensator, parts, found.difference.rate) +
          "\n#include <stdint.h>\n\n#ifdef __cplusplus\nextern \"C\" "
          "{\n#endif\n\n" +
-         macros(name, model, found.difference, found.sigma_difference) +
+         macros(name, model, found.difference) +
          structures(name, model, parts) + functions(name) +
          (model.states_sigma() ? sigma_function(name) : "") +
          "#ifdef __cplusplus\n}\n#endif\n\n#endif\n";

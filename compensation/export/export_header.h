@@ -38,6 +38,13 @@ std::string header_text(const Compensator& compensator, const std::string& name,
                         const FirmwareModel& model,
                         const ExportFindings& found);
 
+/// Returns the C99 source of main() of NAME_selftest.c. It calls NAME_step()
+/// with temperatures up to 5 K beyond the range and with other inputs within
+/// theirs, and compares with FirmwareModel. Its exit status is 0 when all bits
+/// are equal. Throws as FirmwareModel.
+std::string self_test_source(const Compensator& compensator,
+                             const std::string& name);
+
 /// Returns C comments, one for each warning.
 std::string warning_comments(const std::vector<std::string>& warnings);
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "compensation/methods/autopilot_fits.h"
+#include "compensation/methods/autopilot_methods.h"
 #include "config/option_message.h"
 #include "config/units.h"
 

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/export/export_self_test.h"
-
 #include <fmt/format.h>
 
 #include <bit>
 #include <cstdint>
 #include <vector>
 
+#include "compensation/export/export_header.h"
 #include "compensation/export/firmware_model.h"
 #include "compensation/firmware/c_text.h"
 
 namespace beamgyro::internal {
 namespace {
+
+// Samples of the self-test, in four power cycles with different sample rates.
+constexpr int kGoldenSamples = 10000;
+// One sample in so many is compared by itself, all of them by their CRC-32.
+constexpr int kGoldenStep = 100;
 
 // Values of an input in the self-test: low + span u, with u from a linear
 // congruence.

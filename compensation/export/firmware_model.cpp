@@ -115,16 +115,6 @@ std::uint32_t crc32(const std::vector<float>& values) {
                           static_cast<int>(values.size()));
 }
 
-struct FirmwareModel::State {
-  float period = 0.0f;
-  std::uint32_t samples = 0;
-  bool started = false;                       // since the first temperature
-  std::vector<std::array<float, 5>> filters;  // one per input
-  std::vector<float> plays;                   // likewise
-  std::array<float, 5> sigma_filter{};
-  float sigma = 0.0f;  // [deg/s]
-};
-
 FirmwareModel::FirmwareModel(const Compensator& c)
     : inputs_(c.inputs),
       function_(c.bias.function),
@@ -132,10 +122,7 @@ FirmwareModel::FirmwareModel(const Compensator& c)
       corrects_scale_factor_(c.scale_factor.has_value()),
       states_sigma_(c.sigma.has_value()),
       drive_frequency_(drive_frequency_of(c)),
-      arrays_(arrays_of(c)),
-      state_(std::make_unique<State>()) {}
-
-FirmwareModel::~FirmwareModel() = default;
+      arrays_(arrays_of(c)) {}
 
 bool FirmwareModel::reads(std::size_t signal) const {
   if (signal < 2) return true;  // rate and temperature
@@ -152,21 +139,20 @@ std::uint32_t FirmwareModel::crc() const {
 }
 
 void FirmwareModel::start(float period) {
-  state_->period = period;
-  state_->samples = 0;
-  state_->started = false;
-  state_->filters.assign(inputs_.size(), {});
-  state_->plays.assign(inputs_.size(), 0.0f);
+  state_ = {.period = period,
+            .filters = std::vector<std::array<float, 5>>(inputs_.size()),
+            .plays = std::vector<float>(inputs_.size()),
+            .sigma = state_.sigma};
   const std::vector<float>& constants = arrays_.values("time_constants");
   for (std::size_t i = 0; i < inputs_.size(); ++i)
     if (constants[i] > 0.0f)
-      runtime::start_lowpass(state_->filters[i].data(), period, constants[i]);
+      runtime::start_lowpass(state_.filters[i].data(), period, constants[i]);
   if (states_sigma_)
-    runtime::start_lowpass(state_->sigma_filter.data(), period,
+    runtime::start_lowpass(state_.sigma_filter.data(), period,
                            arrays_.values("sigma_terms")[3]);
 }
 
-float FirmwareModel::sigma() const { return state_->sigma; }
+float FirmwareModel::sigma() const { return state_.sigma; }
 
 float FirmwareModel::scale_factor_at(float temperature) const {
   return runtime::table_at(arrays_.data("scale_factor_temperatures"),
@@ -181,10 +167,10 @@ float FirmwareModel::next_sigma(float temperature) {
       std::clamp(temperature, static_cast<float>(kSigmaTemperatures.lowest),
                  static_cast<float>(kSigmaTemperatures.highest));
   const float* terms = arrays_.data("sigma_terms");
-  const float since = static_cast<float>(state_->samples) * state_->period;
+  const float since = static_cast<float>(state_.samples) * state_.period;
   const float on = terms[0] * runtime::exp_minus(since / terms[1]);
-  const float lag = runtime::lowpass_lag(state_->sigma_filter.data(),
-                                         state_->started ? 0 : 1, temperature);
+  const float lag = runtime::lowpass_lag(state_.sigma_filter.data(),
+                                         state_.started ? 0 : 1, temperature);
   const float sigma = runtime::sigma_at(
       arrays_.data("sigma_temperatures"), arrays_.data("sigmas"),
       arrays_.count("sigmas"), arrays_.data("sigma_growth"), temperature, on,
@@ -200,15 +186,15 @@ float FirmwareModel::step(const FirmwareSample& sample) {
   const std::vector<float>& centres = arrays_.values("centres_of_inputs");
   const std::vector<float>& gains = arrays_.values("gains_of_inputs");
   const std::vector<float>& constants = arrays_.values("time_constants");
-  if (states_sigma_) state_->sigma = next_sigma(sample.value[1]);
-  const std::uint32_t samples = state_->samples;
-  if (state_->samples < 0xffffffffu) ++state_->samples;
+  if (states_sigma_) state_.sigma = next_sigma(sample.value[1]);
+  const std::uint32_t samples = state_.samples;
+  if (state_.samples < 0xffffffffu) ++state_.samples;
   float T = sample.value[1];
   if (runtime::is_finite(T) == 0) return T - T;
   if (T < range[0]) T = range[0];
   if (T > range[1]) T = range[1];
-  const int first = state_->started ? 0 : 1;
-  state_->started = true;
+  const int first = state_.started ? 0 : 1;
+  state_.started = true;
   std::vector<float> x(inputs_.size());
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const Input& input = inputs_[i];
@@ -216,15 +202,15 @@ float FirmwareModel::step(const FirmwareSample& sample) {
     if (input.kind == InputKind::kColumn && input.column != "temperature")
       value = sample.value[signal_of(input)];
     if (input.kind == InputKind::kSincePowerOn)
-      value = runtime::exp_minus(static_cast<float>(samples) * state_->period /
+      value = runtime::exp_minus(static_cast<float>(samples) * state_.period /
                                  constants[i]);
     if (input.kind == InputKind::kTemperatureLowpass)
-      value = T - runtime::lowpass_lag(state_->filters[i].data(), first, T);
+      value = T - runtime::lowpass_lag(state_.filters[i].data(), first, T);
     if (input.kind == InputKind::kTemperatureRate)
-      value = runtime::lowpass_lag(state_->filters[i].data(), first, T) /
+      value = runtime::lowpass_lag(state_.filters[i].data(), first, T) /
               constants[i];
     if (input.kind == InputKind::kTemperaturePlay)
-      value = runtime::play_at(&state_->plays[i], first, T,
+      value = runtime::play_at(&state_.plays[i], first, T,
                                arrays_.values("half_widths")[i]);
     x[i] = (value - centres[i]) * gains[i];
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "compensation/compensator/compensator.h"
@@ -37,9 +37,6 @@ class FirmwareModel {
  public:
   /// Throws std::invalid_argument for a parameter beyond single precision.
   explicit FirmwareModel(const Compensator& compensator);
-  ~FirmwareModel();
-  FirmwareModel(const FirmwareModel&) = delete;
-  FirmwareModel& operator=(const FirmwareModel&) = delete;
 
   /// Starts at power-on. Samples then come every `period` [s], > 0.
   void start(float period);
@@ -65,7 +62,15 @@ class FirmwareModel {
   std::uint32_t crc() const;
 
  private:
-  struct State;
+  struct State {
+    float period = 0.0f;
+    std::uint32_t samples = 0;
+    bool started = false;                       // since the first temperature
+    std::vector<std::array<float, 5>> filters;  // one per input
+    std::vector<float> plays;                   // likewise
+    std::array<float, 5> sigma_filter{};
+    float sigma = 0.0f;  // [deg/s]
+  };
 
   float next_sigma(float temperature);
   float scale_factor_at(float temperature) const;
@@ -77,7 +82,7 @@ class FirmwareModel {
   bool states_sigma_;
   int drive_frequency_;  // [Hz]
   FirmwareArrays arrays_;
-  std::unique_ptr<State> state_;
+  State state_;
 };
 
 /// Returns the CRC-32 (IEEE 802.3) of the values, each with the least

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "config/suggestion.h"
@@ -14,10 +16,27 @@
 namespace beamgyro::internal {
 namespace {
 
-constexpr std::string_view kLowpass = "temperature_lowpass";
-constexpr std::string_view kTemperatureRate = "temperature_rate";
-constexpr std::string_view kTemperaturePlay = "temperature_play";
-constexpr std::string_view kSincePowerOn = "since_power_on";
+/// Inputs with a parameter, by the name before its bracket.
+struct ParametricInput {
+  InputKind kind;
+  std::string_view stem, column;
+  std::string_view parameter = "time constant in s";
+  int usual = 100;  // value in advice
+};
+
+constexpr ParametricInput kParametric[] = {
+    {InputKind::kTemperatureLowpass, "temperature_lowpass", "temperature"},
+    {InputKind::kTemperatureRate, "temperature_rate", "temperature"},
+    {InputKind::kTemperaturePlay, "temperature_play", "temperature",
+     "half-width in K", 2},
+    {InputKind::kSincePowerOn, "since_power_on", ""}};
+
+/// The one of that name, with or without its bracket, or null.
+const ParametricInput* parametric(std::string_view name) {
+  const auto* const found = std::ranges::find(
+      kParametric, name.substr(0, name.find('(')), &ParametricInput::stem);
+  return found == std::end(kParametric) ? nullptr : found;
+}
 
 const std::vector<std::string>& plain_inputs() {
   static const std::vector<std::string> names = [] {
@@ -30,27 +49,21 @@ const std::vector<std::string>& plain_inputs() {
 }
 
 [[noreturn]] void reject(std::string_view name) {
-  const std::string_view stem = name.substr(0, name.find('('));
   std::vector<std::string> known = plain_inputs();
-  known.emplace_back(kLowpass);
-  known.emplace_back(kTemperatureRate);
-  known.emplace_back(kTemperaturePlay);
-  known.emplace_back(kSincePowerOn);
-  const std::string near = suggestion(stem, known);
+  for (const ParametricInput& input : kParametric)
+    known.emplace_back(input.stem);
+  const std::string near = suggestion(name.substr(0, name.find('(')), known);
   std::string hint;
-  if (stem == kLowpass || stem == kTemperatureRate || stem == kSincePowerOn)
-    hint = fmt::format("it takes one positive time constant in s, as {}(100); ",
-                       stem);
-  else if (stem == kTemperaturePlay)
-    hint =
-        fmt::format("it takes one positive half-width in K, as {}(2); ", stem);
+  if (const ParametricInput* input = parametric(name))
+    hint = fmt::format("it takes one positive {}, as {}({}); ",
+                       input->parameter, input->stem, input->usual);
   else if (!near.empty())
     hint = fmt::format("did you mean \"{}\"? ", near);
-  throw std::invalid_argument(fmt::format(
-      "input \"{}\": {}inputs are {}, {}(TAU), {}(TAU), {}(TAU), TAU in s, and "
-      "{}(R), R in K",
-      name, hint, fmt::join(plain_inputs(), ", "), kLowpass, kTemperatureRate,
-      kSincePowerOn, kTemperaturePlay));
+  throw std::invalid_argument(
+      fmt::format("input \"{}\": {}inputs are {}, temperature_lowpass(TAU), "
+                  "temperature_rate(TAU), since_power_on(TAU), TAU in s, and "
+                  "temperature_play(R), R in K",
+                  name, hint, fmt::join(plain_inputs(), ", ")));
 }
 
 // The number of "stem(NUMBER)".
@@ -74,35 +87,17 @@ double parameter_of(std::string_view name, std::string_view stem) {
 Input parse_input(std::string_view name) {
   for (const std::string& plain : plain_inputs())
     if (name == plain) return {InputKind::kColumn, plain, 0.0};
-  const std::string_view stem = name.substr(0, name.find('('));
-  if (stem == kLowpass)
-    return {InputKind::kTemperatureLowpass, "temperature",
-            parameter_of(name, stem)};
-  if (stem == kTemperatureRate)
-    return {InputKind::kTemperatureRate, "temperature",
-            parameter_of(name, stem)};
-  if (stem == kTemperaturePlay)
-    return {InputKind::kTemperaturePlay, "temperature",
-            parameter_of(name, stem)};
-  if (stem == kSincePowerOn)
-    return {InputKind::kSincePowerOn, "", parameter_of(name, stem)};
-  reject(name);
+  const ParametricInput* found = parametric(name);
+  if (found == nullptr) reject(name);
+  return {found->kind, std::string(found->column),
+          parameter_of(name, found->stem)};
 }
 
 std::string input_name(const Input& input) {
-  switch (input.kind) {
-    case InputKind::kTemperatureLowpass:
-      return fmt::format("{}({})", kLowpass, input.parameter);
-    case InputKind::kTemperatureRate:
-      return fmt::format("{}({})", kTemperatureRate, input.parameter);
-    case InputKind::kTemperaturePlay:
-      return fmt::format("{}({})", kTemperaturePlay, input.parameter);
-    case InputKind::kSincePowerOn:
-      return fmt::format("{}({})", kSincePowerOn, input.parameter);
-    case InputKind::kColumn:
-      break;
-  }
-  return input.column;
+  if (input.kind == InputKind::kColumn) return input.column;
+  const auto* const found =
+      std::ranges::find(kParametric, input.kind, &ParametricInput::kind);
+  return fmt::format("{}({})", found->stem, input.parameter);
 }
 
 bool sees_the_rate(const Input& input) {

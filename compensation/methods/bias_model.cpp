@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "compensation/methods/method_inputs.h"
 #include "compensation/models/undetermined_fit.h"
 
 namespace beamgyro::internal {
@@ -40,13 +41,9 @@ Scale scale_to_unit(const Eigen::Ref<const Eigen::ArrayXd>& values,
 Eigen::ArrayXd BiasModel::predict(
     const Eigen::Ref<const Eigen::ArrayXXd>& x) const {
   assert(x.cols() == static_cast<Eigen::Index>(input_scales.size()));
-  Eigen::ArrayXXd scaled(x.rows(), x.cols());
-  for (Eigen::Index i = 0; i < x.cols(); ++i) {
-    const Scale& scale = input_scales[static_cast<std::size_t>(i)];
-    scaled.col(i) = (x.col(i) - scale.centre) / scale.half_width;
-  }
+  const Eigen::ArrayXXd inputs = scaled(x, input_scales);
   return bias_scale.centre +
-         bias_scale.half_width * std::visit(Predict{scaled}, function);
+         bias_scale.half_width * std::visit(Predict{inputs}, function);
 }
 
 BiasModel averaged_with_constant(BiasModel model, double constant,

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "compensation/methods/fit.h"
-#include "compensation/methods/input_scales.h"
+#include "compensation/methods/method_inputs.h"
 #include "compensation/network/restarts.h"
 
 namespace beamgyro::internal {

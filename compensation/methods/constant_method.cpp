@@ -2,7 +2,7 @@
 #include "compensation/methods/constant_method.h"
 
 #include "compensation/methods/fit.h"
-#include "compensation/methods/input_scales.h"
+#include "compensation/methods/method_inputs.h"
 #include "compensation/models/parameter_json.h"
 
 namespace beamgyro::internal {

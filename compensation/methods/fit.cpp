@@ -6,7 +6,7 @@
 #include <utility>
 #include <variant>
 
-#include "compensation/methods/input_scales.h"
+#include "compensation/methods/method_inputs.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -6,13 +6,9 @@
 #include "compensation/methods/autopilot_methods.h"
 #include "compensation/methods/bp_method.h"
 #include "compensation/methods/constant_method.h"
-#include "compensation/methods/fuzzy_method.h"
-#include "compensation/methods/polynomial_method.h"
+#include "compensation/methods/curve_methods.h"
 #include "compensation/methods/population_method.h"
 #include "compensation/methods/radial_basis.h"
-#include "compensation/methods/spline_method.h"
-#include "compensation/methods/table_method.h"
-#include "compensation/methods/thermistor_method.h"
 
 namespace beamgyro::internal {
 

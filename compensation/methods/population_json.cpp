@@ -15,17 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Eigen::Index;
-using Eigen::VectorXd;
-
-VectorXd read_vector(const JsonNode& node, Index size) {
-  const std::vector<double> numbers = node.numbers();
-  if (static_cast<Index>(numbers.size()) != size)
-    node.fail(
-        fmt::format("{} numbers, must be {}, one for each curve and "
-                    "temperature",
-                    numbers.size(), size));
-  return array_view(numbers);
-}
 
 Json adaptation_json(const AdaptationSigma& sigma) {
   Json json = {{"factor", finite_json(sigma.factor)},
@@ -69,35 +58,34 @@ void check_coefficients(const JsonNode& node, const Eigen::MatrixXd& c,
 Eigen::MatrixXd read_coefficients(const JsonNode& node, Index modes,
                                   int count) {
   if (!node.has("coefficients")) return {};
-  const std::vector<JsonNode> devices = node.at("coefficients").elements();
-  Eigen::MatrixXd coefficients(static_cast<Index>(devices.size()), modes);
-  for (Index k = 0; k < coefficients.rows(); ++k) {
-    const JsonNode& device = devices[static_cast<std::size_t>(k)];
-    const std::vector<double> c = device.numbers();
-    if (static_cast<Index>(c.size()) != modes)
-      device.fail(fmt::format("{} numbers, must be {}, one for each mode",
-                              c.size(), modes));
-    coefficients.row(k) = array_view(c).transpose();
-  }
+  const Eigen::MatrixXd coefficients =
+      read_matrix(node.at("coefficients"), modes, ", one for each mode");
   check_coefficients(node.at("coefficients"), coefficients, count);
   return coefficients;
 }
 
 }  // namespace
 
+std::vector<Input> read_inputs(const JsonNode& node) {
+  std::vector<Input> inputs;
+  for (const JsonNode& input : node.elements()) {
+    const std::string name = input.text();
+    try {
+      inputs.push_back(parse_input(name));
+    } catch (const std::invalid_argument& error) {
+      input.fail(error.what());
+    }
+  }
+  return inputs;
+}
+
 Json population_json(const Population& population) {
-  Json modes = Json::array();
-  for (const auto& mode : population.modes.colwise())
-    modes.push_back(numbers_json(mode));
-  Json coefficients = Json::array();
-  for (const auto& device : population.coefficients.rowwise())
-    coefficients.push_back(numbers_json(device));
   Json json = {{"devices", population.devices},
                {"channels", input_names(population.channels)},
                {"temperatures_degC", numbers_json(population.temperatures)},
                {"mean", numbers_json(population.mean)},
-               {"modes", std::move(modes)},
-               {"coefficients", std::move(coefficients)}};
+               {"modes", rows_json(population.modes.transpose())},
+               {"coefficients", rows_json(population.coefficients)}};
   if (population.sigma) json["sigma"] = adaptation_json(*population.sigma);
   return json;
 }
@@ -106,14 +94,7 @@ Population read_population(const JsonNode& node) {
   Population population;
   population.devices =
       static_cast<int>(node.at("devices").integer(2, 2147483647));
-  for (const JsonNode& channel : node.at("channels").elements()) {
-    const std::string name = channel.text();
-    try {
-      population.channels.push_back(parse_input(name));
-    } catch (const std::invalid_argument& error) {
-      channel.fail(error.what());
-    }
-  }
+  population.channels = read_inputs(node.at("channels"));
   const std::vector<double> T = node.at("temperatures_degC").numbers();
   const auto grid = static_cast<Index>(T.size());
   population.temperatures = array_view(T);
@@ -122,11 +103,9 @@ Population read_population(const JsonNode& node) {
     node.at("temperatures_degC").fail("must be 4 or more that increase");
   const Index size =
       grid * (1 + static_cast<Index>(population.channels.size()));
-  population.mean = read_vector(node.at("mean"), size);
-  const std::vector<JsonNode> modes = node.at("modes").elements();
-  population.modes.resize(size, static_cast<Index>(modes.size()));
-  for (std::size_t m = 0; m < modes.size(); ++m)
-    population.modes.col(static_cast<Index>(m)) = read_vector(modes[m], size);
+  constexpr const char* kEach = ", one for each curve and temperature";
+  population.mean = read_array(node.at("mean"), size, kEach).matrix();
+  population.modes = read_matrix(node.at("modes"), size, kEach).transpose();
   population.coefficients =
       read_coefficients(node, population.modes.cols(), population.devices);
   if (node.has("sigma")) population.sigma = read_adaptation(node.at("sigma"));

@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "compensation/methods/fit.h"
-#include "compensation/methods/input_scales.h"
 #include "compensation/methods/method_inputs.h"
 #include "compensation/methods/population_sigma.h"
 #include "dataset/files/sha256.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "compensation/models/array_view.h"
 #include "compensation/models/undetermined_fit.h"
 
 namespace beamgyro::internal {
@@ -39,17 +40,8 @@ struct ResidualCollector {
   }
 
   ResidualRows rows() const {
-    const auto array = [](const std::vector<double>& values) -> ArrayXd {
-      return Eigen::Map<const ArrayXd>(values.data(),
-                                       static_cast<Index>(values.size()));
-    };
-    return {array(temperature),
-            array(residual),
-            array(since),
-            array(rate),
-            Eigen::Map<const Eigen::ArrayXi>(group.data(),
-                                             static_cast<Index>(group.size())),
-            "device"};
+    return {array_view(temperature), array_view(residual), array_view(since),
+            array_view(rate),        array_view(group),    "device"};
   }
 };
 

@@ -10,7 +10,7 @@
 
 #include "compensation/firmware/runtime.h"
 #include "compensation/methods/fit.h"
-#include "compensation/methods/input_scales.h"
+#include "compensation/methods/method_inputs.h"
 #include "compensation/models/parameter_json.h"
 #include "linear_algebra/least_squares.h"
 
@@ -108,10 +108,7 @@ RadialBasis fit_radial_basis(const Eigen::Ref<const Eigen::ArrayXXd>& x,
 }
 
 nlohmann::ordered_json RadialBasis::parameters() const {
-  auto places = nlohmann::ordered_json::array();
-  for (const auto& centre : centres.rowwise())
-    places.push_back(numbers_json(centre));
-  return {{"centres", places},
+  return {{"centres", rows_json(centres)},
           {"width", finite_json(width)},
           {"plane", numbers_json(plane)},
           {"weights", numbers_json(weights)}};
@@ -120,22 +117,10 @@ nlohmann::ordered_json RadialBasis::parameters() const {
 RadialBasis RadialBasis::read(const JsonNode& node, std::size_t inputs) {
   RadialBasis read;
   const auto columns = static_cast<Index>(inputs);
-  const std::vector<JsonNode> places = node.at("centres").elements();
-  read.centres.resize(static_cast<Index>(places.size()), columns);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const ArrayXd centre = read_array(places[i]);
-    if (centre.size() != columns)
-      places[i].fail(
-          fmt::format("{} numbers, must be one for each of the {} "
-                      "inputs",
-                      centre.size(), inputs));
-    read.centres.row(static_cast<Index>(i)) = centre.matrix();
-  }
+  read.centres =
+      read_matrix(node.at("centres"), columns, ", one for each of the inputs");
   read.width = read_positive(node.at("width"));
-  read.plane = read_array(node.at("plane")).matrix();
-  if (read.plane.size() != columns + 1)
-    node.at("plane").fail(
-        fmt::format("{} numbers, must be {}", read.plane.size(), columns + 1));
+  read.plane = read_array(node.at("plane"), columns + 1).matrix();
   read.weights = read_array(node.at("weights")).matrix();
   if (read.weights.size() != read.centres.rows())
     node.at("weights").fail(

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "dataset/files/json_node.h"
 
@@ -19,8 +20,16 @@ nlohmann::ordered_json numbers_json(const Numbers& numbers) {
   return array;
 }
 
-/// Read what numbers_json() and finite_json() wrote. Throw as JsonNode.
+/// Returns an array of the rows of a matrix, each as numbers_json().
+nlohmann::ordered_json rows_json(const Eigen::MatrixXd& matrix);
+
+/// Read what numbers_json(), rows_json() and finite_json() wrote, with `size`
+/// numbers each; `what` ends the message of another size. Throw as JsonNode.
 Eigen::ArrayXd read_array(const JsonNode& node);
+Eigen::ArrayXd read_array(const JsonNode& node, Eigen::Index size,
+                          std::string_view what = {});
+Eigen::MatrixXd read_matrix(const JsonNode& node, Eigen::Index size,
+                            std::string_view what = {});
 double read_positive(const JsonNode& node);
 
 }  // namespace beamgyro::internal

@@ -72,31 +72,21 @@ TakagiSugeno fit_takagi_sugeno(const Eigen::Ref<const ArrayXXd>& x,
 }
 
 nlohmann::ordered_json TakagiSugeno::parameters() const {
-  auto rules = nlohmann::ordered_json::array();
-  for (const auto& rule : consequents.rowwise())
-    rules.push_back(numbers_json(rule));
   return {{"centres", numbers_json(centres)},
           {"width", finite_json(width)},
-          {"consequents", rules}};
+          {"consequents", rows_json(consequents)}};
 }
 
 TakagiSugeno TakagiSugeno::read(const JsonNode& node, std::size_t inputs) {
   TakagiSugeno fuzzy{
       read_array(node.at("centres")), read_positive(node.at("width")), {}};
-  const std::vector<JsonNode> rules = node.at("consequents").elements();
-  const auto width = static_cast<Eigen::Index>(inputs) + 1;
-  if (rules.empty() ||
-      fuzzy.centres.size() != static_cast<Eigen::Index>(rules.size()))
+  const std::size_t rules = node.at("consequents").elements().size();
+  if (rules == 0 || fuzzy.centres.size() != static_cast<Index>(rules))
     node.at("consequents")
         .fail(fmt::format("{} rules, must be one for each of the {} centres",
-                          rules.size(), fuzzy.centres.size()));
-  fuzzy.consequents.resize(fuzzy.centres.size(), width);
-  for (std::size_t i = 0; i < rules.size(); ++i) {
-    const Eigen::ArrayXd rule = read_array(rules[i]);
-    if (rule.size() != width)
-      rules[i].fail(fmt::format("{} numbers, must be {}", rule.size(), width));
-    fuzzy.consequents.row(static_cast<Eigen::Index>(i)) = rule.matrix();
-  }
+                          rules, fuzzy.centres.size()));
+  fuzzy.consequents =
+      read_matrix(node.at("consequents"), static_cast<Index>(inputs) + 1);
   return fuzzy;
 }
 

@@ -182,6 +182,26 @@ Index rows_below_last(const std::vector<NetworkLayer>& layers) {
   return rows - layers.back().in;
 }
 
+// Calls `kOfLayer` for each layer, the last first, with dy/dz of its neurons
+// times `e` of the samples.
+template <auto kOfLayer>
+BEAMGYRO_INLINE void go_back(const std::vector<NetworkLayer>& layers,
+                             const double* w, const SampleBlock& block,
+                             const double* e, double* delta, double* result) {
+  const Index count = lanes_of(block.samples);
+  double* next = delta + widest_of(layers) * kBlockSamples;
+  const double* a = block.activations + rows_below_last(layers) * kBlockSamples;
+  std::copy_n(e, count * kLanes, delta);
+  for (std::size_t n = layers.size(); n-- > 0;) {
+    const NetworkLayer& layer = layers[n];
+    kOfLayer(layer, a, delta, result, count);
+    if (n == 0) break;
+    propagate_batch_back(layer, w, a, delta, next, count);
+    std::swap(delta, next);
+    a -= layers[n - 1].in * kBlockSamples;
+  }
+}
+
 // Products of four rows with two: eight sums stay in registers.
 BEAMGYRO_INLINE void add_tile(const double* left, const double* right,
                               Index count, double* products, Index stride) {
@@ -233,36 +253,14 @@ BEAMGYRO_WIDE void forward(const std::vector<NetworkLayer>& layers,
 BEAMGYRO_WIDE void jacobian(const std::vector<NetworkLayer>& layers,
                             const double* w, const SampleBlock& block,
                             double* delta, double* jacobian) {
-  const Index count = lanes_of(block.samples);
-  double* next = delta + widest_of(layers) * kBlockSamples;
-  const double* a = block.activations + rows_below_last(layers) * kBlockSamples;
-  std::copy_n(block.weight, count * kLanes, delta);
-  for (std::size_t n = layers.size(); n-- > 0;) {
-    const NetworkLayer& layer = layers[n];
-    jacobian_of_layer(layer, a, delta, jacobian, count);
-    if (n == 0) break;
-    propagate_batch_back(layer, w, a, delta, next, count);
-    std::swap(delta, next);
-    a -= layers[n - 1].in * kBlockSamples;
-  }
+  go_back<jacobian_of_layer>(layers, w, block, block.weight, delta, jacobian);
 }
 
 BEAMGYRO_WIDE void add_gradient(const std::vector<NetworkLayer>& layers,
                                 const double* w, const SampleBlock& block,
                                 const double* e, double* delta,
                                 double* gradient) {
-  const Index count = lanes_of(block.samples);
-  double* next = delta + widest_of(layers) * kBlockSamples;
-  const double* a = block.activations + rows_below_last(layers) * kBlockSamples;
-  std::copy_n(e, count * kLanes, delta);
-  for (std::size_t n = layers.size(); n-- > 0;) {
-    const NetworkLayer& layer = layers[n];
-    gradient_of_layer(layer, a, delta, gradient, count);
-    if (n == 0) break;
-    propagate_batch_back(layer, w, a, delta, next, count);
-    std::swap(delta, next);
-    a -= layers[n - 1].in * kBlockSamples;
-  }
+  go_back<gradient_of_layer>(layers, w, block, e, delta, gradient);
 }
 
 BEAMGYRO_WIDE void second_derivative(const std::vector<NetworkLayer>& layers,

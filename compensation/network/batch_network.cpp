@@ -104,36 +104,22 @@ void BatchNetwork::normal_equations(Eigen::MatrixXd& matrix,
   gradient = sum.col(n).head(n);
 }
 
-// J^T e over all rows, e of a block being row_of_block(block, scratch).
-template <class F>
-VectorXd BatchNetwork::sum_of_gradients(const F& row_of_block) {
+VectorXd BatchNetwork::curvature(const VectorXd& v) {
   for_each_chunk([&](Chunk& chunk) {
     double* sum = chunk.products.data();
     double* scratch = chunk.scratch.data();
+    double* bend = scratch + 4 * widest_ * kBlockSamples;
     std::fill_n(sum, columns_, 0.0);
     for (Index k = chunk.first; k < chunk.last; ++k) {
       const SampleBlock b = block(k);
-      const double* e = row_of_block(b, scratch);
-      add_gradient(layers_, w_.data(), b, e, scratch, sum);
+      second_derivative(layers_, w_.data(), v.data(), b, scratch, bend);
+      add_gradient(layers_, w_.data(), b, bend, scratch, sum);
     }
   });
-  VectorXd gradient = VectorXd::Zero(w_.size());
+  VectorXd product = VectorXd::Zero(w_.size());
   for (Chunk& chunk : chunks_)
-    gradient += Eigen::Map<const VectorXd>(chunk.products.data(), w_.size());
-  return gradient;
-}
-
-VectorXd BatchNetwork::gradient() {
-  return sum_of_gradients(
-      [](const SampleBlock& b, double*) -> const double* { return b.error; });
-}
-
-VectorXd BatchNetwork::curvature(const VectorXd& v) {
-  return sum_of_gradients([&](const SampleBlock& b, double* scratch) {
-    double* bend = scratch + 4 * widest_ * kBlockSamples;
-    second_derivative(layers_, w_.data(), v.data(), b, scratch, bend);
-    return static_cast<const double*>(bend);
-  });
+    product += Eigen::Map<const VectorXd>(chunk.products.data(), w_.size());
+  return product;
 }
 
 }  // namespace beamgyro::internal

@@ -22,9 +22,6 @@ class BatchNetwork {
   /// outputs of all neurons.
   double sum_of_squares(const Eigen::VectorXd& w);
 
-  /// Returns J^T e at the weights of the last sum_of_squares().
-  Eigen::VectorXd gradient();
-
   /// Computes J^T J (lower triangle) and J^T e with J = dy/dw, at the weights
   /// of the last sum_of_squares().
   void normal_equations(Eigen::MatrixXd& matrix, Eigen::VectorXd& gradient);
@@ -53,8 +50,6 @@ class BatchNetwork {
 
   template <class F>
   void for_each_chunk(const F& f);
-  template <class F>
-  Eigen::VectorXd sum_of_gradients(const F& row_of_block);
   SampleBlock block(Eigen::Index k);
 
   std::vector<NetworkLayer> layers_;

@@ -83,11 +83,13 @@ TrainSummary train_gradient_adaptive(const ScaledRows& rows,
   AdaptiveRate adaptive{options.learning_rate};
   const double count = static_cast<double>(rows.size());
   VectorXd gradient, trial_gradient;
-  double error =
-      (network.predict_with_gradient(rows.inputs, rows.target, gradient) -
-       rows.target)
-          .square()
-          .sum();
+  const auto squares = [&](VectorXd& of_sum) {
+    return (network.predict_with_gradient(rows.inputs, rows.target, of_sum) -
+            rows.target)
+        .square()
+        .sum();
+  };
+  double error = squares(gradient);
   VectorXd step = VectorXd::Zero(gradient.size());
   std::optional<StopReason> stop;
   while (!stop && summary.epochs < options.max_epochs) {
@@ -95,11 +97,7 @@ TrainSummary train_gradient_adaptive(const ScaledRows& rows,
     const VectorXd w = network.weights();
     step = options.momentum * step - adaptive.rate / count * gradient;
     network.set_weights(w + step);
-    const double trial = (network.predict_with_gradient(
-                              rows.inputs, rows.target, trial_gradient) -
-                          rows.target)
-                             .square()
-                             .sum();
+    const double trial = squares(trial_gradient);
     if (adaptive.keep_step(error, trial)) {
       error = trial;
       gradient.swap(trial_gradient);

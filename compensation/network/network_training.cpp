@@ -16,25 +16,16 @@ constexpr Eigen::Index kStretches = 20;
 }  // namespace
 
 std::string sentence(StopReason reason) {
-  switch (reason) {
-    case StopReason::kLeastSquares:
-      return "least squares: solved in one step";
-    case StopReason::kGoalReached:
-      return "the in-sample error reached its goal";
-    case StopReason::kGradientSmall:
-      return "the gradient vanished: a minimum of the in-sample error";
-    case StopReason::kStepSmall:
-      return "the steps became negligible against the weights";
-    case StopReason::kDampingLimit:
-      return "no step lowers the error any more: damping at its limit";
-    case StopReason::kRateSmall:
-      return "no step lowers the error any more: learning rate at its limit";
-    case StopReason::kHeldOutRising:
-      return "the held-out error no longer falls: stopped early";
-    case StopReason::kMaxEpochs:
-      break;
-  }
-  return "the largest number of epochs was reached";
+  constexpr const char* kSentences[] = {
+      "least squares: solved in one step",
+      "the in-sample error reached its goal",
+      "the gradient vanished: a minimum of the in-sample error",
+      "the steps became negligible against the weights",
+      "no step lowers the error any more: damping at its limit",
+      "no step lowers the error any more: learning rate at its limit",
+      "the held-out error no longer falls: stopped early",
+      "the largest number of epochs was reached"};
+  return kSentences[static_cast<std::size_t>(reason)];
 }
 
 void report_epoch(const TrainOptions& options, int epoch, double rms) {

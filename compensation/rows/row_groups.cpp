@@ -84,17 +84,8 @@ const ArrayXi& labels(const TrainingRows& rows, Grouping by) {
 }  // namespace
 
 std::string grouping_name(Grouping by) {
-  switch (by) {
-    case Grouping::kRun:
-      return "run";
-    case Grouping::kCycle:
-      return "cycle";
-    case Grouping::kLeg:
-      return "leg";
-    case Grouping::kSegment:
-      break;
-  }
-  return "segment";
+  constexpr const char* kNames[] = {"run", "cycle", "leg", "segment"};
+  return kNames[static_cast<std::size_t>(by)];
 }
 
 RowGroups group_rows(const TrainingRows& rows, Grouping by) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -55,5 +56,15 @@ struct RunSource {
 
 /// Returns a source of runs in memory, which must outlive the source.
 RunSource source_of(const std::vector<TrainingRun>& runs);
+
+/// Returns a source of recordings that calls `read`, read_recording() for one,
+/// for each file when it is needed. `paths` must outlive the source.
+RunSource runs_of_files(
+    const std::vector<std::string>& paths,
+    const std::function<Recording(const std::filesystem::path&)>& read);
+
+/// Throws std::invalid_argument when a recording is there twice, under whatever
+/// name: it would count twice.
+void require_different_runs(const std::vector<std::string>& paths);
 
 }  // namespace beamgyro::internal

@@ -2,16 +2,27 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "compensation/inputs/features.h"
 #include "compensation/inputs/input.h"
 #include "compensation/models/lookup_table.h"
-#include "compensation/rows/row_options.h"
 #include "compensation/rows/run_source.h"
 
 namespace beamgyro::internal {
+
+/// Table [rows] of a model file: how samples are averaged to training rows.
+struct RowOptions {
+  // [s], length of the blocks that are averaged; 0 = every sample is a row
+  double seconds = 60.0;
+  // [K/min]; rows whose temperature changes faster are left out
+  std::optional<double> steady_K_per_min;
+  // [min]; a row has the temperature at which the sensor would settle with the
+  // beam as it is, T - lag dT/dt
+  double lag_min = 0.0;
+};
 
 /// Means over blocks of samples, to which models are fitted.
 struct TrainingRows {

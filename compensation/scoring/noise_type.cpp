@@ -68,23 +68,10 @@ std::optional<double> lag_one(const Averages& averages, double least) {
 }  // namespace
 
 std::string_view name_of(NoiseType type) {
-  switch (type) {
-    case NoiseType::kQuantisation:
-      return "quantisation";
-    case NoiseType::kAngleFlicker:
-      return "angle flicker";
-    case NoiseType::kWhite:
-      return "white";
-    case NoiseType::kFlicker:
-      return "flicker";
-    case NoiseType::kRandomWalk:
-      return "random walk";
-    case NoiseType::kFlickerWalk:
-      return "flicker walk";
-    case NoiseType::kRandomRun:
-      return "random run";
-  }
-  return "";
+  constexpr std::string_view kNames[] = {
+      "random run", "flicker walk",  "random walk", "flicker",
+      "white",      "angle flicker", "quantisation"};  // from f^-4 on
+  return kNames[static_cast<int>(type) + 4];
 }
 
 NoiseType noise_type(std::vector<std::vector<double>> averages,

@@ -41,18 +41,13 @@ SlopeSums sums_of(const Plateau& plateau) {
   if (truth.isZero(0.0)) {
     return none;
   }
-  const Eigen::VectorXd raw = centred(plateau.raw);
-  const Eigen::VectorXd compensated = centred(plateau.compensated);
   const Eigen::VectorXd temperature = centred(plateau.temperature);
-  const Eigen::VectorXd w = without_temperature(truth, temperature);
   const Eigen::VectorXd v = without_drift(truth, temperature, plateau.time);
-  return {.compensated = w.dot(compensated),
-          .raw = w.dot(raw),
-          .truth = w.dot(truth),
-          .compensated_without_drift = v.dot(compensated),
-          .raw_without_drift = v.dot(raw),
-          .truth_without_drift = v.dot(truth),
-          .largest_departure = w.cwiseAbs().maxCoeff(),
+  return {.compensated = v.dot(centred(plateau.compensated)),
+          .raw = v.dot(centred(plateau.raw)),
+          .truth = v.dot(truth),
+          .largest_departure =
+              without_temperature(truth, temperature).cwiseAbs().maxCoeff(),
           .samples = plateau.time.size()};
 }
 
@@ -123,8 +118,8 @@ std::vector<Plateau> plateaus_after_steps(const Recording& recording,
 }
 
 PlateauSlope slope_of(const Plateau& plateau, const SlopeSums& sums) {
-  return {array_view(plateau.temperature).mean(), sums.raw_without_drift,
-          sums.truth_without_drift, sums.compensated_without_drift};
+  return {array_view(plateau.temperature).mean(), sums.raw, sums.truth,
+          sums.compensated};
 }
 
 /// Half of the 95 % interval of the slope of the raw rate: of what v, drift
@@ -136,7 +131,7 @@ double slope_uncertainty(const Plateau& plateau, const SlopeSums& sums) {
   const Eigen::VectorXd y =
       without_drift(centred(plateau.raw), temperature, plateau.time);
   const double square = v.squaredNorm();
-  const double slope = sums.raw_without_drift / sums.truth_without_drift;
+  const double slope = sums.raw / sums.truth;
   const auto freedom = static_cast<double>(plateau.time.size()) - 4.0;
   return 1.96 * std::sqrt((y - slope * v).squaredNorm() / (freedom * square));
 }
@@ -147,9 +142,6 @@ SlopeSums& SlopeSums::operator+=(const SlopeSums& other) {
   compensated += other.compensated;
   raw += other.raw;
   truth += other.truth;
-  compensated_without_drift += other.compensated_without_drift;
-  raw_without_drift += other.raw_without_drift;
-  truth_without_drift += other.truth_without_drift;
   largest_departure = std::max(largest_departure, other.largest_departure);
   samples += other.samples;
   return *this;
@@ -207,15 +199,9 @@ std::vector<HeldSlope> held_slopes(const Recording& recording,
   return slopes;
 }
 
-std::optional<ScaleFactor> scale_factor(const SlopeSums& sums) {
-  if (sums.largest_departure < kLeastRateDeparture) {
-    return std::nullopt;
-  }
-  return ScaleFactor{
-      .retained = sums.compensated_without_drift / sums.raw_without_drift,
-      .slope = sums.compensated / sums.truth,
-      .raw_slope = sums.raw / sums.truth,
-      .largest_departure = sums.largest_departure};
+std::optional<double> share_retained(const SlopeSums& sums) {
+  if (sums.largest_departure < kLeastRateDeparture) return std::nullopt;
+  return sums.compensated / sums.raw;
 }
 
 }  // namespace beamgyro::internal

@@ -20,20 +20,17 @@ constexpr double kSettlingTime = 1.0;        // [s]
 constexpr double kEveryRate = std::numeric_limits<double>::infinity();
 
 /// Sums for slopes over the true rate Omega, of one run or, by addition, of
-/// many. Within each temperature plateau, w is the rate without its part along
-/// the measured temperature, and v without temperature and drift
-/// (without_temperature(), without_drift()). Then Σ w y / Σ w Omega is the
-/// slope of y over Omega with a separate bias and temperature slope for every
-/// plateau. Σ v y / Σ v Omega also allows for a smooth drift. So neither a
-/// drift nor its compensation is mistaken for scale factor.
+/// many. v is the rate of a temperature plateau without its part along the
+/// measured temperature and without drift (without_drift()). Then
+/// Σ v y / Σ v Omega is the slope of y over Omega with a separate bias,
+/// temperature slope and smooth drift for every plateau. So neither a drift nor
+/// its compensation is mistaken for scale factor.
 struct SlopeSums {
-  double compensated = 0.0;                // [(deg/s)^2], Σ w compensated_rate
-  double raw = 0.0;                        // [(deg/s)^2], Σ w rate
-  double truth = 0.0;                      // [(deg/s)^2], Σ w Omega
-  double compensated_without_drift = 0.0;  // [(deg/s)^2], Σ v compensated_rate
-  double raw_without_drift = 0.0;          // [(deg/s)^2], Σ v rate
-  double truth_without_drift = 0.0;        // [(deg/s)^2], Σ v Omega
-  double largest_departure = 0.0;          // [deg/s], max |w|
+  double compensated = 0.0;  // [(deg/s)^2], Σ v compensated_rate
+  double raw = 0.0;          // [(deg/s)^2], Σ v rate
+  double truth = 0.0;        // [(deg/s)^2], Σ v Omega
+  // [deg/s], largest magnitude of the true rate without_temperature()
+  double largest_departure = 0.0;
   std::size_t samples = 0;
 
   SlopeSums& operator+=(const SlopeSums& other);
@@ -83,15 +80,10 @@ struct HeldSlope {
 std::vector<HeldSlope> held_slopes(const Recording& recording,
                                    std::span<const double> compensated = {});
 
-struct ScaleFactor {
-  double retained;   // [-], Σ v compensated_rate / Σ v rate
-  double slope;      // [-], of compensated_rate over true_rate, absolute
-  double raw_slope;  // [-], of rate over true_rate
-  double largest_departure;  // [deg/s], of the true rate: SlopeSums
-};
-
-/// Returns nothing when the true rate nowhere departs by kLeastRateDeparture,
-/// because a slope over a constant rate is noise.
-std::optional<ScaleFactor> scale_factor(const SlopeSums& sums);
+/// Returns the scale factor that the compensated rate retains of the raw one
+/// [-], Σ v compensated_rate / Σ v rate. Returns nothing when the true rate
+/// nowhere departs by kLeastRateDeparture, because a slope over a constant rate
+/// is noise.
+std::optional<double> share_retained(const SlopeSums& sums);
 
 }  // namespace beamgyro::internal

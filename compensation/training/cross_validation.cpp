@@ -16,8 +16,6 @@ namespace {
 
 using Eigen::ArrayXd;
 using Eigen::Index;
-using Mask = Eigen::Array<bool, Eigen::Dynamic, 1>;
-
 TrainingRows clamped(TrainingRows rows, const std::vector<Input>& inputs,
                      const TemperatureRange& range) {
   for (std::size_t i = 0; i < inputs.size(); ++i)
@@ -33,15 +31,11 @@ TrainingRows clamped(TrainingRows rows, const std::vector<Input>& inputs,
 
 // Rows between the temperatures of the other groups; all rows of a group that
 // has none.
-Mask covered_by_others(const TrainingRows& rows, const RowGroups& groups) {
-  Mask covered = Mask::Constant(rows.size(), false);
+RowMask covered_by_others(const TrainingRows& rows, const RowGroups& groups) {
+  RowMask covered = RowMask::Constant(rows.size(), false);
   for (int group = 0; group < groups.count; ++group) {
-    const Mask own = groups.of_row == group;
-    const double infinity = std::numeric_limits<double>::infinity();
-    const double lowest = own.select(infinity, rows.temperature).minCoeff();
-    const double highest = own.select(-infinity, rows.temperature).maxCoeff();
-    const Mask between =
-        own && rows.temperature >= lowest && rows.temperature <= highest;
+    const RowMask own = groups.of_row == group;
+    const RowMask between = between_others(rows, groups, group);
     covered = own.select(between.any() ? between : own, covered);
   }
   return covered;
@@ -81,7 +75,16 @@ double standard_error(const GroupErrors& errors) {
 }
 
 Predictions predict_all(const BiasModel& model, const TrainingRows& rows) {
-  return {model.predict(rows.inputs), Mask::Constant(rows.size(), true)};
+  return {model.predict(rows.inputs), RowMask::Constant(rows.size(), true)};
+}
+
+RowMask between_others(const TrainingRows& rows, const RowGroups& groups,
+                       int group) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const RowMask own = groups.of_row == group;
+  const double lowest = own.select(infinity, rows.temperature).minCoeff();
+  const double highest = own.select(-infinity, rows.temperature).maxCoeff();
+  return own && rows.temperature >= lowest && rows.temperature <= highest;
 }
 
 GroupErrors group_errors(const Predictions& predictions, const ArrayXd& bias,
@@ -135,14 +138,6 @@ Predictions predict_unseen(const FitSpec& kind,
     predictions.bias(k) = of_group[group](next[group]++);
   }
   return predictions;
-}
-
-GroupErrors cross_validate(const FitSpec& kind,
-                           const std::vector<Input>& inputs,
-                           const TrainingRows& rows, const RowGroups& groups,
-                           std::uint64_t seed, int threads) {
-  return group_errors(predict_unseen(kind, inputs, rows, groups, seed, threads),
-                      rows.bias, groups);
 }
 
 Predictions averaged(const Predictions& constant, const Predictions& model,

@@ -8,6 +8,7 @@
 
 #include "compensation/methods/fit.h"
 #include "compensation/rows/row_groups.h"
+#include "compensation/uncertainty/sigma_calibration.h"
 
 namespace beamgyro::internal {
 
@@ -22,10 +23,15 @@ double standard_error(const GroupErrors& errors);
 /// Predicted bias [deg/s] of each row, by a model that has not seen the row.
 struct Predictions {
   Eigen::ArrayXd bias;
-  Eigen::Array<bool, Eigen::Dynamic, 1> scored;  // rows that count
+  RowMask scored;  // rows that count
 };
 
 Predictions predict_all(const BiasModel& model, const TrainingRows& rows);
+
+/// Returns the rows of a group whose temperatures lie between those of the
+/// other groups.
+RowMask between_others(const TrainingRows& rows, const RowGroups& groups,
+                       int group);
 
 /// Returns the mean square of `bias` less the prediction, over the scored rows
 /// of each group.
@@ -49,12 +55,6 @@ constexpr int kFoldRestarts = 2;
 /// Throws std::invalid_argument for fewer than two groups and as fit_model(),
 /// with the first group that cannot be held out.
 Predictions predict_unseen(const FitSpec& kind,
-                           const std::vector<Input>& inputs,
-                           const TrainingRows& rows, const RowGroups& groups,
-                           std::uint64_t seed, int threads = 0);
-
-/// Returns group_errors() of predict_unseen().
-GroupErrors cross_validate(const FitSpec& kind,
                            const std::vector<Input>& inputs,
                            const TrainingRows& rows, const RowGroups& groups,
                            std::uint64_t seed, int threads = 0);

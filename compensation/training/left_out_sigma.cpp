@@ -32,16 +32,11 @@ struct LeftOutGroups {
 LeftOutGroups left_out_groups(const TrainingRows& rows, const RowGroups& groups,
                               const ArrayXd& residual) {
   LeftOutGroups found;
-  const double infinity = std::numeric_limits<double>::infinity();
   for (int group = 0; group < groups.count; ++group) {
-    const auto own = groups.of_row == group;
-    const double lowest = own.select(infinity, rows.temperature).minCoeff();
-    const double highest = own.select(-infinity, rows.temperature).maxCoeff();
+    const RowMask own = between_others(rows, groups, group);
     double count = 0.0, T = 0.0, sum = 0.0;
     for (Index k = 0; k < rows.size(); ++k) {
-      if (groups.of_row(k) != group || rows.temperature(k) < lowest ||
-          rows.temperature(k) > highest)
-        continue;
+      if (!own(k)) continue;
       count += 1.0;
       T += rows.temperature(k);
       sum += residual(k);

@@ -8,7 +8,7 @@
 
 #include "compensation/inputs/input.h"
 #include "compensation/methods/method_list.h"
-#include "compensation/rows/row_options.h"
+#include "compensation/rows/training_rows.h"
 #include "config/document.h"
 
 namespace beamgyro::internal {

@@ -8,6 +8,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "compensation/methods/method_inputs.h"
+#include "compensation/models/array_view.h"
+
 namespace beamgyro::internal {
 namespace {
 
@@ -40,15 +43,7 @@ int power_on_temperatures(const TrainingRows& rows) {
   for (Eigen::Index k = 0; k < rows.size(); ++k)
     if (k == 0 || rows.cycle(k) != rows.cycle(k - 1))
       temperatures.push_back(rows.temperature(k));
-  std::sort(temperatures.begin(), temperatures.end());
-  int count = 0;
-  double last = -std::numeric_limits<double>::infinity();
-  for (const double T : temperatures)
-    if (T - last >= kPowerOnsApart) {
-      ++count;
-      last = T;
-    }
-  return count;
+  return distinct_temperatures(array_view(temperatures), kPowerOnsApart);
 }
 
 // A network of several weight decays is as many candidates, the strongest decay

@@ -10,7 +10,6 @@
 #include "compensation/inputs/input.h"
 #include "compensation/methods/method_list.h"
 #include "compensation/methods/population.h"
-#include "compensation/rows/row_options.h"
 #include "compensation/rows/run_source.h"
 #include "compensation/rows/training_rows.h"
 

@@ -2,6 +2,7 @@
 #include "compensation/uncertainty/bias_sigma_json.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,8 +17,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr SigmaSource kSigmaSources[] = {
-    SigmaSource::kPosterior, SigmaSource::kCovariance, SigmaSource::kResiduals};
+// In the order of SigmaSource.
+constexpr std::string_view kSources[] = {"posterior", "covariance",
+                                         "residuals"};
 constexpr std::string_view kPowerOnAmplitude = "sigma_deg_per_s";
 constexpr std::string_view kRateAmplitude = "sigma_deg_per_s_per_K_per_s";
 constexpr long kMostGroups = 1000000000;
@@ -52,11 +54,11 @@ double read_sized(const JsonNode& node) {
 }
 
 SigmaSource read_source(const JsonNode& node) {
-  const std::string name = node.text();
-  for (const SigmaSource source : kSigmaSources)
-    if (name == sigma_source_name(source)) return source;
-  node.fail(fmt::format(
-      "\"{}\", must be \"posterior\", \"covariance\" or \"residuals\"", name));
+  const auto* const found = std::ranges::find(kSources, node.text());
+  if (found == std::end(kSources))
+    node.fail(fmt::format("\"{}\", must be \"{}\"", node.text(),
+                          fmt::join(kSources, "\", \"")));
+  return static_cast<SigmaSource>(found - kSources);
 }
 
 SigmaCalibration read_calibration(const JsonNode& node) {
@@ -89,18 +91,6 @@ LookupTable read_curve(const JsonNode& node) {
 
 }  // namespace
 
-std::string sigma_source_name(SigmaSource source) {
-  switch (source) {
-    case SigmaSource::kPosterior:
-      return "posterior";
-    case SigmaSource::kCovariance:
-      return "covariance";
-    case SigmaSource::kResiduals:
-      break;
-  }
-  return "residuals";
-}
-
 void put_sigma_terms(const std::optional<SigmaTerm>& power_on,
                      const std::optional<SigmaTerm>& temperature_rate,
                      Json& json) {
@@ -132,7 +122,7 @@ Json bias_sigma_json(const BiasSigma& sigma) {
                {"growth_deg_per_s_per_K", numbers_json(sigma.growth)}};
   put_sigma_terms(sigma.power_on, sigma.temperature_rate, json);
   json["factor"] = finite_json(sigma.factor);
-  json["source"] = sigma_source_name(sigma.source);
+  json["source"] = kSources[static_cast<std::size_t>(sigma.source)];
   json["calibration"] = {
       {"method", sigma.calibration.method},
       {"by", sigma.calibration.by},

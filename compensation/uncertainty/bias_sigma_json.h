@@ -10,9 +10,6 @@
 
 namespace beamgyro::internal {
 
-/// "posterior", "covariance" or "residuals".
-std::string sigma_source_name(SigmaSource source);
-
 /// Put the members `power_on` and `temperature_rate` that are there, and read
 /// them. Throw as bias_sigma_json() and read_bias_sigma().
 void put_sigma_terms(const std::optional<SigmaTerm>& power_on,

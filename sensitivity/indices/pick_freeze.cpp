@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "random/random_stream.h"
+#include "statistics/intervals.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -71,6 +72,14 @@ std::vector<std::size_t> whole_rows(const PickFreezeValues& values) {
 }
 
 }  // namespace
+
+IndexEstimate with_interval(double value, std::vector<double> replicates) {
+  std::erase_if(replicates, [](double each) { return !std::isfinite(each); });
+  if (replicates.empty()) return {value, value, value};
+  std::sort(replicates.begin(), replicates.end());
+  return {value, percentile(replicates, kIntervalTail),
+          percentile(replicates, 1 - kIntervalTail)};
+}
 
 PickFreezeIndices pick_freeze_indices(const PickFreezeValues& values,
                                       std::uint64_t seed) {

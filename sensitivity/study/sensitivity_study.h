@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sensitivity/indices/index_interval.h"
+#include "sensitivity/indices/pick_freeze.h"
 #include "sensitivity/indices/rank_index.h"
 #include "sensitivity/study/device_sample.h"
 #include "statistics/intervals.h"

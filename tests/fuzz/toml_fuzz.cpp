@@ -30,7 +30,8 @@ void read_all(const ConfigTable& table, int depth = 0) {
     static_cast<void>(table.place(key));
     if (value.kind == ConfigNode::Kind::kTable && depth < 1000)
       read_all(table.table(key), depth + 1);
-    if (table.holds_text(key)) static_cast<void>(table.text(key));
+    if (value.kind == ConfigNode::Kind::kText)
+      static_cast<void>(table.text(key));
     if (table.holds_number(key)) static_cast<void>(table.number(key));
   }
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "planning/chamber.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,8 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "planning/chamber_time.h"
-#include "planning/chamber_view.h"
 #include "planning/schedule_file.h"
 #include "planning/soak_length.h"
 #include "sim/thermal/thermal_parameters.h"

@@ -10,7 +10,6 @@
 
 #include "planning/soak_design.h"
 #include "planning/soak_model.h"
-#include "planning/soak_noise.h"
 #include "tests/linear_algebra/reference_algebra.h"
 #include "tests/planning/small_population.h"
 

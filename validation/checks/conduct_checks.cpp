@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "compensation/compensator/run_comparison.h"
-#include "compensation/compensator/training_use.h"
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/rate_injection.h"
 #include "validation/checks/check_context.h"

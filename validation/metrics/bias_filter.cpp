@@ -8,7 +8,7 @@
 #include <span>
 
 #include "compensation/inputs/sample_ranges.h"
-#include "compensation/uncertainty/bias_process.h"
+#include "compensation/uncertainty/bias_sigma.h"
 #include "validation/metrics/rate_noise_model.h"
 #include "validation/metrics/segments.h"
 

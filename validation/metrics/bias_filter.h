@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "compensation/uncertainty/bias_process.h"
+#include "compensation/uncertainty/bias_sigma.h"
 #include "validation/evidence/evidence.h"
 
 namespace beamgyro::internal {

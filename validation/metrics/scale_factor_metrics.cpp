@@ -140,20 +140,18 @@ std::vector<RunPurpose> turning_purposes() {
 std::optional<Estimate> retained(const Evidence& evidence,
                                  double largest_rate) {
   SlopeSums sums;
-  double variance = 0.0;  // of sums.compensated_without_drift
+  double variance = 0.0;  // of sums.compensated
   for (const EvidenceRun* run : runs_for(evidence, turning_purposes())) {
     const SlopeSums more = slope_sums(*run->recording, run->rate, largest_rate);
     const double step = usual_step(*run->recording);
     sums += more;
-    variance += std::pow(white_noise_of_correction(*run), 2) / step *
-                more.truth_without_drift;
+    variance +=
+        std::pow(white_noise_of_correction(*run), 2) / step * more.truth;
   }
-  const auto found = scale_factor(sums);
-  if (!found) return std::nullopt;
-  const double half =
-      kNormal975 * std::sqrt(variance) / std::abs(sums.raw_without_drift);
-  return Estimate{found->retained,
-                  Interval{found->retained - half, found->retained + half}};
+  const auto share = share_retained(sums);
+  if (!share) return std::nullopt;
+  const double half = kNormal975 * std::sqrt(variance) / std::abs(sums.raw);
+  return Estimate{*share, Interval{*share - half, *share + half}};
 }
 
 std::optional<Estimate> mean_scale_factor(const Evidence& evidence) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "compensation/uncertainty/bias_process.h"
+#include "compensation/uncertainty/bias_sigma.h"
 #include "validation/metrics/segments.h"
 #include "validation/metrics/soaks.h"
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "compensation/compensator/training_use.h"
+#include "compensation/compensator/run_comparison.h"
 #include "compensation/training/train.h"
 #include "config/document.h"
 #include "config/units.h"

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "compensation/compensator/run_comparison.h"
-#include "compensation/compensator/training_use.h"
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/residual_scores.h"
 #include "parallel/work_queue.h"

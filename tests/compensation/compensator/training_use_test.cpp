@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/compensator/training_use.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

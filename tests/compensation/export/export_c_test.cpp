@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "compensation/export/firmware_difference.h"
+#include "compensation/export/export_findings.h"
 #include "compensation/export/firmware_model.h"
 #include "compensation/firmware/c_text.h"
 #include "tests/compensation/sample_compensators.h"
@@ -66,7 +66,7 @@ TEST(ExportedC, HeaderHasMacrosOfTheRangeThePeriodsAndTheDifference) {
   EXPECT_TRUE(
       holds(header, fmt::format("#define gyro_DIFFERENCE {}\n",
                                 c_literal(static_cast<float>(
-                                    firmware_difference(compensator))))));
+                                    firmware_difference(compensator).rate)))));
 }
 
 TEST(ExportedC, HeaderCarriesTheWarningsOfTraining) {

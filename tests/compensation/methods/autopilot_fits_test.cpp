@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/methods/autopilot_fits.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -8,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "compensation/methods/autopilot_methods.h"
+#include "compensation/methods/bias_model.h"
 #include "random/random_stream.h"
 #include "tests/compensation/recorded_run.h"
 #include "tests/config/rejection.h"

@@ -147,7 +147,7 @@ Kept kept(const Compensator& c) {
        {rate_table(100.0, 11, 60.0), rate_table(2.0, 5, 60.0)}) {
     turning.true_rate = table;
     const Recording run = turning.recording();
-    const double share = scale_factor(slope_sums(run, rate_of(run)))->retained;
+    const double share = *share_retained(slope_sums(run, rate_of(run)));
     if (std::abs(share - 1.0) > std::abs(found.recorded - 1.0))
       found.recorded = share;
   }

@@ -36,6 +36,14 @@ BpSpec small_network() {
   return spec;
 }
 
+GroupErrors cross_validate(const FitSpec& kind,
+                           const std::vector<Input>& inputs,
+                           const TrainingRows& rows, const RowGroups& groups,
+                           std::uint64_t seed, int threads = 0) {
+  return group_errors(predict_unseen(kind, inputs, rows, groups, seed, threads),
+                      rows.bias, groups);
+}
+
 TEST(CrossValidate, OfAConstantIsTheClosedForm) {
   // Two rows at m - d and m + d and one at m: the others' mean is the constant.
   const TrainingRows rows = rows_of(

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <memory>
 
-#include "compensation/compensator/training_use.h"
+#include "compensation/compensator/run_comparison.h"
 #include "compensation/scoring/scale_factor.h"
 #include "random/random_stream.h"
 #include "sim/scenario/simulation.h"

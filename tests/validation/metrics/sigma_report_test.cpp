@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "compensation/uncertainty/bias_process.h"
+#include "compensation/uncertainty/bias_sigma.h"
 #include "random/random_stream.h"
 #include "tests/validation/metrics/metric_scene.h"
 #include "validation/metrics/bias_filter.h"
