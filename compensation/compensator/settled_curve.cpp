@@ -36,7 +36,7 @@ nlohmann::ordered_json bias_over(const BiasModel& bias,
 
 }  // namespace
 
-std::string settled_curve(const Compensator& compensator) {
+std::string settled_curve(const FittedCompensator& compensator) {
   const auto [low, high] = compensator.temperature_range;
   const double beyond = high > low ? kShareBeyond * (high - low) : kLeastBeyond;
   const Eigen::ArrayXd temperature =

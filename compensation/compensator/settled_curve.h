@@ -8,6 +8,6 @@
 namespace beamgyro::internal {
 
 /// Returns what beamgyro::Compensator::curve() says.
-std::string settled_curve(const Compensator& compensator);
+std::string settled_curve(const FittedCompensator& compensator);
 
 }  // namespace beamgyro::internal

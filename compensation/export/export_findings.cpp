@@ -35,7 +35,7 @@ double spread(std::size_t k, std::size_t signal) {
 }
 
 // Returns the fastest change of temperature in training [K/s].
-double fastest_ramp(const Compensator& c) {
+double fastest_ramp(const FittedCompensator& c) {
   double fastest = 0.0;
   for (std::size_t i = 0; i < c.inputs.size(); ++i)
     if (const Scale& scale = c.bias.input_scales[i];
@@ -53,7 +53,7 @@ struct Place {
       : cycle(k / (kSamples / kCycles)), sample(k % (kSamples / kCycles)) {}
 };
 
-std::vector<double> temperatures(const Compensator& c, double period) {
+std::vector<double> temperatures(const FittedCompensator& c, double period) {
   const double low = c.temperature_range.lowest;
   const double span = c.temperature_range.highest - low;
   const double ramp = fastest_ramp(c);
@@ -76,7 +76,7 @@ std::vector<double> temperatures(const Compensator& c, double period) {
 }
 
 // Returns the range of a signal: that of its input, if there is one.
-Scale signal_range(const Compensator& c, std::size_t signal) {
+Scale signal_range(const FittedCompensator& c, std::size_t signal) {
   if (!reads_inputs(c.bias)) return {0.0, kRate};
   for (std::size_t i = 0; i < c.inputs.size(); ++i)
     if (c.inputs[i].column == kFirmwareSignals[signal]) {
@@ -92,7 +92,7 @@ Scale signal_range(const Compensator& c, std::size_t signal) {
   return {0.0, kRate};
 }
 
-Recording samples_at(const Compensator& c, const FirmwareModel& model,
+Recording samples_at(const FittedCompensator& c, const FirmwareModel& model,
                      double period) {
   Recording recording;
   for (std::size_t k = 0; k < kSamples; ++k) {
@@ -114,8 +114,8 @@ Recording samples_at(const Compensator& c, const FirmwareModel& model,
   return recording;
 }
 
-FirmwareDifference difference_at(const Compensator& c, FirmwareModel& model,
-                                 float period) {
+FirmwareDifference difference_at(const FittedCompensator& c,
+                                 FirmwareModel& model, float period) {
   const Recording recording = samples_at(c, model, static_cast<double>(period));
   const std::vector<double> expected = compensated_rate(c, recording);
   const std::vector<double> sigma = compensated_rate_sigma(c, recording);
@@ -155,7 +155,7 @@ FirmwareDifference difference_at(const Compensator& c, FirmwareModel& model,
 
 }  // namespace
 
-FirmwareDifference firmware_difference(const Compensator& compensator) {
+FirmwareDifference firmware_difference(const FittedCompensator& compensator) {
   FirmwareModel model(compensator);
   FirmwareDifference largest;
   for (const float period : kComparedPeriods) {
@@ -166,7 +166,7 @@ FirmwareDifference firmware_difference(const Compensator& compensator) {
   return largest;
 }
 
-ExportFindings findings_of(const Compensator& compensator) {
+ExportFindings findings_of(const FittedCompensator& compensator) {
   ExportFindings found;
   found.difference = firmware_difference(compensator);
   const std::optional<double> kept = rate_kept(compensator);

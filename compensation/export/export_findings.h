@@ -31,7 +31,7 @@ struct FirmwareDifference {
   double rate = 0.0;   // [deg/s]
   double sigma = 0.0;  // [deg/s], from compensated_rate_sigma(), likewise
 };
-FirmwareDifference firmware_difference(const Compensator& compensator);
+FirmwareDifference firmware_difference(const FittedCompensator& compensator);
 
 /// Measurements of a compensator that is exported as C, and objections to it.
 struct ExportFindings {
@@ -42,6 +42,6 @@ struct ExportFindings {
 /// Measures a compensator. It objects to one whose firmware_difference(), of
 /// rate or sigma, exceeds kLargestDifference, and to one that cancels the rate
 /// (rate_kept() below kCancelledBelow). Throws as firmware_difference().
-ExportFindings findings_of(const Compensator& compensator);
+ExportFindings findings_of(const FittedCompensator& compensator);
 
 }  // namespace beamgyro::internal

@@ -21,7 +21,7 @@ bool reads_a_signal(const Input& input);
 
 /// The parts of the exported code of a compensator.
 struct FirmwareParts {
-  explicit FirmwareParts(const Compensator& compensator);
+  explicit FirmwareParts(const FittedCompensator& compensator);
 
   bool uses_inputs;         // the bias is not a constant
   int filters = 0;          // of the temperature
@@ -34,15 +34,15 @@ struct FirmwareParts {
 
 /// Returns the text of NAME.h: origin of the compensator, warnings and
 /// findings, and the interface.
-std::string header_text(const Compensator& compensator, const std::string& name,
-                        const FirmwareModel& model,
+std::string header_text(const FittedCompensator& compensator,
+                        const std::string& name, const FirmwareModel& model,
                         const ExportFindings& found);
 
 /// Returns the C99 source of main() of NAME_selftest.c. It calls NAME_step()
 /// with temperatures up to 5 K beyond the range and with other inputs within
 /// theirs, and compares with FirmwareModel. Its exit status is 0 when all bits
 /// are equal. Throws as FirmwareModel.
-std::string self_test_source(const Compensator& compensator,
+std::string self_test_source(const FittedCompensator& compensator,
                              const std::string& name);
 
 /// Returns C comments, one for each warning.

@@ -36,7 +36,7 @@ struct FirmwareSample {
 class FirmwareModel {
  public:
   /// Throws std::invalid_argument for a parameter beyond single precision.
-  explicit FirmwareModel(const Compensator& compensator);
+  explicit FirmwareModel(const FittedCompensator& compensator);
 
   /// Starts at power-on. Samples then come every `period` [s], > 0.
   void start(float period);

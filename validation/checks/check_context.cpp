@@ -71,7 +71,7 @@ double smallest_step(const Recording& run, std::span<const double> answers,
   return smallest;
 }
 
-Compensator without_scale_factor(Compensator compensator) {
+FittedCompensator without_scale_factor(FittedCompensator compensator) {
   compensator.scale_factor.reset();
   return compensator;
 }
@@ -225,7 +225,7 @@ std::string CheckContext::rounding_words() const {
 }
 
 std::vector<std::string> CheckContext::untested_by_replay() const {
-  const Compensator* trained = checked.trained;
+  const FittedCompensator* trained = checked.trained;
   const auto range = temperatures_of(runs_of(thermal_purposes()));
   if (trained == nullptr || !range) return {};
   std::vector<std::string> names;

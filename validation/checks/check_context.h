@@ -30,7 +30,7 @@ double smallest_step(const Recording& run, std::span<const double> answers,
                      double ready_after, double least = 0.0);
 
 /// Returns the compensator without its table of scale factors.
-Compensator without_scale_factor(Compensator compensator);
+FittedCompensator without_scale_factor(FittedCompensator compensator);
 
 /// Answers may be rounded to this without having to declare it.
 constexpr double kUndeclaredResolution = 0.01;  // [deg/s]

@@ -54,7 +54,7 @@ std::string without_folder(const std::string& argument) {
 
 class FileCompensator : public TestedCompensator {
  public:
-  explicit FileCompensator(Compensator compensator)
+  explicit FileCompensator(FittedCompensator compensator)
       : compensator_(std::move(compensator)) {}
 
   std::vector<std::string> inputs() const override {
@@ -81,12 +81,12 @@ class FileCompensator : public TestedCompensator {
   }
 
  private:
-  Compensator compensator_;
+  FittedCompensator compensator_;
 };
 
 }  // namespace
 
-std::unique_ptr<TestedCompensator> tested(Compensator compensator) {
+std::unique_ptr<TestedCompensator> tested(FittedCompensator compensator) {
   return std::make_unique<FileCompensator>(std::move(compensator));
 }
 
@@ -147,8 +147,8 @@ CompensatorSource open_source(const std::string& argument,
   return source_of(parse_compensator(text, argument), argument, text);
 }
 
-CompensatorSource source_of(Compensator compensator, const std::string& name,
-                            const std::string& text) {
+CompensatorSource source_of(FittedCompensator compensator,
+                            const std::string& name, const std::string& text) {
   CompensatorSource source{SourceKind::kFile, name, without_folder(name),
                            tested(compensator), std::move(compensator)};
   source.files.push_back({name, text});

@@ -44,15 +44,15 @@ struct DeviceOutcome {
 };
 
 DeviceVerdict failed(const std::string& words) {
-  return {Conformity::kFail, words.substr(0, words.find('\n'))};
+  return {Verdict::kFail, words.substr(0, words.find('\n'))};
 }
 
 DeviceVerdict verdict_on(const std::vector<DecidedLimit>& limits) {
-  std::vector<Conformity> results;
+  std::vector<Verdict> results;
   for (const auto& [limit, decision] : limits)
     results.push_back(decision.result);
   DeviceVerdict verdict{worst_of(results)};
-  if (verdict.verdict == Conformity::kPass) return verdict;
+  if (verdict.verdict == Verdict::kPass) return verdict;
   const auto& [limit, decision] = limits[static_cast<std::size_t>(
       std::ranges::find(results, verdict.verdict) - results.begin())];
   verdict.words = fmt::format("{}: {}", limit.metric, decision.words);
@@ -134,13 +134,13 @@ void PopulationMetric::add(const MetricResult& device) {
 }
 
 void count_verdicts(PopulationYield& all) {
-  const auto number_of = [&](Conformity verdict) {
+  const auto number_of = [&](Verdict verdict) {
     return static_cast<std::size_t>(
         std::ranges::count(all.devices, verdict, &DeviceVerdict::verdict));
   };
-  all.passed = number_of(Conformity::kPass);
-  all.failed = number_of(Conformity::kFail);
-  all.undecided = number_of(Conformity::kUndecided);
+  all.passed = number_of(Verdict::kPass);
+  all.failed = number_of(Verdict::kFail);
+  all.undecided = number_of(Verdict::kUndecided);
   all.interval = clopper_pearson(static_cast<double>(all.passed),
                                  static_cast<double>(all.devices.size()));
 }

@@ -17,7 +17,7 @@
 namespace beamgyro::internal {
 namespace {
 
-bool is_more_severe(Conformity one, Conformity other) {
+bool is_more_severe(Verdict one, Verdict other) {
   return one != other && worst_of(std::array{one, other}) == one;
 }
 

@@ -14,7 +14,7 @@
 namespace beamgyro::internal::judgement_test {
 namespace {
 
-DecidedLimit decided(const char* metric, Conformity result) {
+DecidedLimit decided(const char* metric, Verdict result) {
   DecidedLimit one;
   one.limit.metric = metric;
   one.limit.most = 1.0;
@@ -26,7 +26,7 @@ CheckResult check(const char* name, CheckOutcome outcome) {
   return {.name = name, .outcome = outcome, .words = "Words."};
 }
 
-using enum Conformity;
+using enum Verdict;
 constexpr CheckOutcome kPassed = CheckOutcome::kPassed;
 constexpr CheckOutcome kNotTested = CheckOutcome::kNotTested;
 

@@ -15,7 +15,7 @@
 namespace beamgyro::internal::decision_test {
 namespace {
 
-using enum Conformity;
+using enum Verdict;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -23,8 +23,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const Limit kAtMostOne{.metric = "bias_deg_per_s", .most = 1.0};
 const Limit kAtLeastOne{.metric = "bandwidth_Hz", .least = 1.0};
 
-Conformity result(const Limit& limit, const std::optional<Estimate>& after,
-                  const std::optional<Estimate>& reference = {}) {
+Verdict result(const Limit& limit, const std::optional<Estimate>& after,
+               const std::optional<Estimate>& reference = {}) {
   return decide(limit, after, reference).result;
 }
 
@@ -192,7 +192,7 @@ TEST(ManyDrawsOfDecisions, WrongAcceptsStayBelowTheRiskWithARealMetric) {
     for (double& value : rate) value = truth + 0.1 * value;
     const auto found = bias.evaluate(
         {{{"rest", RunPurpose::kRest, &run, std::move(rate)}}, 150.0});
-    const Conformity decided = result(limit, found);
+    const Verdict decided = result(limit, found);
     accepted += decided == kPass ? 1 : 0;
     undecided += decided == kUndecided ? 1 : 0;
     wrong += decided == kPass && std::abs(truth) > 0.1 ? 1 : 0;
