@@ -89,7 +89,7 @@ std::vector<std::string> Compensator::inputs() const {
 
 CompensatedRate Compensator::answer(const Recording& recording) const {
   internal::require_sound(recording, "the recording");
-  const internal::Compensator& own = state_->compensator;
+  const internal::FittedCompensator& own = state_->compensator;
   return {.rate = internal::compensated_rate(own, recording),
           .sigma = internal::compensated_rate_sigma(own, recording),
           .clamped = internal::clamped_samples(own, recording)};

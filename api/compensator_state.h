@@ -11,7 +11,7 @@ namespace beamgyro {
 struct Compensator::State {
   std::string text, name;
   std::string file;  // its path; empty when it is in memory only
-  internal::Compensator compensator;
+  internal::FittedCompensator compensator;
 
   /// Returns its path, or the name that it was given in memory.
   const std::string& path() const { return file.empty() ? name : file; }

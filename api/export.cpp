@@ -32,18 +32,19 @@ namespace internal {
 namespace {
 
 struct ExportRequest {
-  const std::vector<beamgyro::Compensator>& compensators;
+  const std::vector<Compensator>& compensators;
   const std::string& format;
   const ExportOptions& options;
 };
 
-const Compensator& compensator_of(const ExportRequest& asked, std::size_t k) {
+const FittedCompensator& compensator_of(const ExportRequest& asked,
+                                        std::size_t k) {
   return asked.compensators[k].state().compensator;
 }
 
 // In messages.
 std::string file_of(const ExportRequest& asked, std::size_t k) {
-  const beamgyro::Compensator::State& state = asked.compensators[k].state();
+  const Compensator::State& state = asked.compensators[k].state();
   return state.file.empty() ? state.name : state.file;
 }
 
@@ -95,7 +96,7 @@ void parameter_texts(const ExportRequest& asked, const std::string& name,
   const std::vector<char> places = axes_of(asked);
   std::vector<AutopilotAxis> axes;
   for (std::size_t k = 0; k < places.size(); ++k) {
-    const Compensator& compensator = compensator_of(asked, k);
+    const FittedCompensator& compensator = compensator_of(asked, k);
     const auto cubic = [&] {
       return autopilot_cubic(compensator, asked.options.fit_cubic);
     };
@@ -153,8 +154,8 @@ void ekf_files(const ExportRequest& asked, const std::string& name,
         "{} is missing; expected a recording at rest, from which the noise is "
         "taken",
         NamedOption{"rest"});
-  const beamgyro::Compensator& own = asked.compensators[0];
-  const Compensator& compensator = own.state().compensator;
+  const Compensator& own = asked.compensators[0];
+  const FittedCompensator& compensator = own.state().compensator;
   EkfExport given{.name = name,
                   .axis = axes_of(asked)[0],
                   .compensator = {own.name(), sha256(own.text())},

@@ -38,13 +38,13 @@ TemperatureRange checked_range(const char* name, const ChamberRange& range) {
 }
 
 // Of its file, in messages.
-std::string name_of_file(const beamgyro::Compensator& compensator) {
-  const beamgyro::Compensator::State& state = compensator.state();
+std::string name_of_file(const Compensator& compensator) {
+  const Compensator::State& state = compensator.state();
   return state.file.empty() ? state.name : state.file;
 }
 
-const Population& population_of(const beamgyro::Compensator& compensator) {
-  const Compensator& own = compensator.state().compensator;
+const Population& population_of(const Compensator& compensator) {
+  const FittedCompensator& own = compensator.state().compensator;
   if (!own.population)
     throw std::invalid_argument(fmt::format(
         "{}: kind: \"{}\"; expected a population, which `beamgyro train` "
@@ -148,7 +148,7 @@ void check_goal(const PlanOptions& options) {
 }
 
 struct PlanStudy::State {
-  State(const beamgyro::Compensator& population, const Device& unit,
+  State(const Compensator& population, const Device& unit,
         const PlanOptions& asked)
       : options(asked),
         file(name_of_file(population)),
@@ -191,8 +191,8 @@ struct PlanStudy::State {
   Planner planner;
 };
 
-PlanStudy::PlanStudy(const beamgyro::Compensator& population,
-                     const Device& device, const PlanOptions& options) {
+PlanStudy::PlanStudy(const Compensator& population, const Device& device,
+                     const PlanOptions& options) {
   check_goal(options);
   population_of(population);
   check_number("hours", options.hours, positive());

@@ -113,7 +113,7 @@ SensitivityStudy checked_study(const Campaign& campaign,
   sample.merits = merits_of(options);
   sample.merit.grid = grid_of(options);
   if (options.compensator)
-    sample.merit.compensator = std::make_shared<const Compensator>(
+    sample.merit.compensator = std::make_shared<const FittedCompensator>(
         options.compensator->state().compensator);
   if (options.samples < 32 || options.samples > 1000000)
     throw std::invalid_argument(

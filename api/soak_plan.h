@@ -17,7 +17,7 @@ void check_goal(const PlanOptions& options);
 class PlanStudy {
  public:
   /// Throws as plan(), but for the candidates, which are not looked at.
-  PlanStudy(const beamgyro::Compensator& population, const Device& device,
+  PlanStudy(const Compensator& population, const Device& device,
             const PlanOptions& options);
   ~PlanStudy();
   PlanStudy(const PlanStudy&) = delete;

@@ -140,8 +140,7 @@ CompensatedRate OpenedCompensator::answer(const Recording& recording) const {
 }
 
 CompensatorSource source_of(const RateCompensator& compensator) {
-  if (const auto* file =
-          dynamic_cast<const beamgyro::Compensator*>(&compensator))
+  if (const auto* file = dynamic_cast<const Compensator*>(&compensator))
     return source_of(file->state().compensator, file->state().path(),
                      file->text());
   if (const auto* opened = dynamic_cast<const OpenedCompensator*>(&compensator))

@@ -38,7 +38,7 @@ class Validator {
   const CompensatorSource& source() const;
   const ValidationOptions& options() const;
   /// Returns every file that the result depends on; one of two groups twice.
-  const std::vector<InputFile>& inputs() const;
+  const std::vector<ValidationInput>& inputs() const;
 
   /// Simulates the qualification for the device, or reads the recordings, and
   /// judges the compensator; does so with the devices of the campaign, if there

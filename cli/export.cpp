@@ -64,9 +64,9 @@ ExportOptions options_of_export(const ExportArguments& arguments) {
 
 int run_export(const ExportArguments& arguments) {
   const ExportOptions options = options_of_export(arguments);
-  std::vector<beamgyro::Compensator> compensators;
+  std::vector<Compensator> compensators;
   for (const std::string& file : arguments.compensators)
-    compensators.push_back(beamgyro::Compensator::read(file));
+    compensators.push_back(Compensator::read(file));
   const ExportResult result =
       export_files(compensators, arguments.format, options);
   std::vector<fs::path> inputs = {arguments.compensators.begin(),

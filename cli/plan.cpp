@@ -94,7 +94,7 @@ int run_plan(const PlanArguments& arguments) {
   const PlanOptions options = plan_options(arguments);
   check_goal(options);
   check_outputs(arguments);
-  const auto population = beamgyro::Compensator::read(arguments.population);
+  const auto population = Compensator::read(arguments.population);
   const PlanStudy study(population, read_device_of(arguments), options);
   const SoakPlanResult result =
       study.result(candidate_schedules(arguments.candidates, study.chamber()));

@@ -26,7 +26,7 @@ void require_whole(const std::string& file) {
   if (is_of_kind(file, FileKind::kRecording))
     load_recording(file);
   else if (is_of_kind(file, FileKind::kCompensator))
-    beamgyro::Compensator::read(file);
+    Compensator::read(file);
 }
 
 int plot(const PlotArguments& arguments) {

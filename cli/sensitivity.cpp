@@ -90,7 +90,7 @@ void require_places(const SensitivityArguments& arguments,
 SensitivityOptions options_of(const SensitivityArguments& arguments) {
   SensitivityOptions options{.figures = arguments.figures};
   if (!arguments.compensator.empty())
-    options.compensator = beamgyro::Compensator::read(arguments.compensator);
+    options.compensator = Compensator::read(arguments.compensator);
   std::tie(options.lowest_degC, options.highest_degC) =
       temperature_range("--range", arguments.range);
   options.linear = arguments.linear;

@@ -134,7 +134,7 @@ int judge_compensator(const ValidateArguments& arguments) try {
       std::move(options), !arguments.bundle.empty());
   const BundleContent content = bundle_content(validator);
   std::vector<fs::path> inputs(arguments.runs.begin(), arguments.runs.end());
-  for (const InputFile& input : validator.inputs())
+  for (const ValidationInput& input : validator.inputs())
     inputs.push_back(input.path);
   // The directory of a set stands for everything below it.
   inputs.insert(inputs.end(), arguments.runs.begin(), arguments.runs.end());

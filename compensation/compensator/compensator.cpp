@@ -29,7 +29,7 @@ std::vector<double> corrected_rate(const BiasModel& bias,
 
 // Divides by s of the measured temperature.
 std::vector<double> over_scale_factor(std::vector<double> rate,
-                                      const Compensator& compensator,
+                                      const FittedCompensator& compensator,
                                       const Recording& recording) {
   if (!compensator.scale_factor) return rate;
   // Clamped, and an error where it is not finite.
@@ -43,7 +43,7 @@ std::vector<double> over_scale_factor(std::vector<double> rate,
 
 }  // namespace
 
-std::vector<double> compensated_rate(const Compensator& compensator,
+std::vector<double> compensated_rate(const FittedCompensator& compensator,
                                      const Recording& recording) {
   return over_scale_factor(
       corrected_rate(compensator.bias, compensator.inputs,
@@ -51,20 +51,20 @@ std::vector<double> compensated_rate(const Compensator& compensator,
       compensator, recording);
 }
 
-std::vector<double> compensated_rate_sigma(const Compensator& compensator,
+std::vector<double> compensated_rate_sigma(const FittedCompensator& compensator,
                                            const Recording& recording) {
   if (!compensator.sigma) return {};
   return over_scale_factor(sigma_of(*compensator.sigma, recording), compensator,
                            recording);
 }
 
-std::vector<double> baseline_rate(const Compensator& compensator,
+std::vector<double> baseline_rate(const FittedCompensator& compensator,
                                   const Recording& recording) {
   return corrected_rate(compensator.baseline, {parse_input("temperature")},
                         compensator.temperature_range, recording);
 }
 
-std::size_t clamped_samples(const Compensator& compensator,
+std::size_t clamped_samples(const FittedCompensator& compensator,
                             const Recording& recording) {
   const std::vector<double>& temperature =
       column_values(recording, "temperature");

@@ -69,7 +69,7 @@ struct Provenance {
 
 /// A trained compensator: compensated rate = (rate - bias(inputs)) / s(T).
 /// Works in the units of the recording: temperatures in degC, rates in deg/s.
-struct Compensator {
+struct FittedCompensator {
   std::vector<Input> inputs;
   BiasModel bias;                           // of `inputs`
   std::optional<LookupTable> scale_factor;  // s(T) [-]; 1 without
@@ -86,23 +86,23 @@ struct Compensator {
 /// Returns the compensated rate [deg/s] of every sample, NaN where unpowered.
 /// Throws std::invalid_argument naming an input that the recording lacks, or
 /// the time of a powered sample whose input is not finite.
-std::vector<double> compensated_rate(const Compensator& compensator,
+std::vector<double> compensated_rate(const FittedCompensator& compensator,
                                      const Recording& recording);
 
 /// Returns the 1-sigma [deg/s] of the bias of every compensated rate, NaN where
 /// unpowered: sigma / s(T). Empty for a compensator without one. Throws
 /// std::invalid_argument as compensated_rate().
-std::vector<double> compensated_rate_sigma(const Compensator& compensator,
+std::vector<double> compensated_rate_sigma(const FittedCompensator& compensator,
                                            const Recording& recording);
 
 /// Returns the compensated rate of the baseline of the compensator, the cubic
 /// of equation (1), with s = 1.
-std::vector<double> baseline_rate(const Compensator& compensator,
+std::vector<double> baseline_rate(const FittedCompensator& compensator,
                                   const Recording& recording);
 
 /// Returns the number of powered samples whose measured temperature was clamped
 /// because it lies outside the range of the compensator.
-std::size_t clamped_samples(const Compensator& compensator,
+std::size_t clamped_samples(const FittedCompensator& compensator,
                             const Recording& recording);
 
 }  // namespace beamgyro::internal

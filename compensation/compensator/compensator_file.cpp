@@ -252,10 +252,10 @@ void check_header(const JsonNode& root) {
                     number, kFormatVersion));
 }
 
-Compensator read_root(const JsonNode& root) {
+FittedCompensator read_root(const JsonNode& root) {
   check_header(root);
   const std::string kind = read_bias_kind(root.at("kind"));
-  Compensator c;
+  FittedCompensator c;
   for (const JsonNode& input : root.at("inputs").elements()) {
     const std::string text = input.text();
     try {
@@ -284,8 +284,8 @@ Compensator read_root(const JsonNode& root) {
 
 }  // namespace
 
-std::string compensator_text(const Compensator& compensator) {
-  const Compensator& c = compensator;
+std::string compensator_text(const FittedCompensator& compensator) {
+  const FittedCompensator& c = compensator;
   Json json;
   json["filetype"] = kFiletype;
   json["format_version"] = kFormatVersion;
@@ -307,13 +307,13 @@ std::string compensator_text(const Compensator& compensator) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Compensator parse_compensator(const std::string& text,
-                              const std::string& name) {
+FittedCompensator parse_compensator(const std::string& text,
+                                    const std::string& name) {
   const Json json = parse_json(text, name);
   return read_root(JsonNode(json, name));
 }
 
-Compensator read_compensator(const std::filesystem::path& file) {
+FittedCompensator read_compensator(const std::filesystem::path& file) {
   constexpr std::uintmax_t kLargest = std::uintmax_t{16} << 20;  // [bytes]
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(file, unknown);

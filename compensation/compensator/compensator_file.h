@@ -12,7 +12,7 @@ namespace beamgyro::internal {
 /// "beamgyro-compensator" (docs/reference/compensator_file.md). Every number is
 /// written so that reading it returns the same bits. Throws std::runtime_error
 /// for a parameter that is not finite.
-std::string compensator_text(const Compensator& compensator);
+std::string compensator_text(const FittedCompensator& compensator);
 
 /// Reads the text that compensator_text() made; `name` is the name of the file
 /// in messages. Throws std::invalid_argument with the name and
@@ -20,10 +20,11 @@ std::string compensator_text(const Compensator& compensator);
 /// - the key, for a value that is missing, of the wrong type or size, or not
 ///   finite;
 /// - the version, for a newer format.
-Compensator parse_compensator(const std::string& text, const std::string& name);
+FittedCompensator parse_compensator(const std::string& text,
+                                    const std::string& name);
 
 /// Reads a compensator file. Throws as read_text_file() and
 /// parse_compensator().
-Compensator read_compensator(const std::filesystem::path& file);
+FittedCompensator read_compensator(const std::filesystem::path& file);
 
 }  // namespace beamgyro::internal

@@ -76,7 +76,7 @@ constexpr int kGrid = 1000;  // steps over the temperatures of sigma
 
 // Returns <sigma(T, e, r)^2> [(deg/s)^2], divided by the scale factor as the
 // rate is.
-double mean_square(const Compensator& c, const EkfSettings& settings,
+double mean_square(const FittedCompensator& c, const EkfSettings& settings,
                    double since_power_on, double temperature_rate) {
   const auto square = [&](double T) {
     const double scale = c.scale_factor ? c.scale_factor->at(T) : 1.0;
@@ -94,7 +94,8 @@ double mean_square(const Compensator& c, const EkfSettings& settings,
 
 }  // namespace
 
-RestNoise rest_noise(const Compensator& compensator, const Recording& rest) {
+RestNoise rest_noise(const FittedCompensator& compensator,
+                     const Recording& rest) {
   require_rest(rest);
   constexpr const char* kName = "compensated_rate";
   Recording answered;
@@ -129,7 +130,7 @@ RestNoise rest_noise(const Compensator& compensator, const Recording& rest) {
   return noise;
 }
 
-EkfFigures ekf_figures(const Compensator& c, const RestNoise& noise,
+EkfFigures ekf_figures(const FittedCompensator& c, const RestNoise& noise,
                        const EkfSettings& settings) {
   const double rate = std::abs(settings.temperature_rate);
   const double still = mean_square(c, settings, 0.0, 0.0);

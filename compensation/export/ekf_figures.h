@@ -34,7 +34,8 @@ struct RestNoise {
 /// - as compensated_rate(), even_series() and noise_coefficients();
 /// - when the true rate of the recording changes;
 /// - when it is too short for coefficients, or shows no angle random walk.
-RestNoise rest_noise(const Compensator& compensator, const Recording& rest);
+RestNoise rest_noise(const FittedCompensator& compensator,
+                     const Recording& rest);
 
 /// What the user of a navigation filter chooses.
 struct EkfSettings {
@@ -69,7 +70,7 @@ struct EkfFigures {
 };
 
 /// Returns the figures of a compensator that states a sigma.
-EkfFigures ekf_figures(const Compensator& compensator, const RestNoise& noise,
-                       const EkfSettings& settings);
+EkfFigures ekf_figures(const FittedCompensator& compensator,
+                       const RestNoise& noise, const EkfSettings& settings);
 
 }  // namespace beamgyro::internal

@@ -117,7 +117,7 @@ std::string array_text(const FirmwareArray& array) {
   return text + "\n};\n";
 }
 
-FirmwareCode code_of(const Compensator& c) {
+FirmwareCode code_of(const FittedCompensator& c) {
   return std::visit(
       [&]<class Function>(const Function& f) -> FirmwareCode {
         if constexpr (Function::kInputUse == InputUse::kNone)
@@ -131,7 +131,7 @@ FirmwareCode code_of(const Compensator& c) {
 // Text of one compensator, written part by part.
 class Writer {
  public:
-  Writer(const Compensator& compensator, const std::string& name,
+  Writer(const FittedCompensator& compensator, const std::string& name,
          const FirmwareModel& model)
       : c_(compensator),
         name_(name),
@@ -218,7 +218,7 @@ class Writer {
   std::string input_lines() const;
   std::string finite_lines() const;
 
-  const Compensator& c_;
+  const FittedCompensator& c_;
   const std::string& name_;
   const FirmwareModel& model_;
   const FirmwareParts parts_;
@@ -349,8 +349,8 @@ std::string Writer::step_function() const {
 
 }  // namespace
 
-ExportedC export_c(const Compensator& compensator, const std::string& name,
-                   bool force) {
+ExportedC export_c(const FittedCompensator& compensator,
+                   const std::string& name, bool force) {
   const FirmwareModel model(compensator);
   const ExportFindings found = findings_of(compensator);
   if (!force && !found.objections.empty())

@@ -25,7 +25,7 @@ struct ExportedC {
 /// The results have the same bits on every machine with IEEE-754 single
 /// precision when the compiler does not contract a * b + c: gcc and clang want
 /// -ffp-contract=off. Throws as findings_of().
-ExportedC export_c(const Compensator& compensator, const std::string& name,
-                   bool force = false);
+ExportedC export_c(const FittedCompensator& compensator,
+                   const std::string& name, bool force = false);
 
 }  // namespace beamgyro::internal

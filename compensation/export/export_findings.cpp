@@ -11,7 +11,7 @@
 
 namespace beamgyro::internal {
 
-ExportFindings findings_of(const Compensator& compensator) {
+ExportFindings findings_of(const FittedCompensator& compensator) {
   ExportFindings found;
   const FirmwareDifference differences = firmware_differences(compensator);
   found.difference = differences.rate;

@@ -18,6 +18,6 @@ struct ExportFindings {
 /// Measures a compensator. It objects to one whose firmware_difference(), of
 /// rate or sigma, exceeds kLargestDifference, and to one that cancels the rate
 /// (rate_kept() below kCancelledBelow). Throws as firmware_difference().
-ExportFindings findings_of(const Compensator& compensator);
+ExportFindings findings_of(const FittedCompensator& compensator);
 
 }  // namespace beamgyro::internal

@@ -30,7 +30,7 @@ std::string wrapped(const std::string& text) {
   return result + line;
 }
 
-std::string about(const Compensator& c, const FirmwareParts& parts,
+std::string about(const FittedCompensator& c, const FirmwareParts& parts,
                   double difference) {
   const Provenance& p = c.provenance;
   std::string text = fmt::format(
@@ -154,7 +154,7 @@ bool reads_a_signal(const Input& input) {
   return input.kind == InputKind::kColumn && input.column != "temperature";
 }
 
-FirmwareParts::FirmwareParts(const Compensator& c) {
+FirmwareParts::FirmwareParts(const FittedCompensator& c) {
   uses_inputs = reads_inputs(c.bias);
   if (!uses_inputs) return;
   for (const Input& input : c.inputs) {
@@ -165,8 +165,8 @@ FirmwareParts::FirmwareParts(const Compensator& c) {
   }
 }
 
-std::string header_text(const Compensator& compensator, const std::string& name,
-                        const FirmwareModel& model,
+std::string header_text(const FittedCompensator& compensator,
+                        const std::string& name, const FirmwareModel& model,
                         const ExportFindings& found) {
   const FirmwareParts parts(compensator);
   std::string guard = name + "_H";

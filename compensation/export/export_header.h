@@ -21,7 +21,7 @@ bool reads_a_signal(const Input& input);
 
 /// The parts of the exported code of a compensator.
 struct FirmwareParts {
-  explicit FirmwareParts(const Compensator& compensator);
+  explicit FirmwareParts(const FittedCompensator& compensator);
 
   bool uses_inputs;         // the bias is not a constant
   int filters = 0;          // of the temperature
@@ -34,8 +34,8 @@ struct FirmwareParts {
 
 /// Returns the text of NAME.h: origin of the compensator, warnings and
 /// findings, and the interface.
-std::string header_text(const Compensator& compensator, const std::string& name,
-                        const FirmwareModel& model,
+std::string header_text(const FittedCompensator& compensator,
+                        const std::string& name, const FirmwareModel& model,
                         const ExportFindings& found);
 
 /// Returns C comments, one for each warning.

@@ -23,7 +23,7 @@ char upper(char axis) { return static_cast<char>(axis - 'x' + 'X'); }
 
 // Returns what the parameters cannot represent of this compensator, or an empty
 // text.
-std::string obstacle(const Compensator& c) {
+std::string obstacle(const FittedCompensator& c) {
   if (c.scale_factor) return "it corrects the scale factor";
   if (std::holds_alternative<ConstantBias>(c.bias.function) ||
       std::holds_alternative<NoBias>(c.bias.function))
@@ -72,7 +72,7 @@ std::string number(double value) {
 
 }  // namespace
 
-BiasModel autopilot_cubic(const Compensator& c, bool fit_cubic) {
+BiasModel autopilot_cubic(const FittedCompensator& c, bool fit_cubic) {
   const std::string reason = obstacle(c);
   if (reason.empty()) return as_polynomial(c.bias);
   if (fit_cubic) return c.baseline;

@@ -26,7 +26,7 @@ struct AutopilotAxis {
 /// degree 3 or less without a scale-factor table; otherwise, with `fit_cubic`,
 /// its baseline. Throws std::invalid_argument naming what the parameters cannot
 /// hold, and the residual of the cubic.
-BiasModel autopilot_cubic(const Compensator& compensator, bool fit_cubic);
+BiasModel autopilot_cubic(const FittedCompensator& compensator, bool fit_cubic);
 
 /// Returns the range of temperatures [degC] that all axes have seen. Autopilots
 /// have one range for a gyro. Throws std::invalid_argument when there are none.

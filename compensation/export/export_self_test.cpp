@@ -19,7 +19,7 @@ struct GoldenRange {
   float low, span;
 };
 
-std::vector<GoldenRange> golden_ranges(const Compensator& c,
+std::vector<GoldenRange> golden_ranges(const FittedCompensator& c,
                                        const FirmwareModel& model) {
   std::vector<GoldenRange> ranges(kFirmwareSignalCount, {-100.0f, 200.0f});
   const auto low = static_cast<float>(c.temperature_range.lowest);
@@ -102,7 +102,7 @@ std::string fill_text(const FirmwareModel& model,
 
 }  // namespace
 
-std::string self_test_source(const Compensator& compensator,
+std::string self_test_source(const FittedCompensator& compensator,
                              const std::string& name) {
   FirmwareModel model(compensator);
   const std::vector<GoldenRange> ranges = golden_ranges(compensator, model);

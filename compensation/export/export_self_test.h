@@ -17,7 +17,7 @@ constexpr int kGoldenStep = 100;
 /// to 5 K beyond the range and with other inputs within theirs, and compares
 /// with FirmwareModel. Its exit status is 0 when all bits are equal. Throws as
 /// FirmwareModel.
-std::string self_test_source(const Compensator& compensator,
+std::string self_test_source(const FittedCompensator& compensator,
                              const std::string& name);
 
 }  // namespace beamgyro::internal

@@ -32,7 +32,7 @@ double spread(std::size_t k, std::size_t signal) {
 }
 
 // Returns the fastest change of temperature in training [K/s].
-double fastest_ramp(const Compensator& c) {
+double fastest_ramp(const FittedCompensator& c) {
   double fastest = 0.0;
   for (std::size_t i = 0; i < c.inputs.size(); ++i)
     if (const Scale& scale = c.bias.input_scales[i];
@@ -50,7 +50,7 @@ struct Place {
       : cycle(k / (kSamples / kCycles)), sample(k % (kSamples / kCycles)) {}
 };
 
-std::vector<double> temperatures(const Compensator& c, double period) {
+std::vector<double> temperatures(const FittedCompensator& c, double period) {
   const double low = c.temperature_range.lowest;
   const double span = c.temperature_range.highest - low;
   const double ramp = fastest_ramp(c);
@@ -73,7 +73,7 @@ std::vector<double> temperatures(const Compensator& c, double period) {
 }
 
 // Returns the range of a signal: that of its input, if there is one.
-Scale signal_range(const Compensator& c, std::size_t signal) {
+Scale signal_range(const FittedCompensator& c, std::size_t signal) {
   if (!reads_inputs(c.bias)) return {0.0, kRate};
   for (std::size_t i = 0; i < c.inputs.size(); ++i)
     if (c.inputs[i].column == kFirmwareSignals[signal]) {
@@ -89,7 +89,7 @@ Scale signal_range(const Compensator& c, std::size_t signal) {
   return {0.0, kRate};
 }
 
-Recording samples_at(const Compensator& c, const FirmwareModel& model,
+Recording samples_at(const FittedCompensator& c, const FirmwareModel& model,
                      double period) {
   Recording recording;
   for (std::size_t k = 0; k < kSamples; ++k) {
@@ -111,8 +111,8 @@ Recording samples_at(const Compensator& c, const FirmwareModel& model,
   return recording;
 }
 
-FirmwareDifference difference_at(const Compensator& c, FirmwareModel& model,
-                                 float period) {
+FirmwareDifference difference_at(const FittedCompensator& c,
+                                 FirmwareModel& model, float period) {
   const Recording recording = samples_at(c, model, static_cast<double>(period));
   const std::vector<double> expected = compensated_rate(c, recording);
   const std::vector<double> sigma = compensated_rate_sigma(c, recording);
@@ -152,7 +152,7 @@ FirmwareDifference difference_at(const Compensator& c, FirmwareModel& model,
 
 }  // namespace
 
-FirmwareDifference firmware_differences(const Compensator& compensator) {
+FirmwareDifference firmware_differences(const FittedCompensator& compensator) {
   FirmwareModel model(compensator);
   FirmwareDifference largest;
   for (const float period : kComparedPeriods) {
@@ -163,7 +163,7 @@ FirmwareDifference firmware_differences(const Compensator& compensator) {
   return largest;
 }
 
-double firmware_difference(const Compensator& compensator) {
+double firmware_difference(const FittedCompensator& compensator) {
   return firmware_differences(compensator).rate;
 }
 

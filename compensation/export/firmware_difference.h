@@ -28,9 +28,9 @@ struct FirmwareDifference {
   double rate = 0.0;   // [deg/s]
   double sigma = 0.0;  // [deg/s], from compensated_rate_sigma(), likewise
 };
-FirmwareDifference firmware_differences(const Compensator& compensator);
+FirmwareDifference firmware_differences(const FittedCompensator& compensator);
 
 /// Returns the difference of the rate.
-double firmware_difference(const Compensator& compensator);
+double firmware_difference(const FittedCompensator& compensator);
 
 }  // namespace beamgyro::internal

@@ -17,7 +17,7 @@
 namespace beamgyro::internal {
 namespace {
 
-int drive_frequency_of(const Compensator& c) {
+int drive_frequency_of(const FittedCompensator& c) {
   for (std::size_t i = 0; i < c.inputs.size(); ++i)
     if (c.inputs[i].column == kFirmwareSignals[kFirmwareDriveFrequency]) {
       const double centre = c.bias.input_scales[i].centre;
@@ -47,7 +47,7 @@ void put_sigma_arrays(const BiasSigma& sigma, FirmwareArrays& arrays) {
                                   k * rate.amplitude, rate.time_constant})});
 }
 
-FirmwareArrays arrays_of(const Compensator& c) {
+FirmwareArrays arrays_of(const FittedCompensator& c) {
   std::vector<double> centres, gains, constants, half_widths;
   bool plays = false;
   for (std::size_t i = 0; i < c.inputs.size(); ++i) {
@@ -125,7 +125,7 @@ struct FirmwareModel::State {
   float sigma = 0.0f;  // [deg/s]
 };
 
-FirmwareModel::FirmwareModel(const Compensator& c)
+FirmwareModel::FirmwareModel(const FittedCompensator& c)
     : inputs_(c.inputs),
       function_(c.bias.function),
       uses_inputs_(reads_inputs(c.bias)),

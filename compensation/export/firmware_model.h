@@ -36,7 +36,7 @@ struct FirmwareSample {
 class FirmwareModel {
  public:
   /// Throws std::invalid_argument for a parameter beyond single precision.
-  explicit FirmwareModel(const Compensator& compensator);
+  explicit FirmwareModel(const FittedCompensator& compensator);
   ~FirmwareModel();
   FirmwareModel(const FirmwareModel&) = delete;
   FirmwareModel& operator=(const FirmwareModel&) = delete;

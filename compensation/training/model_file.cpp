@@ -78,7 +78,7 @@ Method read_method(MethodSource& source) {
 }
 
 Population population_of(const std::filesystem::path& file) {
-  Compensator compensator = read_compensator(file);
+  FittedCompensator compensator = read_compensator(file);
   if (!compensator.population)
     throw std::invalid_argument(fmt::format(
         "{}: is a compensator without a population; train one of kind "

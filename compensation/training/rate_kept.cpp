@@ -18,7 +18,7 @@ constexpr Index kTemperatures = 46, kPlaces = 9;
 constexpr double kSmall = 1.0;  // [deg/s]
 
 // [deg/s]: half of what the bias spans over the training rows.
-double half_span_of_bias(const Compensator& c) {
+double half_span_of_bias(const FittedCompensator& c) {
   if (c.bias.bias_scale != Scale{}) return c.bias.bias_scale.half_width;
   const TemperatureRange& range = c.temperature_range;
   const ArrayXXd T =
@@ -29,7 +29,7 @@ double half_span_of_bias(const Compensator& c) {
 
 // Returns the change of each input with the rate, per deg/s; 0 where it is not
 // known.
-std::vector<double> slopes_over_rate(const Compensator& c) {
+std::vector<double> slopes_over_rate(const FittedCompensator& c) {
   std::vector<double> slopes(c.inputs.size(), 0.0);
   const bool at_rest = warned_of_rate(c.provenance.warnings);
   for (std::size_t i = 0; i < c.inputs.size(); ++i) {
@@ -43,7 +43,7 @@ std::vector<double> slopes_over_rate(const Compensator& c) {
 
 // Steady inputs: every temperature with every place of the inputs that see the
 // rate between the ends of what they were in training.
-ArrayXXd places(const Compensator& c) {
+ArrayXXd places(const FittedCompensator& c) {
   const TemperatureRange& range = c.temperature_range;
   ArrayXXd x(kTemperatures * kPlaces, static_cast<Index>(c.inputs.size()));
   for (std::size_t i = 0; i < c.inputs.size(); ++i) {
@@ -72,7 +72,7 @@ ArrayXXd places(const Compensator& c) {
 
 }  // namespace
 
-std::optional<double> rate_kept(const Compensator& c) {
+std::optional<double> rate_kept(const FittedCompensator& c) {
   const std::vector<double> slopes = slopes_over_rate(c);
   if (std::ranges::all_of(slopes, [](double slope) { return slope == 0.0; }))
     return std::nullopt;

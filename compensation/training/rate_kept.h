@@ -17,6 +17,6 @@ namespace beamgyro::internal {
 /// from the spans of the two. Returns nothing for an input `output` with
 /// training on rates, where a model cannot mistake them for bias, and for
 /// compensators that use neither input.
-std::optional<double> rate_kept(const Compensator& compensator);
+std::optional<double> rate_kept(const FittedCompensator& compensator);
 
 }  // namespace beamgyro::internal

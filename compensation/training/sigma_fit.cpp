@@ -53,8 +53,8 @@ std::pair<Eigen::ArrayXi, std::string> independent_groups(
 
 // Residuals of `trained` within its temperatures, or in a warm-up, which may
 // lead to them.
-ResidualRows residuals_of(const Compensator& trained, const RunSource& runs,
-                          const SigmaTask& task) {
+ResidualRows residuals_of(const FittedCompensator& trained,
+                          const RunSource& runs, const SigmaTask& task) {
   const TrainingRows rows = [&] {
     const TrainingRows all =
         all_rows(runs, trained.inputs, task, trained.temperature_range,
@@ -87,7 +87,7 @@ ArrayXd sigma_grid(const TemperatureRange& range) {
 }
 
 // The population that a compensator was learned from, if there is one.
-const Population* population_behind(const Compensator& trained,
+const Population* population_behind(const FittedCompensator& trained,
                                     const FitSpec& kind) {
   if (const auto* adapted = std::get_if<AdaptedSpec>(&kind))
     return &adapted->population;
@@ -97,8 +97,8 @@ const Population* population_behind(const Compensator& trained,
 // A temperature that is clamped leaves the slope of the bias beyond the range.
 // Nothing there tells it: the steepest within the range stands for it, of the
 // bias and of the devices of its population.
-std::array<double, 2> growth_of(const Compensator& trained, const FitSpec& kind,
-                                const BiasSigma& sigma) {
+std::array<double, 2> growth_of(const FittedCompensator& trained,
+                                const FitSpec& kind, const BiasSigma& sigma) {
   const LookupTable& curve = sigma.curve;
   const ArrayXd& T = curve.temperatures;
   const Index last = T.size() - 1;
@@ -142,7 +142,8 @@ bool has_several_devices(const SigmaTask& task) {
 
 // What is known before any calibration. Throws UndeterminedFit where nothing
 // is.
-BiasSigma uncalibrated(const Compensator& trained, const SigmaTask& task) {
+BiasSigma uncalibrated(const FittedCompensator& trained,
+                       const SigmaTask& task) {
   if (trained.population) return population_sigma(*trained.population);
   if (const auto* adapted = std::get_if<AdaptedSpec>(&task.kind))
     return adapted_sigma(adapted->population,
@@ -176,7 +177,7 @@ bool is_calibrated_by_population(const SigmaTask& task,
 
 }  // namespace
 
-std::optional<BiasSigma> fit_bias_sigma(const Compensator& trained,
+std::optional<BiasSigma> fit_bias_sigma(const FittedCompensator& trained,
                                         const SigmaTask& task,
                                         std::vector<std::string>& remarks) {
   if (is_one_of<NoneSpec, ConstantSpec, ThermistorSpec, Px4Spec, ArduPilotSpec>(

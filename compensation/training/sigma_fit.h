@@ -47,7 +47,7 @@ struct SigmaTask {
 /// calibration of its population until they give kLeastConformalGroups. Without
 /// held-out runs, polynomials and splines take a_on and a_rate from the
 /// training runs by leg. The runs concerned are visited once more.
-std::optional<BiasSigma> fit_bias_sigma(const Compensator& trained,
+std::optional<BiasSigma> fit_bias_sigma(const FittedCompensator& trained,
                                         const SigmaTask& task,
                                         std::vector<std::string>& remarks);
 

@@ -98,7 +98,7 @@ TemperatureRange known_range(const FitSpec& kind) {
 }
 
 // Removes the channels of a population, which are used for fitting only.
-void leave_out_channels(const FitSpec& kind, Compensator& c) {
+void leave_out_channels(const FitSpec& kind, FittedCompensator& c) {
   if (!std::holds_alternative<PopulationSpec>(kind) &&
       !std::holds_alternative<AdaptedSpec>(kind))
     return;
@@ -173,7 +173,7 @@ std::string cause_of_few_rows(const TrainingRows& rows,
 }
 
 // Adds the 1-sigma of the bias, and that of devices adapted from a population.
-void fit_sigma(Compensator& c, const SigmaTask& task,
+void fit_sigma(FittedCompensator& c, const SigmaTask& task,
                std::vector<std::string>& remarks) {
   if (c.population)
     c.population->sigma = fit_adaptation_sigma(
@@ -229,7 +229,7 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
                   std::optional<Grouping> cross_validation) {
   check_runs(spec, runs, held_out, cross_validation);
   TrainResult result;
-  Compensator& c = result.compensator;
+  FittedCompensator& c = result.compensator;
   if (spec.scale_factor_bin_K)
     c.scale_factor = fit_scale_factor(runs, *spec.scale_factor_bin_K);
   const LookupTable* scale_factor = c.scale_factor ? &*c.scale_factor : nullptr;

@@ -25,7 +25,7 @@ namespace beamgyro::internal {
 LookupTable fit_scale_factor(const RunSource& runs, double bin_width);
 
 struct TrainResult {
-  Compensator compensator;
+  FittedCompensator compensator;
   std::vector<TrainSummary> restarts;  // one unless it is a network; [deg/s]
   std::size_t chosen = 0;              // the restart kept
   Eigen::Index rows = 0;

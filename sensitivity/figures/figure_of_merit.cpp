@@ -125,7 +125,7 @@ class MeritsOf {
 
 }  // namespace
 
-Eigen::ArrayXd settled_residual(const Compensator& compensator,
+Eigen::ArrayXd settled_residual(const FittedCompensator& compensator,
                                 const DeviceParameters& device,
                                 const StaticCurve& curve) {
   const std::vector<double> rate =

@@ -19,7 +19,7 @@ namespace beamgyro::internal {
 /// and its offset, without noise and resolution; the other signals are those of
 /// the curve. Throws std::invalid_argument naming an input that is not among
 /// them.
-Eigen::ArrayXd settled_residual(const Compensator& compensator,
+Eigen::ArrayXd settled_residual(const FittedCompensator& compensator,
                                 const DeviceParameters& device,
                                 const StaticCurve& curve);
 
@@ -53,7 +53,7 @@ struct MeritOptions {
   CurveGrid grid;
   double ambient = 25;  // [degC], of the warm-up
   // For kCompensatorRms; what it does on settled samples.
-  std::shared_ptr<const Compensator> compensator;
+  std::shared_ptr<const FittedCompensator> compensator;
 };
 
 /// Returns the figures of one device in the order of `merits`, from the static

@@ -30,8 +30,8 @@ Provenance some_provenance() {
   return p;
 }
 
-Compensator of_temperature(const BiasModel& bias) {
-  Compensator c;
+FittedCompensator of_temperature(const BiasModel& bias) {
+  FittedCompensator c;
   c.inputs = {parse_input("temperature")};
   c.bias = bias;
   c.baseline = baseline();
@@ -40,9 +40,9 @@ Compensator of_temperature(const BiasModel& bias) {
   return c;
 }
 
-Compensator with_inputs(const std::vector<std::string>& names,
-                        const std::vector<Scale>& scales) {
-  Compensator c = of_temperature({scales, {0.1, 2.3}, NoBias{}});
+FittedCompensator with_inputs(const std::vector<std::string>& names,
+                              const std::vector<Scale>& scales) {
+  FittedCompensator c = of_temperature({scales, {0.1, 2.3}, NoBias{}});
   c.inputs.clear();
   for (const std::string& name : names) c.inputs.push_back(parse_input(name));
   return c;
@@ -55,8 +55,8 @@ BpNetwork random_network(const std::vector<int>& layers) {
   return network;
 }
 
-Compensator every_input() {
-  Compensator c = with_inputs(
+FittedCompensator every_input() {
+  FittedCompensator c = with_inputs(
       {"temperature", "temperature_lowpass(100)", "temperature_rate(60)",
        "temperature_play(2)", "since_power_on(300)", "drive_frequency",
        "drive_voltage", "quadrature", "rate"},
@@ -77,8 +77,8 @@ Compensator every_input() {
 
 }  // namespace
 
-Compensator network_compensator() {
-  Compensator c = with_inputs(
+FittedCompensator network_compensator() {
+  FittedCompensator c = with_inputs(
       {"temperature", "temperature_lowpass(0.1)", "since_power_on(300)"},
       {{20.1, 3.3}, {20.2, 3.7}, {0.5, 0.5}});
   c.bias.function = random_network({3, 6, 4, 1});
@@ -86,7 +86,7 @@ Compensator network_compensator() {
   return c;
 }
 
-Compensator spline_compensator() {
+FittedCompensator spline_compensator() {
   const Eigen::ArrayXd knots = grid(-40.0, 50.0, 90.0 / 13.0);
   return of_temperature({{Scale{}},
                          {},
@@ -94,7 +94,7 @@ Compensator spline_compensator() {
                                           SplineEnd::kNotAKnot)});
 }
 
-Compensator with_sigma(Compensator c) {
+FittedCompensator with_sigma(FittedCompensator c) {
   const auto [lowest, highest] = c.temperature_range;
   BiasSigma& sigma = c.sigma.emplace();
   sigma.curve = {Eigen::ArrayXd::LinSpaced(4, lowest, highest),
@@ -110,17 +110,17 @@ Compensator with_sigma(Compensator c) {
 
 std::vector<NamedCompensator> one_of_each_kind() {
   const Eigen::ArrayXd T = grid(-40.0, 50.0, 5.0), b = bias_curve(T);
-  Compensator slopes = with_inputs({"temperature", "temperature_rate(60)"},
-                                   {{5, 45}, {0, 0.03}});
+  FittedCompensator slopes = with_inputs(
+      {"temperature", "temperature_rate(60)"}, {{5, 45}, {0, 0.03}});
   slopes.bias.function = Polynomial{{0.3, -0.2, 0.1, 1.7}, {0.25}};
-  Compensator fuzzy =
+  FittedCompensator fuzzy =
       with_inputs({"temperature", "quadrature"}, {{5, 45}, {40, 25}});
   TakagiSugeno rules{Eigen::ArrayXd::LinSpaced(5, -1.0, 1.0), 0.25,
                      Eigen::MatrixXd(5, 3)};
   for (Eigen::Index k = 0; k < rules.consequents.size(); ++k)
     rules.consequents.reshaped()(k) = 0.37 * static_cast<double>(k % 7) - 1.0;
   fuzzy.bias.function = rules;
-  Compensator bells =
+  FittedCompensator bells =
       with_inputs({"temperature", "quadrature"}, {{5, 45}, {40, 25}});
   RadialBasis basis{Eigen::MatrixXd(3, 2), 0.6, Eigen::Vector3d(0.2, -0.4, 0.1),
                     Eigen::Vector3d(1.5, -0.7, 0.3)};

@@ -9,17 +9,17 @@
 namespace beamgyro::internal {
 
 /// Network 3-6-4-1 on temperature, a low-pass and the time since power-on.
-Compensator network_compensator();
+FittedCompensator network_compensator();
 
 /// Inputs "temperature" and a spline with knots every 90/13 K over -40..50.
-Compensator spline_compensator();
+FittedCompensator spline_compensator();
 
 /// The same with a sigma that has every term, in the range of the compensator.
-Compensator with_sigma(Compensator c);
+FittedCompensator with_sigma(FittedCompensator c);
 
 struct NamedCompensator {
   std::string name;
-  Compensator compensator;
+  FittedCompensator compensator;
 };
 
 /// One of every kind, some with a sigma, and a network with a scale-factor

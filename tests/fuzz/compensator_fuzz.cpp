@@ -13,7 +13,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace beamgyro::internal;
   static const beamgyro::Recording recording = sample_recording(20);
   accept_or_reject([&] {
-    const Compensator compensator =
+    const FittedCompensator compensator =
         parse_compensator(std::string(text_of(data, size)), "fuzz.json");
     const std::string text = compensator_text(compensator);
     if (compensator_text(parse_compensator(text, "again.json")) != text)

@@ -51,7 +51,7 @@ std::unique_ptr<const TestedCompensator> stripped(
 
 }  // namespace
 
-Compensator without_scale_factor(Compensator compensator) {
+FittedCompensator without_scale_factor(FittedCompensator compensator) {
   compensator.scale_factor.reset();
   return compensator;
 }
@@ -139,7 +139,7 @@ CheckContext::CheckContext(const CheckedCompensator& all, std::size_t count)
 }
 
 std::vector<std::string> CheckContext::untested_by_replay() const {
-  const Compensator* trained = checked.trained;
+  const FittedCompensator* trained = checked.trained;
   const auto range = temperatures_of(*this, runs_of(thermal_purposes()));
   if (trained == nullptr || !range) return {};
   std::vector<std::string> names;

@@ -20,7 +20,7 @@ namespace beamgyro::internal {
 std::vector<double> bridged(const Recording& run, std::vector<double> answers);
 
 /// Returns the compensator without its table of scale factors.
-Compensator without_scale_factor(Compensator compensator);
+FittedCompensator without_scale_factor(FittedCompensator compensator);
 
 /// How far from its temperature a recorded rate speaks.
 constexpr double kRateReach = 10.5;  // [K]

@@ -34,7 +34,7 @@ struct CheckedCompensator {
   // What the compensator says of its training, where it says anything.
   const Provenance* provenance = nullptr;  // not owned
   // The same compensator as training wrote it, if it is one of a file.
-  const Compensator* trained = nullptr;  // not owned
+  const FittedCompensator* trained = nullptr;  // not owned
   const TrainingSet* set =
       nullptr;  // of the runs that have a device; not owned
 };

@@ -108,7 +108,7 @@ void add_held(const CheckContext& context, std::size_t number,
 // that training saw, or over that of the runs.
 void add_sweep(const CheckContext& context, std::size_t number,
                GainJudge& judge) {
-  const Compensator* trained = context.checked.trained;
+  const FittedCompensator* trained = context.checked.trained;
   if (trained != nullptr &&
       std::ranges::none_of(trained->inputs, sees_the_rate))
     return;

@@ -94,7 +94,7 @@ bool drifts(const Recording& run) {
   return high - low > kClearDrift * std::max(noise, 1e-3);
 }
 
-bool reads_temperature(const Compensator* trained) {
+bool reads_temperature(const FittedCompensator* trained) {
   return trained == nullptr ||
          std::ranges::any_of(trained->inputs, [](const Input& input) {
            return input.column == "temperature";

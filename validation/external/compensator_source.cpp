@@ -110,8 +110,8 @@ CompensatorSource open_source(const std::string& argument,
   return source_of(parse_compensator(text, argument), argument, text);
 }
 
-CompensatorSource source_of(Compensator compensator, const std::string& name,
-                            const std::string& text) {
+CompensatorSource source_of(FittedCompensator compensator,
+                            const std::string& name, const std::string& text) {
   CompensatorSource source{SourceKind::kFile, name, without_folder(name),
                            tested(compensator), std::move(compensator)};
   source.files.push_back({name, text});

@@ -43,7 +43,7 @@ struct CompensatorSource {
   std::string argument;  // as it was named
   std::string name;      // in reports: without directories, a command whole
   std::shared_ptr<const TestedCompensator> tested = {};  // not of a model
-  std::optional<Compensator> trained = {};               // of a file
+  std::optional<FittedCompensator> trained = {};         // of a file
   std::optional<ModelSpec> model = {};
   std::vector<SourceText> files = {};  // that it was read from
 
@@ -58,8 +58,8 @@ CompensatorSource open_source(const std::string& argument,
                               const ProcessLimits& limits = {});
 
 /// The same for what is in memory; `text` is that of its file.
-CompensatorSource source_of(Compensator compensator, const std::string& name,
-                            const std::string& text);
+CompensatorSource source_of(FittedCompensator compensator,
+                            const std::string& name, const std::string& text);
 CompensatorSource source_of(ModelSpec model, const std::string& name,
                             const std::string& text);
 CompensatorSource source_of(std::shared_ptr<const TestedCompensator> function,

@@ -21,7 +21,7 @@ std::vector<Input> with_temperature(std::vector<Input> inputs) {
 
 class FileStream : public CompensatorStream {
  public:
-  explicit FileStream(Compensator compensator)
+  explicit FileStream(FittedCompensator compensator)
       : compensator_(std::move(compensator)),
         inputs_(with_temperature(compensator_.inputs)),
         features_(inputs_, compensator_.temperature_range),
@@ -35,7 +35,7 @@ class FileStream : public CompensatorStream {
   bool states_sigma() const override { return sigma_.has_value(); }
 
  private:
-  Compensator compensator_;
+  FittedCompensator compensator_;
   std::vector<Input> inputs_;  // with the temperature at the end
   FeatureStream features_;
   std::optional<BiasSigmaStream> sigma_;

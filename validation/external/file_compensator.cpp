@@ -11,7 +11,7 @@ namespace {
 
 class FileCompensator : public TestedCompensator {
  public:
-  explicit FileCompensator(Compensator compensator)
+  explicit FileCompensator(FittedCompensator compensator)
       : compensator_(std::move(compensator)) {}
 
   std::vector<std::string> inputs() const override {
@@ -38,12 +38,12 @@ class FileCompensator : public TestedCompensator {
   }
 
  private:
-  Compensator compensator_;
+  FittedCompensator compensator_;
 };
 
 }  // namespace
 
-std::unique_ptr<TestedCompensator> tested(Compensator compensator) {
+std::unique_ptr<TestedCompensator> tested(FittedCompensator compensator) {
   return std::make_unique<FileCompensator>(std::move(compensator));
 }
 

@@ -10,6 +10,6 @@ namespace beamgyro::internal {
 
 /// Returns a trained compensator as one to be validated. It is evaluated in
 /// this process.
-std::unique_ptr<TestedCompensator> tested(Compensator compensator);
+std::unique_ptr<TestedCompensator> tested(FittedCompensator compensator);
 
 }  // namespace beamgyro::internal

@@ -144,7 +144,7 @@ TrainingData training_data(const Qualification& qualification,
   return data;
 }
 
-Compensator trained_on(const TrainingData& data, const ModelSpec& model) {
+FittedCompensator trained_on(const TrainingData& data, const ModelSpec& model) {
   const std::vector<TrainingRun> none;
   std::vector<TrainingRun> fitted = data.training;
   if (model.scale_factor_bin_K)

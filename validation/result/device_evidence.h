@@ -61,7 +61,7 @@ TrainingData training_data(const Qualification& qualification,
 
 /// Trains a model on them with seed 0: on the turning runs if it corrects the
 /// scale factor, with the held-out runs if it is a network. Throws as train().
-Compensator trained_on(const TrainingData& data, const ModelSpec& model);
+FittedCompensator trained_on(const TrainingData& data, const ModelSpec& model);
 
 /// A method whose answers stand beside those of a compensator.
 struct BaselineMethod {

@@ -340,7 +340,7 @@ void decide_without_seeds(const SpecificationFile& specification,
 }
 
 // Runs of a set share the seed of their campaign and nothing else.
-std::vector<std::string> shared_seeds(const Compensator* trained,
+std::vector<std::string> shared_seeds(const FittedCompensator* trained,
                                       const DeviceEvidence& found) {
   std::vector<std::string> sentences;
   if (trained == nullptr) return sentences;

@@ -51,7 +51,7 @@ struct JudgedBy {
   const SpecificationFile& specification;
   const MetricRuns& metric_runs;
   const TestedCompensator& compensator;
-  const Compensator* trained;        // the same, if it is one of a file
+  const FittedCompensator* trained;  // the same, if it is one of a file
   const TrainingSet* set = nullptr;  // of the runs, where they are of one
 };
 

@@ -19,7 +19,7 @@ struct PopulationTask {
   const SpecificationFile* specification;
   const TestedCompensator* compensator = nullptr;  // one for all, or
   const ModelSpec* model = nullptr;                // one trained on each
-  const Compensator* known = nullptr;  // `compensator` as it was trained
+  const FittedCompensator* known = nullptr;  // `compensator` as it was trained
 };
 
 /// Simulates the devices of a campaign, one task each, and decides on every

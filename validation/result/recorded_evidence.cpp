@@ -26,7 +26,7 @@ ReadRun named_run(const std::string& name, const Recording& recording) try {
 
 // The mean of the cubic in the file over the temperatures that training saw,
 // which stands for a constant trained on the same data.
-double baseline_mean(const Compensator& compensator) {
+double baseline_mean(const FittedCompensator& compensator) {
   constexpr Eigen::Index kPlaces = 201;
   const TemperatureRange& range = compensator.temperature_range;
   const Eigen::ArrayXXd temperatures =

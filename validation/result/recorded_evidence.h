@@ -21,7 +21,7 @@ struct RecordedAnswering {
   // What is known of it, null for a library or a command. The baseline "cubic"
   // is the one in its file, "constant" the mean of that over the temperatures
   // that training saw.
-  const Compensator* known = nullptr;
+  const FittedCompensator* known = nullptr;
   // [deg/s]; without, that of the first recording which tells it, or kFullScale
   std::optional<double> full_scale = {};
 };

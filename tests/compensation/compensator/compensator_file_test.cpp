@@ -39,7 +39,7 @@ Recording with_loop_signals(Recording recording) {
 
 // The text of a good file with the first `from` replaced.
 std::string with(const std::string& from, const std::string& to,
-                 const Compensator& c = network_compensator()) {
+                 const FittedCompensator& c = network_compensator()) {
   std::string text = compensator_text(c);
   const std::size_t place = text.find(from);
   EXPECT_NE(place, std::string::npos) << from;
@@ -54,7 +54,7 @@ TEST(CompensatorFile, LoadedCompensatorAnswersWithTheSameBits) {
   const Recording recording = with_loop_signals(run.recording());
   for (const auto& [name, c] : one_of_each_kind()) {
     SCOPED_TRACE(name);
-    const Compensator loaded =
+    const FittedCompensator loaded =
         parse_compensator(compensator_text(c), "mine.json");
     EXPECT_EQ(kind_name(loaded.bias), kind_name(c.bias));
     EXPECT_EQ(loaded.inputs, c.inputs);
@@ -129,12 +129,12 @@ TEST(CompensatorFile, WrongNumbersAreNamedByTheirKey) {
 }
 
 TEST(CompensatorFile, ParameterThatIsNotFiniteIsNotWritten) {
-  Compensator c = spline_compensator();
+  FittedCompensator c = spline_compensator();
   c.bias.function = Polynomial{{1.0, std::nan("")}};
   EXPECT_THROW(compensator_text(c), std::runtime_error);
 }
 
-const Compensator& sample(const std::string& name) {
+const FittedCompensator& sample(const std::string& name) {
   static const std::vector<NamedCompensator> all = one_of_each_kind();
   for (const NamedCompensator& each : all)
     if (each.name == name) return each.compensator;

@@ -14,8 +14,8 @@ namespace beamgyro::internal::compensator_test {
 namespace {
 
 // bias = 1 + 0.1 T, baseline = 2, between 0 and 40 degC
-Compensator linear_compensator() {
-  Compensator c;
+FittedCompensator linear_compensator() {
+  FittedCompensator c;
   c.inputs = {parse_input("temperature")};
   c.bias = {{Scale{}}, {}, Polynomial{{1.0, 0.1}}};
   c.baseline = {{Scale{}}, {}, Polynomial{{2.0}}};
@@ -74,8 +74,8 @@ TEST(Compensator, RateOfABiasOnlyModelPassesExactly) {
 }
 
 // s from 0.9 at 0 to 1.1 at 50 degC, of which the range takes 0 ... 40.
-Compensator scaling_compensator() {
-  Compensator c = linear_compensator();
+FittedCompensator scaling_compensator() {
+  FittedCompensator c = linear_compensator();
   c.scale_factor = LookupTable{Eigen::ArrayXd::LinSpaced(2, 0.0, 50.0),
                                Eigen::ArrayXd::LinSpaced(2, 0.9, 1.1)};
   return c;
@@ -108,7 +108,7 @@ TEST(Compensator, ClampsTheTemperatureOfTheScaleFactorToo) {
 }
 
 TEST(Compensator, ScaleFactorAtNoFiniteTemperatureIsAnError) {
-  Compensator c = scaling_compensator();
+  FittedCompensator c = scaling_compensator();
   c.inputs = {parse_input("output")};  // the bias does not ask for it
   c.bias = {{Scale{}}, {}, NoBias{}};
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {

@@ -20,7 +20,7 @@ bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-Compensator one_of_kind(const std::string& name) {
+FittedCompensator one_of_kind(const std::string& name) {
   for (const NamedCompensator& each : one_of_each_kind())
     if (each.name == name) return each.compensator;
   throw std::logic_error(name);
@@ -52,7 +52,7 @@ TEST(ExportedC, HeaderDeclaresWhatTheSourceDefines) {
 }
 
 TEST(ExportedC, HeaderTellsTheChecksumTheInputsAndTheRange) {
-  const Compensator compensator = network_compensator();
+  const FittedCompensator compensator = network_compensator();
   const std::string header = export_c(compensator, "gyro").header;
   EXPECT_TRUE(holds(header, fmt::format("#define gyro_CRC 0x{:08x}u\n",
                                         FirmwareModel(compensator).crc())));
@@ -62,7 +62,7 @@ TEST(ExportedC, HeaderTellsTheChecksumTheInputsAndTheRange) {
 }
 
 TEST(ExportedC, HeaderHasMacrosOfTheRangeThePeriodsAndTheDifference) {
-  const Compensator compensator = network_compensator();
+  const FittedCompensator compensator = network_compensator();
   const std::string header = export_c(compensator, "gyro").header;
   EXPECT_TRUE(holds(header, "#define gyro_TEMPERATURE_LOWEST 0.33333334f\n"));
   EXPECT_TRUE(holds(header, "#define gyro_TEMPERATURE_HIGHEST 50.7f\n"));
@@ -75,7 +75,7 @@ TEST(ExportedC, HeaderHasMacrosOfTheRangeThePeriodsAndTheDifference) {
 }
 
 TEST(ExportedC, HeaderCarriesTheWarningsOfTraining) {
-  Compensator c = spline_compensator();
+  FittedCompensator c = spline_compensator();
   c.provenance.warnings = {"first */ of two", "second"};
   const std::string header = export_c(c, "g").header;
   EXPECT_TRUE(
@@ -88,7 +88,7 @@ TEST(ExportedC, SelfTestNamesTheOptionsThatChangeBits) {
 }
 
 TEST(ExportedC, DifferencesBeyondTheLimitAreRefusedOrCarriedInTheCode) {
-  Compensator c = network_compensator();
+  FittedCompensator c = network_compensator();
   auto& network = std::get<BpNetwork>(c.bias.function);
   network.set_weights(100.0 * network.weights());
   const std::string refusal = rejection([&] { export_c(c, "g"); });
@@ -104,7 +104,7 @@ TEST(ExportedC, DifferencesBeyondTheLimitAreRefusedOrCarriedInTheCode) {
 }
 
 TEST(ExportedC, CompensatorsThatCancelTheRateAreRefusedOrWarnedOfInTheCode) {
-  Compensator c = spline_compensator();
+  FittedCompensator c = spline_compensator();
   c.inputs.push_back(parse_input("rate"));
   c.bias = {{{5.0, 45.0}, {0.0, 5.0}}, {}, Polynomial{{0.3, -0.2}, {4.9}}};
   const std::string refusal = rejection([&] { export_c(c, "g"); });
@@ -163,14 +163,14 @@ TEST(ExportedC, SampleHasTheSignalsThatAreRead) {
 }
 
 TEST(ExportedC, WhatAFileSaysOfItsMethodStaysInTheComment) {
-  Compensator c = spline_compensator();
+  FittedCompensator c = spline_compensator();
   c.provenance.method = "spline */ int evil; /* \\\n?";
   const std::string header = export_c(c, "g").header;
   EXPECT_TRUE(holds(header, "drift: spline __ int evil; __ ___.\n"));
 }
 
 TEST(ExportedC, ParameterBeyondSinglePrecisionIsRefused) {
-  Compensator c = spline_compensator();
+  FittedCompensator c = spline_compensator();
   c.bias.bias_scale.centre = 1e300;
   EXPECT_TRUE(holds(rejection([&] { export_c(c, "g"); }),
                     "does not fit single precision"));

@@ -22,8 +22,8 @@ constexpr RandomPurpose kRestNoise{901};
 
 /// sigma of 0.1 deg/s at every temperature, 0.2 more at power-on, 3 deg/s/(K/s)
 /// on a ramp, all in squares, times a factor of 2.
-Compensator uncertain_compensator() {
-  Compensator c = spline_compensator();
+FittedCompensator uncertain_compensator() {
+  FittedCompensator c = spline_compensator();
   c.sigma = BiasSigma{.curve = {Eigen::ArrayXd::LinSpaced(2, -40.0, 50.0),
                                 Eigen::ArrayXd::Constant(2, 0.1)},
                       .growth = {0.01, 0.01},
@@ -189,7 +189,7 @@ TEST(RestNoise, FindsTheWhiteNoiseAndBoundsTheWalk) {
 }
 
 TEST(RestNoise, RefusesWhatIsNoRest) {
-  const Compensator c = spline_compensator();
+  const FittedCompensator c = spline_compensator();
   EXPECT_TRUE(holds(rejection([&] { rest_noise(c, noisy_rest(3.0)); }),
                     "samples show too little"));
   const Recording turning = RecordedRun{.true_rate = [](double t) {

@@ -108,8 +108,8 @@ double compensator_bias(const BiasModel& bias, double temperature,
   return bias.predict(x)(0);
 }
 
-Compensator of_bias(const BiasModel& bias) {
-  Compensator c = spline_compensator();
+FittedCompensator of_bias(const BiasModel& bias) {
+  FittedCompensator c = spline_compensator();
   c.bias = bias;
   return c;
 }
@@ -258,13 +258,13 @@ TEST(AutopilotParameters, AxesWithoutACommonTemperatureAreRefused) {
       << message;
 }
 
-std::string refusal(const Compensator& c) {
+std::string refusal(const FittedCompensator& c) {
   return rejection([&] { autopilot_cubic(c, false); });
 }
 
 TEST(AutopilotCubic, RefusalNamesTheReasonAndWhatACubicWouldLeave) {
   for (const auto& [compensator, reason] :
-       std::vector<std::pair<Compensator, std::string>>{
+       std::vector<std::pair<FittedCompensator, std::string>>{
            {of_bias(polynomial({1, 2, 3, 4, 5, 6})), "its degree is 5"},
            {spline_compensator(), "it is of kind spline"},
            {network_compensator(), "it is of kind bp"}})
@@ -278,7 +278,7 @@ TEST(AutopilotCubic, RefusalNamesTheReasonAndWhatACubicWouldLeave) {
 }
 
 TEST(AutopilotCubic, RefusalTellsHeldOutResidualsOfBoth) {
-  Compensator c = spline_compensator();
+  FittedCompensator c = spline_compensator();
   c.provenance.baseline_held_out_rms = 0.5;
   EXPECT_NE(refusal(c).find("0.4 deg/s rms in-sample and 0.5 held-out where "
                             "this one has 0.1429 and 0.2857"),
@@ -287,7 +287,7 @@ TEST(AutopilotCubic, RefusalTellsHeldOutResidualsOfBoth) {
 }
 
 TEST(AutopilotCubic, OtherInputsAndAScaleFactorAreRefused) {
-  Compensator c = of_bias(polynomial({1, 2}));
+  FittedCompensator c = of_bias(polynomial({1, 2}));
   EXPECT_NO_THROW(autopilot_cubic(c, false));
   c.inputs = {parse_input("temperature_lowpass(100)")};
   EXPECT_NE(refusal(c).find("it has other inputs than the temperature"),
@@ -305,9 +305,9 @@ TEST(AutopilotCubic, OtherInputsAndAScaleFactorAreRefused) {
 }
 
 TEST(AutopilotCubic, FitCubicExportsTheBaselineOfACompensatorThatIsNoCubic) {
-  const Compensator spline = spline_compensator();
+  const FittedCompensator spline = spline_compensator();
   const BiasModel cubic = autopilot_cubic(spline, true);
-  const Compensator own = of_bias(polynomial({0.3, -1.2}));
+  const FittedCompensator own = of_bias(polynomial({0.3, -1.2}));
   for (const double T : {-40.0, 0.0, 50.0}) {
     EXPECT_EQ(compensator_bias(cubic, T), compensator_bias(spline.baseline, T));
     EXPECT_EQ(compensator_bias(autopilot_cubic(own, true), T),

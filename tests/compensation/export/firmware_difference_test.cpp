@@ -10,8 +10,8 @@ namespace beamgyro::internal::firmware_difference_test {
 namespace {
 
 // A network whose output weights are `weight` and -weight in turn.
-Compensator with_output_weights(double weight) {
-  Compensator c = network_compensator();
+FittedCompensator with_output_weights(double weight) {
+  FittedCompensator c = network_compensator();
   auto& network = std::get<BpNetwork>(c.bias.function);
   Eigen::VectorXd w = network.weights();
   const Eigen::Index last = w.size() - 5;  // weights of four neurons, bias
@@ -21,9 +21,9 @@ Compensator with_output_weights(double weight) {
   return c;
 }
 
-Compensator of_input(const std::string& name, const Scale& scale,
-                     double slope) {
-  Compensator c;
+FittedCompensator of_input(const std::string& name, const Scale& scale,
+                           double slope) {
+  FittedCompensator c;
   c.inputs = {parse_input(name)};
   c.bias = {{scale}, {}, Polynomial{{0.0, slope}}};
   c.baseline = {{Scale{}}, {}, Polynomial{{0.0}}};
@@ -75,7 +75,7 @@ TEST(FirmwareDifference, SignalsWhoseRangeTheFileDoesNotTellAreRefused) {
 TEST(FirmwareDifference, AnswersThatAreNotFiniteInSingleAreRefused) {
   EXPECT_TRUE(
       holds(rejection([&] {
-              Compensator c = of_input("temperature", {5.0, 45.0}, 3e38);
+              FittedCompensator c = of_input("temperature", {5.0, 45.0}, 3e38);
               c.bias.bias_scale.half_width = 3e38;
               firmware_difference(c);
             }),

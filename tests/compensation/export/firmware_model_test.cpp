@@ -46,7 +46,8 @@ Recording eventful_recording() {
 }
 
 // Largest difference [deg/s] from compensated_rate() in double precision.
-double worst_error(const Compensator& compensator, const Recording& recording) {
+double worst_error(const FittedCompensator& compensator,
+                   const Recording& recording) {
   const std::vector<double> expected = compensated_rate(compensator, recording);
   FirmwareModel model(compensator);
   bool powered = false;
@@ -69,8 +70,8 @@ double worst_error(const Compensator& compensator, const Recording& recording) {
 }
 
 // rate - f(input), f the identity unless it is told otherwise.
-Compensator of_input(const std::string& name) {
-  Compensator c;
+FittedCompensator of_input(const std::string& name) {
+  FittedCompensator c;
   c.inputs = {parse_input(name)};
   c.bias = {{Scale{}}, {}, Polynomial{{0.0, 1.0}}};
   c.temperature_range = {.lowest = -300.0, .highest = 300.0};
@@ -100,7 +101,7 @@ TEST(FirmwareModel, AgreesWithDoublePrecisionOverPowerCycles) {
 
 // As training without weight decay leaves them: neurons that cancel.
 TEST(FirmwareModel, LargeWeightsOfANetworkAgreeTo1e4) {
-  Compensator c = network_compensator();
+  FittedCompensator c = network_compensator();
   auto& network = std::get<BpNetwork>(c.bias.function);
   Eigen::VectorXd w = network.weights();
   const Eigen::Index last = w.size() - 5;  // weights of four neurons, bias
@@ -183,7 +184,7 @@ TEST(FirmwareModel, TimeSincePowerOnDecaysExponentially) {
 }
 
 TEST(FirmwareModel, HyperbolicTangentIsGoodTo5e7) {
-  Compensator c = of_input("temperature");
+  FittedCompensator c = of_input("temperature");
   BpNetwork network({1, 1, 1});
   network.set_weights(Eigen::Vector4d(1.0, 0.0, 1.0, 0.0));
   c.bias.function = network;
@@ -225,7 +226,7 @@ TEST(FirmwareModel, TemperatureThatIsNoNumberGivesNoneAndHarmsNoFilter) {
 
 TEST(FirmwareModel, TemperatureThatIsInfiniteGivesNoneAndHarmsNoFilter) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  Compensator c = of_input("temperature_lowpass(100)");
+  FittedCompensator c = of_input("temperature_lowpass(100)");
   c.temperature_range = {.lowest = -40.0, .highest = 50.0};
   for (const float infinite : {kInfinity, -kInfinity}) {
     FirmwareModel model(c);
@@ -238,7 +239,7 @@ TEST(FirmwareModel, TemperatureThatIsInfiniteGivesNoneAndHarmsNoFilter) {
 }
 
 TEST(FirmwareModel, SigmaForgetsAGlitchOfTheTemperature) {
-  const Compensator c = with_sigma(spline_compensator());
+  const FittedCompensator c = with_sigma(spline_compensator());
   FirmwareModel model(c);
   model.start(1.0f);
   model.step(at(20.0f));
@@ -258,7 +259,7 @@ TEST(FirmwareModel, SigmaForgetsAGlitchOfTheTemperature) {
 
 // A network would saturate at an infinite input, and answer.
 TEST(FirmwareModel, AnyInputThatIsNotFiniteGivesNone) {
-  const Compensator c = one_of_each_kind().back().compensator;
+  const FittedCompensator c = one_of_each_kind().back().compensator;
   for (const float bad : {kNan, std::numeric_limits<float>::infinity(),
                           -std::numeric_limits<float>::infinity()})
     for (std::size_t s = 0; s < kFirmwareSignalCount; ++s) {
@@ -308,7 +309,7 @@ TEST(FirmwareModel, ReadsTheSignalsOfItsInputsOnly) {
 }
 
 TEST(FirmwareModel, ParameterBeyondSinglePrecisionIsNamed) {
-  Compensator c = of_input("temperature");
+  FittedCompensator c = of_input("temperature");
   c.bias.function = Polynomial{{0.0, 1e39}};
   EXPECT_EQ(rejection([&] { const FirmwareModel model(c); }),
             "the parameter 1e+39 does not fit single precision");
@@ -323,7 +324,7 @@ TEST(Crc32, OfTheBytesOfSinglesLeastSignificantFirst) {
 }
 
 TEST(Crc32, CoversEveryParameter) {
-  Compensator c = of_input("temperature");
+  FittedCompensator c = of_input("temperature");
   const std::uint32_t before = FirmwareModel(c).crc();
   std::get<Polynomial>(c.bias.function).coefficients[1] = 1.0000001;
   const std::uint32_t coefficient = FirmwareModel(c).crc();

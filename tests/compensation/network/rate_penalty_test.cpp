@@ -141,7 +141,7 @@ struct Kept {
   double recorded, added;  // [-], what departs most from 1, and the least
 };
 
-Kept kept(const Compensator& c) {
+Kept kept(const FittedCompensator& c) {
   RecordedRun turning{.duration = 2640.0, .step = 1.0};
   turning.temperature = [](double t) { return 10.0 + 0.005 * t; };
   turning.bias = [T = turning.temperature](double t) {

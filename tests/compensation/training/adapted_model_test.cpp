@@ -49,7 +49,7 @@ ModelSpec population_spec() {
           .kind = PopulationSpec{}};
 }
 
-Compensator population() {
+FittedCompensator population() {
   return train(population_spec(), units(0, 20), units(20, 4), 1).compensator;
 }
 
@@ -76,7 +76,7 @@ const char* const kAdapted =
     "kind = \"adapted\"\npopulation = \"population.json\"\n";
 
 TEST(PopulationModel, IsItsMeanAndComesBackFromAFile) {
-  const Compensator c = population();
+  const FittedCompensator c = population();
   EXPECT_EQ(kind_name(c.bias), "spline");
   EXPECT_EQ(input_names(c.inputs), std::vector<std::string>{"temperature"});
   EXPECT_EQ(c.temperature_range, (TemperatureRange{-40.0, 50.0}));
@@ -85,7 +85,7 @@ TEST(PopulationModel, IsItsMeanAndComesBackFromAFile) {
   EXPECT_NEAR(c.bias.predict(Eigen::ArrayXXd::Constant(1, 1, 17.0))(0), mean,
               1e-9);
   const std::string text = compensator_text(c);
-  const Compensator again = parse_compensator(text, "c.json");
+  const FittedCompensator again = parse_compensator(text, "c.json");
   EXPECT_EQ(compensator_text(again), text);
   ASSERT_TRUE(again.population.has_value());
   EXPECT_TRUE(again.population->modes == c.population->modes);
@@ -99,7 +99,7 @@ TEST_F(AdaptedModel, ThreeSoaksOfAnUnseenUnitTellItsCurve) {
             (std::vector<std::string>{"temperature", "quadrature"}));
   const TrainResult result =
       train(spec, {unit_run(31, {-33.0, -5.0, 45.0})}, {}, 1);
-  const Compensator& c = result.compensator;
+  const FittedCompensator& c = result.compensator;
   EXPECT_EQ(input_names(c.inputs), std::vector<std::string>{"temperature"});
   EXPECT_EQ(c.temperature_range, (TemperatureRange{-40.0, 50.0}));
   EXPECT_FALSE(c.population.has_value());
@@ -123,7 +123,7 @@ TEST_F(AdaptedModel, OneSoakWithAChannelTellsMoreThanWithout) {
     const ModelSpec spec = model(text);
     double sum = 0.0;
     for (int unit = 30; unit < 60; ++unit) {
-      const Compensator c =
+      const FittedCompensator c =
           train(spec, {unit_run(unit, {5.0})}, {}, 1).compensator;
       const double left =
           c.bias.predict(Eigen::ArrayXXd::Constant(1, 1, 50.0))(0) -
@@ -155,7 +155,7 @@ TEST_F(AdaptedModel, RefusesWhatIsNoPopulation) {
       "kind = \"population\"\ninputs = [\"temperature\", "
       "\"temperature_lowpass(100)\"]\n",
       "takes what a soak shows");
-  Compensator plain = population();
+  FittedCompensator plain = population();
   plain.population.reset();
   write_text_file(folder_ / "population.json", compensator_text(plain));
   says(kAdapted, "is a compensator without a population");

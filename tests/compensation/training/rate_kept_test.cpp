@@ -26,8 +26,8 @@ std::vector<TrainingRun> ramp(bool at_rest, const char* sha256, double start) {
   return {{"ramp.h5", sha256, run.recording()}};
 }
 
-Compensator trained(const std::vector<const char*>& inputs, const FitSpec& kind,
-                    bool at_rest = true) {
+FittedCompensator trained(const std::vector<const char*>& inputs,
+                          const FitSpec& kind, bool at_rest = true) {
   ModelSpec spec{.kind = kind};
   for (const char* input : inputs) spec.inputs.push_back(parse_input(input));
   spec.rows.seconds = 10.0;

@@ -118,7 +118,7 @@ TEST(ScaleFactorTable, ATrainedCompensatorCorrectsIt) {
   ModelSpec spec{.inputs = {parse_input("temperature")},
                  .kind = PolynomialSpec{3}};
   const auto slope = [&](const ModelSpec& model) {
-    const Compensator c =
+    const FittedCompensator c =
         train(model, run("training", training), {}, 1).compensator;
     return scale_factor(slope_sums(other, compensated_rate(c, other)))->slope;
   };
@@ -134,7 +134,7 @@ TEST(ScaleFactorTable, TheBiasIsWhatTheCorrectedRateLeaves) {
                  .kind = ConstantSpec{},
                  .scale_factor_bin_K = 10.0};
   const Recording recording = made.recording();
-  const Compensator c =
+  const FittedCompensator c =
       train(spec, run("training", recording), {}, 1).compensator;
   EXPECT_NEAR(std::get<ConstantBias>(c.bias.function).value, 0.7, 1e-7);
   const std::vector<double> rate = compensated_rate(c, recording);

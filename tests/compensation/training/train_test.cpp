@@ -77,7 +77,7 @@ TEST(Train, EveryKindBeatsItsBaselineOnUnseenSoaks) {
   for (const ModelSpec& spec :
        {curve_spec(SplineSpec{}), curve_spec(PolynomialSpec{9}),
         network_spec({"temperature"}, 6)}) {
-    const Compensator c = train(spec, kSoaks, kOffGrid, 1).compensator;
+    const FittedCompensator c = train(spec, kSoaks, kOffGrid, 1).compensator;
     EXPECT_LT(rms(compensated_rate(c, unseen)),
               0.15 * rms(baseline_rate(c, unseen)))
         << kind_name(c.bias);
@@ -155,11 +155,11 @@ TEST(Train, FilteredTemperatureTakesTheLagOfTheBeamIntoAccount) {
   const std::vector<TrainingRun> held_out =
       runs({ramp(1.25 / 60.0, 4320.0)}, "held");
   const Recording unseen = ramp(1.5 / 60.0, 3600.0);
-  const Compensator lagged =
+  const FittedCompensator lagged =
       train(network_spec({"temperature", "temperature_lowpass(200)"}, 8),
             training, held_out, 1)
           .compensator;
-  const Compensator plain =
+  const FittedCompensator plain =
       train(network_spec({"temperature"}, 8), training, held_out, 1)
           .compensator;
   EXPECT_LT(rms(compensated_rate(lagged, unseen)),
@@ -178,7 +178,7 @@ TEST(Train, AnAverageWithAConstantIsStoredAndExportedAsItsKind) {
   const ModelSpec spec{.inputs = inputs,
                        .candidates = {{"constant", inputs, ConstantSpec{}},
                                       {"linear", inputs, PolynomialSpec{1}}}};
-  const Compensator c =
+  const FittedCompensator c =
       train(spec, runs({leg(-40.0, 40.0, 1.0), leg(40.0, -40.0, 0.3)}, "leg"),
             {}, 1)
           .compensator;
@@ -193,7 +193,8 @@ TEST(Train, AnAverageWithAConstantIsStoredAndExportedAsItsKind) {
   EXPECT_NE(export_c(c, "average").source.find("coefficients"),
             std::string::npos);
   const Recording unseen = leg(-40.0, 40.0, 0.5);
-  const Compensator again = parse_compensator(compensator_text(c), "c.json");
+  const FittedCompensator again =
+      parse_compensator(compensator_text(c), "c.json");
   EXPECT_EQ(again.provenance, c.provenance);
   EXPECT_EQ(compensated_rate(again, unseen), compensated_rate(c, unseen));
   ASSERT_FALSE(c.provenance.warnings.empty());

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // A good file whose sigma has the patch merged into it.
-Compensator parsed_with(const std::string& patch) {
+FittedCompensator parsed_with(const std::string& patch) {
   Json json = Json::parse(compensator_text(with_sigma(spline_compensator())));
   json["sigma"].merge_patch(Json::parse(patch));
   return parse_compensator(json.dump(), "mine.json");

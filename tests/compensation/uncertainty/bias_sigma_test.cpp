@@ -113,7 +113,7 @@ TEST(CompensatedRateSigma, IsEmptyWithoutOneAndOverTheScaleFactor) {
   run.temperature = [](double) { return 10.0; };
   const Recording recording = run.recording();
   EXPECT_TRUE(compensated_rate_sigma(spline_compensator(), recording).empty());
-  Compensator c = with_sigma(spline_compensator());
+  FittedCompensator c = with_sigma(spline_compensator());
   const std::vector<double> plain = compensated_rate_sigma(c, recording);
   EXPECT_EQ(plain, sigma_of(*c.sigma, recording));
   c.scale_factor = LookupTable{Eigen::ArrayXd{{10.0}}, Eigen::ArrayXd{{0.5}}};

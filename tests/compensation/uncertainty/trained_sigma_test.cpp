@@ -62,7 +62,7 @@ ModelSpec line_spec() {
 }
 
 // Share of the samples within the 90 % interval.
-double covered_share(const Compensator& c, const Recording& recording) {
+double covered_share(const FittedCompensator& c, const Recording& recording) {
   const std::vector<double> rate = compensated_rate(c, recording);
   const std::vector<double> sigma = compensated_rate_sigma(c, recording);
   double covered = 0.0;
@@ -72,7 +72,8 @@ double covered_share(const Compensator& c, const Recording& recording) {
 }
 
 TEST(TrainedSigma, OfALineIsTheSpreadOfSoaksWhenNothingIsHeldOut) {
-  const Compensator c = train(line_spec(), soak_runs(3, 10), {}, 1).compensator;
+  const FittedCompensator c =
+      train(line_spec(), soak_runs(3, 10), {}, 1).compensator;
   ASSERT_TRUE(c.sigma);
   EXPECT_EQ(c.sigma->source, SigmaSource::kCovariance);
   // 30 soaks of 0.05 deg/s: their deviation is known to 13 %, and a line
@@ -83,7 +84,8 @@ TEST(TrainedSigma, OfALineIsTheSpreadOfSoaksWhenNothingIsHeldOut) {
 }
 
 TEST(TrainedSigma, IsWiderWhereTheFitIsLessSure) {
-  const Compensator c = train(line_spec(), soak_runs(1, 20), {}, 1).compensator;
+  const FittedCompensator c =
+      train(line_spec(), soak_runs(1, 20), {}, 1).compensator;
   ASSERT_TRUE(c.sigma);
   const ArrayXd& T = c.sigma->curve.temperatures;
   const double lowest = T(0), highest = T(T.size() - 1);
@@ -96,7 +98,7 @@ TEST(TrainedSigma, IsWiderWhereTheFitIsLessSure) {
 }
 
 TEST(TrainedSigma, HeldOutRunsCalibrateIt) {
-  const Compensator c =
+  const FittedCompensator c =
       train(line_spec(), soak_runs(2, 30), soak_runs(12, 40), 1).compensator;
   ASSERT_TRUE(c.sigma);
   EXPECT_EQ(c.sigma->calibration.by, "run");
@@ -127,7 +129,7 @@ TEST(TrainedSigma, ATableHasOneFromHeldOutRunsOnly) {
   EXPECT_FALSE(alone.compensator.sigma);
   EXPECT_EQ(alone.sigma_remarks,
             Names{"no sigma: it takes residuals of held-out runs"});
-  const Compensator c =
+  const FittedCompensator c =
       train(spec, soak_runs(1, 90), soak_runs(2, 91), 1).compensator;
   ASSERT_TRUE(c.sigma);
   EXPECT_EQ(c.sigma->source, SigmaSource::kResiduals);
@@ -173,7 +175,7 @@ TEST(LeftOutSigma, SaysWhyThereIsNone) {
 
 TEST(TrainedSigma, IsTheSameForTheSameRuns) {
   const auto text = [] {
-    const Compensator c =
+    const FittedCompensator c =
         train(line_spec(), soak_runs(2, 30), soak_runs(3, 40), 1).compensator;
     return c.sigma->curve.values;
   };

@@ -110,7 +110,7 @@ TEST(DeviceMerits, ACompensatorThatKnowsTheCurveLeavesTheCubicsResidual) {
   MeritOptions options;
   const StaticCurve curve = static_curve(make_gyro(device), options.grid);
   const Eigen::ArrayXXd x = curve.temperature;
-  auto compensator = std::make_shared<Compensator>();
+  auto compensator = std::make_shared<FittedCompensator>();
   compensator->inputs = {parse_input("temperature_lowpass(100)")};
   compensator->bias.input_scales = {Scale{}};
   compensator->bias.function = fit_polynomial(x, curve.bias, 3);

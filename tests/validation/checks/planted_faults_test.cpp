@@ -388,7 +388,7 @@ std::vector<double> twice(const Recording& run) {
 }
 
 std::vector<double> in_reverse_order(const Recording& run) {
-  Compensator compensator = trained("cubic");
+  FittedCompensator compensator = trained("cubic");
   auto& polynomial = std::get<Polynomial>(compensator.bias.function);
   std::ranges::reverse(polynomial.coefficients);
   return compensated_rate(compensator, run);

@@ -74,8 +74,8 @@ TrainingRun training_sweep(int number) {
                  "", "17400", "1", 800 + static_cast<unsigned>(number))};
 }
 
-const Compensator& trained(const std::string& model) {
-  static std::map<std::string, Compensator> compensators;
+const FittedCompensator& trained(const std::string& model) {
+  static std::map<std::string, FittedCompensator> compensators;
   const auto found = compensators.find(model);
   if (found != compensators.end()) return found->second;
   const ModelSpec spec = read_model(std::string(BEAMGYRO_SCENARIOS) +

@@ -27,7 +27,7 @@ const std::vector<SimulatedRun>& simulated_runs();
 TrainingRun training_sweep(int number);
 
 /// Returns a compensator that the shipped model of that name trains on them.
-const Compensator& trained(const std::string& model);
+const FittedCompensator& trained(const std::string& model);
 
 /// A compensator under test whose answers are a function of the run.
 class FunctionCompensator : public TestedCompensator {

@@ -248,7 +248,7 @@ TEST_F(CommandCompensator, AnEmptyCommandIsRefused) {
 }
 
 TEST(FileCompensator, AnswersAsCompensate) {
-  const Compensator compensator = spline_compensator();
+  const FittedCompensator compensator = spline_compensator();
   const Recording run = tested_run();
   const auto file = tested(compensator);
   const Answer answer = file->answer(run);
