@@ -14,10 +14,11 @@
 #include <set>
 #include <stdexcept>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "api/checked_number.h"
-#include "api/compensator_state.h"
+#include "api/compensators.h"
 #include "compensation/export/export_c.h"
 #include "compensation/export/export_ekf.h"
 #include "compensation/export/export_parameters.h"
@@ -39,13 +40,12 @@ struct ExportRequest {
 
 const FittedCompensator& compensator_of(const ExportRequest& asked,
                                         std::size_t k) {
-  return asked.compensators[k].state().compensator;
+  return asked.compensators[k].content().compensator;
 }
 
 // In messages.
 std::string file_of(const ExportRequest& asked, std::size_t k) {
-  const Compensator::State& state = asked.compensators[k].state();
-  return state.file.empty() ? state.name : state.file;
+  return asked.compensators[k].content().path();
 }
 
 // Runs `work` and puts the name of the compensator's file before an error.
@@ -155,7 +155,7 @@ void ekf_files(const ExportRequest& asked, const std::string& name,
         "taken",
         NamedOption{"rest"});
   const Compensator& own = asked.compensators[0];
-  const FittedCompensator& compensator = own.state().compensator;
+  const FittedCompensator& compensator = own.content().compensator;
   EkfExport given{.name = name,
                   .axis = axes_of(asked)[0],
                   .compensator = {own.name(), sha256(own.text())},
@@ -188,32 +188,27 @@ void require_options(const ExportRequest& asked) {
   check_number("correlation_K", asked.options.correlation_K, positive());
   check_number("temperature_degC", asked.options.temperature_degC,
                {-273.15, 1000.0});
-  const auto refuse = [&](bool given, const char* option, const char* formats) {
-    if (given)
+  const ExportOptions& o = asked.options;
+  const std::tuple<bool, const char*, std::string_view> formats_of[] = {
+      {o.device_id.has_value(), "device_id", "px4"},
+      {o.force, "force", "c"},
+      {o.rest.has_value(), "rest", "ekf"},
+      {o.ramp_K_per_min.has_value(), "ramp_K_per_min", "ekf"},
+      {o.correlation_K.has_value(), "correlation_K", "ekf"},
+      {o.temperature_degC.has_value(), "temperature_degC", "ekf"},
+      {!o.axes.empty(), "axes", "px4, ardupilot and ekf"},
+      {o.instance.has_value(), "instance", "px4 and ardupilot"},
+      {o.fit_cubic, "fit_cubic", "px4 and ardupilot"}};
+  for (const auto& [given, option, formats] : formats_of)
+    if (given && formats.find(asked.format) == formats.npos)
       throw option_error("{}: is for the formats {}, not for {}",
                          NamedOption{option}, formats, asked.format);
-  };
-  const std::string& format = asked.format;
-  if (format != "px4")
-    refuse(asked.options.device_id.has_value(), "device_id", "px4");
-  if (format != "c") refuse(asked.options.force, "force", "c");
-  if (format != "ekf") {
-    refuse(asked.options.rest.has_value(), "rest", "ekf");
-    refuse(asked.options.ramp_K_per_min.has_value(), "ramp_K_per_min", "ekf");
-    refuse(asked.options.correlation_K.has_value(), "correlation_K", "ekf");
-    refuse(asked.options.temperature_degC.has_value(), "temperature_degC",
-           "ekf");
-  }
-  if (format == "px4" || format == "ardupilot") return;
-  if (format == "c")
-    refuse(!asked.options.axes.empty(), "axes", "px4, ardupilot and ekf");
-  refuse(asked.options.instance.has_value(), "instance", "px4 and ardupilot");
-  refuse(asked.options.fit_cubic, "fit_cubic", "px4 and ardupilot");
+  if (asked.format == "px4" || asked.format == "ardupilot") return;
   if (asked.compensators.size() > 1)
     throw std::invalid_argument(fmt::format(
         "several compensators: is for the formats px4 and ardupilot, not for "
         "{}",
-        format));
+        asked.format));
 }
 
 void require_words(const ExportRequest& asked) {

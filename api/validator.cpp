@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "api/device_state.h"
 #include "api/program_version.h"
+#include "api/scenario_state.h"
 #include "api/validation_members.h"
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/rows/set_runs.h"
@@ -86,7 +86,7 @@ struct Validator::State {
   }
 
   void read_device() {
-    device = {options.device->state().device, options.device->text()};
+    device = {options.device->content().device, options.device->text()};
     const std::vector<std::string> overrides = options.device->overrides();
     for (const std::string& line : overrides) device.overrides += line + '\n';
     qualification = read_qualification(*options.qualification);
@@ -236,7 +236,6 @@ Validator::Validator(CompensatorSource source, ValidationOptions options,
 }
 
 Validator::~Validator() = default;
-Validator::Validator(Validator&&) noexcept = default;
 
 const CompensatorSource& Validator::source() const { return state_->source; }
 const ValidationOptions& Validator::options() const { return state_->options; }

@@ -114,9 +114,9 @@ Reasons reasons_of(const SpecificationFile& specification,
   Reasons reasons;
   for (const auto& [limit, decision] : result.limits) {
     // A metric may have a limit of its own and some relative to other rates.
-    if (decision.result == Conformity::kFail)
+    if (decision.result == Verdict::kFail)
       add_name(reasons.against, limit.metric);
-    if (decision.result == Conformity::kUndecided)
+    if (decision.result == Verdict::kUndecided)
       add_name(reasons.open, limit.metric);
   }
   reasons.no_use = words_of_no_use(result.comparisons);
@@ -313,13 +313,13 @@ void decide_without_seeds(const SpecificationFile& specification,
                           ValidationResult& result) {
   const Reasons reasons = reasons_of(specification, result);
   if (!reasons.no_use.empty() || !reasons.against.empty()) {
-    result.verdict = Conformity::kFail;
+    result.verdict = Verdict::kFail;
     result.words = failure_words(reasons);
     result.next = next_after_failure(reasons);
     return;
   }
   if (!reasons.open.empty()) {
-    result.verdict = Conformity::kUndecided;
+    result.verdict = Verdict::kUndecided;
     result.words = fmt::format("No run could decide on {}.",
                                fmt::join(reasons.open, ", "));
     const auto first =
@@ -331,7 +331,7 @@ void decide_without_seeds(const SpecificationFile& specification,
                       : "add runs, or longer ones: they narrow the intervals";
     return;
   }
-  result.verdict = Conformity::kPass;
+  result.verdict = Verdict::kPass;
   result.words = pass_words(result, reasons);
   result.next = !reasons.untested.empty() ? test_of(*reasons.untested.front())
                 : specification.may_leave_untested

@@ -44,15 +44,15 @@ struct DeviceOutcome {
 };
 
 DeviceVerdict failed(const std::string& words) {
-  return {Conformity::kFail, words.substr(0, words.find('\n'))};
+  return {Verdict::kFail, words.substr(0, words.find('\n'))};
 }
 
 DeviceVerdict verdict_on(const std::vector<DecidedLimit>& limits) {
-  std::vector<Conformity> results;
+  std::vector<Verdict> results;
   for (const auto& [limit, decision] : limits)
     results.push_back(decision.result);
   DeviceVerdict verdict{worst_of(results)};
-  if (verdict.verdict == Conformity::kPass) return verdict;
+  if (verdict.verdict == Verdict::kPass) return verdict;
   const auto& [limit, decision] = limits[static_cast<std::size_t>(
       std::ranges::find(results, verdict.verdict) - results.begin())];
   verdict.words = fmt::format("{}: {}", limit.metric, decision.words);
@@ -132,13 +132,13 @@ void count(const std::vector<DeviceOutcome>& outcomes,
   for (const DeviceOutcome& outcome : outcomes) {
     result.devices.push_back(outcome.verdict);
     switch (outcome.verdict.verdict) {
-      case Conformity::kPass:
+      case Verdict::kPass:
         ++result.passed;
         break;
-      case Conformity::kFail:
+      case Verdict::kFail:
         ++result.failed;
         break;
-      case Conformity::kUndecided:
+      case Verdict::kUndecided:
         ++result.undecided;
         break;
     }

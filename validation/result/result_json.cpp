@@ -41,7 +41,7 @@ Json limit_json(const Limit& limit) {
 void add_limits_of(const std::string_view metric,
                    const std::vector<DecidedLimit>& limits, Json& json) {
   Json value, words = Json::array();
-  std::vector<Conformity> results;
+  std::vector<Verdict> results;
   for (const auto& [limit, decision] : limits) {
     if (limit.metric != metric) continue;
     if (value.is_null() && limit.relative_to.empty()) value = limit_json(limit);
@@ -51,7 +51,7 @@ void add_limits_of(const std::string_view metric,
   json["limit"] = value;
   json["limits"] = words;
   json["result"] =
-      results.empty() ? Json() : Json(conformity_name(worst_of(results)));
+      results.empty() ? Json() : Json(verdict_name(worst_of(results)));
 }
 
 Json metric_json(const MetricResult& result,
@@ -82,7 +82,7 @@ Json decided_json(const DecidedLimit& decided) {
           {"compared", estimate_json(decision.compared)},
           {"margin", number_or_null(decision.margin)},
           {"guard_band", number_or_null(decision.guard_band)},
-          {"result", conformity_name(decision.result)},
+          {"result", verdict_name(decision.result)},
           {"words", decision.words}};
 }
 
@@ -128,8 +128,8 @@ Json yield_json(const PopulationYield& population) {
   if (!population.shown.empty()) json["shown_device"] = population.shown;
   Json& devices = json["verdicts"] = Json::array();
   for (const DeviceVerdict& device : population.devices) {
-    devices.push_back({{"verdict", conformity_name(device.verdict)},
-                       {"words", device.words}});
+    devices.push_back(
+        {{"verdict", verdict_name(device.verdict)}, {"words", device.words}});
     if (!device.number.empty()) devices.back()["device"] = device.number;
   }
   Json& metrics = json["metrics"] = Json::array();
@@ -189,7 +189,7 @@ nlohmann::ordered_json metrics_json(const std::vector<MetricResult>& metrics,
 
 nlohmann::ordered_json to_json(const ValidationResult& result) {
   Json json{{"filetype", "beamgyro-validation"},
-            {"verdict", conformity_name(result.verdict)},
+            {"verdict", verdict_name(result.verdict)},
             {"words", result.words},
             {"next", result.next},
             {"compensator",

@@ -19,7 +19,7 @@
 namespace beamgyro::internal {
 namespace {
 
-bool is_more_severe(Conformity one, Conformity other) {
+bool is_more_severe(Verdict one, Verdict other) {
   return one != other && worst_of(std::array{one, other}) == one;
 }
 
@@ -63,13 +63,13 @@ class SetJudge {
 
   SetVerdicts finish() {
     PopulationYield& all = found_.devices;
-    const auto number_of = [&](Conformity verdict) {
+    const auto number_of = [&](Verdict verdict) {
       return static_cast<std::size_t>(
           std::ranges::count(all.devices, verdict, &DeviceVerdict::verdict));
     };
-    all.passed = number_of(Conformity::kPass);
-    all.failed = number_of(Conformity::kFail);
-    all.undecided = number_of(Conformity::kUndecided);
+    all.passed = number_of(Verdict::kPass);
+    all.failed = number_of(Verdict::kFail);
+    all.undecided = number_of(Verdict::kUndecided);
     all.interval = clopper_pearson(static_cast<double>(all.passed),
                                    static_cast<double>(all.devices.size()));
     if (found_.shown.sigma) found_.shown.sigma = sigma_report(sigma_);

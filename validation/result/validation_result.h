@@ -98,7 +98,7 @@ struct PopulationMetric {
 
 /// The answer for one device of a population.
 struct DeviceVerdict {
-  Conformity verdict = Conformity::kUndecided;
+  Verdict verdict = Verdict::kUndecided;
   std::string words = {};   // the first reason against it
   std::string number = {};  // of the device, if it is not its place in the list
 };
@@ -131,7 +131,7 @@ struct ResultProvenance {
 
 /// The answer of the validator.
 struct ValidationResult {
-  Conformity verdict = Conformity::kUndecided;
+  Verdict verdict = Verdict::kUndecided;
   std::string words;  // the reason for it, in a sentence or two
   std::string next;   // what to do next, in a sentence
   JudgedCompensator compensator;

@@ -11,7 +11,21 @@
 
 #include "random/random_stream.h"
 
-namespace beamgyro::internal {
+namespace beamgyro {
+
+std::string_view verdict_name(Verdict conformity) {
+  switch (conformity) {
+    case Verdict::kPass:
+      return "pass";
+    case Verdict::kFail:
+      return "fail";
+    case Verdict::kUndecided:
+      break;
+  }
+  return "undecided";
+}
+
+namespace internal {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -100,10 +114,10 @@ Side side_of(const Estimate& found, double limit, double sign,
           sign > 0.0 ? below : above};
 }
 
-Conformity conformity_of(const Side& side) {
-  if (side.margin >= side.towards) return Conformity::kPass;
-  if (-side.margin > side.away) return Conformity::kFail;
-  return Conformity::kUndecided;
+Verdict conformity_of(const Side& side) {
+  if (side.margin >= side.towards) return Verdict::kPass;
+  if (-side.margin > side.away) return Verdict::kFail;
+  return Verdict::kUndecided;
 }
 
 std::string words_of(const Decision& decision, const Limit& limit) {
@@ -112,13 +126,13 @@ std::string words_of(const Decision& decision, const Limit& limit) {
     return fmt::format("could not be evaluated, must be {}", asked);
   const double value = decision.compared->value;
   switch (decision.result) {
-    case Conformity::kPass:
+    case Verdict::kPass:
       return fmt::format("{:.4g} is {} by {:.3g}", value, asked,
                          *decision.margin);
-    case Conformity::kFail:
+    case Verdict::kFail:
       return fmt::format("{:.4g}, must be {}: beyond by {:.3g}", value, asked,
                          -*decision.margin);
-    case Conformity::kUndecided:
+    case Verdict::kUndecided:
       break;
   }
   if (std::isinf(decision.guard_band))
@@ -132,23 +146,10 @@ std::string words_of(const Decision& decision, const Limit& limit) {
 
 }  // namespace
 
-std::string_view conformity_name(Conformity conformity) {
-  switch (conformity) {
-    case Conformity::kPass:
-      return "pass";
-    case Conformity::kFail:
-      return "fail";
-    case Conformity::kUndecided:
-      break;
-  }
-  return "undecided";
-}
-
-Conformity worst_of(std::span<const Conformity> all) {
-  if (std::ranges::count(all, Conformity::kFail) > 0) return Conformity::kFail;
-  return std::ranges::count(all, Conformity::kUndecided) > 0
-             ? Conformity::kUndecided
-             : Conformity::kPass;
+Verdict worst_of(std::span<const Verdict> all) {
+  if (std::ranges::count(all, Verdict::kFail) > 0) return Verdict::kFail;
+  return std::ranges::count(all, Verdict::kUndecided) > 0 ? Verdict::kUndecided
+                                                          : Verdict::kPass;
 }
 
 Decision decide(const Limit& limit, const std::optional<Estimate>& after,
@@ -167,7 +168,7 @@ Decision decide(const Limit& limit, const std::optional<Estimate>& after,
     if (limit.least)
       sides.push_back(
           side_of(*decision.compared, *limit.least, -1.0, widening));
-    std::vector<Conformity> results;
+    std::vector<Verdict> results;
     for (const Side& side : sides) results.push_back(conformity_of(side));
     decision.result = worst_of(results);
     const auto nearer = std::ranges::min_element(sides, {}, &Side::margin);
@@ -179,4 +180,5 @@ Decision decide(const Limit& limit, const std::optional<Estimate>& after,
   return decision;
 }
 
-}  // namespace beamgyro::internal
+}  // namespace internal
+}  // namespace beamgyro

@@ -4,28 +4,16 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 
+#include "include/beamgyro/verdict.h"
 #include "validation/metrics/metric.h"
 #include "validation/specification/limit.h"
 
 namespace beamgyro::internal {
 
-/// What a measured value says about a limit, after ASME B89.7.3.1: stringent
-/// acceptance and stringent rejection, with a guard band on both sides of the
-/// limit.
-enum class Conformity {
-  kPass,       // "pass": within the limits by the guard band or more
-  kFail,       // "fail": beyond a limit by the guard band or more
-  kUndecided,  // "undecided": within the guard band, or never evaluated
-};
-
-/// Returns the name used in files, as in the comments above.
-std::string_view conformity_name(Conformity conformity);
-
 /// Returns kFail if one of them fails, else kUndecided if one of them is
 /// undecided, else kPass. Of none it is kPass.
-Conformity worst_of(std::span<const Conformity> all);
+Verdict worst_of(std::span<const Verdict> all);
 
 /// The largest probability with which a device beyond a limit passes, for a
 /// guard band of the whole 95 % interval.
@@ -33,7 +21,7 @@ constexpr double kFalseAcceptRisk = 0.025;  // [-]
 
 /// A limit, what was found, and what follows.
 struct Decision {
-  Conformity result = Conformity::kUndecided;
+  Verdict result = Verdict::kUndecided;
   // What was compared with the limit: the value itself, without its sign, or
   // divided by that of another rate.
   std::optional<Estimate> compared = {};

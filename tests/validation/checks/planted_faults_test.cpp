@@ -404,7 +404,7 @@ std::vector<double> off_by_10_kelvin(const Recording& run) {
 
 // The decision on a residual of at most 15 % of the recorded one. The ramps of
 // the runs, 5 K/min, leave 10 % to the sound compensator.
-Conformity residual_decision(const Function& function) {
+Verdict residual_decision(const Function& function) {
   const Limit limit{.metric = "residual_rms_deg_per_s",
                     .most = 0.15,
                     .relative_to = "before"};
@@ -416,11 +416,11 @@ Conformity residual_decision(const Function& function) {
 }
 
 TEST(PlantedFaults, FaultsOfTheBiasAreCaughtByTheResidual) {
-  EXPECT_EQ(residual_decision(sound), Conformity::kPass);
+  EXPECT_EQ(residual_decision(sound), Verdict::kPass);
   for (const Function& fault :
        {Function(twice), Function(in_reverse_order),
         Function(with_the_wrong_sign), Function(off_by_10_kelvin)}) {
-    EXPECT_EQ(residual_decision(fault), Conformity::kFail);
+    EXPECT_EQ(residual_decision(fault), Verdict::kFail);
     EXPECT_EQ(failed(fault), Names{});
   }
 }
@@ -432,7 +432,7 @@ TEST(PlantedFaults, IdentityPassesTheChecksAndLeavesTheDrift) {
   const auto after = residual.evaluate(evidence_of(checked(compensator)));
   const auto before = residual.evaluate(recorded_evidence());
   EXPECT_EQ(after->value, before->value);
-  EXPECT_EQ(residual_decision(identity), Conformity::kFail);
+  EXPECT_EQ(residual_decision(identity), Verdict::kFail);
 }
 
 TEST(PlantedFaults, APerfectCompensatorMeetsEveryShippedLimit) {
@@ -447,10 +447,10 @@ TEST(PlantedFaults, APerfectCompensatorMeetsEveryShippedLimit) {
       const Metric& metric = *find_metric(limit.metric);
       const auto found = metric.evaluate(after);
       const Decision decision = decide(limit, found, metric.evaluate(before));
-      EXPECT_NE(decision.result, Conformity::kFail) << decision.words;
+      EXPECT_NE(decision.result, Verdict::kFail) << decision.words;
       if (limit.metric.starts_with("residual")) {
         EXPECT_LT(std::abs(found->value), 1e-12) << limit.metric;
-        EXPECT_EQ(decision.result, Conformity::kPass) << decision.words;
+        EXPECT_EQ(decision.result, Verdict::kPass) << decision.words;
       }
     }
 }

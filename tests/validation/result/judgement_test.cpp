@@ -13,7 +13,7 @@
 namespace beamgyro::internal::judgement_test {
 namespace {
 
-DecidedLimit decided(const char* metric, Conformity result) {
+DecidedLimit decided(const char* metric, Verdict result) {
   DecidedLimit one;
   one.limit.metric = metric;
   one.limit.most = 1.0;
@@ -25,9 +25,9 @@ CheckResult check(const char* name, CheckOutcome outcome) {
   return {.name = name, .outcome = outcome, .words = "Words."};
 }
 
-constexpr Conformity kPass = Conformity::kPass;
-constexpr Conformity kFail = Conformity::kFail;
-constexpr Conformity kUndecided = Conformity::kUndecided;
+constexpr Verdict kPass = Verdict::kPass;
+constexpr Verdict kFail = Verdict::kFail;
+constexpr Verdict kUndecided = Verdict::kUndecided;
 constexpr CheckOutcome kPassed = CheckOutcome::kPassed;
 constexpr CheckOutcome kNotTested = CheckOutcome::kNotTested;
 

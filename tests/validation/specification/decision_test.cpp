@@ -21,26 +21,26 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const Limit kAtMostOne{.metric = "bias_deg_per_s", .most = 1.0};
 const Limit kAtLeastOne{.metric = "bandwidth_Hz", .least = 1.0};
 
-Conformity result(const Limit& limit, const std::optional<Estimate>& after,
-                  const std::optional<Estimate>& reference = {}) {
+Verdict result(const Limit& limit, const std::optional<Estimate>& after,
+               const std::optional<Estimate>& reference = {}) {
   return decide(limit, after, reference).result;
 }
 
 TEST(Decision, AWholeIntervalWithinTheLimitPassesAndOneBeyondFails) {
   EXPECT_EQ(result(kAtMostOne, Estimate{0.8, Interval{0.7, 1.0}}),
-            Conformity::kPass);
+            Verdict::kPass);
   EXPECT_EQ(result(kAtMostOne, Estimate{0.8, Interval{0.7, 1.01}}),
-            Conformity::kUndecided);
+            Verdict::kUndecided);
   EXPECT_EQ(result(kAtMostOne, Estimate{1.2, Interval{0.99, 1.3}}),
-            Conformity::kUndecided);
+            Verdict::kUndecided);
   EXPECT_EQ(result(kAtMostOne, Estimate{1.2, Interval{1.01, 1.3}}),
-            Conformity::kFail);
+            Verdict::kFail);
   EXPECT_EQ(result(kAtLeastOne, Estimate{1.2, Interval{1.01, 1.3}}),
-            Conformity::kPass);
+            Verdict::kPass);
   EXPECT_EQ(result(kAtLeastOne, Estimate{1.2, Interval{0.99, 1.3}}),
-            Conformity::kUndecided);
+            Verdict::kUndecided);
   EXPECT_EQ(result(kAtLeastOne, Estimate{0.8, Interval{0.7, 0.99}}),
-            Conformity::kFail);
+            Verdict::kFail);
 }
 
 TEST(Decision, MarginAndGuardBandAreThoseOfTheNearerLimit) {
@@ -48,50 +48,48 @@ TEST(Decision, MarginAndGuardBandAreThoseOfTheNearerLimit) {
   const Decision found = decide(both, Estimate{1.06, Interval{1.05, 1.08}});
   EXPECT_NEAR(*found.margin, 0.04, 1e-15);
   EXPECT_NEAR(found.guard_band, 0.02, 1e-15);
-  EXPECT_EQ(found.result, Conformity::kPass);
+  EXPECT_EQ(found.result, Verdict::kPass);
   const Decision beyond = decide(both, Estimate{0.8, Interval{0.75, 0.87}});
   EXPECT_NEAR(*beyond.margin, -0.1, 1e-15);
   EXPECT_NEAR(beyond.guard_band, 0.07, 1e-15);
-  EXPECT_EQ(beyond.result, Conformity::kFail);
+  EXPECT_EQ(beyond.result, Verdict::kFail);
 }
 
 TEST(Decision, AValueWithoutAnIntervalIsDecidedDirectly) {
-  EXPECT_EQ(result(kAtMostOne, Estimate{1.0}), Conformity::kPass);
+  EXPECT_EQ(result(kAtMostOne, Estimate{1.0}), Verdict::kPass);
   EXPECT_EQ(result(kAtMostOne, Estimate{std::nextafter(1.0, 2.0)}),
-            Conformity::kFail);
+            Verdict::kFail);
 }
 
 TEST(Decision, WhatCouldNotBeEvaluatedIsUndecided) {
-  EXPECT_EQ(result(kAtMostOne, std::nullopt), Conformity::kUndecided);
-  EXPECT_EQ(result(kAtMostOne, Estimate{kNan}), Conformity::kUndecided);
-  EXPECT_EQ(result(kAtMostOne, Estimate{kInfinity}), Conformity::kUndecided);
+  EXPECT_EQ(result(kAtMostOne, std::nullopt), Verdict::kUndecided);
+  EXPECT_EQ(result(kAtMostOne, Estimate{kNan}), Verdict::kUndecided);
+  EXPECT_EQ(result(kAtMostOne, Estimate{kInfinity}), Verdict::kUndecided);
   EXPECT_EQ(result(kAtMostOne, Estimate{0.5, Interval{0.4, kNan}}),
-            Conformity::kUndecided);
+            Verdict::kUndecided);
   EXPECT_EQ(result(kAtMostOne, Estimate{0.5, Interval{0.4, kInfinity}}),
-            Conformity::kUndecided);
+            Verdict::kUndecided);
   EXPECT_FALSE(decide(kAtMostOne, std::nullopt).margin.has_value());
 }
 
 TEST(Decision, TheSignCanBeLeftOut) {
   Limit limit = kAtMostOne;
   const Estimate negative{-1.5, Interval{-1.6, -1.4}};
-  EXPECT_EQ(result(limit, negative), Conformity::kPass);
+  EXPECT_EQ(result(limit, negative), Verdict::kPass);
   limit.absolute = true;
-  EXPECT_EQ(result(limit, negative), Conformity::kFail);
+  EXPECT_EQ(result(limit, negative), Verdict::kFail);
   // Both ends count: -1.2 is within the interval.
   EXPECT_EQ(result(limit, Estimate{-0.1, Interval{-1.2, 0.9}}),
-            Conformity::kUndecided);
+            Verdict::kUndecided);
 }
 
 TEST(Decision, AQuotientIsComparedWithItsInterval) {
   Limit limit{.metric = "residual_sigma_deg_per_s", .most = 0.1};
   limit.relative_to = "before";
-  EXPECT_EQ(result(limit, Estimate{0.09}, Estimate{-1.0}), Conformity::kPass);
-  EXPECT_EQ(result(limit, Estimate{0.11}, Estimate{1.0}), Conformity::kFail);
-  EXPECT_EQ(result(limit, Estimate{0.09}, std::nullopt),
-            Conformity::kUndecided);
-  EXPECT_EQ(result(limit, Estimate{0.09}, Estimate{0.0}),
-            Conformity::kUndecided);
+  EXPECT_EQ(result(limit, Estimate{0.09}, Estimate{-1.0}), Verdict::kPass);
+  EXPECT_EQ(result(limit, Estimate{0.11}, Estimate{1.0}), Verdict::kFail);
+  EXPECT_EQ(result(limit, Estimate{0.09}, std::nullopt), Verdict::kUndecided);
+  EXPECT_EQ(result(limit, Estimate{0.09}, Estimate{0.0}), Verdict::kUndecided);
   // Factors 1.1 upwards of both: exp(sqrt(2) ln 1.1) = 1.1443.
   const Decision found = decide(limit, Estimate{0.05, Interval{0.04, 0.055}},
                                 Estimate{1.1, Interval{1.0, 1.3}});
@@ -119,41 +117,41 @@ TEST(Decision, AtARiskOfOneHalfTheValueDecides) {
   };
   for (const double high : {1.3, kInfinity}) {
     EXPECT_EQ(at_one_half(kAtMostOne, Estimate{0.9, Interval{0.4, high}}),
-              Conformity::kPass);
+              Verdict::kPass);
     EXPECT_EQ(at_one_half(kAtMostOne, Estimate{1.2, Interval{-high, 1.3}}),
-              Conformity::kFail);
+              Verdict::kFail);
     EXPECT_EQ(at_one_half(kAtLeastOne, Estimate{1.2, Interval{-high, high}}),
-              Conformity::kPass);
+              Verdict::kPass);
   }
-  EXPECT_EQ(at_one_half(kAtMostOne, Estimate{0.9}), Conformity::kPass);
+  EXPECT_EQ(at_one_half(kAtMostOne, Estimate{0.9}), Verdict::kPass);
   // The interval of the reference reaches 0, that of the quotient infinity.
   Limit limit{.metric = "residual_sigma_deg_per_s", .most = 0.1};
   limit.relative_to = "before";
   const Estimate reference{1.0, Interval{0.0, 2.0}};
-  EXPECT_EQ(at_one_half(limit, Estimate{0.05}, reference), Conformity::kPass);
-  EXPECT_EQ(at_one_half(limit, Estimate{0.2}, reference), Conformity::kFail);
+  EXPECT_EQ(at_one_half(limit, Estimate{0.05}, reference), Verdict::kPass);
+  EXPECT_EQ(at_one_half(limit, Estimate{0.2}, reference), Verdict::kFail);
   EXPECT_EQ(at_one_half(limit, Estimate{0.0, Interval{0.0, 1.0}}, reference),
-            Conformity::kPass);
+            Verdict::kPass);
   EXPECT_EQ(decide(kAtMostOne, Estimate{kNan}, {}, 0.5).result,
-            Conformity::kUndecided);
+            Verdict::kUndecided);
 }
 
 TEST(Decision, AnIntervalWithoutAnEndIsUndecidedAtEverySmallerRisk) {
   const Estimate endless{0.5, Interval{0.4, kInfinity}};
   for (const double risk : {1e-9, 0.001, kFalseAcceptRisk, 0.3, 0.499}) {
     const Decision decision = decide(kAtMostOne, endless, {}, risk);
-    EXPECT_EQ(decision.result, Conformity::kUndecided) << risk;
+    EXPECT_EQ(decision.result, Verdict::kUndecided) << risk;
     EXPECT_EQ(decision.guard_band, kInfinity) << risk;
     EXPECT_EQ(decision.words,
               "0.5 has an interval without an end towards the limit; must be "
               "at most 1");
     EXPECT_EQ(decide(kAtMostOne, Estimate{0.5}, {}, risk).result,
-              Conformity::kPass);
+              Verdict::kPass);
   }
 }
 
 TEST(Decision, TheWorstCounts) {
-  using enum Conformity;
+  using enum Verdict;
   EXPECT_EQ(worst_of({}), kPass);
   EXPECT_EQ(worst_of(std::vector{kPass, kUndecided}), kUndecided);
   EXPECT_EQ(worst_of(std::vector{kFail, kUndecided}), kFail);
@@ -175,8 +173,7 @@ TEST(ManyDrawsOfDecisions, OverAThousandDevicesWrongAcceptsStayBelowTheRisk) {
   int wrong = 0, accepted = 0;
   for (int device = 0; device < 1000; ++device) {
     const double truth = 0.8 + 0.3 * random.normal();
-    if (result(kAtMostOne, measured(truth, random)) != Conformity::kPass)
-      continue;
+    if (result(kAtMostOne, measured(truth, random)) != Verdict::kPass) continue;
     ++accepted;
     wrong += truth > 1.0 ? 1 : 0;
   }
@@ -205,10 +202,10 @@ TEST(ManyDrawsOfDecisions, WrongAcceptsStayBelowTheRiskWithARealMetric) {
     for (double& value : rate) value = truth + 0.1 * value;
     const auto found = bias.evaluate(
         {{{"rest", RunPurpose::kRest, &run, std::move(rate)}}, 150.0});
-    const Conformity decided = result(limit, found);
-    accepted += decided == Conformity::kPass ? 1 : 0;
-    undecided += decided == Conformity::kUndecided ? 1 : 0;
-    wrong += decided == Conformity::kPass && std::abs(truth) > 0.1 ? 1 : 0;
+    const Verdict decided = result(limit, found);
+    accepted += decided == Verdict::kPass ? 1 : 0;
+    undecided += decided == Verdict::kUndecided ? 1 : 0;
+    wrong += decided == Verdict::kPass && std::abs(truth) > 0.1 ? 1 : 0;
   }
   EXPECT_GT(accepted, 500);
   EXPECT_GT(undecided, 0);
@@ -280,7 +277,7 @@ int wrong_accepts(int devices, const ResidualCase& residual,
     const auto found = minutes.measured(
         residual.metric, truth / residual.at_one, residual.shape, random);
     wrong += decide({.metric = residual.metric, .most = limit}, found, {}, risk)
-                         .result == Conformity::kPass
+                         .result == Verdict::kPass
                  ? 1
                  : 0;
   }
@@ -343,7 +340,7 @@ TEST(ManyDrawsOfDecisions, DevicesAtTheLimitPassAsOftenAsTheRiskSays) {
   int passed = 0;
   for (int device = 0; device < 1000; ++device)
     passed +=
-        result(kAtMostOne, measured(1.0, random)) == Conformity::kPass ? 1 : 0;
+        result(kAtMostOne, measured(1.0, random)) == Verdict::kPass ? 1 : 0;
   EXPECT_NEAR(passed, 25, 16);
 }
 
