@@ -101,6 +101,13 @@ std::vector<double> time_in_seconds(const AllanQuestion& asked,
   return time;
 }
 
+std::vector<double> even_times(std::size_t count, double rate_Hz) {
+  std::vector<double> time(count);
+  for (std::size_t k = 0; k < count; ++k)
+    time[k] = static_cast<double>(k) / rate_Hz;
+  return time;
+}
+
 std::vector<double> csv_time(const AllanQuestion& asked, const CsvTable& csv,
                              const std::vector<std::string>& units) {
   const auto name = std::ranges::find_if(csv.names, is_time);
@@ -113,10 +120,7 @@ std::vector<double> csv_time(const AllanQuestion& asked, const CsvTable& csv,
         "{}: a CSV series without a column \"time\" [s] has no sample rate; "
         "expected {}",
         asked.file, NamedOption{"rate_Hz"});
-  std::vector<double> time(csv.columns.front().size());
-  for (std::size_t k = 0; k < time.size(); ++k)
-    time[k] = static_cast<double>(k) / *asked.about.rate_Hz;
-  return time;
+  return even_times(csv.columns.front().size(), *asked.about.rate_Hz);
 }
 
 /// Angular rates are converted to deg/s. Numbers in another unit stay.
@@ -128,6 +132,15 @@ void convert(std::string& unit, std::vector<double>& values) {
     for (double& value : values) value *= scale;
     unit = kRateUnit;
   }
+}
+
+void set_samples(AllanSignal& signal, std::vector<double> time,
+                 std::vector<double> values) {
+  convert(signal.unit, values);
+  signal.recording.time = std::move(time);
+  signal.recording.status.assign(values.size(), 0);
+  signal.recording.columns.push_back(
+      {signal.column, signal.unit, "", Role::kMeasured, std::move(values)});
 }
 
 /// Takes the units in brackets out of the names of the columns.
@@ -160,11 +173,7 @@ AllanSignal csv_signal(const AllanQuestion& asked, std::string_view text) {
   if (asked.about.unit || !is_stated)
     signal.unit = asked.about.unit.value_or(kRateUnit);
   if (signal.unit == "degree/s") signal.unit = kRateUnit;
-  convert(signal.unit, values);
-  signal.recording.time = csv_time(asked, csv, units);
-  signal.recording.status.assign(values.size(), 0);
-  signal.recording.columns.push_back(
-      {signal.column, signal.unit, "", Role::kMeasured, std::move(values)});
+  set_samples(signal, csv_time(asked, csv, units), std::move(values));
   if (!is_stated)
     signal.warnings.push_back(fmt::format(
         "{}: a CSV states no unit; taken as {}, since none is given",
@@ -375,13 +384,8 @@ AllanResult allan(std::span<const double> samples, double rate_Hz,
   internal::AllanSignal signal;
   signal.column = "rate";
   signal.unit = unit;
-  std::vector<double> values(samples.begin(), samples.end());
-  internal::convert(signal.unit, values);
-  for (std::size_t k = 0; k < values.size(); ++k)
-    signal.recording.time.push_back(static_cast<double>(k) / rate_Hz);
-  signal.recording.status.assign(values.size(), 0);
-  signal.recording.columns.push_back(
-      {signal.column, signal.unit, "", Role::kMeasured, std::move(values)});
+  internal::set_samples(signal, internal::even_times(samples.size(), rate_Hz),
+                        {samples.begin(), samples.end()});
   return internal::result_of(asked, std::move(signal));
 }
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "api/campaign_state.h"
+#include "sim/campaign/campaign.h"
 
 namespace beamgyro {
 namespace {
@@ -17,13 +17,11 @@ std::optional<long> as_long(std::optional<std::uint32_t> number) {
 }
 
 Campaign campaign_of(internal::CampaignPlan campaign) {
-  return Campaign(std::make_shared<const Campaign::State>(std::move(campaign)));
+  return Campaign(
+      std::make_shared<const internal::CampaignPlan>(std::move(campaign)));
 }
 
 }  // namespace
-
-Campaign::Campaign(std::shared_ptr<const State> state)
-    : state_(std::move(state)) {}
 
 Campaign Campaign::read(const std::filesystem::path& file,
                         std::optional<std::uint32_t> devices) {
@@ -38,19 +36,17 @@ Campaign Campaign::parse(const std::vector<InputFile>& files,
       internal::CampaignPlan::of_copies(files, as_long(devices)));
 }
 
-std::string Campaign::name() const { return state_->campaign.name(); }
-std::string Campaign::text() const { return state_->campaign.text(); }
+std::string Campaign::name() const { return content().name(); }
+std::string Campaign::text() const { return content().text(); }
 
-std::vector<InputFile> Campaign::files() const {
-  return state_->campaign.sources();
-}
+std::vector<InputFile> Campaign::files() const { return content().sources(); }
 
-std::uint32_t Campaign::devices() const { return state_->campaign.devices(); }
-std::uint64_t Campaign::seed() const { return state_->campaign.seed(); }
+std::uint32_t Campaign::devices() const { return content().devices(); }
+std::uint64_t Campaign::seed() const { return content().seed(); }
 
 std::vector<std::string> Campaign::runs() const {
   std::vector<std::string> names;
-  for (const internal::CampaignRun& run : state_->campaign.runs())
+  for (const internal::CampaignRun& run : content().runs())
     names.push_back(run.name);
   return names;
 }
@@ -61,7 +57,7 @@ std::vector<std::string> Campaign::device_overrides(
     throw std::invalid_argument(
         fmt::format("{}: has no device {}; expected a number from 0 to {}",
                     name(), number, devices() - 1));
-  const internal::VirtualDevice drawn = state_->campaign.device(number);
+  const internal::VirtualDevice drawn = content().device(number);
   if (!drawn.device)
     throw std::runtime_error(
         fmt::format("{}: device {}: {}", name(), number, drawn.failure));
@@ -72,7 +68,7 @@ std::vector<std::string> Campaign::device_overrides(
 }
 
 Device Campaign::device(std::uint32_t number) const {
-  return Device::parse(state_->campaign.device_text(),
+  return Device::parse(content().device_text(),
                        fmt::format("{}, device {}", name(), number),
                        device_overrides(number));
 }

@@ -4,10 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "api/compensation.h"
-#include "api/compensator_state.h"
+#include "api/compensators.h"
 #include "api/program_version.h"
-#include "api/user_compensator.h"
 #include "dataset/files/sha256.h"
 #include "dataset/recording/recording_defect.h"
 #include "dataset/recording/signals.h"
@@ -19,14 +17,6 @@ namespace {
 constexpr const char* kCompensated = "compensated_rate";
 constexpr const char* kCompensatedSigma = "compensated_rate_sigma";
 
-}  // namespace
-
-void require_sound(const Recording& recording, const std::string& name) {
-  const std::string defect = recording_defect(recording);
-  if (!defect.empty())
-    throw std::invalid_argument(fmt::format("{}: {}", name, defect));
-}
-
 void require_uncompensated(const Recording& recording,
                            const std::string& name) {
   if (find_column(recording, kCompensated) == nullptr) return;
@@ -35,19 +25,19 @@ void require_uncompensated(const Recording& recording,
       name, kCompensated));
 }
 
-CompensatedRate checked_answer(const RateCompensator& compensator,
+CompensatedRate checked_answer(const CompensatorSource& source,
                                const Recording& recording,
                                const std::string& name) try {
-  return public_answer(source_of(compensator).tested->answer(recording));
+  return public_answer(source.tested->answer(recording));
 } catch (const std::invalid_argument& error) {
   throw std::invalid_argument(fmt::format("{}: {}", name, error.what()));
 }
 
 std::vector<std::string> range_warnings(const RateCompensator& compensator,
+                                        const CompensatorSource& source,
                                         const CompensatedRate& answer,
                                         const std::string& name) {
   if (answer.clamped == 0) return {};
-  const CompensatorSource source = source_of(compensator);
   if (!source.trained)
     return {fmt::format("{}: {} of {} samples were clamped, as {} says", name,
                         answer.clamped, answer.rate.size(),
@@ -63,18 +53,40 @@ std::vector<std::string> range_warnings(const RateCompensator& compensator,
                              "distance")};
 }
 
-void add_answer(const RateCompensator& compensator, CompensatedRate answer,
+void add_answer(const RateCompensator& compensator,
+                const CompensatorSource& source, CompensatedRate answer,
                 Recording& recording) {
   recording.columns.push_back(column_of(kCompensated, std::move(answer.rate)));
   if (!answer.sigma.empty())
     recording.columns.push_back(
         column_of(kCompensatedSigma, std::move(answer.sigma)));
   recording.compensator = compensator.name();
-  const CompensatorSource source = source_of(compensator);
   recording.compensator_sha256 =
       source.files.empty() ? "" : sha256(source.files.front().text);
   if (!recording.history.empty()) recording.history += '\n';
   recording.history += history_line("compensate with " + recording.compensator);
+}
+
+}  // namespace
+
+void require_sound(const Recording& recording, const std::string& name) {
+  const std::string defect = recording_defect(recording);
+  if (!defect.empty())
+    throw std::invalid_argument(fmt::format("{}: {}", name, defect));
+}
+
+CompensatedRun compensated(const RateCompensator& compensator,
+                           Recording recording, const std::string& name,
+                           std::vector<std::string>& faults) {
+  require_uncompensated(recording, name);
+  const CompensatorSource source = source_of(compensator);
+  CompensatedRate answer = checked_answer(source, recording, name);
+  faults = std::move(answer.faults);
+  if (!faults.empty()) return {};
+  std::vector<std::string> warnings =
+      range_warnings(compensator, source, answer, name);
+  add_answer(compensator, source, std::move(answer), recording);
+  return {std::move(recording), std::move(warnings)};
 }
 
 }  // namespace internal
@@ -83,18 +95,13 @@ CompensatedRun compensate(const RateCompensator& compensator,
                           Recording recording) {
   const std::string name = "the recording";
   internal::require_sound(recording, name);
-  internal::require_uncompensated(recording, name);
-  CompensatedRate answer =
-      internal::checked_answer(compensator, recording, name);
-  if (!answer.faults.empty())
+  std::vector<std::string> faults;
+  CompensatedRun run =
+      internal::compensated(compensator, std::move(recording), name, faults);
+  if (faults.empty()) faults = {internal::recording_defect(run.recording)};
+  if (!faults.front().empty())
     throw std::runtime_error(
-        fmt::format("{}: {}", compensator.name(), answer.faults.front()));
-  CompensatedRun run{{}, internal::range_warnings(compensator, answer, name)};
-  internal::add_answer(compensator, std::move(answer), recording);
-  const std::string defect = internal::recording_defect(recording);
-  if (!defect.empty())
-    throw std::runtime_error(fmt::format("{}: {}", compensator.name(), defect));
-  run.recording = std::move(recording);
+        fmt::format("{}: {}", compensator.name(), faults.front()));
   return run;
 }
 

@@ -6,9 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "api/compensation.h"
-#include "api/compensator_state.h"
-#include "api/user_compensator.h"
+#include "api/compensators.h"
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/compensator/settled_curve.h"
 #include "dataset/files/atomic_file.h"
@@ -41,7 +39,7 @@ class FunctionCompensator final : public RateCompensator {
 
 Compensator compensator_of_text(std::string text, const std::string& name,
                                 std::string file) {
-  auto state = std::make_shared<Compensator::State>();
+  auto state = std::make_shared<internal::CompensatorState>();
   state->compensator = internal::parse_compensator(text, name);
   state->text = std::move(text);
   state->name = std::filesystem::path(name).filename().string();
@@ -62,9 +60,6 @@ std::shared_ptr<const RateCompensator> compensator_of(
       std::move(name), std::move(inputs), std::move(rate_of));
 }
 
-Compensator::Compensator(std::shared_ptr<const State> state)
-    : state_(std::move(state)) {}
-
 Compensator Compensator::read(const std::filesystem::path& file) {
   return compensator_of_text(internal::read_text_file(file), file.string(),
                              file.string());
@@ -75,43 +70,43 @@ Compensator Compensator::parse(const std::string& text,
   return compensator_of_text(text, name, "");
 }
 
-std::string Compensator::text() const { return state_->text; }
+std::string Compensator::text() const { return content().text; }
 
 void Compensator::write(const std::filesystem::path& file) const {
-  internal::write_text_file(file, state_->text);
+  internal::write_text_file(file, content().text);
 }
 
-std::string Compensator::name() const { return state_->name; }
+std::string Compensator::name() const { return content().name; }
 
 std::vector<std::string> Compensator::inputs() const {
-  return internal::tested(state_->compensator)->inputs();
+  return internal::tested(content().compensator)->inputs();
 }
 
 CompensatedRate Compensator::answer(const Recording& recording) const {
   internal::require_sound(recording, "the recording");
-  const internal::Compensator& own = state_->compensator;
+  const internal::FittedCompensator& own = content().compensator;
   return {.rate = internal::compensated_rate(own, recording),
           .sigma = internal::compensated_rate_sigma(own, recording),
           .clamped = internal::clamped_samples(own, recording)};
 }
 
 std::string Compensator::method() const {
-  return state_->compensator.provenance.method;
+  return content().compensator.provenance.method;
 }
 double Compensator::lowest_temperature() const {
-  return state_->compensator.temperature_range.lowest;
+  return content().compensator.temperature_range.lowest;
 }
 double Compensator::highest_temperature() const {
-  return state_->compensator.temperature_range.highest;
+  return content().compensator.temperature_range.highest;
 }
 bool Compensator::states_sigma() const {
-  return state_->compensator.sigma.has_value();
+  return content().compensator.sigma.has_value();
 }
 std::string Compensator::curve() const {
   return internal::settled_curve(state_->compensator);
 }
 std::vector<std::string> Compensator::warnings() const {
-  return state_->compensator.provenance.warnings;
+  return content().compensator.provenance.warnings;
 }
 
 std::shared_ptr<const RateCompensator> open_compensator(

@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "api/device_state.h"
-#include "api/key_overrides.h"
+#include "api/scenario_state.h"
 #include "config/option_message.h"
+#include "config/overrides.h"
 #include "sim/dynamics/characteristic.h"
 #include "sim/scenario/simulation_input.h"
 #include "sim/thermal/material_range.h"
@@ -21,15 +21,14 @@ namespace {
 
 constexpr std::size_t kMostTemperatures = 1000000;
 
-std::shared_ptr<const Device::State> state_of(
-    internal::LoadedDevice loaded, std::string name,
-    std::vector<std::string> overrides) {
-  auto state = std::make_shared<Device::State>();
+Device device_of(internal::LoadedDevice loaded, std::string name,
+                 std::vector<std::string> overrides) {
+  auto state = std::make_shared<internal::DeviceState>();
   state->text = std::move(loaded.text);
   state->name = std::move(name);
   state->overrides = std::move(overrides);
   state->device = loaded.device;
-  return state;
+  return Device(std::move(state));
 }
 
 void require_material_temperatures(std::span<const double> temperatures) {
@@ -46,29 +45,29 @@ void require_material_temperatures(std::span<const double> temperatures) {
 
 }  // namespace
 
-Device::Device(std::shared_ptr<const State> state) : state_(std::move(state)) {}
-
 Device Device::read(const std::filesystem::path& file,
                     const std::vector<std::string>& overrides) {
-  return Device(state_of(internal::load_device(file, overrides), file.string(),
-                         overrides));
+  return device_of(internal::load_device(file, overrides), file.string(),
+                   overrides);
 }
 
 Device Device::parse(const std::string& text, const std::string& name,
                      const std::vector<std::string>& overrides) {
-  return Device(state_of(
+  return device_of(
       internal::load_device(internal::InputText{text, name}, overrides), name,
-      overrides));
+      overrides);
 }
 
 Device Device::with(const std::vector<std::string>& overrides) const {
   return parse(text(), name(),
-               internal::merged_overrides(state_->overrides, overrides));
+               internal::merged_overrides(content().overrides, overrides));
 }
 
-std::string Device::text() const { return state_->text; }
-std::string Device::name() const { return state_->name; }
-std::vector<std::string> Device::overrides() const { return state_->overrides; }
+std::string Device::text() const { return content().text; }
+std::string Device::name() const { return content().name; }
+std::vector<std::string> Device::overrides() const {
+  return content().overrides;
+}
 
 std::vector<double> even_temperatures(double start, double stop, double step) {
   for (const double number : {start, stop, step})
@@ -98,7 +97,7 @@ std::vector<double> even_temperatures(double start, double stop, double step) {
 Characteristic characterise(const Device& device,
                             std::span<const double> temperatures_degC) {
   require_material_temperatures(temperatures_degC);
-  const Device::State& state = device.state();
+  const internal::DeviceState& state = device.content();
   Characteristic found;
   found.temperature.assign(temperatures_degC.begin(), temperatures_degC.end());
   for (const internal::CharacteristicQuantity& about :

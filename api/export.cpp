@@ -14,10 +14,11 @@
 #include <set>
 #include <stdexcept>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "api/checked_number.h"
-#include "api/compensator_state.h"
+#include "api/compensators.h"
 #include "compensation/export/export_c.h"
 #include "compensation/export/export_ekf.h"
 #include "compensation/export/export_parameters.h"
@@ -32,19 +33,19 @@ namespace internal {
 namespace {
 
 struct ExportRequest {
-  const std::vector<beamgyro::Compensator>& compensators;
+  const std::vector<Compensator>& compensators;
   const std::string& format;
   const ExportOptions& options;
 };
 
-const Compensator& compensator_of(const ExportRequest& asked, std::size_t k) {
-  return asked.compensators[k].state().compensator;
+const FittedCompensator& compensator_of(const ExportRequest& asked,
+                                        std::size_t k) {
+  return asked.compensators[k].content().compensator;
 }
 
 // In messages.
 std::string file_of(const ExportRequest& asked, std::size_t k) {
-  const beamgyro::Compensator::State& state = asked.compensators[k].state();
-  return state.file.empty() ? state.name : state.file;
+  return asked.compensators[k].content().path();
 }
 
 // Runs `work` and puts the name of the compensator's file before an error.
@@ -95,7 +96,7 @@ void parameter_texts(const ExportRequest& asked, const std::string& name,
   const std::vector<char> places = axes_of(asked);
   std::vector<AutopilotAxis> axes;
   for (std::size_t k = 0; k < places.size(); ++k) {
-    const Compensator& compensator = compensator_of(asked, k);
+    const FittedCompensator& compensator = compensator_of(asked, k);
     const auto cubic = [&] {
       return autopilot_cubic(compensator, asked.options.fit_cubic);
     };
@@ -153,8 +154,8 @@ void ekf_files(const ExportRequest& asked, const std::string& name,
         "{} is missing; expected a recording at rest, from which the noise is "
         "taken",
         NamedOption{"rest"});
-  const beamgyro::Compensator& own = asked.compensators[0];
-  const Compensator& compensator = own.state().compensator;
+  const Compensator& own = asked.compensators[0];
+  const FittedCompensator& compensator = own.content().compensator;
   EkfExport given{.name = name,
                   .axis = axes_of(asked)[0],
                   .compensator = {own.name(), sha256(own.text())},
@@ -187,32 +188,27 @@ void require_options(const ExportRequest& asked) {
   check_number("correlation_K", asked.options.correlation_K, positive());
   check_number("temperature_degC", asked.options.temperature_degC,
                {-273.15, 1000.0});
-  const auto refuse = [&](bool given, const char* option, const char* formats) {
-    if (given)
+  const ExportOptions& o = asked.options;
+  const std::tuple<bool, const char*, std::string_view> formats_of[] = {
+      {o.device_id.has_value(), "device_id", "px4"},
+      {o.force, "force", "c"},
+      {o.rest.has_value(), "rest", "ekf"},
+      {o.ramp_K_per_min.has_value(), "ramp_K_per_min", "ekf"},
+      {o.correlation_K.has_value(), "correlation_K", "ekf"},
+      {o.temperature_degC.has_value(), "temperature_degC", "ekf"},
+      {!o.axes.empty(), "axes", "px4, ardupilot and ekf"},
+      {o.instance.has_value(), "instance", "px4 and ardupilot"},
+      {o.fit_cubic, "fit_cubic", "px4 and ardupilot"}};
+  for (const auto& [given, option, formats] : formats_of)
+    if (given && formats.find(asked.format) == formats.npos)
       throw option_error("{}: is for the formats {}, not for {}",
                          NamedOption{option}, formats, asked.format);
-  };
-  const std::string& format = asked.format;
-  if (format != "px4")
-    refuse(asked.options.device_id.has_value(), "device_id", "px4");
-  if (format != "c") refuse(asked.options.force, "force", "c");
-  if (format != "ekf") {
-    refuse(asked.options.rest.has_value(), "rest", "ekf");
-    refuse(asked.options.ramp_K_per_min.has_value(), "ramp_K_per_min", "ekf");
-    refuse(asked.options.correlation_K.has_value(), "correlation_K", "ekf");
-    refuse(asked.options.temperature_degC.has_value(), "temperature_degC",
-           "ekf");
-  }
-  if (format == "px4" || format == "ardupilot") return;
-  if (format == "c")
-    refuse(!asked.options.axes.empty(), "axes", "px4, ardupilot and ekf");
-  refuse(asked.options.instance.has_value(), "instance", "px4 and ardupilot");
-  refuse(asked.options.fit_cubic, "fit_cubic", "px4 and ardupilot");
+  if (asked.format == "px4" || asked.format == "ardupilot") return;
   if (asked.compensators.size() > 1)
     throw std::invalid_argument(fmt::format(
         "several compensators: is for the formats px4 and ardupilot, not for "
         "{}",
-        format));
+        asked.format));
 }
 
 void require_words(const ExportRequest& asked) {

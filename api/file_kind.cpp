@@ -151,11 +151,11 @@ bool is_of_kind(const fs::path& path, FileKind kind) {
   return std::ranges::count(kinds_of(path), kind) != 0;
 }
 
-bool is_set(const std::vector<std::string>& paths) {
-  for (const std::string& path : paths)
+bool is_set(const std::vector<fs::path>& paths) {
+  for (const fs::path& path : paths)
     if (fs::is_directory(status_of(path))) {
       if (paths.size() == 1) return true;
-      throw std::invalid_argument(path +
+      throw std::invalid_argument(path.string() +
                                   ": a directory among recordings; expected "
                                   "recordings, or the directory of one set");
     }

@@ -44,7 +44,7 @@ bool is_of_kind(const std::filesystem::path& path, FileKind kind);
 
 /// Returns whether the paths are a single directory, that of a set. Throws
 /// std::invalid_argument when one of several paths is a directory.
-bool is_set(const std::vector<std::string>& paths);
+bool is_set(const std::vector<std::filesystem::path>& paths);
 
 /// Throws std::invalid_argument when the file is of a kind that is known but
 /// not expected. The message says what it is and which command takes it. A

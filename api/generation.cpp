@@ -5,10 +5,7 @@
 
 #include <mutex>
 #include <stdexcept>
-#include <utility>
-#include <vector>
 
-#include "api/campaign_state.h"
 #include "api/program_version.h"
 #include "api/reported_progress.h"
 #include "sim/campaign/shard_making.h"
@@ -28,13 +25,13 @@ void require_moderate_files(const std::string& campaign,
       kLargest / 1e9));
 }
 
-std::string lock_warning(const SetWriter& set,
-                         const std::filesystem::path& directory) {
-  if (set.is_locked()) return "";
-  return fmt::format(
+std::vector<std::string> lock_warnings(const SetWriter& set,
+                                       const std::filesystem::path& directory) {
+  if (set.is_locked()) return {};
+  return {fmt::format(
       "{}: the file system has no locks (flock); start nothing else there "
       "that makes the same files, on another host least of all",
-      directory.string());
+      directory.string())};
 }
 
 void require_nothing_lost(const std::filesystem::path& directory,
@@ -47,6 +44,9 @@ void require_nothing_lost(const std::filesystem::path& directory,
           "generation makes it again",
           directory.string(), expected_entry(head, index).file));
   }
+  if (state.is_merged && every_device_failed(state))
+    throw std::runtime_error(fmt::format("{}: {}", directory.string(),
+                                         every_device_failed_text(state)));
 }
 
 std::string outcome_text(const SetState& state, std::uint64_t made) {
@@ -60,13 +60,6 @@ std::string outcome_text(const SetState& state, std::uint64_t made) {
   else if (!every_device_failed(state))
     text += "the set is whole\n";
   return text;
-}
-
-void require_values(const std::filesystem::path& directory,
-                    const SetState& state) {
-  if (state.is_merged && every_device_failed(state))
-    throw std::runtime_error(fmt::format("{}: {}", directory.string(),
-                                         every_device_failed_text(state)));
 }
 
 }  // namespace internal
@@ -97,28 +90,24 @@ void make_files(const internal::ShardPlan& plan,
 GenerationOutcome generate(const Campaign& campaign,
                            const std::filesystem::path& directory,
                            const GenerationOptions& options) {
-  const internal::CampaignPlan& own = campaign.state().campaign;
+  const internal::CampaignPlan& own = campaign.content();
   const internal::ShardPlan plan(
       own, {internal::kProgramVersion, internal::kGitRevision});
   internal::require_moderate_files(campaign.name(), plan);
   internal::SetWriter set(directory, plan.manifest_head(), own.sources(), {},
                           options.resume);
-  GenerationOutcome outcome;
-  if (std::string warning = internal::lock_warning(set, directory);
-      !warning.empty())
-    outcome.warnings.push_back(std::move(warning));
+  std::vector<std::string> warnings = internal::lock_warnings(set, directory);
   const std::vector<std::uint32_t> files = set.lacking();
   make_files(plan, files, options, set);
   const internal::SetState state = set.finish();
   internal::require_nothing_lost(directory, {}, plan.manifest_head(), state);
-  internal::require_values(directory, state);
-  outcome.files = state.entries.size();
-  outcome.planned_files = state.planned;
-  outcome.files_made = files.size();
-  outcome.device_runs = state.device_runs();
-  outcome.failures = state.failures();
-  outcome.text = internal::outcome_text(state, files.size());
-  return outcome;
+  return {.files = state.entries.size(),
+          .planned_files = state.planned,
+          .files_made = files.size(),
+          .device_runs = state.device_runs(),
+          .failures = state.failures(),
+          .warnings = std::move(warnings),
+          .text = internal::outcome_text(state, files.size())};
 }
 
 }  // namespace beamgyro

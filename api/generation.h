@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "dataset/set/set_writer.h"
 #include "sim/campaign/shard_plan.h"
@@ -15,21 +16,17 @@ namespace beamgyro::internal {
 void require_moderate_files(const std::string& campaign, const ShardPlan& plan);
 
 /// Returns a warning when the file system cannot keep other processes from
-/// working on the set, else an empty text.
-std::string lock_warning(const SetWriter& set,
-                         const std::filesystem::path& directory);
-
-/// Throws std::runtime_error when files of the task that were made have
-/// vanished.
-void require_nothing_lost(const std::filesystem::path& directory,
-                          const SetTask& task, const ManifestHead& head,
-                          const SetState& state);
+/// working on the set, in a list of none or one.
+std::vector<std::string> lock_warnings(const SetWriter& set,
+                                       const std::filesystem::path& directory);
 
 /// Returns what a generation that made `made` files has come to, in lines.
 std::string outcome_text(const SetState& state, std::uint64_t made);
 
-/// Throws std::runtime_error when no device of a finished set has values.
-void require_values(const std::filesystem::path& directory,
-                    const SetState& state);
+/// Throws std::runtime_error when files of the task that were made have
+/// vanished, and when no device of a finished set has values.
+void require_nothing_lost(const std::filesystem::path& directory,
+                          const SetTask& task, const ManifestHead& head,
+                          const SetState& state);
 
 }  // namespace beamgyro::internal

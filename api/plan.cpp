@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "api/checked_number.h"
-#include "api/compensator_state.h"
-#include "api/device_state.h"
+#include "api/compensators.h"
+#include "api/scenario_state.h"
 #include "api/soak_plan.h"
 #include "config/option_message.h"
 #include "config/units.h"
@@ -37,24 +37,18 @@ TemperatureRange checked_range(const char* name, const ChamberRange& range) {
   return {range.first, range.second};
 }
 
-// Of its file, in messages.
-std::string name_of_file(const beamgyro::Compensator& compensator) {
-  const beamgyro::Compensator::State& state = compensator.state();
-  return state.file.empty() ? state.name : state.file;
-}
-
-const Population& population_of(const beamgyro::Compensator& compensator) {
-  const Compensator& own = compensator.state().compensator;
+const Population& population_of(const Compensator& compensator) {
+  const FittedCompensator& own = compensator.content().compensator;
   if (!own.population)
     throw std::invalid_argument(fmt::format(
         "{}: kind: \"{}\"; expected a population, which `beamgyro train` "
         "writes with scenarios/population/population.toml",
-        name_of_file(compensator), kind_name(own.bias)));
+        compensator.content().path(), kind_name(own.bias)));
   return *own.population;
 }
 
 ChamberView view_of(const Device& device) try {
-  const DeviceParameters& own = device.state().device;
+  const DeviceParameters& own = device.content().device;
   return ChamberView(own.thermal, own.temperature_sensor.offset);
 } catch (const std::invalid_argument& error) {
   throw std::invalid_argument(
@@ -136,112 +130,6 @@ PlannedSchedule schedule_of(const SoakPlan& plan) {
   return {plan.temperatures, plan.hours, plan.expected.median};
 }
 
-}  // namespace
-
-void check_goal(const PlanOptions& options) {
-  const int goals = (options.soaks ? 1 : 0) + (options.hours ? 1 : 0) +
-                    (options.residual_deg_per_s ? 1 : 0);
-  if (goals != 1)
-    throw option_error("{} goals given; expected one of {}, {} and {}", goals,
-                       NamedOption{"soaks", "N"}, NamedOption{"hours", "H"},
-                       NamedOption{"residual_deg_per_s", "R"});
-}
-
-struct PlanStudy::State {
-  State(const beamgyro::Compensator& population, const Device& unit,
-        const PlanOptions& asked)
-      : options(asked),
-        file(name_of_file(population)),
-        device(unit),
-        view(view_of(unit)),
-        range(asked.range_degC ? checked_range("range_degC", *asked.range_degC)
-                               : known_range(population_of(population), view)),
-        chamber(chamber_of(asked, range)),
-        time(time_of(asked)),
-        model(population_of(population),
-              [this](const Eigen::ArrayXd& T) {
-                return view.sensor_temperatures(T);
-              },
-              {.range = range, .bias_only = asked.bias_only}),
-        planner(model, chamber, time,
-                behaviour_of(asked, unit.state().device, range, time)) {}
-
-  // A goal counts as met within the digits that are printed.
-  SoakPlan chosen() const {
-    constexpr double kHourDigits = 0.005, kResidualDigits = 0.0005;
-    if (options.hours) return planner.within_hours(*options.hours, kHourDigits);
-    if (options.residual_deg_per_s)
-      return planner.within_residual(*options.residual_deg_per_s,
-                                     kResidualDigits);
-    const std::size_t count = *options.soaks;
-    if (count < 1 || count > planner.most_soaks())
-      throw option_error("{}: soaks are {:g} K apart or more; expected 1 to {}",
-                         NamedOption{"soaks", std::to_string(count)},
-                         kLeastDistance, planner.most_soaks());
-    return planner.with_soaks(count);
-  }
-
-  PlanOptions options;
-  std::string file;  // of the population
-  Device device;
-  ChamberView view;
-  TemperatureRange range, chamber;  // [degC]
-  ChamberTime time;
-  SoakModel model;
-  Planner planner;
-};
-
-PlanStudy::PlanStudy(const beamgyro::Compensator& population,
-                     const Device& device, const PlanOptions& options) {
-  check_goal(options);
-  population_of(population);
-  check_number("hours", options.hours, positive());
-  check_number("residual_deg_per_s", options.residual_deg_per_s, positive());
-  state_ = std::make_unique<State>(population, device, options);
-}
-
-PlanStudy::~PlanStudy() = default;
-
-const TemperatureRange& PlanStudy::chamber() const { return state_->chamber; }
-
-SoakPlanResult PlanStudy::result(
-    const std::vector<std::vector<double>>& candidates) const {
-  const State& s = *state_;
-  PlanResult found;
-  found.chosen = s.chosen();
-  const std::size_t count = found.chosen.temperatures.size();
-  found.even = s.planner.even(count);
-  for (const std::vector<double>& soaks : candidates)
-    found.candidates.push_back(s.planner.judged(soaks));
-  found.trade_offs = s.planner.trade_offs(
-      std::min(std::max(count, kLeastTable), s.planner.most_soaks()));
-  found.time = s.planner.time_of(found.chosen);
-  found.rule = s.planner.rule();
-  found.range = s.model.range();
-  found.observed = observed_of(s.model, s.options.bias_only);
-  found.devices = s.model.population().devices;
-  found.basis = forecast_basis(s.model.population());
-  if (found.basis == ForecastBasis::kGaussian)
-    found.warnings.push_back(fmt::format(
-        "{}: has no coefficients of devices, as an older program wrote it; the "
-        "residuals are forecast for normally distributed devices, which real "
-        "ones are not; train it again",
-        s.file));
-  SoakPlanResult result{.chosen = schedule_of(found.chosen),
-                        .even = schedule_of(found.even),
-                        .warnings = found.warnings};
-  for (const SoakPlan& plan : found.candidates)
-    result.candidates.push_back(schedule_of(plan));
-  for (const TradeOff& trade : found.trade_offs)
-    result.trade_offs.push_back(schedule_of(trade.planned));
-  result.schedule = schedule_text(
-      found.chosen.temperatures, found.time, found.rule,
-      s.options.device_name.empty() ? s.device.name() : s.options.device_name);
-  result.text = plan_text(found);
-  result.json = json_text(plan_json(found));
-  return result;
-}
-
 std::vector<double> checked_soaks(std::vector<double> soaks,
                                   const std::string& where,
                                   const TemperatureRange& chamber) {
@@ -265,17 +153,112 @@ std::vector<double> checked_soaks(std::vector<double> soaks,
   return soaks;
 }
 
+struct PlanStudy {
+  PlanStudy(const Compensator& population, const Device& unit,
+            const PlanOptions& asked)
+      : options(asked),
+        view(view_of(unit)),
+        range(asked.range_degC ? checked_range("range_degC", *asked.range_degC)
+                               : known_range(population_of(population), view)),
+        chamber(chamber_of(asked, range)),
+        time(time_of(asked)),
+        model(population_of(population),
+              [this](const Eigen::ArrayXd& T) {
+                return view.sensor_temperatures(T);
+              },
+              {.range = range, .bias_only = asked.bias_only}),
+        planner(model, chamber, time,
+                behaviour_of(asked, unit.content().device, range, time)) {}
+
+  // A goal counts as met within the digits that are printed.
+  SoakPlan chosen() const {
+    constexpr double kHourDigits = 0.005, kResidualDigits = 0.0005;
+    if (options.hours) return planner.within_hours(*options.hours, kHourDigits);
+    if (options.residual_deg_per_s)
+      return planner.within_residual(*options.residual_deg_per_s,
+                                     kResidualDigits);
+    const std::size_t count = *options.soaks;
+    if (count < 1 || count > planner.most_soaks())
+      throw option_error("{}: soaks are {:g} K apart or more; expected 1 to {}",
+                         NamedOption{"soaks", std::to_string(count)},
+                         kLeastDistance, planner.most_soaks());
+    return planner.with_soaks(count);
+  }
+
+  const PlanOptions& options;
+  ChamberView view;
+  TemperatureRange range, chamber;  // [degC]
+  ChamberTime time;
+  SoakModel model;
+  Planner planner;
+};
+
+}  // namespace
+
+void check_goal(const PlanOptions& options) {
+  const int goals = (options.soaks ? 1 : 0) + (options.hours ? 1 : 0) +
+                    (options.residual_deg_per_s ? 1 : 0);
+  if (goals != 1)
+    throw option_error("{} goals given; expected one of {}, {} and {}", goals,
+                       NamedOption{"soaks", "N"}, NamedOption{"hours", "H"},
+                       NamedOption{"residual_deg_per_s", "R"});
+}
+
+SoakPlanResult planned(const Compensator& population, const Device& device,
+                       const PlanOptions& options,
+                       const std::vector<NamedSoaks>& candidates) {
+  check_goal(options);
+  population_of(population);
+  check_number("hours", options.hours, positive());
+  check_number("residual_deg_per_s", options.residual_deg_per_s, positive());
+  const PlanStudy s(population, device, options);
+  std::vector<std::vector<double>> own;
+  for (const auto& [where, soaks] : candidates)
+    own.push_back(checked_soaks(soaks, where, s.chamber));
+  PlanResult found;
+  found.chosen = s.chosen();
+  const std::size_t count = found.chosen.temperatures.size();
+  found.even = s.planner.even(count);
+  for (const std::vector<double>& soaks : own)
+    found.candidates.push_back(s.planner.judged(soaks));
+  found.trade_offs = s.planner.trade_offs(
+      std::min(std::max(count, kLeastTable), s.planner.most_soaks()));
+  found.time = s.planner.time_of(found.chosen);
+  found.rule = s.planner.rule();
+  found.range = s.model.range();
+  found.observed = observed_of(s.model, options.bias_only);
+  found.devices = s.model.population().devices;
+  found.basis = forecast_basis(s.model.population());
+  if (found.basis == ForecastBasis::kGaussian)
+    found.warnings.push_back(fmt::format(
+        "{}: has no coefficients of devices, as an older program wrote it; the "
+        "residuals are forecast for normally distributed devices, which real "
+        "ones are not; train it again",
+        population.content().path()));
+  SoakPlanResult result{.chosen = schedule_of(found.chosen),
+                        .even = schedule_of(found.even),
+                        .warnings = found.warnings};
+  for (const SoakPlan& plan : found.candidates)
+    result.candidates.push_back(schedule_of(plan));
+  for (const TradeOff& trade : found.trade_offs)
+    result.trade_offs.push_back(schedule_of(trade.planned));
+  result.schedule = schedule_text(
+      found.chosen.temperatures, found.time, found.rule,
+      options.device_name.empty() ? device.name() : options.device_name);
+  result.text = plan_text(found);
+  result.json = json_text(plan_json(found));
+  return result;
+}
+
 }  // namespace internal
 
 SoakPlanResult plan(const Compensator& population, const Device& device,
                     const PlanOptions& options) {
-  const internal::PlanStudy study(population, device, options);
-  std::vector<std::vector<double>> candidates;
-  for (std::size_t k = 0; k < options.candidates.size(); ++k)
-    candidates.push_back(internal::checked_soaks(
-        options.candidates[k], fmt::format("candidate {}", k + 1),
-        study.chamber()));
-  return study.result(candidates);
+  std::vector<internal::NamedSoaks> candidates;
+  for (const std::vector<double>& soaks : options.candidates)
+    candidates.push_back(
+        {fmt::format("candidate {}", candidates.size() + 1), soaks});
+  return internal::planned(population, device, options, candidates);
 }
 
 }  // namespace beamgyro

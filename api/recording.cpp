@@ -34,8 +34,4 @@ Recording read_recording(const std::filesystem::path& path,
   return recording;
 }
 
-Recording read_recording(const std::filesystem::path& path) {
-  return read_recording(path, nullptr);
-}
-
 }  // namespace beamgyro

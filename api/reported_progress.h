@@ -7,6 +7,8 @@ namespace beamgyro::internal {
 
 /// Tells `progress`, if it is one, the share of the work that is done. Throws
 /// Cancelled when it says so.
-void report(const Progress& progress, double share);
+inline void report(const Progress& progress, double share) {
+  if (progress && !progress(share)) throw Cancelled();
+}
 
 }  // namespace beamgyro::internal

@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "api/device_state.h"
-#include "api/key_overrides.h"
 #include "api/scenario_state.h"
 #include "config/overrides.h"
 #include "dataset/files/text_file.h"
@@ -28,7 +26,7 @@ Scenario scenario_of(internal::InputText scenario, internal::InputText device,
                      std::vector<std::string> overrides,
                      const internal::ProfileTexts& profiles) {
   require_no_device_key(overrides);
-  auto state = std::make_shared<Scenario::State>();
+  auto state = std::make_shared<internal::ScenarioState>();
   state->loaded = internal::load_scenario(
       scenario, device, internal::merged_overrides(device_overrides, overrides),
       profiles);
@@ -41,12 +39,9 @@ Scenario scenario_of(internal::InputText scenario, internal::InputText device,
 
 }  // namespace
 
-Scenario::Scenario(std::shared_ptr<const State> state)
-    : state_(std::move(state)) {}
-
 Scenario Scenario::read(const std::filesystem::path& file,
                         const std::vector<std::string>& overrides) {
-  auto state = std::make_shared<State>();
+  auto state = std::make_shared<internal::ScenarioState>();
   state->loaded = internal::load_scenario(file, overrides);
   state->scenario = {state->loaded.scenario_text, file.string()};
   state->device = {state->loaded.device_text,
@@ -74,55 +69,56 @@ Scenario Scenario::parse(const std::string& text, const Device& device,
 
 Scenario Scenario::with(const std::vector<std::string>& overrides) const {
   require_no_device_key(overrides);
-  std::vector<std::string> all = state_->overrides;
+  std::vector<std::string> all = content().overrides;
   std::erase_if(all, [](const std::string& text) {  // it has been read
     return internal::key_of_override(text) == "device";
   });
-  return scenario_of(state_->scenario, state_->device, state_->device_overrides,
-                     internal::merged_overrides(all, overrides),
-                     state_->loaded.profiles);
+  return scenario_of(
+      content().scenario, content().device, content().device_overrides,
+      internal::merged_overrides(all, overrides), content().loaded.profiles);
 }
 
 Scenario Scenario::with_device(const Device& device) const {
-  return parse(text(), device, state_->overrides, name(), profiles());
+  return parse(text(), device, content().overrides, name(), profiles());
 }
 
-std::string Scenario::text() const { return state_->scenario.text; }
-std::string Scenario::name() const { return state_->scenario.name; }
+std::string Scenario::text() const { return content().scenario.text; }
+std::string Scenario::name() const { return content().scenario.name; }
 Device Scenario::device() const {
-  return Device::parse(state_->device.text, state_->device.name,
-                       state_->device_overrides);
+  return Device::parse(content().device.text, content().device.name,
+                       content().device_overrides);
 }
 std::vector<std::string> Scenario::overrides() const {
-  return state_->overrides;
+  return content().overrides;
 }
 std::vector<std::filesystem::path> Scenario::files() const {
-  return state_->loaded.files;
+  return content().loaded.files;
 }
 std::vector<InputFile> Scenario::profiles() const {
   std::vector<InputFile> all;
-  for (const auto& [path, text] : state_->loaded.profiles)
+  for (const auto& [path, text] : content().loaded.profiles)
     all.push_back({path, text});
   return all;
 }
 
 std::string Scenario::title() const {
-  return internal::title_of(state_->loaded.scenario);
+  return internal::title_of(content().loaded.scenario);
 }
-double Scenario::duration() const { return state_->loaded.scenario.duration; }
+double Scenario::duration() const { return content().loaded.scenario.duration; }
 double Scenario::output_rate() const {
-  return state_->loaded.scenario.output_rate;
+  return content().loaded.scenario.output_rate;
 }
 std::size_t Scenario::samples() const {
-  return internal::sample_count(state_->loaded.scenario);
+  return internal::sample_count(content().loaded.scenario);
 }
 std::string Scenario::fidelity() const {
-  return std::string(internal::fidelity_name(state_->loaded.scenario.fidelity));
+  return std::string(
+      internal::fidelity_name(content().loaded.scenario.fidelity));
 }
-std::uint64_t Scenario::seed() const { return state_->loaded.scenario.seed; }
+std::uint64_t Scenario::seed() const { return content().loaded.scenario.seed; }
 
 double Scenario::estimated_seconds() const {
-  const internal::ScenarioPlan& scenario = state_->loaded.scenario;
+  const internal::ScenarioPlan& scenario = content().loaded.scenario;
   return scenario.fidelity == internal::Fidelity::kCarrier
              ? internal::carrier_cost(scenario)
              : 0.0;

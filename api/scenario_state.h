@@ -1,20 +1,43 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "api/device_state.h"
 #include "include/beamgyro/scenario.h"
+#include "sim/dynamics/gyro.h"
 #include "sim/scenario/simulation_input.h"
 
-namespace beamgyro {
+namespace beamgyro::internal {
 
-struct Scenario::State {
-  internal::InputText scenario, device;
-  std::vector<std::string> device_overrides, overrides;
-  internal::LoadedScenario loaded;  // with all of them applied
-  internal::UnitGyro gyro = {};
+/// The solved beam and trims of a device, made when they are first asked for.
+class UnitGyro {
+ public:
+  /// Throws as make_gyro(). Any thread may call it.
+  const Gyro& of(const DeviceParameters& device) const {
+    std::call_once(once_, [&] { gyro_.emplace(make_gyro(device)); });
+    return *gyro_;
+  }
+
+ private:
+  mutable std::once_flag once_;
+  mutable std::optional<Gyro> gyro_;
 };
 
-}  // namespace beamgyro
+struct DeviceState {
+  std::string text, name;
+  std::vector<std::string> overrides;
+  DeviceParameters device;
+  UnitGyro gyro = {};
+};
+
+struct ScenarioState {
+  InputText scenario, device;
+  std::vector<std::string> device_overrides, overrides;
+  LoadedScenario loaded;  // with all of them applied
+  UnitGyro gyro = {};
+};
+
+}  // namespace beamgyro::internal

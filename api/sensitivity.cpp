@@ -10,9 +10,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "api/campaign_state.h"
 #include "api/checked_number.h"
-#include "api/compensator_state.h"
+#include "api/compensators.h"
 #include "api/reported_progress.h"
 #include "api/sensitivity_study.h"
 #include "dataset/files/json_text.h"
@@ -94,6 +93,24 @@ SensitivityFigure figure_of(const MeritResult& result) {
   return figure;
 }
 
+DeviceSampleOptions sample_options(const Campaign& campaign,
+                                   const SensitivityOptions& options) {
+  DeviceSampleOptions sample;
+  sample.merits = merits_of(options);
+  sample.merit.grid = grid_of(options);
+  if (options.compensator)
+    sample.merit.compensator = std::make_shared<const FittedCompensator>(
+        options.compensator->content().compensator);
+  if (options.samples < 32 || options.samples > 1000000)
+    throw std::invalid_argument(
+        fmt::format("{} samples; expected 32 to 1000000", options.samples));
+  sample.rows = options.samples;
+  sample.seed = options.seed.value_or(campaign.seed());
+  sample.halves_tolerances = !options.limits.empty();
+  sample.jobs = options.jobs;
+  return sample;
+}
+
 }  // namespace
 
 std::vector<std::string> merit_names() {
@@ -103,47 +120,25 @@ std::vector<std::string> merit_names() {
   return names;
 }
 
-std::uint64_t SensitivityStudy::devices() const {
-  return devices_of_sample(campaign.state().campaign, sample);
-}
-
-SensitivityStudy checked_study(const Campaign& campaign,
-                               const SensitivityOptions& options) {
-  DeviceSampleOptions sample;
-  sample.merits = merits_of(options);
-  sample.merit.grid = grid_of(options);
-  if (options.compensator)
-    sample.merit.compensator = std::make_shared<const Compensator>(
-        options.compensator->state().compensator);
-  if (options.samples < 32 || options.samples > 1000000)
-    throw std::invalid_argument(
-        fmt::format("{} samples; expected 32 to 1000000", options.samples));
-  sample.rows = options.samples;
-  sample.seed = options.seed.value_or(campaign.seed());
-  sample.halves_tolerances = !options.limits.empty();
-  sample.jobs = options.jobs;
-  std::map<Merit, double> limits = limits_of(options, sample.merits);
-  const CampaignPlan& own = campaign.state().campaign;
+SensitivityResult studied(const Campaign& campaign,
+                          const SensitivityOptions& options,
+                          DeviceSampleCounts& counts) {
+  const DeviceSampleOptions asked = sample_options(campaign, options);
+  const std::map<Merit, double> limits = limits_of(options, asked.merits);
+  const CampaignPlan& own = campaign.content();
   require_comparable(factors_of(own.device_plan()),
                      own.sources().front().path.string());
-  return {campaign, std::move(sample), std::move(limits), options.linear};
-}
-
-SensitivityResult run_study(const SensitivityStudy& study,
-                            DeviceSampleCounts& counts) {
-  const DeviceSampleOptions& asked = study.sample;
-  const DeviceSample sample =
-      sample_devices(study.campaign.state().campaign, asked, counts);
-  const StudyHead head{study.campaign.name(), asked.seed, asked.merit.grid};
+  const DeviceSample sample = sample_devices(own, asked, counts);
+  const StudyHead head{campaign.name(), asked.seed, asked.merit.grid};
   SensitivityResult result;
   result.text = sample_lines(sample, head);
   std::vector<MeritResult> found;
   for (std::size_t m = 0; m < asked.merits.size(); ++m) {
     const Merit merit = asked.merits[m];
-    const auto limit = study.limits.find(merit);
-    MeritQuestion question{merit,
-                           figure_of_merit(merit).is_positive && !study.linear};
-    if (limit != study.limits.end()) question.limit = limit->second;
+    const auto limit = limits.find(merit);
+    MeritQuestion question{
+        merit, figure_of_merit(merit).is_positive && !options.linear};
+    if (limit != limits.end()) question.limit = limit->second;
     found.push_back(analysed(sample, m, question, asked.seed));
     result.text += '\n' + sensitivity_table(found.back());
     result.figures.push_back(figure_of(found.back()));
@@ -156,18 +151,16 @@ SensitivityResult run_study(const SensitivityStudy& study,
 
 SensitivityResult sensitivity(const Campaign& campaign,
                               const SensitivityOptions& options) {
-  const internal::SensitivityStudy study =
-      internal::checked_study(campaign, options);
-  const auto total = static_cast<double>(study.devices());
   internal::DeviceSampleCounts counts;
   std::mutex one_at_a_time;
   if (options.progress)
     counts.on_device = [&] {
       const std::lock_guard lock(one_at_a_time);
       internal::report(options.progress,
-                       static_cast<double>(counts.devices.load()) / total);
+                       static_cast<double>(counts.devices.load()) /
+                           static_cast<double>(counts.all_devices.load()));
     };
-  return internal::run_study(study, counts);
+  return internal::studied(campaign, options, counts);
 }
 
 }  // namespace beamgyro

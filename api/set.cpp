@@ -33,42 +33,40 @@ std::vector<FileDefect> set_defects(const std::filesystem::path& directory,
   return defects;
 }
 
-}  // namespace internal
-
-struct Set::State {
+class OpenSet {
+ public:
   /// Place of a device in a file.
   struct Place {
-    std::shared_ptr<const internal::ShardFile> file;
+    std::shared_ptr<const ShardFile> file;
     std::uint32_t position;
   };
 
   std::filesystem::path directory;
-  internal::Manifest manifest;  // finished
+  Manifest manifest;  // finished
   std::vector<SetFailure> failures;
 
-  const internal::ManifestHead& head() const { return *manifest.head; }
+  const ManifestHead& head() const { return *manifest.head; }
 
   /// Opens the file, compares its bytes with the manifest, and keeps the few
   /// that were used last open. Throws as Set::part().
   Place place_of(std::string_view run, std::uint32_t device) const;
 
  private:
-  std::shared_ptr<const internal::ShardFile> file_of(std::uint32_t index) const;
+  std::shared_ptr<const ShardFile> file_of(std::uint32_t index) const;
 
   mutable std::mutex mutex_;
-  mutable std::map<std::uint32_t, std::shared_ptr<const internal::ShardFile>>
-      open_;
+  mutable std::map<std::uint32_t, std::shared_ptr<const ShardFile>> open_;
 };
 
 namespace {
 
 constexpr std::size_t kMostOpen = 8;  // files of a set
 
-std::vector<SetFailure> failures_of(const internal::Manifest& manifest) {
+std::vector<SetFailure> failures_of(const Manifest& manifest) {
   std::vector<SetFailure> failures;
   const std::vector<std::string>& runs = manifest.head->runs;
-  for (const internal::ManifestEntry& entry : manifest.entries)
-    for (const internal::DeviceFailure& failure : entry.failures)
+  for (const ManifestEntry& entry : manifest.entries)
+    for (const DeviceFailure& failure : entry.failures)
       failures.push_back(
           {runs[entry.index % runs.size()], failure.device, failure.reason});
   return failures;
@@ -76,22 +74,21 @@ std::vector<SetFailure> failures_of(const internal::Manifest& manifest) {
 
 }  // namespace
 
-std::shared_ptr<const internal::ShardFile> Set::State::file_of(
-    std::uint32_t index) const {
+std::shared_ptr<const ShardFile> OpenSet::file_of(std::uint32_t index) const {
   const std::lock_guard lock(mutex_);
   if (const auto found = open_.find(index); found != open_.end())
     return found->second;
-  const auto entry = std::ranges::find(manifest.entries, index,
-                                       &internal::ManifestEntry::index);
-  auto file = std::make_shared<const internal::ShardFile>(
-      directory / entry->file, internal::open_listed(directory, *entry));
+  const auto entry =
+      std::ranges::find(manifest.entries, index, &ManifestEntry::index);
+  auto file = std::make_shared<const ShardFile>(directory / entry->file,
+                                                open_listed(directory, *entry));
   if (open_.size() >= kMostOpen) open_.erase(open_.begin());
   open_.emplace(index, file);
   return file;
 }
 
-Set::State::Place Set::State::place_of(std::string_view run,
-                                       std::uint32_t device) const {
+OpenSet::Place OpenSet::place_of(std::string_view run,
+                                 std::uint32_t device) const {
   const std::vector<std::string>& runs = head().runs;
   const auto named = std::ranges::find(runs, run);
   if (named == runs.end())
@@ -108,6 +105,8 @@ Set::State::Place Set::State::place_of(std::string_view run,
   return {file_of(index), device % head().devices_per_file};
 }
 
+}  // namespace internal
+
 std::string_view part_name(SetPart part) {
   switch (part) {
     case SetPart::kTrain:
@@ -120,30 +119,28 @@ std::string_view part_name(SetPart part) {
   return {};
 }
 
-Set::Set(std::shared_ptr<const State> state) : state_(std::move(state)) {}
-
 Set Set::open(const std::filesystem::path& directory) {
-  auto state = std::make_shared<State>();
+  auto state = std::make_shared<internal::OpenSet>();
   state->directory = directory;
   state->manifest = internal::finished_manifest(directory);
-  state->failures = failures_of(state->manifest);
+  state->failures = internal::failures_of(state->manifest);
   return Set(std::move(state));
 }
 
-std::filesystem::path Set::directory() const { return state_->directory; }
-std::string Set::campaign() const { return state_->head().campaign; }
-std::uint32_t Set::devices() const { return state_->head().devices; }
-std::vector<std::string> Set::runs() const { return state_->head().runs; }
-std::uint64_t Set::seed() const { return state_->head().seed; }
+std::filesystem::path Set::directory() const { return content().directory; }
+std::string Set::campaign() const { return content().head().campaign; }
+std::uint32_t Set::devices() const { return content().head().devices; }
+std::vector<std::string> Set::runs() const { return content().head().runs; }
+std::uint64_t Set::seed() const { return content().head().seed; }
 std::string Set::program_version() const {
-  return state_->head().program_version;
+  return content().head().program_version;
 }
-std::string Set::git_revision() const { return state_->head().git_revision; }
-std::vector<SetFailure> Set::failures() const { return state_->failures; }
+std::string Set::git_revision() const { return content().head().git_revision; }
+std::vector<SetFailure> Set::failures() const { return content().failures; }
 
 SetPart Set::part(std::uint32_t device) const {
-  const State::Place place =
-      state_->place_of(state_->head().runs.front(), device);
+  const internal::OpenSet::Place place =
+      content().place_of(content().head().runs.front(), device);
   return static_cast<SetPart>(place.file->row(place.position).part);
 }
 
@@ -155,19 +152,19 @@ std::vector<std::uint32_t> Set::devices_of(SetPart wanted) const {
 }
 
 Recording Set::recording(std::string_view run, std::uint32_t device) const {
-  const State::Place place = state_->place_of(run, device);
+  const internal::OpenSet::Place place = content().place_of(run, device);
   return place.file->recording(place.position);
 }
 
 Recording Set::slow_recording(std::string_view run,
                               std::uint32_t device) const {
-  const State::Place place = state_->place_of(run, device);
+  const internal::OpenSet::Place place = content().place_of(run, device);
   return place.file->slow_recording(place.position);
 }
 
 std::vector<DrawnParameter> Set::drawn_parameters(std::string_view run,
                                                   std::uint32_t device) const {
-  const State::Place place = state_->place_of(run, device);
+  const internal::OpenSet::Place place = content().place_of(run, device);
   const std::vector<internal::DeviceVariable>& about =
       place.file->head().parameters;
   const std::vector<double>& values =
@@ -182,7 +179,7 @@ std::vector<DrawnParameter> Set::drawn_parameters(std::string_view run,
 std::vector<SetDefect> Set::verify(const Progress& progress) const {
   std::vector<SetDefect> defects;
   for (const internal::FileDefect& defect : internal::set_defects(
-           state_->directory, state_->manifest,
+           content().directory, content().manifest,
            [&](std::uint64_t done, std::uint64_t total) {
              internal::report(progress, static_cast<double>(done) /
                                             static_cast<double>(total));

@@ -34,7 +34,7 @@ std::vector<std::string> simulate_blocks(const Scenario& scenario,
                                          const SimulationOptions& options) {
   if (!on_block)
     throw std::invalid_argument("no function for the blocks; expected one");
-  const Scenario::State& state = scenario.state();
+  const internal::ScenarioState& state = scenario.content();
   const internal::LoadedScenario& input = state.loaded;
   const auto samples = static_cast<double>(scenario.samples());
   internal::RunWarnings warnings(input.scenario, input.device);

@@ -10,13 +10,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "api/compensation.h"
-#include "api/compensator_state.h"
-#include "api/model_state.h"
+#include "api/compensators.h"
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/compensator/run_comparison.h"
 #include "compensation/rows/run_source.h"
 #include "compensation/rows/set_runs.h"
+#include "compensation/training/model_file.h"
 #include "compensation/training/train.h"
 #include "include/beamgyro/progress.h"
 #include "report/training_report.h"
@@ -71,14 +70,14 @@ TrainedCompensator trained(const Model& model,
                            const internal::RunSource& training,
                            const internal::RunSource& held_out,
                            const TrainingOptions& options) {
-  internal::ModelSpec spec = model.state().spec;
+  internal::ModelSpec spec = model.content();
   observe_epochs(spec, options);
   internal::TrainResult result =
       internal::train(spec, training, held_out, options.seed,
                       grouping_of(options.cross_validation));
   std::string report =
       internal::training_report(result, !options.cross_validation.empty());
-  auto state = std::make_shared<Compensator::State>();
+  auto state = std::make_shared<internal::CompensatorState>();
   state->compensator = std::move(result.compensator);
   state->text = internal::compensator_text(state->compensator);
   state->name = "compensator.json";
@@ -108,27 +107,20 @@ internal::RunSource source_of_recordings(
 
 }  // namespace
 
-Model::Model(std::shared_ptr<const State> state) : state_(std::move(state)) {}
-
 Model Model::read(const std::filesystem::path& file) {
-  auto state = std::make_shared<State>();
-  state->name = file.string();
-  state->spec = internal::read_model(file);
-  return Model(std::move(state));
+  return Model(
+      std::make_shared<const internal::ModelSpec>(internal::read_model(file)));
 }
 
 Model Model::parse(const std::string& text, const std::string& name) {
-  auto state = std::make_shared<State>();
-  state->name = name;
-  state->spec =
-      internal::read_model(internal::ConfigDocument::parse(text, name));
-  return Model(std::move(state));
+  return Model(std::make_shared<const internal::ModelSpec>(
+      internal::read_model(internal::ConfigDocument::parse(text, name))));
 }
 
-std::string Model::text() const { return state_->spec.text; }
-std::string Model::name() const { return state_->name; }
+std::string Model::text() const { return content().text; }
+std::string Model::name() const { return content().files.front().string(); }
 std::vector<std::filesystem::path> Model::files() const {
-  return state_->spec.files;
+  return content().files;
 }
 
 TrainedCompensator train(const Model& model,

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "api/user_compensator.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,8 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "api/compensation.h"
-#include "api/compensator_state.h"
+#include "api/compensators.h"
 #include "compensation/inputs/sample_ranges.h"
 #include "validation/external/answering.h"
 #include "validation/external/measured_signals.h"
@@ -138,9 +135,8 @@ CompensatedRate OpenedCompensator::answer(const Recording& recording) const {
 }
 
 CompensatorSource source_of(const RateCompensator& compensator) {
-  if (const auto* file =
-          dynamic_cast<const beamgyro::Compensator*>(&compensator))
-    return source_of(file->state().compensator, file->state().path(),
+  if (const auto* file = dynamic_cast<const Compensator*>(&compensator))
+    return source_of(file->content().compensator, file->content().path(),
                      file->text());
   if (const auto* opened = dynamic_cast<const OpenedCompensator*>(&compensator))
     return opened->source();

@@ -7,10 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "api/model_state.h"
+#include "api/compensators.h"
 #include "api/reported_progress.h"
-#include "api/user_compensator.h"
-#include "api/validation_texts.h"
+#include "api/validator.h"
 #include "dataset/files/json_text.h"
 #include "parallel/work_queue.h"
 #include "report/verdict_report.h"
@@ -46,123 +45,97 @@ nlohmann::ordered_json json_of(const CompletedValidation& validation) {
   return json;
 }
 
-}  // namespace
-
-ValidationTexts texts_of(const CompletedValidation& validation) {
-  const nlohmann::ordered_json json = json_of(validation);
-  return {json_text(json), verdict_report(validation.result, false),
-          verdict_report(validation.result, true), page_of(json)};
-}
-
-}  // namespace internal
-
-namespace {
-
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-static_assert(static_cast<int>(Verdict::kPass) ==
-                  static_cast<int>(internal::Conformity::kPass) &&
-              static_cast<int>(Verdict::kFail) ==
-                  static_cast<int>(internal::Conformity::kFail) &&
-              static_cast<int>(Verdict::kUndecided) ==
-                  static_cast<int>(internal::Conformity::kUndecided));
-
-Verdict public_verdict(internal::Conformity conformity) {
-  return static_cast<Verdict>(conformity);
-}
-
 std::optional<IntervalEstimate> estimate_of(
-    const std::optional<internal::Estimate>& estimate) {
+    const std::optional<Estimate>& estimate) {
   if (!estimate) return std::nullopt;
-  const internal::Interval interval =
-      estimate->interval.value_or(internal::Interval{kNone, kNone});
+  const Interval interval = estimate->interval.value_or(Interval{kNone, kNone});
   return IntervalEstimate{estimate->value, interval.low, interval.high};
 }
 
-std::vector<MetricRow> metrics_of(const internal::ValidationResult& result) {
+std::vector<MetricRow> metrics_of(const ValidationResult& result) {
   std::vector<MetricRow> rows;
-  for (const internal::MetricResult& found : result.metrics) {
+  for (const MetricResult& found : result.metrics) {
     MetricRow row{
         std::string(found.metric->name),   std::string(found.metric->unit),
         std::string(found.metric->clause), estimate_of(found.before),
         estimate_of(found.after),          {}};
     for (const auto& [limit, decision] : result.limits)
       if (limit.metric == found.metric->name)
-        row.limits.push_back({internal::text_of(limit), limit.relative_to,
-                              public_verdict(decision.result), decision.margin,
+        row.limits.push_back({text_of(limit), limit.relative_to,
+                              decision.result, decision.margin,
                               decision.words});
     rows.push_back(std::move(row));
   }
   return rows;
 }
 
-std::string outcome_name(internal::CheckOutcome outcome) {
+std::string outcome_name(CheckOutcome outcome) {
   switch (outcome) {
-    case internal::CheckOutcome::kPassed:
+    case CheckOutcome::kPassed:
       return "passed";
-    case internal::CheckOutcome::kFailed:
+    case CheckOutcome::kFailed:
       return "failed";
-    case internal::CheckOutcome::kNotTested:
+    case CheckOutcome::kNotTested:
       break;
   }
   return "not tested";
 }
 
-ValidationOutcome public_outcome(
-    const internal::CompletedValidation& validation) {
-  const internal::ValidationResult& result = validation.result;
-  ValidationOutcome outcome;
-  outcome.verdict = public_verdict(result.verdict);
-  outcome.words = result.words;
-  outcome.next = result.next;
-  outcome.metrics = metrics_of(result);
-  for (const internal::CheckResult& check : result.checks)
+ValidationOutcome public_outcome(const CompletedValidation& validation) {
+  const ValidationResult& result = validation.result;
+  const nlohmann::ordered_json json = json_of(validation);
+  ValidationOutcome outcome{.verdict = result.verdict,
+                            .words = result.words,
+                            .next = result.next,
+                            .metrics = metrics_of(result),
+                            .checks = {},
+                            .warnings = result.warnings,
+                            .text = verdict_report(result, false),
+                            .all_metrics = verdict_report(result, true),
+                            .json = json_text(json),
+                            .page = page_of(json)};
+  for (const CheckResult& check : result.checks)
     outcome.checks.push_back({check.name, outcome_name(check.outcome),
                               check.value, check.limit, check.words});
-  outcome.warnings = result.warnings;
-  internal::ValidationTexts texts = internal::texts_of(validation);
-  outcome.json = std::move(texts.json);
-  outcome.text = std::move(texts.text);
-  outcome.all_metrics = std::move(texts.all_metrics);
-  outcome.page = std::move(texts.page);
   return outcome;
-}
-
-ValidationOutcome validated(internal::CompensatorSource source,
-                            const ValidationOptions& options) {
-  const internal::Validator validator(std::move(source), options);
-  std::mutex one_at_a_time;
-  double reported = 0.0;
-  internal::ProgressOfWork progress;
-  if (options.progress)
-    progress = [&](double share) {
-      const std::lock_guard lock(one_at_a_time);
-      // Threads may overtake each other on the way here.
-      reported = std::max(reported, share);
-      internal::report(options.progress, reported);
-    };
-  const internal::CompletedValidation found =
-      validator.validate(internal::thread_count(options.jobs), progress);
-  if (progress) progress(1.0);
-  return public_outcome(found);
 }
 
 }  // namespace
 
-std::string_view verdict_name(Verdict verdict) {
-  return internal::conformity_name(static_cast<internal::Conformity>(verdict));
+ValidationOutcome validated(const Validator& validator,
+                            const Progress& progress) {
+  std::mutex one_at_a_time;
+  double reported = 0.0;
+  const auto told = [&](double share) {
+    const std::lock_guard lock(one_at_a_time);
+    // Threads may overtake each other on the way here.
+    reported = std::max(reported, share);
+    report(progress, reported);
+  };
+  const CompletedValidation found =
+      validator.validate(thread_count(validator.options().jobs), told);
+  told(1.0);
+  return public_outcome(found);
 }
+
+}  // namespace internal
 
 ValidationOutcome validate(const RateCompensator& compensator,
                            const ValidationOptions& options) {
-  return validated(internal::source_of(compensator), options);
+  return validated(
+      internal::Validator(internal::source_of(compensator), options),
+      options.progress);
 }
 
 ValidationOutcome validate(const Model& model,
                            const ValidationOptions& options) {
   return validated(
-      internal::source_of(model.state().spec, model.name(), model.text()),
-      options);
+      internal::Validator(
+          internal::source_of(model.content(), model.name(), model.text()),
+          options),
+      options.progress);
 }
 
 }  // namespace beamgyro

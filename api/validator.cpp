@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "api/device_state.h"
 #include "api/program_version.h"
+#include "api/scenario_state.h"
 #include "api/validation_members.h"
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/rows/set_runs.h"
@@ -75,9 +75,9 @@ struct Validator::State {
   SpecificationFile specification;
   QualifiedDevice device;
   std::optional<CampaignPlan> campaign;
-  std::optional<Compensator> workbench;
+  std::optional<FittedCompensator> workbench;
   std::optional<RunSource> set;
-  std::vector<InputFile> inputs;
+  std::vector<ValidationInput> inputs;
 
   void add_file(const std::string& group, const fs::path& path,
                 std::string text) {
@@ -86,7 +86,7 @@ struct Validator::State {
   }
 
   void read_device() {
-    device = {options.device->state().device, options.device->text()};
+    device = {options.device->content().device, options.device->text()};
     const std::vector<std::string> overrides = options.device->overrides();
     for (const std::string& line : overrides) device.overrides += line + '\n';
     qualification = read_qualification(*options.qualification);
@@ -137,7 +137,7 @@ struct Validator::State {
 
   // Recordings are read after they were hashed.
   void require_same_recordings() const {
-    for (const InputFile& input : inputs)
+    for (const ValidationInput& input : inputs)
       if (input.group == "runs" && !options.recordings.empty() &&
           sha256_of_file(input.path) != input.sha256)
         throw std::runtime_error(input.path.string() +
@@ -169,7 +169,7 @@ struct Validator::State {
                       options.qualification->string(), source.argument));
   }
 
-  Compensator trained_model(const TrainingData& data) const try {
+  FittedCompensator trained_model(const TrainingData& data) const try {
     return trained_on(data, *source.model);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format(
@@ -205,7 +205,7 @@ struct Validator::State {
         .false_accept_risk = specification.false_accept_risk,
         .files = {},
         .seeds = {}};
-    for (const InputFile& input : inputs)
+    for (const ValidationInput& input : inputs)
       p.files.push_back(
           {input.group, input.path.filename().string(), input.sha256});
     for (const auto* runs : {&qualification.runs, &qualification.training,
@@ -236,11 +236,10 @@ Validator::Validator(CompensatorSource source, ValidationOptions options,
 }
 
 Validator::~Validator() = default;
-Validator::Validator(Validator&&) noexcept = default;
 
 const CompensatorSource& Validator::source() const { return state_->source; }
 const ValidationOptions& Validator::options() const { return state_->options; }
-const std::vector<InputFile>& Validator::inputs() const {
+const std::vector<ValidationInput>& Validator::inputs() const {
   return state_->inputs;
 }
 
@@ -253,13 +252,13 @@ CompletedValidation Validator::validate(std::size_t threads,
       s.options.device
           ? training_data(s.qualification, s.device, model, threads)
           : TrainingData{};
-  std::optional<Compensator> trained = s.source.trained;
+  std::optional<FittedCompensator> trained = s.source.trained;
   std::shared_ptr<const TestedCompensator> compensator = s.source.tested;
   if (model != nullptr) {
     trained = s.trained_model(data);
     compensator = tested(*trained);
   }
-  const Compensator* known = trained ? &*trained : nullptr;
+  const FittedCompensator* known = trained ? &*trained : nullptr;
 
   CompletedValidation done;
   ValidationResult& result = done.result;

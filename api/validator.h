@@ -33,12 +33,11 @@ class Validator {
   Validator(CompensatorSource source, ValidationOptions options,
             bool keeps_inputs = false);
   ~Validator();
-  Validator(Validator&&) noexcept;
 
   const CompensatorSource& source() const;
   const ValidationOptions& options() const;
   /// Returns every file that the result depends on; one of two groups twice.
-  const std::vector<InputFile>& inputs() const;
+  const std::vector<ValidationInput>& inputs() const;
 
   /// Simulates the qualification for the device, or reads the recordings, and
   /// judges the compensator; does so with the devices of the campaign, if there
@@ -54,10 +53,9 @@ class Validator {
   std::unique_ptr<State> state_;
 };
 
-/// Returns what a bundle stores of a validation: the names of its inputs in
-/// place of those of the files.
-nlohmann::ordered_json request_json(const Validator& validator,
-                                    const InputNames& names);
+/// Validates on the threads that the options ask for, and tells `progress`.
+ValidationOutcome validated(const Validator& validator,
+                            const beamgyro::Progress& progress);
 
 /// What a bundle asks for.
 struct BundledRequest {

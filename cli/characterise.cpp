@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <memory>
-#include <numbers>
 #include <stdexcept>
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
+#include "cli/option_values.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
 #include "dataset/files/atomic_file.h"
@@ -34,19 +32,11 @@ struct CharacteriseArguments {
 
 // Both ends belong to the grid; a single value is a grid of one.
 std::vector<double> temperature_grid(const std::string& text) {
-  std::vector<double> parts;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (true) {
-    double value = 0;
-    const auto [stop, error] = std::from_chars(at, end, value);
-    if (error != std::errc() || !std::isfinite(value))
-      fail_temperatures(text, "not a number");
-    parts.push_back(value);
-    if (stop == end) break;
-    if (*stop != ':') fail_temperatures(text, "not a number");
-    at = stop + 1;
-  }
+  const std::vector<double> parts = numbers_between(text, ':');
+  if (parts.empty() || text.find_first_of(" \r") != text.npos ||
+      !std::ranges::all_of(parts,
+                           [](double one) { return std::isfinite(one); }))
+    fail_temperatures(text, "not a number");
   if (parts.size() == 1) return parts;
   if (parts.size() != 3)
     fail_temperatures(text, "neither one nor three values");
@@ -73,22 +63,22 @@ int characterise(const CharacteriseArguments& arguments) {
 }  // namespace
 
 void add_characterise(CommandLine& program) {
-  auto arguments = std::make_shared<CharacteriseArguments>();
-  Command& command =
-      program.add("characterise", kSimulation,
-                  "Tabulates the steady state of a device over the temperature "
-                  "of its beam, without noise");
-  command.argument({"DEVICE.toml", "", "Device file"}, arguments->device);
+  const auto [command, arguments] = program.add<CharacteriseArguments>(
+      "characterise", kSimulation,
+      "Tabulates the steady state of a device over the temperature "
+      "of its beam, without noise",
+      characterise);
+  command.text({"DEVICE.toml", "", "Device file"}, arguments.device);
   command.reads({{FileKind::kDevice}});
-  command.text({"-o,--output", "OUT.csv", "Table to write"}, arguments->output);
+  command.text({"-o,--output", "OUT.csv", "Table to write"}, arguments.output);
   command.text({"--beam-temperature", "START:STOP:STEP",
                 "Temperatures in degC, both ends included, or one value",
-                arguments->temperatures},
-               arguments->temperatures);
+                arguments.temperatures},
+               arguments.temperatures);
   command.texts(
       {"--set", "KEY=VALUE", "Replaces a key of the device; may be repeated",
        "the file as it is"},
-      arguments->overrides);
+      arguments.overrides);
   command.example(
       "beamgyro characterise scenarios/devices/nominal.toml -o nominal.csv",
       "The shipped device from -40 to 60 degC");
@@ -96,7 +86,6 @@ void add_characterise(CommandLine& program) {
       "beamgyro characterise scenarios/devices/nominal.toml -o hot.csv "
       "--beam-temperature 20:80:1 --set beam.length_m=0.038",
       "A shorter beam, in steps of 1 K");
-  command.action([arguments] { return characterise(*arguments); });
 }
 
 }  // namespace beamgyro::internal

@@ -9,34 +9,31 @@
 #include <stdexcept>
 #include <utility>
 
-#include "cli/option_values.h"
 #include "cli/terminal.h"
 #include "config/suggestion.h"
 
 namespace beamgyro::internal {
+namespace {
+
+Action printing(std::string text) {
+  return [text = std::move(text)] {
+    print_result(text);
+    return 0;
+  };
+}
+
+}  // namespace
 
 struct Command::Option {
   OptionText text;
   Count count;
   Take take;
-  bool is_set = false;                  // a flag
-  std::vector<std::string> given = {};  // words, of anything else
-  ExpectedKinds files = {};             // that these name
+  Words given = {};          // nothing of a flag
+  ExpectedKinds files = {};  // that these name
 
-  std::string long_name() const {
-    return text.names.substr(text.names.find(',') + 1);
-  }
-  // A name that a script left empty is no name.
-  const std::string& text_in(const std::string& word) const {
-    if (word.empty())
-      throw std::invalid_argument(
-          fmt::format("{} \"\": is empty; expected {}", long_name(),
-                      text.is_option() ? text.value : "a name"));
-    return word;
-  }
   bool is_called(std::string_view name) const {
     return text.is_option() &&
-           (name == long_name() || name == text.names.substr(0, 2));
+           (name == text.long_name() || name == text.names.substr(0, 2));
   }
 };
 
@@ -45,109 +42,43 @@ Command::Command(CLI::App& app, HelpOfCommand help)
 
 Command::~Command() = default;
 
-Command::Option& Command::add(const OptionText& text, Count count, Take take,
-                              int most) {
-  help_.lines.push_back({text, !text.is_option() ? "Arguments"
-                               : !group_.empty() ? group_
-                                                 : "Options"});
+void Command::add(const OptionText& text, Count count, Take take, int most) {
+  help_.lines.push_back(text);
+  help_.lines.back().group = !text.is_option() ? "Arguments"
+                             : !group_.empty() ? group_
+                                               : "Options";
   options_.push_back(
       std::make_unique<Option>(Option{text, count, std::move(take)}));
-  Option& option = *options_.back();
-  if (count == Count::kNone) {
-    app_->add_flag(text.names, option.is_set);
-    return option;
-  }
+  if (count == Count::kNone) return;
   CLI::Option* const added = app_->add_option(
       text.is_option() ? text.names
                        : fmt::format("argument{}", options_.size()),
-      option.given);
+      options_.back()->given);
   if (count == Count::kOne) added->expected(1);
   if (count != Count::kList) added->allow_extra_args(false);
   if (most > 0) added->expected(1, most);
-  return option;
-}
-
-void Command::argument(const OptionText& text, std::string& value) {
-  this->text(text, value);
-}
-
-void Command::arguments(const OptionText& text,
-                        std::vector<std::string>& values, int most) {
-  Option& option = add(text, Count::kList, {}, most);
-  option.take = [&values, &option](const auto& words) {
-    for (const std::string& word : words) option.text_in(word);
-    values = words;
-  };
-}
-
-void Command::text(const OptionText& text, std::string& value) {
-  Option& option = add(text, Count::kOne, {});
-  option.take = [&value, &option](const auto& words) {
-    value = option.text_in(words[0]);
-  };
-}
-
-void Command::text(const OptionText& text, std::optional<std::string>& value) {
-  Option& option = add(text, Count::kOne, {});
-  option.take = [&value, &option](const auto& words) {
-    value = option.text_in(words[0]);
-  };
-}
-
-void Command::texts(const OptionText& text, std::vector<std::string>& values) {
-  add(text, Count::kRepeated, [&values](const auto& words) { values = words; });
-}
-
-void Command::list(const OptionText& text, std::vector<std::string>& values) {
-  add(text, Count::kList, [&values](const auto& words) { values = words; });
-}
-
-void Command::number(const OptionText& text, std::optional<double>& value,
-                     const Range& range) {
-  Option& option = add(text, Count::kOne, {});
-  option.take = [&value, range, &option](const auto& words) {
-    value = decimal_number(option.long_name(), words[0], range);
-  };
-}
-
-void Command::integer(const OptionText& text, std::optional<long>& value,
-                      const IntegerRange& range) {
-  Option& option = add(text, Count::kOne, {});
-  option.take = [&value, range, &option](const auto& words) {
-    value = whole_number(option.long_name(), words[0], range.low, range.high);
-  };
-}
-
-void Command::integers(const OptionText& text, std::vector<long>& values,
-                       const IntegerRange& range) {
-  Option& option = add(text, Count::kList, {});
-  option.take = [&values, range, &option](const auto& words) {
-    for (const std::string& word : words)
-      values.push_back(
-          whole_number(option.long_name(), word, range.low, range.high));
-  };
 }
 
 void Command::choice(const OptionText& text, std::string& value,
                      const std::vector<std::string>& allowed) {
-  Option& option = add(text, Count::kOne, {});
-  option.take = [&value, allowed, &option](const auto& words) {
-    value = one_of(option.long_name(), words[0], allowed);
-  };
+  add(text, Count::kOne, [&value, allowed, text](const Words& words) {
+    value = one_of(text.long_name(), words[0], allowed);
+  });
 }
 
 void Command::choices(const OptionText& text, std::vector<std::string>& values,
                       const std::vector<std::string>& allowed) {
-  Option& option = add(text, Count::kRepeated, {});
-  app_->get_option(option.long_name())->delimiter(',');
-  option.take = [&values, allowed, &option](const auto& words) {
+  add(text, Count::kRepeated, [&values, allowed, text](const Words& words) {
+    values.clear();
     for (const std::string& word : words)
-      values.push_back(one_of(option.long_name(), word, allowed));
-  };
+      values.push_back(one_of(text.long_name(), word, allowed));
+  });
+  app_->get_option(text.long_name())->delimiter(',');
 }
 
 void Command::flag(const OptionText& text, bool& value) {
-  add(text, Count::kNone, [&value](const auto&) { value = true; });
+  add(text, Count::kNone, {});
+  app_->add_flag(text.names, value);
 }
 
 void Command::reads(const ExpectedKinds& expected) {
@@ -173,13 +104,14 @@ const Command::Option* Command::find(std::string_view name) const {
 void Command::require_all() const {
   for (const auto& option : options_)
     if (option->text.is_required() && option->given.empty())
-      throw std::invalid_argument(fmt::format(
-          "{} is missing; expected {}", option->long_name(), usage(help_)));
+      throw std::invalid_argument(fmt::format("{} is missing; expected {}",
+                                              option->text.long_name(),
+                                              usage(help_)));
 }
 
 void Command::take_all() const {
   for (const auto& option : options_)
-    if (option->is_set || !option->given.empty()) option->take(option->given);
+    if (!option->given.empty()) option->take(option->given);
 }
 
 int Command::carry_out() const {
@@ -246,7 +178,7 @@ void CommandLine::fail_option(const std::string& name,
     if (source == nullptr) continue;
     for (const auto& option : source->options_)
       if (option->text.is_option())
-        names.push_back(option->long_name().substr(2));
+        names.push_back(option->text.long_name().substr(2));
   }
   const std::string meant = suggestion(
       name.substr(std::min(name.find_first_not_of('-'), name.size())), names);
@@ -331,10 +263,7 @@ Action CommandLine::help(const std::vector<std::string>& words) const {
       words.empty() || words.back() == "help"
           ? overview()
           : help_text(command(words.back()).help_, common_->help_.lines);
-  return [text = std::move(text)] {
-    print_result(text);
-    return 0;
-  };
+  return printing(std::move(text));
 }
 
 void CommandLine::split(const Command& command,
@@ -357,12 +286,7 @@ void CommandLine::split(const Command& command,
 
 Action CommandLine::parse(const std::vector<std::string>& words) {
   const Words found = look_at(words);
-  if (found.asks_version) {
-    return [text = version_ + "\n"] {
-      print_result(text);
-      return 0;
-    };
-  }
+  if (found.asks_version) return printing(version_ + "\n");
   if (!found.plain.empty() && found.plain[0] == "help")
     return help({found.plain.begin() + 1, found.plain.end()});
   if (found.asks_help)
@@ -372,7 +296,6 @@ Action CommandLine::parse(const std::vector<std::string>& words) {
   if (found.command == nullptr)
     throw std::invalid_argument("no command is given; see beamgyro --help");
   split(*found.command, words);
-  common_->take_all();
   found.command->require_all();
   found.command->take_all();
   return [command = found.command] { return command->carry_out(); };

@@ -11,6 +11,7 @@
 
 #include "api/file_kind.h"
 #include "cli/help_text.h"
+#include "cli/option_values.h"
 #include "config/range.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): as CLI11 has it
@@ -40,24 +41,60 @@ class Command {
   /// What follows stands under this heading of the help.
   void group(std::string heading) { group_ = std::move(heading); }
 
-  /// One word, or one to `most` words, that belong to no option.
-  void argument(const OptionText& text, std::string& value);
-  void arguments(const OptionText& text, std::vector<std::string>& values,
-                 int most = 0);  // 0: any number
+  // Values are texts, paths and numbers of any type; that of an option which
+  // may be left out can be optional.
 
-  void text(const OptionText& text, std::string& value);
-  void text(const OptionText& text, std::optional<std::string>& value);
+  /// One word; that of an argument, or of an option.
+  template <class Text>
+  void text(const OptionText& text, Text& value) {
+    add(text, Count::kOne,
+        [&value, text](const Words& words) { value = text.named(words[0]); });
+  }
   /// An option that may be repeated.
-  void texts(const OptionText& text, std::vector<std::string>& values);
-  /// An option that takes all words up to the next option.
-  void list(const OptionText& text, std::vector<std::string>& values);
-  void number(const OptionText& text, std::optional<double>& value,
-              const Range& range = any());
-  void integer(const OptionText& text, std::optional<long>& value,
-               const IntegerRange& range = {});
+  template <class Text>
+  void texts(const OptionText& text, std::vector<Text>& values) {
+    add(text, Count::kRepeated, [&values](const Words& words) {
+      values.assign(words.begin(), words.end());
+    });
+  }
+  /// An option that takes all words up to the next option, or an argument of
+  /// one to `most` words; 0: any number.
+  template <class Text>
+  void list(const OptionText& text, std::vector<Text>& values, int most = 0) {
+    add(
+        text, Count::kList,
+        [&values, text](const Words& words) {
+          if (!text.is_option())
+            for (const std::string& word : words) text.named(word);
+          values.assign(words.begin(), words.end());
+        },
+        most);
+  }
+  template <class Number>
+  void number(const OptionText& text, Number& value,
+              const Range& range = any()) {
+    add(text, Count::kOne, [&value, range, text](const Words& words) {
+      value = decimal_number(text.long_name(), words[0], range);
+    });
+  }
+  template <class Whole>
+  void integer(const OptionText& text, Whole& value,
+               const IntegerRange& range = {}) {
+    add(text, Count::kOne, [&value, range, text](const Words& words) {
+      value = static_cast<typename Bare<Whole>::Type>(
+          whole_number(text.long_name(), words[0], range.low, range.high));
+    });
+  }
   /// An option that takes all numbers up to the next option.
-  void integers(const OptionText& text, std::vector<long>& values,
-                const IntegerRange& range = {});
+  template <class Whole>
+  void integers(const OptionText& text, std::vector<Whole>& values,
+                const IntegerRange& range = {}) {
+    add(text, Count::kList, [&values, range, text](const Words& words) {
+      for (const std::string& word : words)
+        values.push_back(static_cast<Whole>(
+            whole_number(text.long_name(), word, range.low, range.high)));
+    });
+  }
   /// One of the words `allowed`; choices() reads several between commas.
   void choice(const OptionText& text, std::string& value,
               const std::vector<std::string>& allowed);
@@ -73,15 +110,23 @@ class Command {
   /// The option `name` cannot be used together with any of `others`.
   void exclude(const std::string& name, const std::vector<std::string>& others);
   void example(const std::string& line, const std::string& what);
-  void action(Action action) { action_ = std::move(action); }
 
  private:
   friend class CommandLine;
   struct Option;
   enum class Count { kNone, kOne, kRepeated, kList };
-  using Take = std::function<void(const std::vector<std::string>&)>;
+  using Words = std::vector<std::string>;
+  using Take = std::function<void(const Words&)>;
+  template <class T>
+  struct Bare {
+    using Type = T;
+  };
+  template <class T>
+  struct Bare<std::optional<T>> {
+    using Type = T;
+  };
 
-  Option& add(const OptionText& text, Count count, Take take, int most = 0);
+  void add(const OptionText& text, Count count, Take take, int most = 0);
   const Option* find(std::string_view name) const;
   void require_all() const;
   void take_all() const;
@@ -100,9 +145,22 @@ class CommandLine {
   CommandLine(const std::string& description, std::string version);
   ~CommandLine();
 
-  /// Adds a command, which stands under the heading `group` of the overview.
-  Command& add(const std::string& name, const std::string& group,
-               const std::string& summary);
+  template <class Arguments>
+  struct Added {
+    Command& command;
+    Arguments& arguments;
+  };
+
+  /// Adds a command, which stands under the heading `group` of the overview and
+  /// calls `run` with its arguments, after these were read.
+  template <class Arguments, class Run>
+  Added<Arguments> add(const std::string& name, const std::string& group,
+                       const std::string& summary, Run run) {
+    const auto arguments = std::make_shared<Arguments>();
+    Command& command = add(name, group, summary);
+    command.action_ = [arguments, run] { return run(*arguments); };
+    return {command, *arguments};
+  }
 
   /// Returns what the words of the command line ask for: the action of a
   /// command, or one that prints help or the version. Throws
@@ -114,6 +172,8 @@ class CommandLine {
  private:
   struct Words;  // what a first look at the words finds
 
+  Command& add(const std::string& name, const std::string& group,
+               const std::string& summary);
   Command& command(const std::string& name) const;
   std::string overview() const;
   Action help(const std::vector<std::string>& words) const;

@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <iterator>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -18,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "api/compensation.h"
+#include "api/compensators.h"
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/process_limits.h"
@@ -200,14 +199,6 @@ struct CompensateArguments {
   LimitArguments limits;
 };
 
-// Prints what is wrong with the answers. Returns whether anything is.
-bool report_faults(const std::string& compensator,
-                   const CompensatedRate& answer) {
-  for (const std::string& words : answer.faults)
-    print_error(fmt::format("{}: {}", compensator, words));
-  return !answer.faults.empty();
-}
-
 int compensate(const CompensateArguments& arguments) {
   const ProcessLimits limits = process_limits(arguments.limits);
   const auto compensator =
@@ -221,16 +212,15 @@ int compensate(const CompensateArguments& arguments) {
     inputs.emplace_back(arguments.compensator);
   require_output(arguments.output, inputs);
   require_recording_name(arguments.output);
-  require_uncompensated(recording, arguments.run);
-  CompensatedRate answer =
-      checked_answer(*compensator, recording, arguments.run);
+  std::vector<std::string> faults;
+  const CompensatedRun run =
+      compensated(*compensator, std::move(recording), arguments.run, faults);
   progress.reset();
-  if (report_faults(arguments.compensator, answer)) return kCompensatorFailed;
-  for (const std::string& warning :
-       range_warnings(*compensator, answer, arguments.run))
-    print_warning(warning);
-  add_answer(*compensator, std::move(answer), recording);
-  write_recording(recording, arguments.output);
+  for (const std::string& words : faults)
+    print_error(fmt::format("{}: {}", arguments.compensator, words));
+  if (!faults.empty()) return kCompensatorFailed;
+  for (const std::string& warning : run.warnings) print_warning(warning);
+  write_recording(run.recording, arguments.output);
   return 0;
 }
 
@@ -261,37 +251,35 @@ int compensate_any(const CompensateArguments& arguments) {
 }  // namespace
 
 void add_compensate(CommandLine& program) {
-  auto arguments = std::make_shared<CompensateArguments>();
-  Command& command =
-      program.add("compensate", kCompensation,
-                  "Copies a recording and adds the compensated rate");
-  command.argument(
+  const auto [command, arguments] = program.add<CompensateArguments>(
+      "compensate", kCompensation,
+      "Copies a recording and adds the compensated rate", compensate_any);
+  command.text(
       {"COMPENSATOR", "",
        "FILE.json of train, a shared library ./FILE.so with the functions of "
        "beamgyro/plugin.h, or \"cmd:PROGRAM ARGS\", which reads CSV and writes "
        "one rate a line"},
-      arguments->compensator);
+      arguments.compensator);
   command.reads({{FileKind::kCompensator}});
-  command.argument({"RUN.h5", "", "Recording", "none, with --stream"},
-                   arguments->run);
+  command.text({"RUN.h5", "", "Recording", "none, with --stream"},
+               arguments.run);
   command.reads({{FileKind::kRecording}});
   command.text(
       {"-o,--output", "OUT.h5", "Recording to write", "none, with --stream"},
-      arguments->output);
+      arguments.output);
   command.flag({"--stream", "",
                 "Reads samples as CSV on standard input, a line of names "
                 "first, and answers each on standard output at once"},
-               arguments->stream);
+               arguments.stream);
   command.number({"--rate-Hz", "F", "Sample rate of the stream, for a library",
                   "that of its first two samples"},
-                 arguments->rate, positive());
-  add_process_limits(command, arguments->limits);
+                 arguments.rate, positive());
+  add_process_limits(command, arguments.limits);
   command.example("beamgyro compensate cubic.json flight.h5 -o compensated.h5",
                   "Adds the variable compensated_rate");
   command.example(
       "beamgyro compensate \"cmd:python3 mine.py\" flight.h5 -o mine.h5",
       "The same by a program of your own");
-  command.action([arguments] { return compensate_any(*arguments); });
 }
 
 }  // namespace beamgyro::internal

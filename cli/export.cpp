@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -23,14 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ExportArguments {
-  std::vector<std::string> compensators, axes;
-  std::string format, output, name;
-  std::optional<long> instance, device_id;
-  bool fit_cubic = false, force = false;
-  std::optional<std::string> rest;
-  std::optional<double> ramp;         // [K/min]
-  std::optional<double> correlation;  // [K]
-  std::optional<double> temperature;  // [degC]
+  std::vector<fs::path> compensators;
+  std::string format, output;
+  ExportOptions options;
 };
 
 // Checks all outputs before the first is written.
@@ -47,31 +41,14 @@ void require_outputs(const fs::path& directory,
     require_output(directory / called, inputs);
 }
 
-ExportOptions options_of_export(const ExportArguments& arguments) {
-  ExportOptions options{.name = arguments.name,
-                        .axes = arguments.axes,
-                        .force = arguments.force,
-                        .fit_cubic = arguments.fit_cubic};
-  if (arguments.instance)
-    options.instance = static_cast<int>(*arguments.instance);
-  if (arguments.device_id) options.device_id = *arguments.device_id;
-  if (arguments.rest) options.rest = *arguments.rest;
-  options.ramp_K_per_min = arguments.ramp;
-  options.correlation_K = arguments.correlation;
-  options.temperature_degC = arguments.temperature;
-  return options;
-}
-
 int run_export(const ExportArguments& arguments) {
-  const ExportOptions options = options_of_export(arguments);
-  std::vector<beamgyro::Compensator> compensators;
-  for (const std::string& file : arguments.compensators)
-    compensators.push_back(beamgyro::Compensator::read(file));
+  std::vector<Compensator> compensators;
+  for (const fs::path& file : arguments.compensators)
+    compensators.push_back(Compensator::read(file));
   const ExportResult result =
-      export_files(compensators, arguments.format, options);
-  std::vector<fs::path> inputs = {arguments.compensators.begin(),
-                                  arguments.compensators.end()};
-  if (arguments.rest) inputs.emplace_back(*arguments.rest);
+      export_files(compensators, arguments.format, arguments.options);
+  std::vector<fs::path> inputs = arguments.compensators;
+  if (arguments.options.rest) inputs.push_back(*arguments.options.rest);
   require_outputs(arguments.output, result.files, inputs);
   require_directory_name(arguments.output);
   write_exported(arguments.output, result.files);
@@ -82,64 +59,64 @@ int run_export(const ExportArguments& arguments) {
 }  // namespace
 
 void add_export(CommandLine& program) {
-  auto arguments = std::make_shared<ExportArguments>();
-  Command& command =
-      program.add("export", kCompensation,
-                  "Writes a compensator as C source, autopilot parameters or "
-                  "noise of navigation filters");
-  command.arguments({"COMPENSATOR.json...", "",
-                     "One compensator; for px4 and ardupilot up to three, one "
-                     "for each axis"},
-                    arguments->compensators, 3);
+  const auto [command, arguments] = program.add<ExportArguments>(
+      "export", kCompensation,
+      "Writes a compensator as C source, autopilot parameters or "
+      "noise of navigation filters",
+      run_export);
+  command.list({"COMPENSATOR.json...", "",
+                "One compensator; for px4 and ardupilot up to three, one "
+                "for each axis"},
+               arguments.compensators, 3);
   command.reads({{FileKind::kCompensator}});
   command.choice(
       {"--format", "c|px4|ardupilot|ekf",
        "c writes NAME.h, NAME.c, NAME_selftest.c and NAME_plugin.c; px4 writes "
        "NAME.params; ardupilot writes NAME.parm; ekf writes NAME_ekf.json and "
        "a file for each filter"},
-      arguments->format, {"c", "px4", "ardupilot", "ekf"});
+      arguments.format, {"c", "px4", "ardupilot", "ekf"});
   command.text({"-o,--output", "DIR", "Directory to write to"},
-               arguments->output);
+               arguments.output);
   command.text({"--name", "NAME", "Name of the files and of the C functions",
                 "the file name of the (first) compensator"},
-               arguments->name);
+               arguments.options.name);
   command.group("C");
   command.flag({"--force", "",
                 "Exports a compensator that cancels the rate, or that single "
                 "precision changes by more than 1e-4 deg/s; the code carries a "
                 "warning"},
-               arguments->force);
+               arguments.options.force);
   command.group("PX4 and ArduPilot");
   command.choices({"--axis", "x|y|z",
                    "Axis of the autopilot's gyro for each compensator, as in "
                    "x,y; of the robot for ekf",
                    "z for one compensator and x,y,z for three"},
-                  arguments->axes, {"x", "y", "z"});
+                  arguments.options.axes, {"x", "y", "z"});
   command.integer({"--instance", "N",
                    "Number of the autopilot's gyro, 0 to 3 for px4 and 1 to 3 "
                    "for ardupilot",
                    "the first"},
-                  arguments->instance);
+                  arguments.options.instance);
   command.integer({"--device-id", "ID", "px4: identifier of the sensor", "0"},
-                  arguments->device_id, {0, 2147483647});
+                  arguments.options.device_id, {0, 2147483647});
   command.flag({"--fit-cubic", "",
                 "Exports the cubic fitted to the same rows if the compensator "
                 "is no cubic"},
-               arguments->fit_cubic);
+               arguments.options.fit_cubic);
   command.group("Navigation filters (ekf)");
   command.text({"--rest", "RUN.h5",
                 "Recording at rest, from which the noise is taken", "none"},
-               arguments->rest);
+               arguments.options.rest);
   command.reads({{FileKind::kRecording}, {FileKind::kRecordingTable}});
   command.number({"--ramp-K-per-min", "R",
                   "Temperature rate that the bias noise is for", "1"},
-                 arguments->ramp, {0, 1000});
+                 arguments.options.ramp_K_per_min, {0, 1000});
   command.number({"--correlation-K", "L",
                   "Temperature over which the bias forgets itself", "10"},
-                 arguments->correlation, positive());
+                 arguments.options.correlation_K, positive());
   command.number({"--temperature-degC", "T", "Temperature at power-on",
                   "any of the training, equally likely"},
-                 arguments->temperature, {-273.15, 1000});
+                 arguments.options.temperature_degC, {-273.15, 1000});
   command.example("beamgyro export cubic.json --format c -o firmware",
                   "C source for the firmware of a gyro");
   command.example("beamgyro export x.json y.json z.json --format px4 -o params",
@@ -147,7 +124,6 @@ void add_export(CommandLine& program) {
   command.example(
       "beamgyro export z.json --format ekf --rest rest.h5 -o filters",
       "Noise parameters of navigation filters");
-  command.action([arguments] { return run_export(*arguments); });
 }
 
 }  // namespace beamgyro::internal

@@ -4,18 +4,17 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include "api/generation.h"
+#include "api/program_version.h"
 #include "cli/commands.h"
 #include "cli/generation_progress.h"
 #include "cli/inputs.h"
 #include "cli/terminal.h"
-#include "cli/version.h"
 #include "dataset/set/set_writer.h"
 
 namespace beamgyro::internal {
@@ -25,7 +24,9 @@ constexpr int kSomeDevicesFailed = 4;
 
 struct GenerateArguments {
   std::string campaign, output, shard;
-  std::optional<long> devices, lacking, jobs;
+  std::optional<long> devices;
+  std::optional<std::uint32_t> lacking;
+  unsigned jobs = 0;
   bool resume = false, strict = false;
 };
 
@@ -73,7 +74,7 @@ std::string note_for_interruption(const GenerateArguments& arguments) {
                   quoted(arguments.campaign), quoted(arguments.output));
   if (arguments.devices)
     again += fmt::format(" --devices {}", *arguments.devices);
-  if (arguments.jobs) again += fmt::format(" --jobs {}", *arguments.jobs);
+  if (arguments.jobs > 0) again += fmt::format(" --jobs {}", arguments.jobs);
   if (arguments.strict) again += " --strict";
   return kept + again + " --resume";
 }
@@ -87,7 +88,7 @@ int generate(const GenerateArguments& arguments) {
   require_moderate_files(arguments.campaign, plan);
   if (arguments.lacking) {
     print_result(lacking_tasks(arguments.output, plan.manifest_head(),
-                               static_cast<std::uint32_t>(*arguments.lacking)) +
+                               *arguments.lacking) +
                  "\n");
     return 0;
   }
@@ -95,7 +96,8 @@ int generate(const GenerateArguments& arguments) {
                      campaign.sources());
   SetWriter set(arguments.output, plan.manifest_head(), campaign.sources(),
                 task, arguments.resume);
-  warn_without_lock(set, arguments.output);
+  for (const std::string& warning : lock_warnings(set, arguments.output))
+    print_warning(warning);
   if (!set.died_before().empty())
     print_note(fmt::format(
         "{}: continuing the work of {}, which ended without finishing",
@@ -103,52 +105,50 @@ int generate(const GenerateArguments& arguments) {
   const std::vector<std::uint32_t> files = set.lacking();
   set_interrupt_note(note_for_interruption(arguments));
   generate_with_progress("generating " + arguments.output, plan, files,
-                         static_cast<unsigned>(arguments.jobs.value_or(0)),
+                         arguments.jobs,
                          [&](std::uint32_t file, const MadeShard& shard) {
                            set.add(file, shard.bytes, shard.failures);
                          });
   const SetState state = set.finish();
   print_result(outcome_text(state, files.size()));
   require_nothing_lost(arguments.output, task, plan.manifest_head(), state);
-  require_values(arguments.output, state);
   return arguments.strict && state.failures() > 0 ? kSomeDevicesFailed : 0;
 }
 
 }  // namespace
 
 void add_generate(CommandLine& program) {
-  auto arguments = std::make_shared<GenerateArguments>();
-  Command& command = program.add(
+  const auto [command, arguments] = program.add<GenerateArguments>(
       "generate", kSimulation,
-      "Simulates every device of a campaign and writes the set to a directory");
-  command.argument({"CAMPAIGN.toml", "", "Campaign file"}, arguments->campaign);
+      "Simulates every device of a campaign and writes the set to a directory",
+      generate);
+  command.text({"CAMPAIGN.toml", "", "Campaign file"}, arguments.campaign);
   command.reads({{FileKind::kCampaign}});
   command.text({"-o,--output", "DIR", "Directory of the set"},
-               arguments->output);
+               arguments.output);
   command.integer(
       {"--devices", "N", "Number of devices", "that of the campaign"},
-      arguments->devices, {1, 4000000000});
+      arguments.devices, {1, 4000000000});
   command.integer({"--jobs", "N", "Number of threads", "one per core"},
-                  arguments->jobs, {1, 4096});
+                  arguments.jobs, {1, 4096});
   command.flag({"--resume", "", "Continues the set that is in the directory"},
-               arguments->resume);
+               arguments.resume);
   command.flag({"--strict", "", "Ends with status 4 when devices failed"},
-               arguments->strict);
+               arguments.strict);
   command.group("Several tasks that share the directory");
   command.text(
       {"--shard", "I/N", "Makes only the files of task I of N", "all files"},
-      arguments->shard);
+      arguments.shard);
   command.integer(
       {"--lacking", "N",
        "Makes nothing; prints which of N tasks have work left", "not asked"},
-      arguments->lacking, {1, 1000000});
+      arguments.lacking, {1, 1000000});
   command.exclude("--lacking", {"--shard", "--resume", "--strict"});
   command.example("beamgyro generate scenarios/campaigns/small.toml -o small",
                   "A small set");
   command.example(
       "beamgyro generate scenarios/campaigns/small.toml -o small --resume",
       "Goes on after an interruption");
-  command.action([arguments] { return generate(*arguments); });
 }
 
 }  // namespace beamgyro::internal

@@ -5,9 +5,7 @@
 
 #include <chrono>
 
-#include "api/generation.h"
 #include "cli/progress.h"
-#include "cli/terminal.h"
 
 namespace beamgyro::internal {
 
@@ -31,11 +29,6 @@ void generate_with_progress(const std::string& activity, const ShardPlan& plan,
   };
   const Progress progress(activity, done);
   generate_shards(plan, files, jobs, counts, publish);
-}
-
-void warn_without_lock(const SetWriter& set, const std::string& directory) {
-  const std::string warning = lock_warning(set, directory);
-  if (!warning.empty()) print_warning(warning);
 }
 
 }  // namespace beamgyro::internal

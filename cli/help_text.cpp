@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <stdexcept>
 
 namespace beamgyro::internal {
 namespace {
@@ -62,16 +63,16 @@ std::string right_of(const OptionText& text) {
 }
 
 // Groups stand in the order in which they appear first.
-void append_groups(std::string& page, const std::vector<HelpLine>& lines) {
+void append_groups(std::string& page, const std::vector<OptionText>& lines) {
   std::vector<std::string> groups;
-  for (const HelpLine& line : lines)
+  for (const OptionText& line : lines)
     if (std::ranges::find(groups, line.group) == groups.end())
       groups.push_back(line.group);
   for (const std::string& group : groups) {
     page += "\n" + group + ":\n";
-    for (const HelpLine& line : lines)
+    for (const OptionText& line : lines)
       if (line.group == group)
-        append_line_of(page, left_of(line.text), right_of(line.text));
+        append_line_of(page, left_of(line), right_of(line));
   }
 }
 
@@ -90,18 +91,26 @@ std::string wrapped_command(std::string line) {
 
 }  // namespace
 
+const std::string& OptionText::named(const std::string& word) const {
+  if (word.empty())
+    throw std::invalid_argument(fmt::format("{} \"\": is empty; expected {}",
+                                            long_name(),
+                                            is_option() ? value : "a name"));
+  return word;
+}
+
 std::string usage(const HelpOfCommand& command) {
   std::string text = "beamgyro " + command.name;
-  for (const HelpLine& line : command.lines) {
-    if (!line.text.is_required()) continue;
-    text += ' ' + line.text.names.substr(0, line.text.names.find(','));
-    if (line.text.is_option()) text += ' ' + line.text.value;
+  for (const OptionText& line : command.lines) {
+    if (!line.is_required()) continue;
+    text += ' ' + line.names.substr(0, line.names.find(','));
+    if (line.is_option()) text += ' ' + line.value;
   }
   return text;
 }
 
 std::string help_text(const HelpOfCommand& command,
-                      const std::vector<HelpLine>& common) {
+                      const std::vector<OptionText>& common) {
   std::string page;
   wrap(page, command.summary + ".", 0, 0);
   page += "\nUsage: ";
@@ -118,7 +127,7 @@ std::string help_text(const HelpOfCommand& command,
 
 std::string overview_text(std::string_view description,
                           const std::vector<HelpOfCommand>& commands,
-                          const std::vector<HelpLine>& common) {
+                          const std::vector<OptionText>& common) {
   std::string page;
   wrap(page, description, 0, 0);
   page += "\nUsage: beamgyro COMMAND [ARGUMENTS] [OPTIONS]\n";

@@ -2,16 +2,15 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "api/program_version.h"
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
-#include "cli/version.h"
 #include "config/document.h"
 #include "dataset/files/text_file.h"
 #include "dataset/log/log_import.h"
@@ -55,33 +54,32 @@ int run_import(const ImportArguments& arguments) {
 }  // namespace
 
 void add_import(CommandLine& program) {
-  auto arguments = std::make_shared<ImportArguments>();
-  Command& command = program.add(
-      "import", kFiles, "Converts a log of a real gyro into a recording");
-  command.argument(
+  const auto [command, arguments] = program.add<ImportArguments>(
+      "import", kFiles, "Converts a log of a real gyro into a recording",
+      run_import);
+  command.text(
       {"LOG.csv", "", "Delimiter-separated text with one sample in each row"},
-      arguments->log);
+      arguments.log);
   command.reads({{FileKind::kLog},
                  {FileKind::kRecordingTable, FileKind::kCharacteristic,
                   FileKind::kProfile}});
   command.text({"--map", "MAP.toml", "States what the columns of the log mean"},
-               arguments->map);
+               arguments.map);
   command.reads({{FileKind::kLogMap}});
   command.text({"-o,--output", "RUN.h5", "Recording to write, .h5 or .csv"},
-               arguments->output);
+               arguments.output);
   command.text(
       {"--axis", "AXIS", "x, y or z: which gyro to take if the map has several",
        "the only one"},
-      arguments->axis);
+      arguments.axis);
   command.text({"--join", "SECOND.csv",
                 "A second log, such as the chamber's, for the table [join] of "
                 "the map",
                 "no second log"},
-               arguments->join);
+               arguments.join);
   command.example(
       "beamgyro import log.csv --map scenarios/maps/example.toml -o log.h5",
       "A log with the columns that the map names");
-  command.action([arguments] { return run_import(*arguments); });
 }
 
 }  // namespace beamgyro::internal

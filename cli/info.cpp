@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 
@@ -18,11 +17,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-int info(const std::string& path, std::optional<long> device) {
+struct InfoArguments {
+  std::string path;
+  std::optional<std::uint32_t> device;
+};
+
+int info(const InfoArguments& arguments) {
+  const auto& [path, device] = arguments;
   if (fs::is_directory(status_of(path))) {
-    print_result(device
-                     ? info_on_device(path, static_cast<std::uint32_t>(*device))
-                     : info_on_set(path));
+    print_result(device ? info_on_device(path, *device) : info_on_set(path));
     return 0;
   }
   if (device)
@@ -43,22 +46,19 @@ int info(const std::string& path, std::optional<long> device) {
 }  // namespace
 
 void add_info(CommandLine& program) {
-  auto path = std::make_shared<std::string>();
-  auto device = std::make_shared<std::optional<long>>();
-  Command& command =
-      program.add("info", kFiles, "Prints what a recording or a set holds");
-  command.argument({"FILE", "", "RUN.h5, a file of a set, or its directory"},
-                   *path);
+  const auto [command, arguments] = program.add<InfoArguments>(
+      "info", kFiles, "Prints what a recording or a set holds", info);
+  command.text({"FILE", "", "RUN.h5, a file of a set, or its directory"},
+               arguments.path);
   command.reads({{FileKind::kRecording, FileKind::kSetFile, FileKind::kSet}});
   command.integer({"--device", "K",
                    "Prints the --set values that make this device of a set",
                    "prints what the set holds"},
-                  *device, {0, kLastDevice});
+                  arguments.device, {0, kLastDevice});
   command.example("beamgyro info warm_up.h5",
                   "Variables, units, scenario and device of a recording");
   command.example("beamgyro info set --device 3",
                   "How to simulate device 3 alone");
-  command.action([path, device] { return info(*path, *device); });
 }
 
 }  // namespace beamgyro::internal

@@ -71,13 +71,6 @@ Recording load_recording(const std::filesystem::path& path) {
   return recording;
 }
 
-std::vector<std::uint32_t> device_numbers(const std::vector<long>& numbers) {
-  std::vector<std::uint32_t> devices;
-  for (const long number : numbers)
-    devices.push_back(static_cast<std::uint32_t>(number));
-  return devices;
-}
-
 void require_ending(const fs::path& path,
                     const std::vector<std::string>& endings) {
   const std::string extension = path.extension().string();
@@ -89,16 +82,6 @@ void require_ending(const fs::path& path,
 
 void require_recording_name(const fs::path& path) {
   require_ending(path, {".h5", ".csv"});
-}
-
-void require_json_name(const fs::path& path) {
-  const std::string extension = path.extension().string();
-  for (const char* other : {".h5", ".nc", ".csv", ".toml", ".c", ".h"})
-    if (extension == other)
-      throw std::invalid_argument(fmt::format(
-          "--json {}: is the name of a file of another kind (\"{}\"); expected "
-          "one that ends in .json",
-          path.string(), extension));
 }
 
 void require_directory_name(const fs::path& path, std::string_view option) {
@@ -127,9 +110,23 @@ void require_output(const fs::path& output,
       identity_of(output) ? "is as it was before" : "was not written"));
 }
 
+void require_json_output(const std::string& name,
+                         const std::vector<fs::path>& inputs) {
+  if (name.empty()) return;
+  require_output(name, inputs);
+  const std::string extension = fs::path(name).extension().string();
+  for (const char* other : {".h5", ".nc", ".csv", ".toml", ".c", ".h"})
+    if (extension == other)
+      throw std::invalid_argument(fmt::format(
+          "--json {}: is the name of a file of another kind (\"{}\"); expected "
+          "one that ends in .json",
+          name, extension));
+}
+
 void require_output_directory(const char* option, const std::string& name,
                               const char* file,
                               const std::vector<fs::path>& inputs) {
+  if (name.empty()) return;
   require_directory_name(name, option);
   try {
     const MadeDirectories made(name);

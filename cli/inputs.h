@@ -21,17 +21,11 @@ Recording load_recording(const std::filesystem::path& path);
 /// Largest number of a device of a set.
 constexpr long kLastDevice = 4294967295;
 
-/// Returns numbers from 0 to kLastDevice as a set counts them.
-std::vector<std::uint32_t> device_numbers(const std::vector<long>& numbers);
-
 /// Throws std::invalid_argument unless `path`, the argument of -o, has one of
 /// these endings, those of a recording, or none of a file.
 void require_ending(const std::filesystem::path& path,
                     const std::vector<std::string>& endings);
 void require_recording_name(const std::filesystem::path& path);
-/// The same for the argument of --json: a file of another kind is not written
-/// over by mistake. Any other name passes.
-void require_json_name(const std::filesystem::path& path);
 /// The same for the argument of `option`, the name of a directory.
 void require_directory_name(const std::filesystem::path& path,
                             std::string_view option = "-o");
@@ -45,8 +39,13 @@ void require_directory_name(const std::filesystem::path& path,
 void require_output(const std::filesystem::path& output,
                     const std::vector<std::filesystem::path>& inputs);
 
-/// The same for `file` in the directory `name`, the argument of `option`.
-/// Leaves no directory that was not there.
+/// The same for the argument of --json, which may be empty: a file of another
+/// kind is not written over by mistake. Any other name passes.
+void require_json_output(const std::string& name,
+                         const std::vector<std::filesystem::path>& inputs);
+
+/// The same for `file` in the directory `name`, the argument of `option`, which
+/// may be empty. Leaves no directory that was not there.
 void require_output_directory(const char* option, const std::string& name,
                               const char* file,
                               const std::vector<std::filesystem::path>& inputs);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/Version.hpp>
 #include <algorithm>
 #include <csignal>
 #include <exception>
@@ -13,9 +14,10 @@
 #include <utility>
 #include <vector>
 
+#include "api/program_version.h"
+#include "api/validation_members.h"
 #include "cli/commands.h"
 #include "cli/terminal.h"
-#include "cli/version.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/netcdf/hdf5_exit.h"
 #include "include/beamgyro/option_error.h"
@@ -59,6 +61,22 @@ void handle_interrupts() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
+// Program, revision and libraries.
+std::string version_text() {
+  return fmt::format(
+      "beamgyro {} ({})\n"
+      "Eigen {}, SUNDIALS {}, HDF5 {}, CLI11 {}, fmt {}, {}",
+      kProgramVersion, kGitRevision, BEAMGYRO_EIGEN_VERSION,
+      BEAMGYRO_SUNDIALS_VERSION, BEAMGYRO_HDF5_VERSION, CLI11_VERSION,
+      FMT_VERSION,
+#ifdef __clang__
+      "clang " __clang_version__
+#else
+      "gcc " __VERSION__
+#endif
+  );
+}
+
 constexpr int kWorkFailed = 1, kWrongInput = 2;
 
 /// Options whose names on the command line are not those of the library.
@@ -74,6 +92,8 @@ std::string on_command_line(std::string_view name, std::string_view value) {
   const auto* const other = std::ranges::find(
       kOtherNames, name, &std::pair<std::string_view, std::string_view>::first);
   std::string option(other == std::end(kOtherNames) ? name : other->second);
+  for (const ValidationMember& row : validation_members())
+    if (row.name == name && !row.option.empty()) option = row.option;
   std::ranges::replace(option, '_', '-');
   return fmt::format("--{}{}{}", option, value.empty() ? "" : " ", value);
 }

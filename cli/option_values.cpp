@@ -67,4 +67,30 @@ std::string one_of(const std::string& option, const std::string& text,
           near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near)));
 }
 
+std::vector<double> numbers_between(const std::string& text, char separator) {
+  std::vector<double> values;
+  const char* place = text.data();
+  const char* const end = place + text.size();
+  while (true) {
+    while (place != end && *place == ' ') ++place;
+    double value = 0;
+    const auto [stop, error] = std::from_chars(place, end, value);
+    if (error != std::errc()) return {};
+    values.push_back(value);
+    place = stop;
+    while (place != end && (*place == ' ' || *place == '\r')) ++place;
+    if (place == end) return values;
+    if (*place != separator) return {};
+    ++place;
+  }
+}
+
+std::pair<double, double> temperature_range(const std::string& option,
+                                            const std::string& text) {
+  const std::vector<double> ends = numbers_between(text, ':');
+  if (ends.size() == 2) return {ends[0], ends[1]};
+  throw std::invalid_argument(fmt::format(
+      "{} {}: not a range; expected LOW:HIGH in degC", option, text));
+}
+
 }  // namespace beamgyro::internal

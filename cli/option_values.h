@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/range.h"
@@ -21,5 +22,13 @@ double decimal_number(const std::string& option, const std::string& text,
 /// Returns `text`, which must be one of `allowed`.
 std::string one_of(const std::string& option, const std::string& text,
                    const std::vector<std::string>& allowed);
+
+/// Reads LOW:HIGH in degC.
+std::pair<double, double> temperature_range(const std::string& option,
+                                            const std::string& text);
+
+/// Returns the numbers between `separator`, with or without blanks around them,
+/// or none when one is no number.
+std::vector<double> numbers_between(const std::string& text, char separator);
 
 }  // namespace beamgyro::internal

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -13,23 +14,23 @@
 #include "cli/commands.h"
 #include "cli/figure_pictures.h"
 #include "cli/inputs.h"
-#include "cli/schedule_options.h"
+#include "cli/option_values.h"
 #include "cli/terminal.h"
 #include "dataset/files/atomic_file.h"
+#include "dataset/files/text_file.h"
 
 namespace beamgyro::internal {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMostCandidates = 100;
 constexpr const char* kShippedDevice = "scenarios/devices/nominal.toml";
 
 struct PlanArguments {
   std::string population, output, json, picture, device, range, chamber;
-  std::optional<long> soaks, hold;
-  std::optional<double> hours, residual, ramp, start;
   std::vector<std::string> candidates;
-  bool bias_only = false;
+  PlanOptions options;
 };
 
 fs::path device_of(const PlanArguments& arguments) {
@@ -58,20 +59,11 @@ std::string device_name(const PlanArguments& arguments) {
 }
 
 PlanOptions plan_options(const PlanArguments& arguments) {
-  PlanOptions options;
-  if (arguments.soaks)
-    options.soaks = static_cast<std::size_t>(*arguments.soaks);
-  options.hours = arguments.hours;
-  options.residual_deg_per_s = arguments.residual;
+  PlanOptions options = arguments.options;
   if (!arguments.range.empty())
     options.range_degC = temperature_range("--range", arguments.range);
   if (!arguments.chamber.empty())
     options.chamber_degC = temperature_range("--chamber", arguments.chamber);
-  options.ramp_K_per_min = arguments.ramp;
-  options.start_degC = arguments.start;
-  if (arguments.hold)
-    options.hold_min = static_cast<std::size_t>(*arguments.hold);
-  options.bias_only = arguments.bias_only;
   if (!arguments.output.empty()) options.device_name = device_name(arguments);
   return options;
 }
@@ -81,23 +73,57 @@ void check_outputs(const PlanArguments& arguments) {
   if (!arguments.device.empty()) inputs.emplace_back(arguments.device);
   for (const std::string& word : arguments.candidates)
     if (fs::exists(word)) inputs.emplace_back(word);
-  for (const std::string& output :
-       {arguments.output, arguments.json, arguments.picture})
+  for (const std::string& output : {arguments.output, arguments.picture})
     if (!output.empty()) require_output(output, inputs);
   if (!arguments.output.empty()) require_ending(arguments.output, {".toml"});
-  if (!arguments.json.empty()) require_json_name(arguments.json);
+  require_json_output(arguments.json, inputs);
   if (!arguments.picture.empty())
     require_picture_name("--picture", arguments.picture);
+}
+
+NamedSoaks listed_soaks(const std::string& text, const std::string& where) {
+  const std::vector<double> soaks = numbers_between(text, ',');
+  if (soaks.empty())
+    throw std::invalid_argument(fmt::format(
+        "{}: \"{}\" is no list of numbers; expected temperatures in degC "
+        "between commas, as in -40,5,50, or a file with such a list on each "
+        "line",
+        where, text));
+  return {where, soaks};
+}
+
+// Each word is a list of temperatures between commas, or a file with such a
+// list on each line, where # begins a comment.
+std::vector<NamedSoaks> candidates_of(const std::vector<std::string>& words) {
+  std::vector<NamedSoaks> found;
+  for (const std::string& word : words) {
+    if (!fs::is_regular_file(word)) {
+      found.push_back(listed_soaks(word, "--candidates " + word));
+      continue;
+    }
+    std::istringstream lines(read_text_file(word));
+    std::string line;
+    for (int number = 1; std::getline(lines, line); ++number) {
+      line.erase(std::min(line.find('#'), line.size()));
+      if (line.find_first_not_of(" \t\r") == line.npos) continue;
+      found.push_back(listed_soaks(line, fmt::format("{}:{}", word, number)));
+    }
+  }
+  if (found.size() > kMostCandidates)
+    throw std::invalid_argument(
+        fmt::format("--candidates: {} schedules; expected {} at most",
+                    found.size(), kMostCandidates));
+  return found;
 }
 
 int run_plan(const PlanArguments& arguments) {
   const PlanOptions options = plan_options(arguments);
   check_goal(options);
   check_outputs(arguments);
-  const auto population = beamgyro::Compensator::read(arguments.population);
-  const PlanStudy study(population, read_device_of(arguments), options);
+  const auto population = Compensator::read(arguments.population);
   const SoakPlanResult result =
-      study.result(candidate_schedules(arguments.candidates, study.chamber()));
+      planned(population, read_device_of(arguments), options,
+              candidates_of(arguments.candidates));
   if (!arguments.picture.empty()) draw_plan(result.json, arguments.picture);
   if (!arguments.output.empty())
     write_text_file(arguments.output, result.schedule);
@@ -120,30 +146,30 @@ void add_chamber_options(Command& command, PlanArguments& arguments) {
                 "the range"},
                arguments.chamber);
   command.number({"--ramp", "K/MIN", "Ramps between soaks", "2"},
-                 arguments.ramp, {0, 100, true, false});
+                 arguments.options.ramp_K_per_min, {0, 100, true, false});
   command.integer({"--hold", "MIN", "Length of a soak in whole minutes",
                    "the shortest that leaves at most 5 % more than the best"},
-                  arguments.hold, {1});
+                  arguments.options.hold_min, {1});
   command.number({"--start", "DEGC",
                   "Temperature at which chamber and device begin", "25"},
-                 arguments.start);
+                 arguments.options.start_degC);
 }
 
 void add_plan_options(Command& command, PlanArguments& arguments) {
-  command.argument(
+  command.text(
       {"POPULATION.json", "", "Population that `train` learned from a set"},
       arguments.population);
   command.reads({{FileKind::kCompensator}});
   command.group("Goal, one of them");
   command.integer({"--soaks", "N", "Number of soaks", "no such goal"},
-                  arguments.soaks, {1});
+                  arguments.options.soaks, {1});
   command.number(
       {"--hours", "H", "Hours in the chamber at most", "no such goal"},
-      arguments.hours, positive());
+      arguments.options.hours, positive());
   command.number({"--residual", "R",
                   "Median over devices of the rms left, in deg/s, at most",
                   "no such goal"},
-                 arguments.residual, positive());
+                 arguments.options.residual_deg_per_s, positive());
   command.group("What is planned");
   command.text({"--range", "LOW:HIGH",
                 "Temperatures of the chamber in degC over which the residual "
@@ -152,7 +178,7 @@ void add_plan_options(Command& command, PlanArguments& arguments) {
                arguments.range);
   command.flag({"--bias-only", "",
                 "Plans for soaks that observe the bias, but no channel"},
-               arguments.bias_only);
+               arguments.options.bias_only);
   command.texts({"--candidates", "T,T,...|FILE",
                  "Your own soaks in degC, to be compared; a file has a line "
                  "for each schedule. May be repeated",
@@ -163,24 +189,24 @@ void add_plan_options(Command& command, PlanArguments& arguments) {
 }  // namespace
 
 void add_plan(CommandLine& program) {
-  auto arguments = std::make_shared<PlanArguments>();
-  Command& command = program.add(
+  const auto [command, arguments] = program.add<PlanArguments>(
       "plan", kCompensation,
       "Plans the soaks of a new device of a population: which temperatures "
-      "leave the least residual for the time in the chamber");
-  add_plan_options(command, *arguments);
-  add_chamber_options(command, *arguments);
+      "leave the least residual for the time in the chamber",
+      run_plan);
+  add_plan_options(command, arguments);
+  add_chamber_options(command, arguments);
   command.group("Files to write");
   command.text(
       {"-o,--output", "SCHEDULE.toml",
        "Scenario that `run` executes, with the times for a chamber", "no file"},
-      arguments->output);
+      arguments.output);
   command.text({"--json", "FILE", "Writes all results to FILE", "no file"},
-               arguments->json);
+               arguments.json);
   command.text(
       {"--picture", "FILE.png|svg",
        "Draws residual against hours; needs Python with matplotlib", "no file"},
-      arguments->picture);
+      arguments.picture);
   command.example("beamgyro plan population.json --soaks 3 -o soaks.toml",
                   "The best three soaks, as a scenario for `run`");
   command.example("beamgyro plan population.json --residual 0.1 --ramp 1",
@@ -188,7 +214,6 @@ void add_plan(CommandLine& program) {
   command.example(
       "beamgyro plan population.json --hours 3 --candidates=-40,5,50",
       "The best three hours, compared with soaks of your own");
-  command.action([arguments] { return run_plan(*arguments); });
 }
 
 }  // namespace beamgyro::internal

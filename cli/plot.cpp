@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,30 +53,29 @@ int plot(const PlotArguments& arguments) {
 }  // namespace
 
 void add_plot(CommandLine& program) {
-  auto arguments = std::make_shared<PlotArguments>();
-  Command& command = program.add(
+  const auto [command, arguments] = program.add<PlotArguments>(
       "plot", kFiles,
-      "Draws a file that this program wrote; needs Python with matplotlib");
-  command.arguments({"FILE", "",
-                     "Recording, table of `characterise`, compensator, set, or "
-                     "what --json of allan, validate, plan or sensitivity "
-                     "wrote"},
-                    arguments->files);
+      "Draws a file that this program wrote; needs Python with matplotlib",
+      plot);
+  command.list({"FILE", "",
+                "Recording, table of `characterise`, compensator, set, or "
+                "what --json of allan, validate, plan or sensitivity "
+                "wrote"},
+               arguments.files);
   command.reads({{FileKind::kRecording, FileKind::kCharacteristic,
                   FileKind::kCompensator, FileKind::kSet, FileKind::kResult},
                  {FileKind::kSetFile}});
   command.text({"-o,--output", "PICTURE.png|svg", "Picture to write",
                 "a window for each file"},
-               arguments->output);
+               arguments.output);
   command.flag({"--compare", "",
                 "Draws files of one kind over each other: recordings, tables, "
                 "Allan deviations or compensators"},
-               arguments->compare);
+               arguments.compare);
   command.example("beamgyro plot warm_up.h5 -o warm_up.png",
                   "Rate, temperature and drive loop over time");
   command.example("beamgyro plot cubic.json bp.json --compare -o bias.svg",
                   "What two compensators take away over temperature");
-  command.action([arguments] { return plot(*arguments); });
 }
 
 }  // namespace beamgyro::internal

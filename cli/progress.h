@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "cli/time_left.h"
+#include "include/beamgyro/progress.h"
 
 namespace beamgyro::internal {
 
@@ -33,6 +34,13 @@ class Progress {
 
   /// Sets the share of the work that is done, 0 .. 1.
   void set_share(double share) { share_ = share; }
+  /// Returns what does so; this object must outlive it.
+  beamgyro::Progress shown_share() {
+    return [this](double share) {
+      set_share(share);
+      return true;
+    };
+  }
 
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

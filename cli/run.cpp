@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -51,10 +50,7 @@ int run(const RunArguments& arguments) {
   const std::vector<std::string> warnings =
       simulate_to_file(scenario, arguments.output,
                        {.stop_on_unlock = arguments.stop_on_unlock,
-                        .progress = [&](double done) {
-                          progress.set_share(done);
-                          return true;
-                        }});
+                        .progress = progress.shown_share()});
   for (const std::string& warning : warnings)
     keep_warning(fmt::format("{}: {}", arguments.scenario, warning));
   return 0;
@@ -63,43 +59,40 @@ int run(const RunArguments& arguments) {
 }  // namespace
 
 void add_run(CommandLine& program) {
-  auto arguments = std::make_shared<RunArguments>();
-  Command& command =
-      program.add("run", kSimulation,
-                  "Simulates one gyro in one scenario and writes a recording");
-  command.argument(
-      {"SCENARIO.toml", "", "Scenario file, which names its device"},
-      arguments->scenario);
+  const auto [command, arguments] = program.add<RunArguments>(
+      "run", kSimulation,
+      "Simulates one gyro in one scenario and writes a recording", run);
+  command.text({"SCENARIO.toml", "", "Scenario file, which names its device"},
+               arguments.scenario);
   command.reads({{FileKind::kScenario}});
   command.text({"-o,--output", "RUN.h5", "Recording to write, .h5 or .csv"},
-               arguments->output);
+               arguments.output);
   command.flag({"--yes", "",
                 "Starts a carrier run even if it will take more than an hour"},
-               arguments->yes);
+               arguments.yes);
   command.flag({"--stop-on-unlock", "",
                 "Fails where the drive loop is not locked one second after a "
                 "power-on or later"},
-               arguments->stop_on_unlock);
+               arguments.stop_on_unlock);
   command.group("Changes of the scenario");
   command.texts({"--set", "KEY=VALUE",
                  "Replaces a key of the scenario or of its device; may be "
                  "repeated",
                  "the files as they are"},
-                arguments->overrides);
+                arguments.overrides);
   command.integer(
       {"--seed", "N", "Seed of everything random", "that of the scenario"},
-      arguments->seed);
+      arguments.seed);
   command.choice(
       {"--fidelity", "quasistatic|envelope|carrier",
        "How much of the physics is simulated", "that of the scenario"},
-      arguments->fidelity, {"quasistatic", "envelope", "carrier"});
+      arguments.fidelity, {"quasistatic", "envelope", "carrier"});
   command.example("beamgyro run scenarios/warm_up.toml -o warm_up.h5",
                   "The first hour after power-on");
   command.example(
       "beamgyro run scenarios/rest.toml -o rest.h5 --seed 2 "
       "--set beam.length_m=0.041",
       "A longer beam and other noise");
-  command.action([arguments] { return run(*arguments); });
 }
 
 }  // namespace beamgyro::internal

@@ -7,21 +7,18 @@
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 #include <vector>
 
-#include "api/campaign_state.h"
 #include "api/sensitivity_study.h"
 #include "cli/commands.h"
 #include "cli/figure_pictures.h"
 #include "cli/inputs.h"
 #include "cli/option_values.h"
 #include "cli/progress.h"
-#include "cli/schedule_options.h"
 #include "cli/terminal.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/made_directories.h"
@@ -32,9 +29,8 @@ namespace {
 struct SensitivityArguments {
   std::string campaign, json, compensator, pictures;
   std::string range = "-40:50";
-  std::vector<std::string> figures, limits;
-  std::optional<long> samples, jobs, seed;
-  bool linear = false;
+  std::vector<std::string> limits;
+  SensitivityOptions options;
 };
 
 std::map<std::string, double> limits_of(const SensitivityArguments& arguments) {
@@ -59,17 +55,18 @@ std::map<std::string, double> limits_of(const SensitivityArguments& arguments) {
   return limits;
 }
 
-SensitivityResult run_with_progress(const SensitivityStudy& study) {
+SensitivityResult run_with_progress(const Campaign& campaign,
+                                    const SensitivityOptions& options) {
   DeviceSampleCounts counts;
-  const auto total = static_cast<double>(study.devices());
   const auto done = [&] {
     const auto devices = static_cast<double>(counts.devices.load());
-    return Progress::Status{devices / total,
+    const auto all = static_cast<double>(counts.all_devices.load());
+    return Progress::Status{all > 0 ? devices / all : 0,
                             fmt::format("{} of {} devices, {} failed", devices,
-                                        total, counts.failures.load())};
+                                        all, counts.failures.load())};
   };
-  const Progress progress("sampling " + study.campaign.name(), done);
-  return run_study(study, counts);
+  const Progress progress("sampling " + campaign.name(), done);
+  return studied(campaign, options, counts);
 }
 
 void require_places(const SensitivityArguments& arguments,
@@ -78,36 +75,26 @@ void require_places(const SensitivityArguments& arguments,
   for (const InputFile& file : campaign.files()) inputs.push_back(file.path);
   if (!arguments.compensator.empty())
     inputs.emplace_back(arguments.compensator);
-  if (!arguments.json.empty()) {
-    require_output(arguments.json, inputs);
-    require_json_name(arguments.json);
-  }
-  if (!arguments.pictures.empty())
-    require_output_directory("--pictures", arguments.pictures, "result.json",
-                             inputs);
+  require_json_output(arguments.json, inputs);
+  require_output_directory("--pictures", arguments.pictures, "result.json",
+                           inputs);
 }
 
 SensitivityOptions options_of(const SensitivityArguments& arguments) {
-  SensitivityOptions options{.figures = arguments.figures};
+  SensitivityOptions options = arguments.options;
   if (!arguments.compensator.empty())
-    options.compensator = beamgyro::Compensator::read(arguments.compensator);
+    options.compensator = Compensator::read(arguments.compensator);
   std::tie(options.lowest_degC, options.highest_degC) =
       temperature_range("--range", arguments.range);
-  options.linear = arguments.linear;
   options.limits = limits_of(arguments);
-  if (arguments.samples)
-    options.samples = static_cast<std::size_t>(*arguments.samples);
-  if (arguments.seed)
-    options.seed = static_cast<std::uint64_t>(*arguments.seed);
-  options.jobs = static_cast<unsigned>(arguments.jobs.value_or(0));
   return options;
 }
 
 int sensitivity(const SensitivityArguments& arguments) {
   const auto campaign = Campaign::read(arguments.campaign);
-  const SensitivityStudy study = checked_study(campaign, options_of(arguments));
+  const SensitivityOptions options = options_of(arguments);
   require_places(arguments, campaign);
-  const SensitivityResult result = run_with_progress(study);
+  const SensitivityResult result = run_with_progress(campaign, options);
   print_result(result.text);
   if (!arguments.json.empty()) write_text_file(arguments.json, result.json);
   if (!arguments.pictures.empty()) {
@@ -124,7 +111,7 @@ void add_questions(Command& command, SensitivityArguments& arguments) {
        "cubic_rms_deg_per_s, scale_factor_drift_rel, warm_up_change_deg_per_s, "
        "quadrature_deg_per_s, compensator_rms_deg_per_s",
        "the first four"},
-      arguments.figures, merit_names());
+      arguments.options.figures, merit_names());
   command.text(
       {"--compensator", "FILE.json",
        "Adds compensator_rms_deg_per_s: what this compensator leaves", "none"},
@@ -135,7 +122,7 @@ void add_questions(Command& command, SensitivityArguments& arguments) {
   command.flag({"--linear", "",
                 "Studies every figure as it is, not the logarithm of those "
                 "that are always positive"},
-               arguments.linear);
+               arguments.options.linear);
   command.texts({"--limit", "FIGURE=VALUE",
                  "Largest magnitude that is good; adds the share of good "
                  "devices, as it is and with each tolerance halved; may be "
@@ -147,39 +134,38 @@ void add_questions(Command& command, SensitivityArguments& arguments) {
 }  // namespace
 
 void add_sensitivity(CommandLine& program) {
-  auto arguments = std::make_shared<SensitivityArguments>();
-  Command& command = program.add(
+  const auto [command, arguments] = program.add<SensitivityArguments>(
       "sensitivity", kSimulation,
       "Tells which tolerance of a campaign causes the spread of drift, by "
-      "Sobol' indices");
-  command.argument({"CAMPAIGN.toml", "", "Campaign file"}, arguments->campaign);
+      "Sobol' indices",
+      sensitivity);
+  command.text({"CAMPAIGN.toml", "", "Campaign file"}, arguments.campaign);
   command.reads({{FileKind::kCampaign}});
-  add_questions(command, *arguments);
+  add_questions(command, arguments);
   command.group("Size and files");
   command.integer({"--samples", "N",
                    "Samples; each takes a device for every tolerance and three "
                    "more. Powers of two serve best",
                    "2048"},
-                  arguments->samples, {32, 1000000});
+                  arguments.options.samples, {32, 1000000});
   command.integer(
       {"--seed", "N", "Seed of the samples", "that of the campaign"},
-      arguments->seed);
+      arguments.options.seed);
   command.integer({"--jobs", "N", "Number of threads", "one per core"},
-                  arguments->jobs, {1, 4096});
+                  arguments.options.jobs, {1, 4096});
   command.text({"--json", "FILE", "Writes all of it to FILE", "no file"},
-               arguments->json);
+               arguments.json);
   command.text({"--pictures", "DIR",
                 "Draws a bar chart of each figure into DIR; needs Python with "
                 "matplotlib",
                 "none"},
-               arguments->pictures);
+               arguments.pictures);
   command.example("beamgyro sensitivity scenarios/campaigns/population.toml",
                   "The tolerances of the shipped population");
   command.example(
       "beamgyro sensitivity scenarios/campaigns/population.toml --figure "
       "bias_pp_deg_per_s --limit bias_pp_deg_per_s=2",
       "How many devices drift by at most 2 deg/s");
-  command.action([arguments] { return sensitivity(*arguments); });
 }
 
 }  // namespace beamgyro::internal

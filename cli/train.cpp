@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -22,11 +21,10 @@ namespace beamgyro::internal {
 namespace {
 
 struct TrainArguments {
-  std::vector<std::string> runs, held_out;
-  std::vector<std::string> set_runs;  // names, of a set
-  std::vector<long> set_devices;      // of a set
-  std::string model, output, cross_validation;
-  std::optional<long> seed;
+  std::vector<std::filesystem::path> runs, held_out;
+  SetChoice choice;  // of a set
+  std::string model, output;
+  TrainingOptions options;
 };
 
 /// The last epoch that a network told of, from whatever thread.
@@ -50,33 +48,22 @@ class LastEpoch {
   TrainingProgress last_;
 };
 
-std::vector<std::filesystem::path> paths_of(
-    const std::vector<std::string>& words) {
-  return {words.begin(), words.end()};
-}
-
-TrainedCompensator trained_on_set(const TrainArguments& arguments,
-                                  const Model& model,
-                                  const TrainingOptions& options) {
-  if (!arguments.held_out.empty() || !arguments.cross_validation.empty())
+TrainedCompensator trained(const TrainArguments& arguments,
+                           const Model& model) {
+  const auto& [runs, held_out, choice, name, output, options] = arguments;
+  if (!is_set(runs)) {
+    if (!choice.runs.empty() || !choice.devices.empty())
+      throw std::invalid_argument(
+          "--run and --device choose from a set, and there is none");
+    return train(model, runs, held_out, options);
+  }
+  if (!held_out.empty() || !options.cross_validation.empty())
     throw std::invalid_argument(
         "--held-out and --cv: of a set the validation devices are held out");
-  return train(model, Set::open(arguments.runs[0]),
-               {arguments.set_runs, device_numbers(arguments.set_devices)},
-               options);
+  return train(model, Set::open(runs[0]), choice, options);
 }
 
-TrainedCompensator trained_on_files(const TrainArguments& arguments,
-                                    const Model& model,
-                                    const TrainingOptions& options) {
-  if (!arguments.set_runs.empty() || !arguments.set_devices.empty())
-    throw std::invalid_argument(
-        "--run and --device choose from a set, and there is none");
-  return train(model, paths_of(arguments.runs), paths_of(arguments.held_out),
-               options);
-}
-
-int run_training(const TrainArguments& arguments) {
+int run_training(TrainArguments& arguments) {
   const Model model = Model::read(arguments.model);
   std::vector<std::filesystem::path> inputs = model.files();
   inputs.insert(inputs.end(), arguments.runs.begin(), arguments.runs.end());
@@ -85,20 +72,14 @@ int run_training(const TrainArguments& arguments) {
   require_output(arguments.output, inputs);
   require_ending(arguments.output, {".json"});
   LastEpoch epoch;
-  const TrainingOptions options{
-      .seed = static_cast<std::uint64_t>(arguments.seed.value_or(0)),
-      .cross_validation = arguments.cross_validation,
-      .progress = [&](const TrainingProgress& report) {
-        epoch.note(report);
-        return true;
-      }};
-  const bool is_of_set = is_set(arguments.runs);
+  arguments.options.progress = [&](const TrainingProgress& report) {
+    epoch.note(report);
+    return true;
+  };
   std::optional<Progress> progress(
       std::in_place, "training " + arguments.output,
       [&] { return Progress::Status{.share = 0, .detail = epoch.text()}; });
-  const TrainedCompensator result =
-      is_of_set ? trained_on_set(arguments, model, options)
-                : trained_on_files(arguments, model, options);
+  const TrainedCompensator result = trained(arguments, model);
   result.compensator.write(arguments.output);
   progress.reset();
   for (const std::string& warning : result.warnings) print_warning(warning);
@@ -109,40 +90,40 @@ int run_training(const TrainArguments& arguments) {
 }  // namespace
 
 void add_train(CommandLine& program) {
-  auto arguments = std::make_shared<TrainArguments>();
-  Command& command = program.add(
+  const auto [command, arguments] = program.add<TrainArguments>(
       "train", kCompensation,
-      "Fits a compensator to recordings of one gyro, or to a set of gyros");
-  command.arguments({"RUN.h5...", "",
-                     "Recordings to fit, or the directory of a set, whose "
-                     "training devices are fitted"},
-                    arguments->runs);
+      "Fits a compensator to recordings of one gyro, or to a set of gyros",
+      run_training);
+  command.list({"RUN.h5...", "",
+                "Recordings to fit, or the directory of a set, whose "
+                "training devices are fitted"},
+               arguments.runs);
   command.reads({{FileKind::kRecording, FileKind::kSet}});
   command.text({"--model", "MODEL.toml", "Kind of compensator and its options"},
-               arguments->model);
+               arguments.model);
   command.reads({{FileKind::kModel}});
   command.text({"-o,--output", "COMPENSATOR.json", "Compensator to write"},
-               arguments->output);
+               arguments.output);
   command.integer({"--seed", "N", "Seed of the initial weights", "0"},
-                  arguments->seed);
+                  arguments.options.seed);
   command.group("Recordings that are not fitted");
   command.list(
       {"--held-out", "RUN.h5...",
        "Recordings that are scored; a network stops early on them", "none"},
-      arguments->held_out);
+      arguments.held_out);
   command.reads({{FileKind::kRecording}});
   command.choice({"--cv", "run|cycle|leg",
                   "Cross-validates: holds out each recording, each power cycle "
                   "or each leg between reversals of the temperature in turn",
                   "no cross-validation"},
-                 arguments->cross_validation, {"run", "cycle", "leg"});
+                 arguments.options.cross_validation, {"run", "cycle", "leg"});
   command.group("Part of a set");
   command.list({"--run", "NAME", "Run to take; may be repeated", "all runs"},
-               arguments->set_runs);
+               arguments.choice.runs);
   command.integers({"--device", "NUMBER",
                     "Device to fit; may be repeated. Holds nothing out",
                     "the training devices"},
-                   arguments->set_devices, {0, kLastDevice});
+                   arguments.choice.devices, {0, kLastDevice});
   command.example(
       "beamgyro train ramp.h5 --model scenarios/models/cubic.toml -o "
       "cubic.json",
@@ -151,7 +132,6 @@ void add_train(CommandLine& program) {
       "beamgyro train ramp.h5 --model scenarios/models/bp.toml --held-out "
       "soak.h5 -o bp.json",
       "A network that stops early on another recording");
-  command.action([arguments] { return run_training(*arguments); });
 }
 
 }  // namespace beamgyro::internal

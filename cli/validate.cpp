@@ -4,18 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <stdexcept>
 
-#include "api/file_kind.h"
+#include "api/validation_members.h"
 #include "cli/commands.h"
 #include "cli/figure_pictures.h"
 #include "cli/inputs.h"
-#include "cli/option_values.h"
 #include "cli/terminal.h"
-#include "cli/version.h"
 #include "config/range.h"
-#include "validation/metrics/metric.h"
+#include "report/verdict_report.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -32,7 +29,7 @@ void require_no_number(const ValidateArguments& arguments) {
     throw std::invalid_argument(fmt::format(
         "{0}: no recording; expected one number after each --device: --device "
         "{1} --device {0}",
-        *number, arguments.device.back()));
+        number->string(), arguments.device.back()));
 }
 
 // A word after --device is the number of a device of a set, or else a file.
@@ -64,43 +61,26 @@ std::filesystem::path shipped_qualification() {
   return file;
 }
 
-void set_member(const ValidationMember& row, const OptionWords& words,
-                ValidationOptions& options) {
-  std::visit(
-      [&](auto member) {
-        auto& value = options.*member;
-        using Value = std::decay_t<decltype(value)>;
-        if constexpr (std::is_same_v<Value,
-                                     std::optional<std::filesystem::path>>)
-          value = *words.text;
-        else if constexpr (std::is_same_v<Value, std::optional<double>>)
-          value = words.number;
-        else if constexpr (std::is_same_v<Value, std::optional<std::uint32_t>>)
-          value = static_cast<std::uint32_t>(*words.integer);
-        else if constexpr (std::is_same_v<Value, std::vector<std::string>>)
-          value = words.list;
-        else
-          throw std::logic_error("an option without words of its own");
-      },
-      row.member);
-}
-
 void add_member(const ValidationMember& row, Command& command,
-                OptionWords& words) {
+                ValidationOptions& options) {
   const OptionText text{"--" + std::string(row.option), std::string(row.value),
                         std::string(row.help), std::string(row.without)};
   command.group(std::string(row.heading));
   std::visit(
       [&](auto member) {
-        using Value = std::decay_t<decltype(ValidationOptions().*member)>;
+        auto& value = options.*member;
+        using Value = std::decay_t<decltype(value)>;
         if constexpr (std::is_same_v<Value, std::optional<double>>)
-          command.number(text, words.number, positive());
+          command.number(text, value, positive());
         else if constexpr (std::is_same_v<Value, std::optional<std::uint32_t>>)
-          command.integer(text, words.integer, {1, 4000000000});
+          command.integer(text, value, {1, 4000000000});
         else if constexpr (std::is_same_v<Value, std::vector<std::string>>)
-          command.list(text, words.list);
+          command.list(text, value);
+        else if constexpr (std::is_same_v<Value,
+                                          std::optional<std::filesystem::path>>)
+          command.text(text, value);
         else
-          command.text(text, words.text);
+          throw std::logic_error("an option without words of its own");
       },
       row.member);
   if (row.kind) command.reads({{*row.kind}});
@@ -109,18 +89,19 @@ void add_member(const ValidationMember& row, Command& command,
 // Whether the arguments ask for no validation.
 bool asks_for_none(const ValidateArguments& arguments) {
   return arguments.compensator.empty() && arguments.device.empty() &&
-         std::ranges::all_of(
-             arguments.options,
-             [](const auto& option) { return option.second.empty(); }) &&
+         std::ranges::none_of(validation_members(),
+                              [&](const ValidationMember& row) {
+                                return is_given(row, arguments.options);
+                              }) &&
          arguments.json.empty() && arguments.report.empty() &&
          arguments.figures.empty() && arguments.bundle.empty() &&
          !arguments.all_metrics;
 }
 
 void require_list_alone(const ValidateArguments& arguments) {
-  if (asks_for_none(arguments) && arguments.check.empty() && !arguments.jobs &&
-      !arguments.limits.timeout && !arguments.limits.memory &&
-      !arguments.runs_code)
+  if (asks_for_none(arguments) && arguments.check.empty() &&
+      arguments.options.jobs == 0 && !arguments.limits.timeout &&
+      !arguments.limits.memory && !arguments.runs_code)
     return;
   throw std::invalid_argument(
       "--list-metrics: judges nothing; expected no other argument");
@@ -161,97 +142,89 @@ ValidationOptions validation_options(const ValidateArguments& arguments) {
   require_no_number(arguments);
   const bool is_of_set = is_set(arguments.runs);
   require_device_words(arguments, is_of_set);
-  ValidationOptions options;
-  for (const ValidationMember& row : validation_members())
-    if (const auto words = arguments.options.find(row.name);
-        words != arguments.options.end() && !words->second.empty())
-      set_member(row, words->second, options);
+  ValidationOptions options = arguments.options;
   if (is_of_set) {
     options.set = Set::open(arguments.runs[0]);
-    std::vector<long> numbers;
     for (const std::string& word : arguments.device)
-      numbers.push_back(whole_number("--device", word, 0, kLastDevice));
-    options.devices = device_numbers(numbers);
+      options.devices.push_back(static_cast<std::uint32_t>(
+          whole_number("--device", word, 0, kLastDevice)));
   } else {
-    options.recordings.assign(arguments.runs.begin(), arguments.runs.end());
+    options.recordings = arguments.runs;
     if (!arguments.device.empty())
       options.device = Device::read(arguments.device[0]);
   }
   if (options.device && options.recordings.empty() && !options.qualification)
     options.qualification = shipped_qualification();
-  options.jobs = static_cast<unsigned>(arguments.jobs.value_or(0));
   return options;
 }
 
 void add_validate(CommandLine& program) {
-  auto arguments = std::make_shared<ValidateArguments>();
-  Command& command =
-      program.add("validate", kCompensation,
-                  "Judges a compensator against the true rate; the status is 3 "
-                  "when it does not pass");
-  command.argument({"COMPENSATOR", "",
-                    "Compensator: a file as written by train, a shared "
-                    "library, \"cmd:PROGRAM ARGS\", or with --device a model "
-                    "file that is trained first",
-                    "none, with --check"},
-                   arguments->compensator);
+  const auto [command, arguments] = program.add<ValidateArguments>(
+      "validate", kCompensation,
+      "Judges a compensator against the true rate; the status is 3 "
+      "when it does not pass",
+      validate_any);
+  command.text({"COMPENSATOR", "",
+                "Compensator: a file as written by train, a shared "
+                "library, \"cmd:PROGRAM ARGS\", or with --device a model "
+                "file that is trained first",
+                "none, with --check"},
+               arguments.compensator);
   command.reads({{FileKind::kCompensator, FileKind::kModel}});
-  command.arguments({"RUN.h5...", "",
-                     "Recordings that training has not seen, or the directory "
-                     "of a set, whose test devices are judged",
-                     "none, with --device DEVICE.toml"},
-                    arguments->runs);
+  command.list({"RUN.h5...", "",
+                "Recordings that training has not seen, or the directory "
+                "of a set, whose test devices are judged",
+                "none, with --device DEVICE.toml"},
+               arguments.runs);
   command.reads({{FileKind::kRecording, FileKind::kSet}});
   command.texts({"--device", "DEVICE.toml|NUMBER",
                  "Device that the qualification is simulated with; of a set "
                  "the number of a device to judge, which may be repeated",
                  "the test devices of a set"},
-                arguments->device);
+                arguments.device);
   for (const ValidationMember& row : validation_members())
-    if (!row.option.empty())
-      add_member(row, command, arguments->options[row.name]);
+    if (!row.option.empty()) add_member(row, command, arguments.options);
   command.group("What is written");
   command.text({"--json", "FILE", "Writes every figure to FILE", "no file"},
-               arguments->json);
+               arguments.json);
   command.text({"--report", "DIR", "Writes the page DIR/index.html", "no page"},
-               arguments->report);
+               arguments.report);
   command.text({"--figures", "DIR",
                 "Writes a PNG of every figure of the page to DIR; needs Python "
                 "with matplotlib",
                 "no pictures"},
-               arguments->figures);
+               arguments.figures);
   command.text({"--bundle", "DIR",
                 "Writes inputs, result and report to the new directory DIR",
                 "no bundle"},
-               arguments->bundle);
+               arguments.bundle);
   command.flag({"--all-metrics", "", "Prints every metric and check",
                 "those that decide"},
-               arguments->all_metrics);
+               arguments.all_metrics);
   command.integer({"--jobs", "N", "Number of threads", "one per core"},
-                  arguments->jobs, {1, 4096});
+                  arguments.options.jobs, {1, 4096});
   command.group("A result made before");
   command.text({"--check", "DIR",
                 "Makes the result of a bundle again and compares every byte; "
                 "the status is 1 when one differs",
                 "no check"},
-               arguments->check);
+               arguments.check);
   command.flag(
       {"--run-code", "", "Runs the library or the command of the bundle for it",
        "nothing of a bundle is run"},
-      arguments->runs_code);
+      arguments.runs_code);
   command.flag({"--list-metrics", "",
                 "Prints name, unit, clause of IEEE 1431, purposes of runs and "
                 "definition of every metric, with tabs between, and does "
                 "nothing else",
                 "judges a compensator"},
-               arguments->list_metrics);
-  add_process_limits(command, arguments->limits);
+               arguments.list_metrics);
+  add_process_limits(command, arguments.limits);
   command.example("beamgyro validate cubic.json soak.h5 rates.h5",
                   "Prints what decides, and a verdict");
   command.example(
       "beamgyro validate cubic.json --device scenarios/devices/nominal.toml",
       "Simulates what the compensator has to stand");
-  command.action([arguments] { return validate_any(*arguments); });
 }
 
 }  // namespace beamgyro::internal

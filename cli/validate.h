@@ -1,37 +1,24 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <map>
-#include <optional>
+#include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "api/validation_members.h"
 #include "cli/process_limits.h"
+#include "include/beamgyro/validate.h"
 
 namespace beamgyro::internal {
 
 /// Exit status of a validation that ran and was not passed.
 constexpr int kNotPassed = 3;
 
-/// What stands after an option of the table of members, by its type.
-struct OptionWords {
-  std::optional<std::string> text = {};
-  std::optional<double> number = {};
-  std::optional<long> integer = {};
-  std::vector<std::string> list = {};
-
-  bool empty() const { return !text && !number && !integer && list.empty(); }
-};
-
 /// The words of `validate`.
 struct ValidateArguments {
   std::string compensator, json, report, figures, bundle, check;
-  std::vector<std::string> runs;    // recordings, or one set
+  std::vector<std::filesystem::path> runs;  // recordings, or one set
   std::vector<std::string> device;  // a device file, or numbers of a set
-  std::map<std::string_view, OptionWords> options;  // by name of the member
-  std::optional<long> jobs;
+  ValidationOptions options;        // without these
   LimitArguments limits;
   bool list_metrics = false, all_metrics = false, runs_code = false;
 };

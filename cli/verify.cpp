@@ -2,17 +2,15 @@
 #include <fmt/format.h>
 
 #include <iterator>
-#include <memory>
-#include <optional>
 #include <stdexcept>
 
 #include "api/generation.h"
+#include "api/program_version.h"
 #include "api/set_defects.h"
 #include "cli/commands.h"
 #include "cli/generation_progress.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
-#include "cli/version.h"
 #include "sim/campaign/set_repair.h"
 
 namespace beamgyro::internal {
@@ -25,7 +23,7 @@ const ProgramRevision kProgram{kProgramVersion, kGitRevision};
 
 struct VerifyArguments {
   std::string directory;
-  std::optional<long> jobs;
+  unsigned jobs = 0;
   bool repair = false;
 };
 
@@ -52,7 +50,8 @@ void repair(const fs::path& directory, const Manifest& manifest,
   SetRepair repair(directory, manifest, defects, kProgram);
   require_moderate_files(directory.string(), repair.plan());
   repair.begin();
-  warn_without_lock(repair.set(), directory);
+  for (const std::string& warning : lock_warnings(repair.set(), directory))
+    print_warning(warning);
   set_interrupt_note(fmt::format(
       "{} keeps its whole files; the same command goes on with the others",
       directory.string()));
@@ -71,8 +70,7 @@ int verify(const VerifyArguments& arguments) {
   print_result(listed(defects));
   if (!defects.empty() && arguments.repair) {
     try {
-      repair(directory, manifest, defects,
-             static_cast<unsigned>(arguments.jobs.value_or(0)));
+      repair(directory, manifest, defects, arguments.jobs);
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(error.what());  // of the set, not of the caller
     }
@@ -103,20 +101,19 @@ int verify(const VerifyArguments& arguments) {
 }  // namespace
 
 void add_verify(CommandLine& program) {
-  auto arguments = std::make_shared<VerifyArguments>();
-  Command& command = program.add(
-      "verify", kFiles, "Compares every byte of a set with its manifest");
-  command.argument({"DIR", "", "Directory of a set"}, arguments->directory);
+  const auto [command, arguments] = program.add<VerifyArguments>(
+      "verify", kFiles, "Compares every byte of a set with its manifest",
+      verify);
+  command.text({"DIR", "", "Directory of a set"}, arguments.directory);
   command.reads({{FileKind::kSet}});
   command.flag({"--repair", "",
                 "Makes damaged and missing files again, with the same bytes"},
-               arguments->repair);
+               arguments.repair);
   command.integer(
       {"--jobs", "N", "Number of threads of the repair", "one per core"},
-      arguments->jobs, {1, 4096});
+      arguments.jobs, {1, 4096});
   command.example("beamgyro verify set --repair",
                   "Names damaged files and makes them again");
-  command.action([arguments] { return verify(*arguments); });
 }
 
 }  // namespace beamgyro::internal

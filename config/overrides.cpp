@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
 
 #include "config/document_state.h"
 #include "config/option_message.h"
@@ -150,6 +149,20 @@ std::string last_part(const std::string& path) {
 
 void reject_override(const std::string& argument, const std::string& message) {
   reject(argument, message);
+}
+
+std::string_view key_of_override(std::string_view text) {
+  return trimmed(text.substr(0, text.find('=')));
+}
+
+std::vector<std::string> merged_overrides(
+    std::vector<std::string> first, const std::vector<std::string>& later) {
+  std::erase_if(first, [&](const std::string& text) {
+    return std::ranges::count(later, key_of_override(text), key_of_override) >
+           0;
+  });
+  first.insert(first.end(), later.begin(), later.end());
+  return first;
 }
 
 void insert_override(const Override& set, std::size_t origin,

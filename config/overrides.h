@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace beamgyro::internal {
@@ -13,6 +14,13 @@ struct OverrideSet;
 /// Throws OptionError "set KEY=VALUE: message".
 [[noreturn]] void reject_override(const std::string& argument,
                                   const std::string& message);
+
+/// Returns the key of KEY=VALUE, without the blanks around it.
+std::string_view key_of_override(std::string_view text);
+
+/// Returns `first` without those whose keys `later` replaces, then `later`.
+std::vector<std::string> merged_overrides(
+    std::vector<std::string> first, const std::vector<std::string>& later);
 
 /// The KEY=VALUE arguments of one command, shared by its documents. KEY is a
 /// dotted path of bare keys, VALUE any TOML value on one line. Every document

@@ -79,6 +79,13 @@ std::string metric_table(const ValidationResult& result, bool all) {
   return text;
 }
 
+std::string purposes_of(const Metric& metric, const char* separator) {
+  std::vector<std::string_view> purposes;
+  for (const RunPurpose purpose : metric.reads)
+    purposes.push_back(purpose_name(purpose));
+  return fmt::format("{}", fmt::join(purposes, separator));
+}
+
 // Why a limit could not be decided on.
 std::string why_without_value(const ValidationResult& result,
                               const Limit& limit) {
@@ -89,10 +96,7 @@ std::string why_without_value(const ValidationResult& result,
   if (metric != nullptr && metric->is_of_sigma && !result.sigma)
     return "the compensator states no sigma";
   if (found == result.metrics.end() || found->after) return "no number";
-  std::vector<std::string_view> purposes;
-  for (const RunPurpose purpose : found->metric->reads)
-    purposes.push_back(purpose_name(purpose));
-  return fmt::format("not shown by a run for {}", fmt::join(purposes, ", "));
+  return "not shown by a run for " + purposes_of(*found->metric, ", ");
 }
 
 std::string limit_line(const ValidationResult& result,
@@ -104,14 +108,14 @@ std::string limit_line(const ValidationResult& result,
                          decision.compared->interval->high);
   if (!decision.compared)
     return wrapped(
-        fmt::format("{:<10}{}: {}, {}", conformity_name(decision.result),
+        fmt::format("{:<10}{}: {}, {}", verdict_name(decision.result),
                     limit.metric, why_without_value(result, limit),
                     text_of(limit)),
         10);
-  return wrapped(fmt::format("{:<10}{}: {}, {}, margin {}",
-                             conformity_name(decision.result), limit.metric,
-                             value, text_of(limit), figure(decision.margin)),
-                 10);
+  return wrapped(
+      fmt::format("{:<10}{}: {}, {}, margin {}", verdict_name(decision.result),
+                  limit.metric, value, text_of(limit), figure(decision.margin)),
+      10);
 }
 
 std::string check_line(const CheckResult& check) {
@@ -241,7 +245,7 @@ std::string workbench_line(const JudgedCompensator& compensator) {
 }
 
 std::string last_lines(const ValidationResult& result) {
-  std::string verdict(conformity_name(result.verdict));
+  std::string verdict(verdict_name(result.verdict));
   std::ranges::transform(verdict, verdict.begin(), [](char c) {
     return static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
   });
@@ -267,6 +271,16 @@ std::string verdict_report(const ValidationResult& result, bool all) {
   if (result.sigma) text += '\n' + sigma_lines(*result.sigma);
   if (result.population) text += '\n' + yield_lines(*result.population);
   return text + '\n' + last_lines(result);
+}
+
+std::string metric_list() {
+  std::string lines;
+  for (const Metric& metric : metrics()) {
+    lines +=
+        fmt::format("{}\t{}\t{}\t{}\t{}\n", metric.name, metric.unit,
+                    metric.clause, purposes_of(metric, " "), metric.definition);
+  }
+  return lines;
 }
 
 }  // namespace beamgyro::internal

@@ -15,4 +15,8 @@ namespace beamgyro::internal {
 /// The last lines are the verdict with its reason, and the next step.
 std::string verdict_report(const ValidationResult& result, bool all);
 
+/// Returns a line for every metric: name, unit, clause, purposes and
+/// definition, with tabs between.
+std::string metric_list();
+
 }  // namespace beamgyro::internal

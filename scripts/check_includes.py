@@ -55,11 +55,7 @@ MAY_INCLUDE = {
     # and watching files and processes, logs, sets in the making.
     "cli": {"include", "api", "report", "config", "dataset/files",
             "dataset/netcdf", "dataset/log", "dataset/set", "sim/campaign",
-            "validation/external",
-            # of validate alone
-            "parallel", "compensation/compensator", "compensation/rows",
-            "compensation/scoring", "validation/metrics", "validation/result",
-            "validation/bundle"},
+            "validation/external", "validation/bundle"},
     # The package of Python: the public headers, and few parts below them.
     "python": {"include", "api", "dataset/recording", "dataset/netcdf",
                "compensation/inputs", "validation/external"},

@@ -16,6 +16,8 @@ import pathlib
 import re
 import sys
 
+from check_includes import MAY_INCLUDE, room_of
+
 # The sources that share bundles, as prefixes of paths; the first that fits.
 LIBRARIES = ["dataset/set/", "dataset/", "sim/numerics/", "sim/thermal/",
              "sim/signal/", "sim/memory/", "sim/device/", "sim/dynamics/",
@@ -24,27 +26,6 @@ LIBRARIES = ["dataset/set/", "dataset/", "sim/numerics/", "sim/thermal/",
              "validation/", "planning/", "sensitivity/", "report/", "api/", "cli/",
              "python/"]
 
-# Public names that the library still uses for something else.
-TO_RENAME = {"Compensator", "InputFile", "NamedRecording", "Verdict"}
-
-# A library sees no header of these.
-UNSEEN = {"planning/": ["validation/", "report/", "api/", "cli/"],
-          "config/": ["dataset/", "sim/", "compensation/", "validation/", "report/", "api/", "cli/"],
-          "random/": ["dataset/", "sim/", "compensation/", "validation/", "report/", "api/", "cli/"],
-          "linear_algebra/": ["config/", "dataset/", "sim/", "compensation/", "validation/", "report/", "api/", "cli/"],
-          "dataset/": ["dataset/set/", "sim/", "compensation/", "report/",
-                       "api/", "cli/"],
-          "dataset/set/": ["sim/", "compensation/", "validation/", "report/", "api/", "cli/"],
-          "validation/": ["sensitivity/", "report/", "api/", "cli/"],
-          "sensitivity/": ["validation/", "report/", "api/", "cli/"],
-          "compensation/": ["sim/", "validation/", "report/", "api/", "cli/"],
-          "sim/": ["compensation/", "validation/", "report/", "api/", "cli/"],
-          "sim/numerics/": ["sim/"], "sim/thermal/": ["sim/"],
-          "sim/signal/": ["sim/device", "sim/dynamics", "sim/scenario",
-                          "sim/campaign", "sim/thermal"],
-          "sim/device/": ["sim/dynamics", "sim/scenario", "sim/campaign"],
-          "sim/dynamics/": ["sim/scenario", "sim/campaign"],
-          "sim/scenario/": ["sim/campaign"]}
 
 FUNCTION = re.compile(
     r"^(?:\[\[\w+\]\] )?[A-Za-z_][\w:<>,&* ]*[&* \n](\w+)\(", re.MULTILINE)
@@ -74,12 +55,9 @@ def sees(library, header):
     if library == "python/" or header.startswith("python/"):
         # The package of Python has a namespace of its own.
         return header.startswith(library)
-    if header.startswith(library):
-        return not any(header.startswith(unseen) for unseen in
-                       UNSEEN.get(library, []) if len(unseen) > len(library))
-    return not any(header.startswith(unseen)
-                   for prefix, unseens in UNSEEN.items()
-                   if library.startswith(prefix) for unseen in unseens)
+    return library_of(header) == library or any(
+        room_of(header) in MAY_INCLUDE[room]
+        for room in MAY_INCLUDE if library_of(room + "/") == library)
 
 
 def offences(root):
@@ -101,7 +79,7 @@ def offences(root):
             for one in local:
                 defined[library_of(name), one].append(name)
     for path in sorted((root / "include").rglob("*.h")):
-        for one in set(DEFINED_TYPE.findall(path.read_text())) - TO_RENAME:
+        for one in set(DEFINED_TYPE.findall(path.read_text())):
             types[one].append(path.relative_to(root).as_posix())
     for one, headers in sorted(types.items()):
         if len(headers) > 1:

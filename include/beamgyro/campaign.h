@@ -6,23 +6,24 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "beamgyro/device.h"
 #include "beamgyro/progress.h"
+#include "beamgyro/shared.h"
 
 namespace beamgyro {
+namespace internal {
+class CampaignPlan;
+}
 
 /// A population of devices and the runs of each of them, read from a campaign
 /// file (docs/reference/campaign_file.md) and checked. Immutable; copies share
 /// their state, and many threads may use one at once.
-class Campaign {
+class Campaign : public Shared<internal::CampaignPlan> {
  public:
-  struct State;
-
   /// Reads a campaign and every file that it names. `devices` replaces the
   /// number of devices in the file. Throws std::invalid_argument
   /// "file:line:column: key: ..." for what is wrong in one of them.
@@ -50,11 +51,7 @@ class Campaign {
   /// Returns the device itself. Throws as device_overrides().
   Device device(std::uint32_t number) const;
 
-  explicit Campaign(std::shared_ptr<const State> state);
-  const State& state() const { return *state_; }
-
- private:
-  std::shared_ptr<const State> state_;
+  using Shared::Shared;
 };
 
 struct GenerationOptions {

@@ -11,8 +11,12 @@
 #include <vector>
 
 #include "beamgyro/recording.h"
+#include "beamgyro/shared.h"
 
 namespace beamgyro {
+namespace internal {
+struct CompensatorState;
+}
 
 /// The answers of a compensator to one run.
 struct CompensatedRate {
@@ -64,10 +68,9 @@ std::shared_ptr<const RateCompensator> compensator_of(
 /// A trained compensator, (rate - bias(inputs)) / s(T), as `beamgyro train`
 /// writes it (docs/reference/compensator_file.md). Immutable; copies share
 /// their state, and many threads may use one at once.
-class Compensator final : public RateCompensator {
+class Compensator final : public RateCompensator,
+                          public Shared<internal::CompensatorState> {
  public:
-  struct State;
-
   /// Reads a compensator file. Throws std::invalid_argument with line and
   /// column or the key for what is wrong in it.
   static Compensator read(const std::filesystem::path& file);
@@ -104,11 +107,7 @@ class Compensator final : public RateCompensator {
   /// What the data of its training do not support.
   std::vector<std::string> warnings() const;
 
-  explicit Compensator(std::shared_ptr<const State> state);
-  const State& state() const { return *state_; }
-
- private:
-  std::shared_ptr<const State> state_;
+  using Shared::Shared;
 };
 
 /// What a compensator may use that runs in a process of its own.

@@ -4,12 +4,16 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "beamgyro/shared.h"
+
 namespace beamgyro {
+namespace internal {
+struct DeviceState;
+}
 
 /// A file that was read.
 struct InputFile {
@@ -19,10 +23,8 @@ struct InputFile {
 
 /// A gyro, read from a device file (docs/reference/device_file.md) and checked.
 /// Immutable; copies share their state, and many threads may use one at once.
-class Device {
+class Device : public Shared<internal::DeviceState> {
  public:
-  struct State;
-
   /// Reads a device file. `overrides` replace keys of it: KEY=VALUE with a
   /// dotted key and any TOML value, as "beam.length_m=0.041". Throws
   /// std::invalid_argument "file:line:column: key: ..." for what is wrong in
@@ -43,11 +45,7 @@ class Device {
   std::string name() const;                    ///< of the file, in messages
   std::vector<std::string> overrides() const;  ///< in their order
 
-  explicit Device(std::shared_ptr<const State> state);
-  const State& state() const { return *state_; }
-
- private:
-  std::shared_ptr<const State> state_;
+  using Shared::Shared;
 };
 
 /// A quantity over the temperatures of a Characteristic.

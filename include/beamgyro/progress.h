@@ -18,7 +18,7 @@ using Progress = std::function<bool(double share)>;
 /// under its final name; the finished files of a set stay.
 class Cancelled : public std::runtime_error {
  public:
-  Cancelled();
+  Cancelled() : std::runtime_error("cancelled") {}
 };
 
 }  // namespace beamgyro

@@ -58,7 +58,7 @@ struct Recording {
   std::string scenario_text;  ///< both files byte for byte as read
   std::string device_text;
   std::string overrides_text;  ///< one KEY=VALUE per line
-  std::string run;  ///< its name where it is validated; not in files
+  std::string run;             ///< its name where it is validated; not in files
 };
 
 /// Returns the column called `name`, or nullptr.
@@ -77,8 +77,7 @@ const std::vector<double>& column_values(const Recording& recording,
 /// std::runtime_error when the system fails to read it. Calls for different
 /// files may run at once; HDF5 lets one thread in at a time.
 Recording read_recording(const std::filesystem::path& path,
-                         std::vector<std::string>* warnings);
-Recording read_recording(const std::filesystem::path& path);
+                         std::vector<std::string>* warnings = nullptr);
 
 /// Writes a recording, as CSV when the name ends in .csv, else as HDF5 in the
 /// layout of netCDF-4. The file appears under its name when it is complete. The

@@ -6,21 +6,22 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "beamgyro/device.h"
+#include "beamgyro/shared.h"
 
 namespace beamgyro {
+namespace internal {
+struct ScenarioState;
+}
 
 /// A scenario file (docs/reference/scenario_file.md) and the device that it is
 /// about, read and checked. Immutable; copies share their state, and many
 /// threads may use one at once.
-class Scenario {
+class Scenario : public Shared<internal::ScenarioState> {
  public:
-  struct State;
-
   /// Reads a scenario and the device that it names. `overrides` replace keys of
   /// either: KEY=VALUE with a dotted key and any TOML value, as "seed=2",
   /// "fidelity=\"carrier\"" or "beam.length_m=0.041". Throws
@@ -69,11 +70,7 @@ class Scenario {
   /// Estimated processor time of a carrier run [s]; 0 for the other fidelities.
   double estimated_seconds() const;
 
-  explicit Scenario(std::shared_ptr<const State> state);
-  const State& state() const { return *state_; }
-
- private:
-  std::shared_ptr<const State> state_;
+  using Shared::Shared;
 };
 
 }  // namespace beamgyro

@@ -5,15 +5,18 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "beamgyro/progress.h"
 #include "beamgyro/recording.h"
+#include "beamgyro/shared.h"
 
 namespace beamgyro {
+namespace internal {
+class OpenSet;
+}
 
 /// What the data of a device are for.
 enum class SetPart : std::uint8_t { kTrain, kValidation, kTest };
@@ -42,10 +45,8 @@ struct SetDefect {
 
 /// The finished set of a campaign (docs/reference/set.md). Copies share their
 /// state, and many threads may use one at once; HDF5 lets one in at a time.
-class Set {
+class Set : public Shared<internal::OpenSet> {
  public:
-  struct State;
-
   /// Opens the set in a directory. Throws std::invalid_argument when there is
   /// none, or when it is not finished.
   static Set open(const std::filesystem::path& directory);
@@ -83,11 +84,7 @@ class Set {
   /// set that is whole. Throws Cancelled.
   std::vector<SetDefect> verify(const Progress& progress = {}) const;
 
-  explicit Set(std::shared_ptr<const State> state);
-  const State& state() const { return *state_; }
-
- private:
-  std::shared_ptr<const State> state_;
+  using Shared::Shared;
 };
 
 }  // namespace beamgyro

@@ -7,23 +7,24 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "beamgyro/compensator.h"
 #include "beamgyro/recording.h"
 #include "beamgyro/set.h"
+#include "beamgyro/shared.h"
 
 namespace beamgyro {
+namespace internal {
+struct ModelSpec;
+}
 
 /// What to train, read from a model file (docs/reference/model_file.md) and
 /// checked. Immutable; copies share their state, and many threads may use one
 /// at once.
-class Model {
+class Model : public Shared<internal::ModelSpec> {
  public:
-  struct State;
-
   /// Reads a model file. Throws std::invalid_argument "file:line:column: key:
   /// ..." for what is wrong in it.
   static Model read(const std::filesystem::path& file);
@@ -36,11 +37,7 @@ class Model {
   std::string name() const;  ///< of the file, in messages
   std::vector<std::filesystem::path> files() const;  ///< that were read
 
-  explicit Model(std::shared_ptr<const State> state);
-  const State& state() const { return *state_; }
-
- private:
-  std::shared_ptr<const State> state_;
+  using Shared::Shared;
 };
 
 /// How far the training of a network is.

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "beamgyro/compensator.h"
@@ -15,6 +14,7 @@
 #include "beamgyro/progress.h"
 #include "beamgyro/set.h"
 #include "beamgyro/train.h"
+#include "beamgyro/verdict.h"
 
 namespace beamgyro {
 
@@ -42,11 +42,6 @@ struct ValidationOptions {
   unsigned jobs = 0;                      ///< threads; 0: one per core
   Progress progress = {};
 };
-
-enum class Verdict { kPass, kFail, kUndecided };
-
-/// Returns "pass", "fail", "undecided".
-std::string_view verdict_name(Verdict verdict);
 
 /// A figure with its interval of 95 %; the bounds are NaN where there is none.
 struct IntervalEstimate {

@@ -150,6 +150,7 @@ DeviceSample sample_devices(const CampaignPlan& campaign,
                             const DeviceSampleOptions& options,
                             DeviceSampleCounts& counts) {
   DeviceSample sample;
+  counts.all_devices = devices_of_sample(campaign, options);
   sample.factors = factors_of(campaign.device_plan());
   require_comparable(sample.factors, campaign.name());
   device_merits(campaign.base_device(), options.merits, options.merit);

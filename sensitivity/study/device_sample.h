@@ -26,9 +26,10 @@ struct DeviceSampleOptions {
   unsigned jobs = 0;  // 0: one per core
 };
 
-/// Counts of the work that is done so far. Other threads may read them.
+/// Counts of the work that is done so far, and of all. Other threads may read
+/// them.
 struct DeviceSampleCounts {
-  std::atomic<std::uint64_t> devices{0}, failures{0};
+  std::atomic<std::uint64_t> devices{0}, failures{0}, all_devices{0};
   // Called after each, by many threads; what it throws ends the work.
   std::function<void()> on_device = {};
 };

@@ -128,7 +128,7 @@ TEST(PublicCompensator, TextTrainsReadsAndAnswersAlike) {
   const TrainedCompensator trained =
       beamgyro::train(model, std::vector<NamedRecording>{{"ramp", run}});
   const auto again =
-      beamgyro::Compensator::parse(trained.compensator.text(), "again.json");
+      Compensator::parse(trained.compensator.text(), "again.json");
   EXPECT_EQ(again.text(), trained.compensator.text());
   const CompensatedRate first = trained.compensator.answer(run);
   EXPECT_EQ(first.rate, again.answer(run).rate);

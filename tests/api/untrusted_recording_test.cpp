@@ -50,8 +50,7 @@ void expect_refused(const char* words, const std::function<void()>& call) {
 }
 
 TEST_F(UntrustedRecording, IsRefusedByEveryCallThatTakesOne) {
-  const beamgyro::Compensator trained =
-      train(model_, {{"run", run_}}).compensator;
+  const Compensator trained = train(model_, {{"run", run_}}).compensator;
   const auto user = compensator_of("mine", {}, [](const Recording& seen) {
     return column_values(seen, "rate");
   });
@@ -238,8 +237,7 @@ TEST_F(UntrustedRecording, MissingFunctionsAndProgramsAreNamed) {
 }
 
 TEST_F(UntrustedRecording, IdentifiersOfAutopilotsAreTheirs) {
-  const beamgyro::Compensator cubic =
-      train(model_, {{"run", run_}}).compensator;
+  const Compensator cubic = train(model_, {{"run", run_}}).compensator;
   for (const std::int64_t wrong : {std::int64_t{-1}, std::int64_t{1} << 40})
     expect_refused("device id",
                    [&] { export_files({cubic}, "px4", {.device_id = wrong}); });

@@ -37,16 +37,16 @@ struct BundleInput {
 
 // Returns the copies of all inputs. Those of a group stand to each other as the
 // originals do, so that the names in them stay valid.
-std::vector<BundleInput> copies_of(const std::vector<InputFile>& inputs,
+std::vector<BundleInput> copies_of(const std::vector<ValidationInput>& inputs,
                                    InputNames& names) {
   std::vector<std::string> groups;
-  for (const InputFile& input : inputs)
+  for (const ValidationInput& input : inputs)
     if (std::ranges::count(groups, input.group) == 0)
       groups.push_back(input.group);
   std::vector<BundleInput> copies;
   for (const std::string& group : groups) {
     std::vector<SourceText> texts;
-    for (const InputFile& input : inputs)
+    for (const ValidationInput& input : inputs)
       if (input.group == group) texts.push_back({input.path, input.text});
     const std::vector<SourceEntry> entries = source_entries(texts);
     std::vector<fs::path> placed;  // of the entries: one for each file
@@ -225,7 +225,7 @@ std::vector<BundleDifference> different_inputs(const Bundle& bundle,
   for (const ListedFile& input : bundle.inputs)
     listed.insert(place(bundle.directory / input.name));
   std::vector<BundleDifference> different;
-  for (const InputFile& input : content.inputs)
+  for (const ValidationInput& input : content.inputs)
     if (read.insert(place(input.path)).second &&
         !listed.contains(place(input.path)))
       different.push_back({input.path, "is read and not in the bundle"});

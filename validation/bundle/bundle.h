@@ -28,7 +28,7 @@ struct BundleOutput {
 };
 
 /// A file that a result depends on.
-struct InputFile {
+struct ValidationInput {
   std::string group;  // "device", ...; names in a file are of its group
   std::filesystem::path path;
   std::string sha256;
@@ -41,7 +41,7 @@ using InputNames =
 
 /// What a bundle holds beside its outputs.
 struct BundleContent {
-  const std::vector<InputFile>& inputs;  // with their texts
+  const std::vector<ValidationInput>& inputs;  // with their texts
   // Returns what was asked for, in the names of the copies.
   std::function<nlohmann::ordered_json(const InputNames&)> request;
   std::string program_version, git_revision;

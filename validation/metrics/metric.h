@@ -42,8 +42,4 @@ std::span<const Metric> metrics();
 /// Returns the metric of that name, or nullptr.
 const Metric* find_metric(std::string_view name);
 
-/// Returns a line for every metric: name, unit, clause, purposes and
-/// definition, with tabs between.
-std::string metric_list();
-
 }  // namespace beamgyro::internal

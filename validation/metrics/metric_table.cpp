@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <iterator>
 
@@ -30,19 +28,6 @@ const Metric* find_metric(std::string_view name) {
   const std::span<const Metric> all = metrics();
   const auto found = std::ranges::find(all, name, &Metric::name);
   return found == all.end() ? nullptr : &*found;
-}
-
-std::string metric_list() {
-  std::string lines;
-  for (const Metric& metric : metrics()) {
-    std::vector<std::string_view> purposes;
-    for (const RunPurpose purpose : metric.reads)
-      purposes.push_back(purpose_name(purpose));
-    lines +=
-        fmt::format("{}\t{}\t{}\t{}\t{}\n", metric.name, metric.unit,
-                    metric.clause, fmt::join(purposes, " "), metric.definition);
-  }
-  return lines;
 }
 
 }  // namespace beamgyro::internal

@@ -11,7 +11,21 @@
 
 #include "random/random_stream.h"
 
-namespace beamgyro::internal {
+namespace beamgyro {
+
+std::string_view verdict_name(Verdict conformity) {
+  switch (conformity) {
+    case Verdict::kPass:
+      return "pass";
+    case Verdict::kFail:
+      return "fail";
+    case Verdict::kUndecided:
+      break;
+  }
+  return "undecided";
+}
+
+namespace internal {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -152,18 +166,6 @@ std::string text_of(const Limit& limit) {
   return text;
 }
 
-std::string_view verdict_name(Verdict conformity) {
-  switch (conformity) {
-    case Verdict::kPass:
-      return "pass";
-    case Verdict::kFail:
-      return "fail";
-    case Verdict::kUndecided:
-      break;
-  }
-  return "undecided";
-}
-
 Verdict worst_of(std::span<const Verdict> all) {
   if (std::ranges::count(all, Verdict::kFail) > 0) return Verdict::kFail;
   return std::ranges::count(all, Verdict::kUndecided) > 0 ? Verdict::kUndecided
@@ -198,4 +200,5 @@ Decision decide(const Limit& limit, const std::optional<Estimate>& after,
   return decision;
 }
 
-}  // namespace beamgyro::internal
+}  // namespace internal
+}  // namespace beamgyro

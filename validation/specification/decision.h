@@ -4,8 +4,8 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 
+#include "include/beamgyro/verdict.h"
 #include "validation/metrics/metric.h"
 
 namespace beamgyro::internal {
@@ -28,18 +28,6 @@ struct Limit {
 
 /// Returns the limit in words: "at most 0.1", "0.98 to 1.02".
 std::string text_of(const Limit& limit);
-
-/// What a measured value says about a limit, after ASME B89.7.3.1: stringent
-/// acceptance and stringent rejection, with a guard band on both sides of the
-/// limit.
-enum class Verdict {
-  kPass,       // "pass": within the limits by the guard band or more
-  kFail,       // "fail": beyond a limit by the guard band or more
-  kUndecided,  // "undecided": within the guard band, or never evaluated
-};
-
-/// Returns the name used in files, as in the comments above.
-std::string_view verdict_name(Verdict conformity);
 
 /// Returns kFail if one of them fails, else kUndecided if one of them is
 /// undecided, else kPass. Of none it is kPass.

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "api/program_version.h"
+#include "api/validation_members.h"
+#include "api/validator.h"
+#include "cli/figure_pictures.h"
+#include "cli/inputs.h"
+#include "cli/progress.h"
+#include "cli/terminal.h"
+#include "cli/validate.h"
+#include "dataset/files/atomic_file.h"
+#include "dataset/files/made_directories.h"
+#include "validation/bundle/bundle.h"
+
+namespace beamgyro::internal {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kBundleDiffers = 1, kNotWritten = 1;
+
+ValidationOutcome judged(const Validator& validator) {
+  Progress progress("validating " + validator.source().argument);
+  ValidationOutcome found = validated(validator, progress.shown_share());
+  for (const std::string& warning : found.warnings) keep_warning(warning);
+  return found;
+}
+
+std::vector<BundleOutput> outputs_of(const ValidationOutcome& found) {
+  return {{kResultFile, found.json},
+          {kReportFile, found.all_metrics},
+          {kPageFile, found.page}};
+}
+
+// What an option asks for.
+struct AskedOutput {
+  const char* option;
+  std::string name;
+  fs::path place;  // absolute, with links followed as far as it is there
+};
+
+fs::path place_of(const fs::path& path) {
+  std::error_code error;
+  fs::path place = fs::weakly_canonical(fs::absolute(path), error);
+  if (error) place = fs::absolute(path).lexically_normal();
+  return place.has_filename() ? place : place.parent_path();
+}
+
+// Whether a path is the other one or below it.
+bool is_within(const fs::path& path, const fs::path& other) {
+  return std::mismatch(path.begin(), path.end(), other.begin(), other.end())
+             .second == other.end();
+}
+
+void require_places_of_their_own(const ValidateArguments& arguments) {
+  std::vector<AskedOutput> asked;
+  for (const auto& [option, name] : {std::pair("--json", arguments.json),
+                                     std::pair("--report", arguments.report),
+                                     std::pair("--figures", arguments.figures),
+                                     std::pair("--bundle", arguments.bundle)})
+    if (!name.empty()) asked.push_back({option, name, place_of(name)});
+  for (const AskedOutput& one : asked)
+    for (const AskedOutput& other : asked)
+      if (&one != &other && is_within(one.place, other.place))
+        throw std::invalid_argument(fmt::format(
+            "{} {}: is {} {} {}; expected a place of its own", one.option,
+            one.name, one.place == other.place ? "the same as" : "inside",
+            other.option, other.name));
+}
+
+// Throws std::invalid_argument when a file or directory that the arguments ask
+// for cannot be made, is one of the inputs, or is the same as another one or
+// inside it. Leaves none of them. The bundle has to be new besides
+// (require_new_bundle).
+void require_outputs_of(const ValidateArguments& arguments,
+                        const std::vector<fs::path>& inputs) {
+  require_places_of_their_own(arguments);
+  require_output_directory("--report", arguments.report, "index.html", inputs);
+  require_output_directory("--figures", arguments.figures, "result.json",
+                           inputs);
+  require_output_directory("--bundle", arguments.bundle, kBundleFile, inputs);
+  require_json_output(arguments.json, inputs);
+}
+
+// Prints a result, then writes each file and directory that is asked for. What
+// fails is printed, and the others are written nevertheless. Returns the exit
+// status.
+int deliver(const ValidateArguments& arguments, const BundleContent& content,
+            const ValidationOutcome& found) {
+  int status = found.verdict == Verdict::kPass ? 0 : kNotPassed;
+  const auto write = [&](bool is_asked_for, const auto& work) {
+    try {
+      if (is_asked_for) work();
+    } catch (const std::exception& error) {
+      print_error(error.what());
+      status = kNotWritten;
+    }
+  };
+  write(true, [&] {
+    print_result(arguments.all_metrics ? found.all_metrics : found.text);
+  });
+  write(!arguments.json.empty(),
+        [&] { write_text_file(arguments.json, found.json); });
+  write(!arguments.report.empty(), [&] {
+    const MadeDirectories made(arguments.report);
+    write_text_file(fs::path(arguments.report) / "index.html", found.page);
+  });
+  write(!arguments.bundle.empty(),
+        [&] { write_bundle(arguments.bundle, content, outputs_of(found)); });
+  write(!arguments.figures.empty(), [&] {
+    const MadeDirectories made(arguments.figures);
+    draw_figures(found.json, arguments.figures);
+  });
+  return status;
+}
+
+// Throws unless the user lets code of whoever made the bundle run.
+void require_permission(const Bundle& bundle, const std::string& compensator,
+                        bool runs_code) {
+  if (!is_program(source_kind(compensator))) return;
+  if (!runs_code)
+    throw std::invalid_argument(fmt::format(
+        "{0}: would run {1}, which is code of whoever made the bundle; nothing "
+        "was run. Its files are those that it lists. Expected --run-code to "
+        "run it",
+        bundle.directory.string(), compensator));
+  print_note(
+      fmt::format("{}: runs {}", bundle.directory.string(), compensator));
+}
+
+std::vector<BundleDifference> differences_of(
+    const Bundle& bundle, const ValidateArguments& arguments) {
+  std::vector<BundleDifference> different = changed_files(bundle);
+  if (!different.empty()) return different;
+  BundledRequest request = request_of(bundle);
+  require_limits_for_code(arguments.limits, request.compensator);
+  require_permission(bundle, request.compensator, arguments.runs_code);
+  request.options.jobs = arguments.options.jobs;
+  const Validator validator(
+      open_source(request.compensator, process_limits(arguments.limits)),
+      std::move(request.options), true);
+  const BundleContent content = bundle_content(validator);
+  different = different_inputs(bundle, content);
+  if (!different.empty()) return different;
+  return different_outputs(bundle, content, outputs_of(judged(validator)));
+}
+
+}  // namespace
+
+int judge_compensator(const ValidateArguments& arguments) {
+  ValidationOptions options = validation_options(arguments);
+  if (options.set && !arguments.bundle.empty())
+    throw std::invalid_argument(fmt::format(
+        "--bundle: {} is a set, which no bundle takes; expected recordings",
+        arguments.runs[0].string()));
+  require_sound(options);
+  const Validator validator(
+      open_source(arguments.compensator, process_limits(arguments.limits)),
+      std::move(options), !arguments.bundle.empty());
+  const BundleContent content = bundle_content(validator);
+  // The directory of a set stands for everything below it.
+  std::vector<fs::path> inputs = arguments.runs;
+  for (const ValidationInput& input : validator.inputs())
+    inputs.push_back(input.path);
+  require_outputs_of(arguments, inputs);
+  if (!arguments.bundle.empty()) require_new_bundle(arguments.bundle, content);
+  return deliver(arguments, content, judged(validator));
+}
+
+int check_bundle(const ValidateArguments& arguments) {
+  const Bundle bundle = read_bundle(arguments.check);
+  const std::vector<BundleDifference> different =
+      differences_of(bundle, arguments);
+  for (const auto& [file, words] : different)
+    print_result(fmt::format("{}: {}\n", file.string(), words));
+  if (different.empty())
+    print_result(fmt::format("{}: {} inputs and {} outputs are the same\n",
+                             arguments.check, bundle.inputs.size(),
+                             bundle.outputs.size()));
+  if (bundle.git_revision != kGitRevision ||
+      bundle.program_version != kProgramVersion)
+    print_note(
+        fmt::format("the bundle was made by beamgyro {} ({}), this is {} ({})",
+                    bundle.program_version, bundle.git_revision,
+                    kProgramVersion, kGitRevision));
+  return different.empty() ? 0 : kBundleDiffers;
+}
+
+}  // namespace beamgyro::internal
