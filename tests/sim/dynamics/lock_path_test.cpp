@@ -35,7 +35,7 @@ Gyro strongly_coupled() {
   return make_gyro(nominal_device(coupled(-0.003, 0.01, 20)));
 }
 
-ModalParameters modal_at(const Gyro& gyro, double celsius) {
+ModalParameters modal_at_celsius(const Gyro& gyro, double celsius) {
   return modal_parameters(gyro.device, gyro.beam, celsius + kZeroCelsius,
                           gyro.stiffness_trim);
 }
@@ -96,7 +96,7 @@ TEST(LockPath, IsContinuous) {
 }
 
 StaticSolution lowest_voltage(const Gyro& gyro, double celsius) {
-  return static_solution(modal_at(gyro, celsius), gyro.loop,
+  return static_solution(modal_at_celsius(gyro, celsius), gyro.loop,
                          gyro.device.readout.feedthrough, {});
 }
 
@@ -107,7 +107,7 @@ TEST(LockPath, MayNeedMoreVoltageThanTheOtherLock) {
   const StaticSolution other = lowest_voltage(gyro, -40);
   EXPECT_FALSE(other.only_lock);
   const StaticSolution continued =
-      static_solution(gyro, modal_at(gyro, -40), {});
+      static_solution(gyro, modal_at_celsius(gyro, -40), {});
   EXPECT_LT(continued.drive_frequency, other.drive_frequency - 50 * kHertz);
   EXPECT_GT(continued.drive_voltage, 1.5 * other.drive_voltage);
 }
@@ -118,7 +118,8 @@ TEST(LockPath, WhereItEndsTheLockOfTheLowestVoltageIsTaken) {
   LockPath path;
   EXPECT_GT(path.at(gyro, 25 + kZeroCelsius), 0);
   EXPECT_EQ(path.at(gyro, -30 + kZeroCelsius), 0);
-  const StaticSolution s = static_solution(gyro, modal_at(gyro, -30), {});
+  const StaticSolution s =
+      static_solution(gyro, modal_at_celsius(gyro, -30), {});
   EXPECT_FALSE(s.only_lock);
   EXPECT_EQ(s.drive_frequency, lowest_voltage(gyro, -30).drive_frequency);
 }
@@ -171,7 +172,7 @@ TEST_P(AllLocks, AreKnown) {
     keys.push_back("readout.mode=\"" + GetParam() + "\"");
     const Gyro gyro = make_gyro(nominal_device(keys));
     for (double celsius = -40; celsius <= 60; celsius += 5) {
-      const ModalParameters modal = modal_at(gyro, celsius);
+      const ModalParameters modal = modal_at_celsius(gyro, celsius);
       const std::vector<double> locks = locks_found(gyro, modal);
       const StaticSolution s = static_solution(gyro, modal, {});
       EXPECT_EQ(s.only_lock, locks.size() == 1)
