@@ -38,19 +38,19 @@ Campaign Campaign::parse(const std::vector<InputFile>& files,
       internal::CampaignPlan::of_copies(files, as_long(devices)));
 }
 
-std::string Campaign::name() const { return state_->campaign.name(); }
-std::string Campaign::text() const { return state_->campaign.text(); }
+std::string Campaign::name() const { return state_->campaign.name; }
+std::string Campaign::text() const { return state_->campaign.text; }
 
 std::vector<InputFile> Campaign::files() const {
-  return state_->campaign.sources();
+  return state_->campaign.sources;
 }
 
-std::uint32_t Campaign::devices() const { return state_->campaign.devices(); }
-std::uint64_t Campaign::seed() const { return state_->campaign.seed(); }
+std::uint32_t Campaign::devices() const { return state_->campaign.devices; }
+std::uint64_t Campaign::seed() const { return state_->campaign.source.seed; }
 
 std::vector<std::string> Campaign::runs() const {
   std::vector<std::string> names;
-  for (const internal::CampaignRun& run : state_->campaign.runs())
+  for (const internal::CampaignRun& run : state_->campaign.runs)
     names.push_back(run.name);
   return names;
 }
@@ -72,7 +72,7 @@ std::vector<std::string> Campaign::device_overrides(
 }
 
 Device Campaign::device(std::uint32_t number) const {
-  return Device::parse(state_->campaign.device_text(),
+  return Device::parse(state_->campaign.device_document->text(),
                        fmt::format("{}, device {}", name(), number),
                        device_overrides(number));
 }

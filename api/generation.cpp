@@ -24,8 +24,7 @@ void require_moderate_files(const std::string& campaign,
   throw std::invalid_argument(fmt::format(
       "{}: devices_per_file: {} devices make files of {:.1f} GB; expected at "
       "most {:g} GB, so fewer devices a file, fewer variables or lower rates",
-      campaign, plan.campaign().devices_per_file(), size / 1e9,
-      kLargest / 1e9));
+      campaign, plan.campaign().devices_per_file, size / 1e9, kLargest / 1e9));
 }
 
 std::string lock_warning(const SetWriter& set,
@@ -101,7 +100,7 @@ GenerationOutcome generate(const Campaign& campaign,
   const internal::ShardPlan plan(
       own, {internal::kProgramVersion, internal::kGitRevision});
   internal::require_moderate_files(campaign.name(), plan);
-  internal::SetWriter set(directory, plan.manifest_head(), own.sources(), {},
+  internal::SetWriter set(directory, plan.manifest_head(), own.sources, {},
                           options.resume);
   GenerationOutcome outcome;
   if (std::string warning = internal::lock_warning(set, directory);

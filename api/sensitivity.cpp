@@ -124,8 +124,8 @@ SensitivityStudy checked_study(const Campaign& campaign,
   sample.jobs = options.jobs;
   std::map<Merit, double> limits = limits_of(options, sample.merits);
   const CampaignPlan& own = campaign.state().campaign;
-  require_comparable(factors_of(own.device_plan()),
-                     own.sources().front().path.string());
+  require_comparable(factors_of(own.device_plan),
+                     own.sources.front().path.string());
   return {campaign, std::move(sample), std::move(limits), options.linear};
 }
 

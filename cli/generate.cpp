@@ -91,10 +91,9 @@ int generate(const GenerateArguments& arguments) {
                  "\n");
     return 0;
   }
-  require_set_output(arguments.output, plan.manifest_head(),
-                     campaign.sources());
-  SetWriter set(arguments.output, plan.manifest_head(), campaign.sources(),
-                task, arguments.resume);
+  require_set_output(arguments.output, plan.manifest_head(), campaign.sources);
+  SetWriter set(arguments.output, plan.manifest_head(), campaign.sources, task,
+                arguments.resume);
   warn_without_lock(set, arguments.output);
   if (!set.died_before().empty())
     print_note(fmt::format(

@@ -43,7 +43,8 @@ TEST(ScenarioFile, AKeyInPlaceOfThePointsOfAHistoryIsNamed) {
 TEST(ScenarioFile, StepsAreHeldAndPointsAreJoined) {
   const auto rate = [](const std::string& text, double t) {
     const ScenarioPlan scenario = scenario_from(text);
-    return std::get<PiecewiseLinear>(scenario.rate).value(t) / kDegree;
+    return std::get<PiecewiseLinear>(scenario.motion[kRateZ]).value(t) /
+           kDegree;
   };
   const std::string steps = "[rate]\nsteps = [[10, 5], [20, -3]]\n";
   EXPECT_DOUBLE_EQ(rate(steps, 0), 5);  // the first value before its time
@@ -58,7 +59,7 @@ TEST(ScenarioFile, StepsAreHeldAndPointsAreJoined) {
 
 TEST(ScenarioFile, WithoutRateAndPowerItRestsAndIsOnFromTheStart) {
   const ScenarioPlan scenario = scenario_from("");
-  EXPECT_EQ(std::get<PiecewiseLinear>(scenario.rate).value(50), 0);
+  EXPECT_EQ(std::get<PiecewiseLinear>(scenario.motion[kRateZ]).value(50), 0);
   ASSERT_EQ(scenario.powered.size(), 1u);
   EXPECT_EQ(scenario.powered[0].on, 0);
   EXPECT_EQ(scenario.powered[0].off, std::numeric_limits<double>::infinity());
