@@ -36,17 +36,17 @@ Campaign Campaign::parse(const std::vector<InputFile>& files,
       internal::CampaignPlan::of_copies(files, as_long(devices)));
 }
 
-std::string Campaign::name() const { return content().name(); }
-std::string Campaign::text() const { return content().text(); }
+std::string Campaign::name() const { return content().name; }
+std::string Campaign::text() const { return content().text; }
 
-std::vector<InputFile> Campaign::files() const { return content().sources(); }
+std::vector<InputFile> Campaign::files() const { return content().sources; }
 
-std::uint32_t Campaign::devices() const { return content().devices(); }
-std::uint64_t Campaign::seed() const { return content().seed(); }
+std::uint32_t Campaign::devices() const { return content().devices; }
+std::uint64_t Campaign::seed() const { return content().source.seed; }
 
 std::vector<std::string> Campaign::runs() const {
   std::vector<std::string> names;
-  for (const internal::CampaignRun& run : content().runs())
+  for (const internal::CampaignRun& run : content().runs)
     names.push_back(run.name);
   return names;
 }
@@ -68,7 +68,7 @@ std::vector<std::string> Campaign::device_overrides(
 }
 
 Device Campaign::device(std::uint32_t number) const {
-  return Device::parse(content().device_text(),
+  return Device::parse(content().device_document->text(),
                        fmt::format("{}, device {}", name(), number),
                        device_overrides(number));
 }

@@ -103,7 +103,7 @@ bool Compensator::states_sigma() const {
   return content().compensator.sigma.has_value();
 }
 std::string Compensator::curve() const {
-  return internal::settled_curve(state_->compensator);
+  return internal::settled_curve(content().compensator);
 }
 std::vector<std::string> Compensator::warnings() const {
   return content().compensator.provenance.warnings;

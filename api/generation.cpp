@@ -21,8 +21,7 @@ void require_moderate_files(const std::string& campaign,
   throw std::invalid_argument(fmt::format(
       "{}: devices_per_file: {} devices make files of {:.1f} GB; expected at "
       "most {:g} GB, so fewer devices a file, fewer variables or lower rates",
-      campaign, plan.campaign().devices_per_file(), size / 1e9,
-      kLargest / 1e9));
+      campaign, plan.campaign().devices_per_file, size / 1e9, kLargest / 1e9));
 }
 
 std::vector<std::string> lock_warnings(const SetWriter& set,
@@ -94,7 +93,7 @@ GenerationOutcome generate(const Campaign& campaign,
   const internal::ShardPlan plan(
       own, {internal::kProgramVersion, internal::kGitRevision});
   internal::require_moderate_files(campaign.name(), plan);
-  internal::SetWriter set(directory, plan.manifest_head(), own.sources(), {},
+  internal::SetWriter set(directory, plan.manifest_head(), own.sources, {},
                           options.resume);
   std::vector<std::string> warnings = internal::lock_warnings(set, directory);
   const std::vector<std::uint32_t> files = set.lacking();

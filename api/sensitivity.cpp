@@ -126,8 +126,8 @@ SensitivityResult studied(const Campaign& campaign,
   const DeviceSampleOptions asked = sample_options(campaign, options);
   const std::map<Merit, double> limits = limits_of(options, asked.merits);
   const CampaignPlan& own = campaign.content();
-  require_comparable(factors_of(own.device_plan()),
-                     own.sources().front().path.string());
+  require_comparable(factors_of(own.device_plan),
+                     own.sources.front().path.string());
   const DeviceSample sample = sample_devices(own, asked, counts);
   const StudyHead head{campaign.name(), asked.seed, asked.merit.grid};
   SensitivityResult result;

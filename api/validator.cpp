@@ -131,7 +131,7 @@ struct Validator::State {
         *options.campaign, options.campaign_devices
                                ? std::optional<long>(*options.campaign_devices)
                                : std::nullopt);
-    for (const SourceText& file : campaign->sources())
+    for (const SourceText& file : campaign->sources)
       add_file("campaign", file.path, file.text);
   }
 

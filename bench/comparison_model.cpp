@@ -130,7 +130,7 @@ json envelope(const Gyro& gyro, const RateProfile& rate) {
   scenario.duration = 1500;
   scenario.output_rate = 10;
   scenario.powered = {{.on = 0}};
-  scenario.rate = rate;
+  scenario.motion[kRateZ] = rate;
   const Motion motion(scenario, gyro, {});
   const std::vector<double> times = sample_times(scenario);
   std::vector<double> ours;

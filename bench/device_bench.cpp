@@ -49,8 +49,7 @@ void characterise_401_temperatures(benchmark::State& state) {
     const Gyro gyro = make_gyro(device);
     for (int i = 0; i < 401; ++i) {
       const double T = 233.15 + 0.25 * i;
-      const ModalParameters modal =
-          modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim);
+      const ModalParameters modal = modal_at(gyro, T);
       benchmark::DoNotOptimize(beam_signal(gyro, modal, {}));
       benchmark::DoNotOptimize(zero_rate_terms(gyro, modal));
       benchmark::DoNotOptimize(rate_slope(gyro, modal, T));

@@ -25,7 +25,7 @@ ScenarioPlan warm_up(const RateProfile& rate, double duration,
   scenario.output_rate = output_rate;
   scenario.seed = 1;
   scenario.powered = {{.on = 0}};
-  scenario.rate = rate;
+  scenario.motion[kRateZ] = rate;
   scenario.noise_enabled = false;
   return scenario;
 }

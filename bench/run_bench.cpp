@@ -21,7 +21,7 @@ ScenarioPlan warm_up(const RateProfile& rate) {
   scenario.output_rate = 10;
   scenario.seed = 1;
   scenario.powered = {{.on = 0}};
-  scenario.rate = rate;
+  scenario.motion[kRateZ] = rate;
   return scenario;
 }
 

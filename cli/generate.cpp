@@ -93,8 +93,8 @@ int generate(const GenerateArguments& arguments) {
     return 0;
   }
   require_set_output(arguments.output, plan.manifest_head(),
-                     campaign.sources());
-  SetWriter set(arguments.output, plan.manifest_head(), campaign.sources(),
+                     campaign.sources);
+  SetWriter set(arguments.output, plan.manifest_head(), campaign.sources,
                 task, arguments.resume);
   for (const std::string& warning : lock_warnings(set, arguments.output))
     print_warning(warning);

@@ -163,9 +163,9 @@ std::string info_on_device(const fs::path& path, std::uint32_t device) {
                                  head.campaign, drawn.overrides);
   if (!drawn.failure.empty())
     fmt::format_to(std::back_inserter(text), "failed: {}\n", drawn.failure);
-  for (std::size_t run = 0; run < campaign.runs().size(); ++run)
+  for (std::size_t run = 0; run < campaign.runs.size(); ++run)
     fmt::format_to(std::back_inserter(text), "\nrun {}\n{}",
-                   campaign.runs()[run].name,
+                   campaign.runs[run].name,
                    campaign.run(run, device).overrides);
   return text;
 }

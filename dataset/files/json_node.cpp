@@ -46,18 +46,11 @@ void JsonNode::require_only(
 
 bool JsonNode::is_null() const { return value_->is_null(); }
 
-void JsonNode::require_array() const {
-  if (!value_->is_array()) expected("an array");
-}
-
-JsonNode JsonNode::element(std::size_t index) const {
-  return {(*value_)[index], file_, fmt::format("{}[{}]", path_, index)};
-}
-
 std::vector<JsonNode> JsonNode::elements() const {
-  require_array();
+  if (!value_->is_array()) expected("an array");
   std::vector<JsonNode> nodes;
-  for (std::size_t k = 0; k < value_->size(); ++k) nodes.push_back(element(k));
+  for (std::size_t k = 0; k < value_->size(); ++k)
+    nodes.push_back({(*value_)[k], file_, fmt::format("{}[{}]", path_, k)});
   return nodes;
 }
 
@@ -95,18 +88,14 @@ std::string JsonNode::text() const {
 }
 
 std::vector<double> JsonNode::numbers() const {
-  require_array();
   std::vector<double> result;
-  for (std::size_t k = 0; k < value_->size(); ++k)
-    result.push_back(element(k).number());
+  for (const JsonNode& node : elements()) result.push_back(node.number());
   return result;
 }
 
 std::vector<std::string> JsonNode::texts() const {
-  require_array();
   std::vector<std::string> result;
-  for (std::size_t k = 0; k < value_->size(); ++k)
-    result.push_back(element(k).text());
+  for (const JsonNode& node : elements()) result.push_back(node.text());
   return result;
 }
 

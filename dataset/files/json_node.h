@@ -40,8 +40,6 @@ class JsonNode {
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
-  JsonNode element(std::size_t index) const;
-  void require_array() const;
   [[noreturn]] void expected(const std::string& what) const;
 
   const nlohmann::ordered_json* value_;

@@ -19,6 +19,20 @@ namespace {
   throw std::system_error(errno, std::generic_category());
 }
 
+/// Calls `call` with the bytes that are done until it has done `size`, or does
+/// none, which only a read at the end of a file does. Returns their number.
+template <class Call>
+std::size_t transfer(std::size_t size, const Call& call) {
+  std::size_t done = 0;
+  while (done < size) {
+    const ssize_t count = uninterrupted([&] { return call(done); });
+    if (count < 0) fail_opening();
+    if (count == 0) break;
+    done += static_cast<std::size_t>(count);
+  }
+  return done;
+}
+
 }  // namespace
 
 OpenFile::OpenFile(const std::filesystem::path& path, int flags)
@@ -37,58 +51,29 @@ OpenFile::OpenFile(OpenFile&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 void OpenFile::write(std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
-    if (count >= 0) {
-      bytes = bytes.subspan(static_cast<std::size_t>(count));
-    } else if (errno != EINTR) {
-      fail_opening();
-    }
-  }
+  transfer(bytes.size(), [&](std::size_t done) {
+    return ::write(descriptor_, bytes.data() + done, bytes.size() - done);
+  });
 }
 
 void OpenFile::write_at(std::uint64_t place, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::pwrite(descriptor_, bytes.data(), bytes.size(),
-                                   static_cast<off_t>(place));
-    if (count >= 0) {
-      bytes = bytes.subspan(static_cast<std::size_t>(count));
-      place += static_cast<std::uint64_t>(count);
-    } else if (errno != EINTR) {
-      fail_opening();
-    }
-  }
+  transfer(bytes.size(), [&](std::size_t done) {
+    return ::pwrite(descriptor_, bytes.data() + done, bytes.size() - done,
+                    static_cast<off_t>(place + done));
+  });
 }
 
 std::size_t OpenFile::read(std::span<std::byte> bytes) {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t count =
-        ::read(descriptor_, bytes.data() + done, bytes.size() - done);
-    if (count == 0) break;
-    if (count > 0) {
-      done += static_cast<std::size_t>(count);
-    } else if (errno != EINTR) {
-      fail_opening();
-    }
-  }
-  return done;
+  return transfer(bytes.size(), [&](std::size_t done) {
+    return ::read(descriptor_, bytes.data() + done, bytes.size() - done);
+  });
 }
 
 std::size_t OpenFile::read_at(std::uint64_t place, std::span<std::byte> bytes) {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t count =
-        ::pread(descriptor_, bytes.data() + done, bytes.size() - done,
-                static_cast<off_t>(place + done));
-    if (count == 0) break;
-    if (count > 0) {
-      done += static_cast<std::size_t>(count);
-    } else if (errno != EINTR) {
-      fail_opening();
-    }
-  }
-  return done;
+  return transfer(bytes.size(), [&](std::size_t done) {
+    return ::pread(descriptor_, bytes.data() + done, bytes.size() - done,
+                   static_cast<off_t>(place + done));
+  });
 }
 
 void OpenFile::read_pieces(

@@ -57,10 +57,6 @@ LogFilter read_filter(const ConfigTable& table) {
   return filter;
 }
 
-LogQuantity read_rate(const ConfigTable& table) {
-  return read_log_rate(table, "rate");
-}
-
 // Reads every axis, so that a mistake in one that was not asked for is found,
 // too.
 LogQuantity read_gyro(const ConfigTable& root, const std::string& axis) {
@@ -70,7 +66,7 @@ LogQuantity read_gyro(const ConfigTable& root, const std::string& axis) {
   for (const char* name : {"x", "y", "z"}) {
     if (const auto table = gyro.optional_table(name)) {
       axes.emplace_back(name);
-      rates.push_back(read_rate(*table));
+      rates.push_back(read_log_quantity(*table, "rate"));
     }
   }
   if (axes.empty()) {
@@ -79,7 +75,7 @@ LogQuantity read_gyro(const ConfigTable& root, const std::string& axis) {
                          NamedOption{"axis", axis}, root.place("gyro"),
                          NamedOption{"axis"});
     }
-    return read_rate(gyro);
+    return read_log_quantity(gyro, "rate");
   }
   if (axis.empty() && axes.size() > 1) {
     throw option_error(
@@ -120,22 +116,10 @@ LogRules read_rules(const ConfigTable& table) {
   return rules;
 }
 
-struct SignalTable {
-  const char* name;
-  LogQuantity (*read)(const ConfigTable& table, std::string_view signal);
-};
-
 // The tables of signals beside the gyro, in the order of the recording.
-constexpr SignalTable kSignalTables[] = {
-    {"temperature",
-     [](const ConfigTable& table, std::string_view) {
-       return read_log_temperature(table);
-     }},
-    {"drive_frequency", read_log_frequency},
-    {"drive_voltage", read_log_voltage},
-    {"quadrature", read_log_rate},
-    {"true_rate", read_log_rate},
-};
+constexpr const char* kSignalTables[] = {"temperature", "drive_frequency",
+                                         "drive_voltage", "quadrature",
+                                         "true_rate"};
 
 // Reads what the rows of one log hold, apart from its quantities.
 LogMap read_source(const ConfigTable& table) {
@@ -155,12 +139,11 @@ LogJoin read_join(const ConfigTable& root) {
   const ConfigTable table = root.table("join");
   LogMap map = read_source(table);
   if (!map.time.offset) map.time.offset = 0.0;
-  for (const SignalTable& signal : kSignalTables) {
-    if (!table.has(signal.name)) continue;
-    if (root.has(signal.name))
-      table.fail(signal.name, "is in the other log, too; expected it in one");
-    map.quantities.push_back(
-        signal.read(table.table(signal.name), signal.name));
+  for (const char* signal : kSignalTables) {
+    if (!table.has(signal)) continue;
+    if (root.has(signal))
+      table.fail(signal, "is in the other log, too; expected it in one");
+    map.quantities.push_back(read_log_quantity(table.table(signal), signal));
   }
   if (map.quantities.empty())
     root.fail("join",
@@ -187,14 +170,14 @@ void read_quantities(const ConfigTable& root, const std::string& axis,
                           .scale = unit_conversion(rate.unit, "V").scale});
   }
   quantities.push_back(rate);
-  for (const SignalTable& signal : kSignalTables) {
-    if (const auto table = root.optional_table(signal.name)) {
-      if (signal.name == std::string_view("true_rate") && is_rate_stated(root))
+  for (const char* signal : kSignalTables) {
+    if (const auto table = root.optional_table(signal)) {
+      if (signal == std::string_view("true_rate") && is_rate_stated(root))
         continue;
-      quantities.push_back(signal.read(*table, signal.name));
+      quantities.push_back(read_log_quantity(*table, signal));
     } else if (map.join) {
       for (const LogQuantity& joined : map.join->map->quantities) {
-        if (joined.signal.name != signal.name) continue;
+        if (joined.signal.name != signal) continue;
         quantities.push_back(joined);
         quantities.back().joined = true;
       }

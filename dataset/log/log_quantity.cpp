@@ -12,28 +12,13 @@ constexpr double kFastestRate = 20000.0;               // [deg/s]
 constexpr double kColdest = -100.0, kWarmest = 200.0;  // [degC]
 constexpr long kMostColumns = 100000;
 
-LogQuantity quantity(const ConfigTable& table, std::string_view name,
-                     const std::vector<std::string>& known_units) {
-  LogQuantity quantity;
-  quantity.signal = recorded_signal(name);
-  quantity.column = read_log_column(table);
-  quantity.unit = table.choice("unit", known_units);
-  quantity.unit_place = table.place("unit");
-  if (quantity.unit == "counts") {
-    quantity.wrap_bits =
-        static_cast<int>(table.integer_or("wrap_bits", 0, 2, 32));
-  } else {
-    static_cast<void>(table.has("wrap_bits"));
-  }
-  return quantity;
-}
-
-/// Sets the conversion of a unit that needs no further keys.
-void set_conversion(LogQuantity& quantity) {
-  const UnitConversion conversion =
-      unit_conversion(quantity.unit, quantity.signal.units);
-  quantity.offset += conversion.offset;
-  quantity.scale = conversion.scale;
+// The units that the map may state for a signal of the unit `units`.
+std::vector<std::string> known_units(std::string_view units) {
+  if (units == "degree/s")
+    return {"deg/s", "deg/h", "rad/s", "mrad/s", "V", "mV", "counts"};
+  if (units == "degC") return {"degC", "degF", "K", "V", "mV", "counts"};
+  if (units == "Hz") return {"Hz", "kHz"};
+  return {"V", "mV"};
 }
 
 double read_scale(const ConfigTable& table, std::string_view key) {
@@ -70,49 +55,42 @@ LogColumn read_log_column(const ConfigTable& table, std::string_view key) {
   return column;
 }
 
-LogQuantity read_log_rate(const ConfigTable& table, std::string_view signal) {
-  LogQuantity rate =
-      quantity(table, signal,
-               {"deg/s", "deg/h", "rad/s", "mrad/s", "V", "mV", "counts"});
-  rate.plausible = between(-kFastestRate, kFastestRate);
-  rate.offset = table.number_or("offset", 0.0);
-  if (rate.unit == "V" || rate.unit == "mV" || rate.unit == "counts") {
-    rate.scale = read_scale(table, "scale_deg_per_s");
+LogQuantity read_log_quantity(const ConfigTable& table,
+                              std::string_view signal) {
+  LogQuantity quantity;
+  quantity.signal = recorded_signal(signal);
+  quantity.column = read_log_column(table);
+  const std::string_view units = quantity.signal.units;
+  quantity.unit = table.choice("unit", known_units(units));
+  quantity.unit_place = table.place("unit");
+  const bool is_counts = quantity.unit == "counts";
+  if (is_counts) {
+    quantity.wrap_bits =
+        static_cast<int>(table.integer_or("wrap_bits", 0, 2, 32));
   } else {
-    static_cast<void>(table.has("scale_deg_per_s"));
-    set_conversion(rate);
+    static_cast<void>(table.has("wrap_bits"));
   }
-  return rate;
-}
-
-LogQuantity read_log_temperature(const ConfigTable& table) {
-  LogQuantity temperature = quantity(
-      table, "temperature", {"degC", "degF", "K", "V", "mV", "counts"});
-  temperature.plausible = between(kColdest, kWarmest);
-  if (temperature.unit == "V" || temperature.unit == "mV" ||
-      temperature.unit == "counts") {
-    temperature.scale = read_scale(table, "scale_K");
-    temperature.shift = table.number("offset_degC");
-    return temperature;
+  const bool is_rate = units == "degree/s", is_temperature = units == "degC";
+  if (is_rate) {
+    quantity.plausible = between(-kFastestRate, kFastestRate);
+    quantity.offset = table.number_or("offset", 0.0);
   }
-  static_cast<void>(table.has("scale_K"));
-  static_cast<void>(table.has("offset_degC"));
-  set_conversion(temperature);
-  return temperature;
-}
-
-LogQuantity read_log_frequency(const ConfigTable& table,
-                               std::string_view signal) {
-  LogQuantity frequency = quantity(table, signal, {"Hz", "kHz"});
-  set_conversion(frequency);
-  return frequency;
-}
-
-LogQuantity read_log_voltage(const ConfigTable& table,
-                             std::string_view signal) {
-  LogQuantity voltage = quantity(table, signal, {"V", "mV"});
-  set_conversion(voltage);
-  return voltage;
+  if (is_temperature) quantity.plausible = between(kColdest, kWarmest);
+  const bool is_raw =
+      is_counts || quantity.unit == "V" || quantity.unit == "mV";
+  if (is_raw && (is_rate || is_temperature)) {
+    quantity.scale = read_scale(table, is_rate ? "scale_deg_per_s" : "scale_K");
+    if (is_temperature) quantity.shift = table.number("offset_degC");
+    return quantity;
+  }
+  if (is_rate) static_cast<void>(table.has("scale_deg_per_s"));
+  if (is_temperature)
+    for (const char* key : {"scale_K", "offset_degC"})
+      static_cast<void>(table.has(key));
+  const UnitConversion conversion = unit_conversion(quantity.unit, units);
+  quantity.offset += conversion.offset;
+  quantity.scale = conversion.scale;
+  return quantity;
 }
 
 }  // namespace beamgyro::internal

@@ -45,15 +45,12 @@ struct LogQuantity {
 LogColumn read_log_column(const ConfigTable& table,
                           std::string_view key = "column");
 
-/// Each function reads the keys `column` and `unit`, and the keys that the unit
+/// Reads the keys `column` and `unit` of a signal, and the keys that the unit
 /// requires: of an angular rate in deg/s, rad/s, V, mV or counts; of a
 /// temperature in degC, degF, K, V, mV or counts; of a number in a multiple of
-/// its unit. Each throws std::invalid_argument that names the key for a unit
-/// that is missing or unknown, and as ConfigTable.
-LogQuantity read_log_rate(const ConfigTable& table, std::string_view signal);
-LogQuantity read_log_temperature(const ConfigTable& table);
-LogQuantity read_log_frequency(const ConfigTable& table,
-                               std::string_view signal);
-LogQuantity read_log_voltage(const ConfigTable& table, std::string_view signal);
+/// its unit. Throws std::invalid_argument that names the key for a unit that is
+/// missing or unknown, and as ConfigTable.
+LogQuantity read_log_quantity(const ConfigTable& table,
+                              std::string_view signal);
 
 }  // namespace beamgyro::internal

@@ -9,27 +9,17 @@
 namespace beamgyro::internal {
 
 const char* reason_name(DropReason reason) {
-  switch (reason) {
-    case DropReason::kFiltered:
-      return "filtered out";
-    case DropReason::kRagged:
-      return "wrong number of cells";
-    case DropReason::kMissing:
-      return "missing values";
-    case DropReason::kDuplicate:
-      return "duplicate times";
-    case DropReason::kBackward:
-      return "backward times";
-    case DropReason::kRateOutlier:
-      return "outliers of the rate";
-    case DropReason::kTemperatureOutlier:
-      return "outliers of the temperature";
-    case DropReason::kOutside:
-      return "outside time.from and time.to";
-    case DropReason::kNotJoined:
-      return "without a value of the joined log";
-  }
-  return "";
+  constexpr std::array<const char*, kDropReasons> kNames = {
+      "filtered out",
+      "wrong number of cells",
+      "missing values",
+      "duplicate times",
+      "backward times",
+      "outliers of the rate",
+      "outliers of the temperature",
+      "outside time.from and time.to",
+      "without a value of the joined log"};
+  return kNames[static_cast<std::size_t>(reason)];
 }
 
 void LogCounts::drop(DropReason reason, std::size_t line) {

@@ -14,6 +14,7 @@ struct RecordedSignal {
   std::string_view name, units, long_name;
   Role role = Role::kMeasured;
   std::string_view standard_name = {};  // of the CF conventions
+  bool is_fine = false;  // truth whose steps in single precision are too large
 };
 
 /// Every signal that this program records, imports or computes, in the order of

@@ -43,8 +43,7 @@ StaticCurve static_curve(const Gyro& gyro, const CurveGrid& grid) {
   LockPath path;
   for (Eigen::Index k = 0; k < count; ++k) {
     const double T = curve.temperature(k) + kZeroCelsius;
-    const ModalParameters modal =
-        modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim);
+    const ModalParameters modal = modal_at(gyro, T);
     const BeamSignal signal = beam_signal(gyro, modal, {}, path);
     const Output output = electronics_at(gyro, T).output(signal.demodulated);
     curve.bias(k) = output.rate / kDegree;
@@ -59,9 +58,7 @@ Eigen::ArrayXd scale_factor_curve(const Gyro& gyro, const CurveGrid& grid) {
   Eigen::ArrayXd slope = grid.temperatures();
   for (double& value : slope) {
     const double T = value + kZeroCelsius;
-    value = rate_slope(
-        gyro, modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim),
-        T);
+    value = rate_slope(gyro, modal_at(gyro, T), T);
   }
   return slope;
 }

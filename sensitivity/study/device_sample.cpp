@@ -22,7 +22,7 @@ class RowSampler {
         options_(options),
         counts_(counts),
         sample_(sample),
-        plan_(campaign.device_plan()),
+        plan_(campaign.device_plan),
         sobol_(2 * plan_.parameters.size(), options.seed),
         failures_(options.rows) {
     for (std::size_t k = 0; k < plan_.draws.size(); ++k) {
@@ -137,7 +137,7 @@ class RowSampler {
 
 std::uint64_t devices_of_sample(const CampaignPlan& campaign,
                                 const DeviceSampleOptions& options) {
-  const DrawPlan& plan = campaign.device_plan();
+  const DrawPlan& plan = campaign.device_plan;
   std::uint64_t each = 3 + factors_of(plan).size();
   if (options.halves_tolerances) {
     for (const Draw& draw : plan.draws)
@@ -151,10 +151,10 @@ DeviceSample sample_devices(const CampaignPlan& campaign,
                             DeviceSampleCounts& counts) {
   DeviceSample sample;
   counts.all_devices = devices_of_sample(campaign, options);
-  sample.factors = factors_of(campaign.device_plan());
-  require_comparable(sample.factors, campaign.name());
-  device_merits(campaign.base_device(), options.merits, options.merit);
-  for (const Draw& draw : campaign.device_plan().draws)
+  sample.factors = factors_of(campaign.device_plan);
+  require_comparable(sample.factors, campaign.name);
+  device_merits(campaign.base_device, options.merits, options.merit);
+  for (const Draw& draw : campaign.device_plan.draws)
     sample.keys.push_back(key_of(draw));
   sample.merits.resize(options.merits.size());
   RowSampler sampler(campaign, options, counts, sample);

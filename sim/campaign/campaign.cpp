@@ -8,7 +8,6 @@
 
 #include "config/units.h"
 #include "random/random_stream.h"
-#include "sim/campaign/campaign_file.h"
 #include "sim/device/device_file.h"
 #include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/scenario_file.h"
@@ -40,7 +39,7 @@ ConfigDocument drawn_from(const ConfigDocument& file, Overrides& overrides) {
   return file.with(overrides, file.path().filename().string());
 }
 
-void add_as_built(const CampaignState& campaign, DeviceParameters device,
+void add_as_built(const CampaignPlan& campaign, DeviceParameters device,
                   Overrides& overrides) {
   const Trims& trims = campaign.trims;
   set_as_built(trims, *campaign.base_gyro, device);
@@ -56,7 +55,7 @@ void add_as_built(const CampaignState& campaign, DeviceParameters device,
     add("offset_trim_deg_per_s", readout.offset_trim / kDegree);
 }
 
-VirtualDevice built_device(const CampaignState& campaign, const DrawPlan& plan,
+VirtualDevice built_device(const CampaignPlan& campaign, const DrawPlan& plan,
                            DrawnValues drawn) {
   VirtualDevice result;
   result.parameters = std::move(drawn.parameters);
@@ -76,98 +75,60 @@ VirtualDevice built_device(const CampaignState& campaign, const DrawPlan& plan,
 
 }  // namespace
 
-CampaignPlan::CampaignPlan(std::shared_ptr<const CampaignState> state)
-    : state_(std::move(state)) {}
-
-CampaignPlan CampaignPlan::read(const std::filesystem::path& file,
-                                std::optional<long> devices) {
-  return CampaignPlan(
-      std::make_shared<const CampaignState>(read_campaign(file, devices)));
-}
-
-CampaignPlan CampaignPlan::of_copies(std::span<const SourceText> copies,
-                                     std::optional<long> devices) {
-  return CampaignPlan(
-      std::make_shared<const CampaignState>(read_campaign(copies, devices)));
-}
-
-const std::string& CampaignPlan::name() const { return state_->name; }
-const std::string& CampaignPlan::text() const { return state_->text; }
-std::uint32_t CampaignPlan::devices() const { return state_->devices; }
-std::uint32_t CampaignPlan::devices_per_file() const {
-  return state_->devices_per_file;
-}
-std::uint64_t CampaignPlan::seed() const { return state_->source.seed; }
-const CampaignOutput& CampaignPlan::output() const { return state_->output; }
-const std::vector<CampaignRun>& CampaignPlan::runs() const {
-  return state_->runs;
-}
-const DeviceParameters& CampaignPlan::base_device() const {
-  return state_->device;
-}
-const std::string& CampaignPlan::device_text() const {
-  return state_->device_document->text();
-}
-const ScenarioPlan& CampaignPlan::base_scenario(std::size_t run) const {
-  return state_->scenarios.at(run);
-}
-const std::vector<SourceText>& CampaignPlan::sources() const {
-  return state_->sources;
-}
-const std::vector<DeviceVariable>& CampaignPlan::parameters() const {
-  return state_->device_plan.parameters;
-}
-const std::vector<DeviceVariable>& CampaignPlan::run_parameters(
-    std::size_t run) const {
-  return state_->run_plans.at(run).parameters;
+void set_as_built(const Trims& trims, const Gyro& base,
+                  DeviceParameters& device) {
+  ReadoutParameters& readout = device.readout;
+  if (!trims.quadrature)
+    readout.quadrature_trim = built_quadrature(device, base.stiffness_trim);
+  if (trims.scale_factor && trims.offset) return;
+  if (!trims.scale_factor) readout.scale_factor_error = 0;
+  const Gyro gyro = make_gyro(device);
+  double gain = 1;
+  if (!trims.scale_factor) {
+    gain = std::abs(gyro.rate_axis) / std::abs(base.rate_axis);
+    readout.scale_factor_error = gain - 1;
+  }
+  if (!trims.offset) {
+    const double untrimmed = readout.offset_trim - gyro.offset;  // [rad/s]
+    readout.offset_trim = gain * untrimmed + base.offset;
+  }
 }
 
 bool CampaignPlan::is_drawn(std::string_view device_key) const {
-  return internal::is_drawn(state_->device_plan, *state_->device_document,
-                            device_key);
+  return internal::is_drawn(device_plan, *device_document, device_key);
 }
-const MovedAxes& CampaignPlan::moved_axes(std::size_t run) const {
-  return state_->moved_axes.at(run);
-}
-
-const DrawPlan& CampaignPlan::device_plan() const {
-  return state_->device_plan;
-}
-
 VirtualDevice CampaignPlan::device(std::uint32_t index) const {
-  const DrawPlan& plan = state_->device_plan;
-  return built_device(*state_, plan, drawn_values(plan, state_->source, index));
+  return built_device(*this, device_plan,
+                      drawn_values(device_plan, source, index));
 }
 
 VirtualDevice CampaignPlan::device_at(const DrawPlan& plan,
                                       std::vector<double> uniform) const {
-  return built_device(*state_, plan, drawn_values(plan, std::move(uniform)));
+  return built_device(*this, plan, drawn_values(plan, std::move(uniform)));
 }
 
 VirtualRun CampaignPlan::run(std::size_t run, std::uint32_t device) const {
-  const DrawPlan& plan = state_->run_plans.at(run);
+  const CampaignRun& base = runs.at(run);
   VirtualRun result;
-  if (plan.draws.empty()) {
-    result.scenario = state_->scenarios[run];
+  if (base.plan.draws.empty()) {
+    result.scenario = base.scenario;
     return result;
   }
-  DrawnValues drawn = drawn_values(plan, state_->source, device);
+  DrawnValues drawn = drawn_values(base.plan, source, device);
   result.parameters = std::move(drawn.parameters);
-  Overrides overrides = overrides_of(plan, drawn.values);
+  Overrides overrides = overrides_of(base.plan, drawn.values);
   attempt(result, [&] {
-    result.scenario = read_scenario(
-        state_->scenario_documents[run].with(overrides), &state_->profiles);
-    result.scenario->seed = seed();
+    result.scenario = read_scenario(base.document.with(overrides), &profiles);
+    result.scenario->seed = source.seed;
   });
   result.overrides = overrides.text();
   return result;
 }
 
 Part CampaignPlan::part(std::uint32_t device) const {
-  RandomStream stream(seed(), device, stream_number("split"),
+  RandomStream stream(source.seed, device, stream_number("split"),
                       kDeviceDrawStream);
-  return static_cast<Part>(
-      static_cast<int>(quantile(state_->split, stream.uniform())));
+  return static_cast<Part>(static_cast<int>(quantile(split, stream.uniform())));
 }
 
 }  // namespace beamgyro::internal

@@ -4,17 +4,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "config/document.h"
 #include "dataset/set/source_copies.h"
 #include "sim/campaign/draw_plan.h"
 #include "sim/campaign/drawn_keys.h"
-#include "sim/device/device.h"
+#include "sim/dynamics/gyro.h"
+#include "sim/scenario/profile_keys.h"
 #include "sim/scenario/scenario.h"
 
 namespace beamgyro::internal {
@@ -31,15 +32,31 @@ struct CampaignOutput {
   bool compress = true;
 };
 
+/// Which quantities the factory trims at 25 degC.
+struct Trims {
+  bool quadrature = true, offset = true, scale_factor = true;
+};
+
+/// Sets the keys of the quantities that were not trimmed. A unit without a trim
+/// keeps the setting of the base unit (docs/model.md), so the keys become:
+/// - its quadrature under the base unit's k_trim;
+/// - its scale factor under the base unit's gain;
+/// - its output at T_0 and rest under the base unit's offset.
+/// Throws SimulationFailure when the drive loop does not lock.
+void set_as_built(const Trims& trims, const Gyro& base,
+                  DeviceParameters& device);
+
 /// One scenario that every device goes through.
 struct CampaignRun {
-  std::string name;  // [a-z][a-z0-9_]*
-  std::filesystem::path scenario_file;
-  std::string scenario_text;  // byte for byte
+  std::string name;          // [a-z][a-z0-9_]*
+  ConfigDocument document;   // of the scenario
+  ScenarioPlan scenario;     // as its file says, with the seed of the campaign
+  DrawPlan plan;             // what differs between devices
+  PerAxis<bool> moved_axes;  // by some device
 };
 
 struct VirtualDevice {
-  std::vector<double> parameters;          // one per CampaignPlan::parameters()
+  std::vector<double> parameters;          // one per parameter of the plan
   std::optional<DeviceParameters> device;  // none when it cannot be built
   std::string overrides;  // KEY=VALUE lines that make it of the base
   std::string failure;    // why not, one line
@@ -47,20 +64,17 @@ struct VirtualDevice {
 
 /// One run of one device.
 struct VirtualRun {
-  std::vector<double> parameters;  // one per CampaignPlan::run_parameters()
+  std::vector<double> parameters;  // one per parameter of the plan of the run
   std::optional<ScenarioPlan> scenario;
   std::string overrides;  // KEY=VALUE lines that make it of the scenario file
   std::string failure;
 };
 
-struct CampaignState;
-
 /// A population of devices and the runs of each of them, read from a campaign
-/// file (docs/reference/campaign_file.md). Immutable; its const members may be
+/// file (docs/reference/campaign_file.md) and checked. Its const members may be
 /// called by many threads at once, and what they return depends on the
 /// campaign's files and their arguments alone.
-class CampaignPlan {
- public:
+struct CampaignPlan {
   /// Reads a campaign. `devices` replaces the number of devices in the file.
   /// Checks the base device, every scenario, every choice and the median of
   /// every distribution. Throws std::invalid_argument "file:line:column: key:
@@ -74,36 +88,13 @@ class CampaignPlan {
   static CampaignPlan of_copies(std::span<const SourceText> copies,
                                 std::optional<long> devices = {});
 
-  const std::string& name() const;
-  const std::string& text() const;  // byte for byte
-  std::uint32_t devices() const;
-  std::uint32_t devices_per_file() const;
-  std::uint64_t seed() const;
-  const CampaignOutput& output() const;
-  const std::vector<CampaignRun>& runs() const;
-  const DeviceParameters& base_device() const;
-  const std::string& device_text() const;
-  /// Returns the scenario of a run as its file says, with the seed of the
-  /// campaign.
-  const ScenarioPlan& base_scenario(std::size_t run) const;
-  /// Returns campaign, device, scenarios and their profiles in the order of
-  /// reading.
-  const std::vector<SourceText>& sources() const;
-
-  const std::vector<DeviceVariable>& parameters() const;
-  const std::vector<DeviceVariable>& run_parameters(std::size_t run) const;
-
   /// Returns whether devices may differ in this dotted key of the device file.
   bool is_drawn(std::string_view device_key) const;
-  /// Returns the axes that some device moves in a run.
-  const MovedAxes& moved_axes(std::size_t run) const;
 
-  /// Draws device number `index`, which may be larger than devices().
+  /// Draws device number `index`, which may be larger than `devices`.
   VirtualDevice device(std::uint32_t index) const;
-  /// Returns what is drawn for a device: keys, distributions, groups.
-  const DrawPlan& device_plan() const;
   /// Builds the device at independent uniform numbers in (0, 1), one per
-  /// parameters(), by a plan that is device_plan() but for its distributions.
+  /// parameter, by a plan that is device_plan but for its distributions.
   VirtualDevice device_at(const DrawPlan& plan,
                           std::vector<double> uniform) const;
 
@@ -113,10 +104,20 @@ class CampaignPlan {
   /// and not on the number of devices.
   Part part(std::uint32_t device) const;
 
- private:
-  explicit CampaignPlan(std::shared_ptr<const CampaignState> state);
-
-  std::shared_ptr<const CampaignState> state_;
+  std::string name, text;  // the text byte for byte
+  std::uint32_t devices = 0, devices_per_file = 0;
+  CampaignOutput output;
+  Distribution split;  // of Part
+  Trims trims;
+  UniformSource source;
+  // Campaign, device, scenarios and their profiles in the order of reading.
+  std::vector<SourceText> sources;
+  ProfileTables profiles;  // of the scenarios, as they were read
+  std::optional<ConfigDocument> device_document;
+  DeviceParameters base_device;
+  std::optional<Gyro> base_gyro;  // where a trim is left out
+  DrawPlan device_plan;           // what is drawn: keys, distributions, groups
+  std::vector<CampaignRun> runs;
 };
 
 }  // namespace beamgyro::internal

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "sim/campaign/campaign_file.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "config/option_message.h"
 #include "dataset/files/text_file.h"
 #include "dataset/set/manifest.h"
+#include "sim/campaign/campaign.h"
 #include "sim/campaign/draw_plan_file.h"
 #include "sim/device/device_file.h"
 #include "sim/scenario/scenario_file.h"
@@ -46,7 +45,7 @@ class CampaignReader {
         folder_(copies.front().path.parent_path()),
         devices_(devices) {}
 
-  CampaignState read() {
+  CampaignPlan read() {
     add_source(document_);
     taken_.insert(stream_number(kSplitStream));
     read_head();
@@ -59,15 +58,15 @@ class CampaignReader {
     read_output();
     read_sampling();
     document_.reject_unknown_keys();
-    return std::move(state_);
+    return std::move(plan_);
   }
 
  private:
   void read_head() {
     constexpr long kMostDevices = 4'000'000'000;
-    state_.name = root_.text("name");
+    plan_.name = root_.text("name");
     root_.text_or("description", "");
-    state_.text = document_.text();
+    plan_.text = document_.text();
     if (devices_ && (*devices_ < 1 || *devices_ > kMostDevices)) {
       throw option_error("{}: out of range; expected an integer in [1, {}]",
                          NamedOption{"devices", std::to_string(*devices_)},
@@ -76,10 +75,10 @@ class CampaignReader {
     const long devices = devices_
                              ? root_.integer_or("devices", 1, 1, kMostDevices)
                              : root_.integer("devices", 1, kMostDevices);
-    state_.devices = static_cast<std::uint32_t>(devices_.value_or(devices));
-    state_.devices_per_file = static_cast<std::uint32_t>(
+    plan_.devices = static_cast<std::uint32_t>(devices_.value_or(devices));
+    plan_.devices_per_file = static_cast<std::uint32_t>(
         root_.integer_or("devices_per_file", 50, 1, 100'000));
-    state_.source.seed = static_cast<std::uint64_t>(
+    plan_.source.seed = static_cast<std::uint64_t>(
         root_.integer("seed", 0, std::numeric_limits<long>::max()));
   }
 
@@ -96,14 +95,14 @@ class CampaignReader {
                    fmt::format("the shares sum to {:.9g}; expected 1", sum));
       }
     }
-    state_.split = discrete(shares);
+    plan_.split = discrete(shares);
   }
 
   void read_trims() {
     const ConfigTable trims = root_.table_or_empty("trims");
-    state_.trims = {trims.flag_or("quadrature", true),
-                    trims.flag_or("offset", true),
-                    trims.flag_or("scale_factor", true)};
+    plan_.trims = {trims.flag_or("quadrature", true),
+                   trims.flag_or("offset", true),
+                   trims.flag_or("scale_factor", true)};
   }
 
   static ConfigDocument document_of(const SourceText& copy) {
@@ -121,20 +120,20 @@ class CampaignReader {
   }
 
   void read_device_file() {
-    state_.device_document = read_named(root_, "device");
-    const ConfigDocument& document = *state_.device_document;
-    state_.device = read_device(document);
+    plan_.device_document = read_named(root_, "device");
+    const ConfigDocument& document = *plan_.device_document;
+    plan_.base_device = read_device(document);
     document.reject_unknown_keys();
     add_source(document);
-    const Trims& trims = state_.trims;
+    const Trims& trims = plan_.trims;
     if (!trims.quadrature || !trims.offset || !trims.scale_factor)
-      state_.base_gyro = make_gyro(state_.device);
+      plan_.base_gyro = make_gyro(plan_.base_device);
   }
 
   void read_tolerances() {
-    const DrawnFile file{*state_.device_document,
+    const DrawnFile file{*plan_.device_document,
                          [](const ConfigDocument& d) { read_device(d); }};
-    DrawPlan& plan = state_.device_plan;
+    DrawPlan& plan = plan_.device_plan;
     const ConfigTable tolerances = root_.table_or_empty("tolerances");
     for (const std::string& key : tolerances.keys()) {
       reject_untrimmed(tolerances, key);
@@ -153,12 +152,12 @@ class CampaignReader {
                                        "two",
                                        trim));
     };
-    check(state_.trims.quadrature, "quadrature",
+    check(plan_.trims.quadrature, "quadrature",
           "readout.quadrature_trim_deg_per_s");
-    check(state_.trims.offset, "offset", "readout.offset_trim_deg_per_s");
-    check(state_.trims.scale_factor, "scale_factor",
+    check(plan_.trims.offset, "offset", "readout.offset_trim_deg_per_s");
+    check(plan_.trims.scale_factor, "scale_factor",
           "readout.scale_factor_error");
-    if (!state_.trims.scale_factor && key == "readout.mode") {
+    if (!plan_.trims.scale_factor && key == "readout.mode") {
       tolerances.fail(key,
                       "the modes have no common scale factor to be built "
                       "with; remove this or trims.scale_factor = false");
@@ -175,15 +174,15 @@ class CampaignReader {
   // Files are numbered with 32 bits, and all of them are in one directory.
   void require_countable_files() {
     constexpr double kMostFiles = 1e7;
-    const double files = std::ceil(static_cast<double>(state_.devices) /
-                                   state_.devices_per_file) *
-                         static_cast<double>(state_.runs.size());
+    const double files =
+        std::ceil(static_cast<double>(plan_.devices) / plan_.devices_per_file) *
+        static_cast<double>(plan_.runs.size());
     if (files <= kMostFiles) return;
-    root_.fail("devices_per_file",
-               fmt::format("{} devices, {} a file, make {:.0f} files; expected "
-                           "at most {:.0f}, so more devices a file",
-                           state_.devices, state_.devices_per_file, files,
-                           kMostFiles));
+    root_.fail(
+        "devices_per_file",
+        fmt::format("{} devices, {} a file, make {:.0f} files; expected "
+                    "at most {:.0f}, so more devices a file",
+                    plan_.devices, plan_.devices_per_file, files, kMostFiles));
   }
 
   std::string read_run_name(const ConfigTable& run) {
@@ -194,7 +193,7 @@ class CampaignReader {
                                    "at most 200 in all",
                                    printable(name)));
     }
-    for (const CampaignRun& other : state_.runs) {
+    for (const CampaignRun& other : plan_.runs) {
       if (other.name == name)
         run.fail("name", fmt::format("\"{}\" is the name of an earlier run; "
                                      "expected another",
@@ -209,13 +208,11 @@ class CampaignReader {
     add_source(document);
     ScenarioPlan scenario = scenario_of(document);
     document.reject_unknown_keys();
-    scenario.seed = state_.source.seed;
-    state_.runs.push_back({name, document.path(), document.text()});
-    state_.scenarios.push_back(scenario);
-    state_.run_plans.push_back(read_variations(run, name, document));
-    state_.moved_axes.push_back(moved_axes(
-        scenario, document, state_.run_plans.back(), state_.profiles));
-    state_.scenario_documents.push_back(document);
+    scenario.seed = plan_.source.seed;
+    DrawPlan plan = read_variations(run, name, document);
+    const PerAxis<bool> moved =
+        moved_axes(scenario, document, plan, plan_.profiles);
+    plan_.runs.push_back({name, document, scenario, std::move(plan), moved});
   }
 
   DrawPlan read_variations(const ConfigTable& run, const std::string& name,
@@ -247,7 +244,7 @@ class CampaignReader {
   // A file holds the parameters of the device and those of the run.
   void require_other_names(const ConfigTable& run, const DrawPlan& plan) {
     for (const DeviceVariable& mine : plan.parameters) {
-      for (const DeviceVariable& other : state_.device_plan.parameters) {
+      for (const DeviceVariable& other : plan_.device_plan.parameters) {
         if (mine.name == other.name)
           run.fail("vary", fmt::format("two numbers are called {}; draw one of "
                                        "them",
@@ -259,7 +256,7 @@ class CampaignReader {
   void read_output() {
     constexpr double kMostSteps = 1e8;  // more than any run has samples
     const ConfigTable output = root_.table_or_empty("output");
-    CampaignOutput& result = state_.output;
+    CampaignOutput& result = plan_.output;
     if (output.has("variables")) {
       result.variables = output.texts("variables");
       result.variables_place = output.place("variables");
@@ -274,8 +271,8 @@ class CampaignReader {
     result.compress = output.flag_or("compress", true);
     result.truth_rate = output.number_or("truth_rate_Hz", 0, positive());
     if (result.truth_rate == 0) return;
-    for (std::size_t i = 0; i < state_.runs.size(); ++i) {
-      const double rate = state_.scenarios[i].output_rate;
+    for (const CampaignRun& run : plan_.runs) {
+      const double rate = run.scenario.output_rate;
       const double step = rate / result.truth_rate;
       if (std::round(step) >= 1 && std::abs(step - std::round(step)) < 1e-9 &&
           step <= kMostSteps)
@@ -284,23 +281,22 @@ class CampaignReader {
                   fmt::format("{} does not divide the output rate {} Hz of the "
                               "run {}; expected a rate that does, {:g} times "
                               "slower at most",
-                              result.truth_rate, rate, state_.runs[i].name,
-                              kMostSteps));
+                              result.truth_rate, rate, run.name, kMostSteps));
     }
   }
 
   void read_sampling() {
-    std::size_t dimensions = state_.device_plan.parameters.size();
-    for (DrawPlan& plan : state_.run_plans) {
-      plan.first_dimension = dimensions;
-      dimensions += plan.parameters.size();
+    std::size_t dimensions = plan_.device_plan.parameters.size();
+    for (CampaignRun& run : plan_.runs) {
+      run.plan.first_dimension = dimensions;
+      dimensions += run.plan.parameters.size();
     }
     if (root_.choice_or("sampling", "monte_carlo", {"monte_carlo", "sobol"}) !=
         "sobol") {
       return;
     }
     try {
-      state_.source.sobol.emplace(dimensions, state_.source.seed);
+      plan_.source.sobol.emplace(dimensions, plan_.source.seed);
     } catch (const std::invalid_argument& error) {
       root_.fail("sampling", error.what());
     }
@@ -308,7 +304,7 @@ class CampaignReader {
 
   void add_source(const ConfigDocument& document) {
     if (is_new(document.path()))
-      state_.sources.push_back({document.path(), document.text()});
+      plan_.sources.push_back({document.path(), document.text()});
   }
 
   // An error in a profile names its place in the scenario, unless there are
@@ -316,7 +312,7 @@ class CampaignReader {
   ScenarioPlan scenario_of(const ConfigDocument& document) {
     if (!copies_.empty()) add_profiles(document);
     ScenarioPlan scenario =
-        read_scenario(document, copies_.empty() ? nullptr : &state_.profiles);
+        read_scenario(document, copies_.empty() ? nullptr : &plan_.profiles);
     if (copies_.empty()) add_profiles(document);
     return scenario;
   }
@@ -326,14 +322,14 @@ class CampaignReader {
       const SourceText source = copies_.empty()
                                     ? SourceText{file, read_text_file(file)}
                                     : copy_of(file, copies_);
-      state_.profiles.try_emplace(file.lexically_normal(),
-                                  parse_csv(source.text, file.filename()));
-      if (is_new(source.path)) state_.sources.push_back(source);
+      plan_.profiles.try_emplace(file.lexically_normal(),
+                                 parse_csv(source.text, file.filename()));
+      if (is_new(source.path)) plan_.sources.push_back(source);
     }
   }
 
   bool is_new(const std::filesystem::path& path) const {
-    return std::none_of(state_.sources.begin(), state_.sources.end(),
+    return std::none_of(plan_.sources.begin(), plan_.sources.end(),
                         [&](const SourceText& source) {
                           return source.path.lexically_normal() ==
                                  path.lexically_normal();
@@ -346,37 +342,18 @@ class CampaignReader {
   std::filesystem::path folder_;
   std::optional<long> devices_;
   std::set<std::uint32_t> taken_;  // random streams
-  CampaignState state_;
+  CampaignPlan plan_;
 };
 
 }  // namespace
 
-void set_as_built(const Trims& trims, const Gyro& base,
-                  DeviceParameters& device) {
-  ReadoutParameters& readout = device.readout;
-  if (!trims.quadrature)
-    readout.quadrature_trim = built_quadrature(device, base.stiffness_trim);
-  if (trims.scale_factor && trims.offset) return;
-  if (!trims.scale_factor) readout.scale_factor_error = 0;
-  const Gyro gyro = make_gyro(device);
-  double gain = 1;
-  if (!trims.scale_factor) {
-    gain = std::abs(gyro.rate_axis) / std::abs(base.rate_axis);
-    readout.scale_factor_error = gain - 1;
-  }
-  if (!trims.offset) {
-    const double untrimmed = readout.offset_trim - gyro.offset;  // [rad/s]
-    readout.offset_trim = gain * untrimmed + base.offset;
-  }
-}
-
-CampaignState read_campaign(const std::filesystem::path& file,
-                            std::optional<long> devices) {
+CampaignPlan CampaignPlan::read(const std::filesystem::path& file,
+                                std::optional<long> devices) {
   return CampaignReader(file, devices).read();
 }
 
-CampaignState read_campaign(std::span<const SourceText> copies,
-                            std::optional<long> devices) {
+CampaignPlan CampaignPlan::of_copies(std::span<const SourceText> copies,
+                                     std::optional<long> devices) {
   return CampaignReader(copies, devices).read();
 }
 

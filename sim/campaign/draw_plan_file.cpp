@@ -66,33 +66,22 @@ void require_share(const ConfigTable& form, const Distribution& d) {
   }
 }
 
-Distribution read_normal(const ConfigTable& form) {
+Distribution read_continuous(const ConfigTable& form, Kind kind) {
   Distribution d;
-  d.kind = Kind::kNormal;
-  d.centre = form.number("mean");
-  d.sigma = form.number("sigma", positive());
+  d.kind = kind;
+  if (kind == Kind::kNormal) {
+    d.centre = form.number("mean");
+    d.sigma = form.number("sigma", positive());
+  } else if (kind == Kind::kLognormal) {
+    d.centre = form.number("median", positive());
+    d.sigma = form.number("sigma", {0, 10, true, false});
+    d.low = 0;
+  } else {
+    d.low = form.number("low");
+    d.high = form.number("high");
+  }
   read_ends(form, d);
-  require_share(form, d);
-  return d;
-}
-
-Distribution read_lognormal(const ConfigTable& form) {
-  Distribution d;
-  d.kind = Kind::kLognormal;
-  d.centre = form.number("median", positive());
-  d.sigma = form.number("sigma", {0, 10, true, false});
-  d.low = 0;
-  read_ends(form, d);
-  require_share(form, d);
-  return d;
-}
-
-Distribution read_uniform(const ConfigTable& form) {
-  Distribution d;
-  d.kind = Kind::kUniform;
-  d.low = form.number("low");
-  d.high = form.number("high");
-  read_ends(form, d);
+  if (kind != Kind::kUniform) require_share(form, d);
   return d;
 }
 
@@ -125,10 +114,11 @@ FileDistribution read_distribution(const ConfigTable& table,
   const ConfigTable distribution = table.table(key);
   const std::string form = form_of(table, key, distribution);
   const ConfigTable keys = distribution.table(form);
-  if (form == "normal") return {read_normal(keys), {}};
-  if (form == "uniform") return {read_uniform(keys), {}};
-  if (form == "lognormal") return {read_lognormal(keys), {}};
-  return read_discrete(keys);
+  if (form == "discrete") return read_discrete(keys);
+  const Kind kind = form == "normal"    ? Kind::kNormal
+                    : form == "uniform" ? Kind::kUniform
+                                        : Kind::kLognormal;
+  return {read_continuous(keys, kind), {}};
 }
 
 [[noreturn]] void reject(const std::string& place, const std::string& message) {

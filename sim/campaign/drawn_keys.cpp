@@ -11,11 +11,6 @@
 namespace beamgyro::internal {
 namespace {
 
-constexpr std::array<std::string_view, 2> kCrossKeys = {"cross_rate.x",
-                                                        "cross_rate.y"};
-constexpr std::array<std::string_view, 3> kAccelerationKeys = {
-    "acceleration.x", "acceleration.y", "acceleration.z"};
-
 // Whether `table` is a part of the path of `key`, or `key` itself.
 bool holds(std::string_view table, std::string_view key) {
   return key.starts_with(table) &&
@@ -41,23 +36,9 @@ bool is_choice(const Draw& draw) {
   return !draw.values.empty() && draw.elements == 0;
 }
 
-template <std::size_t kAxes>
-void add_moving(const std::array<RateProfile, kAxes>& profiles,
-                std::array<bool, kAxes>& axes) {
-  for (std::size_t i = 0; i < kAxes; ++i) axes[i] |= moves(profiles[i]);
-}
-
-void add_moving(const ScenarioPlan& scenario, MovedAxes& axes) {
-  add_moving(scenario.cross_rate, axes.cross_rate);
-  add_moving(scenario.acceleration, axes.acceleration);
-}
-
-template <std::size_t kAxes>
-void add_drawn(const std::string& key,
-               const std::array<std::string_view, kAxes>& keys,
-               std::array<bool, kAxes>& axes) {
-  for (std::size_t i = 0; i < kAxes; ++i)
-    axes[i] |= holds(keys[i], key) || holds(key, keys[i]);
+void add_moving(const ScenarioPlan& scenario, PerAxis<bool>& axes) {
+  for (std::size_t i = 0; i < kCaseAxisCount; ++i)
+    axes[i] |= moves(scenario.motion[i]);
 }
 
 }  // namespace
@@ -75,16 +56,16 @@ bool is_drawn(const DrawPlan& plan, const ConfigDocument& document,
   });
 }
 
-MovedAxes moved_axes(const ScenarioPlan& scenario,
-                     const ConfigDocument& document, const DrawPlan& plan,
-                     const ProfileTables& profiles) {
-  MovedAxes axes;
+PerAxis<bool> moved_axes(const ScenarioPlan& scenario,
+                         const ConfigDocument& document, const DrawPlan& plan,
+                         const ProfileTables& profiles) {
+  PerAxis<bool> axes{};
   add_moving(scenario, axes);
   for (const Draw& draw : plan.draws) {
     const std::string key = key_of(draw);
     if (!is_choice(draw)) {
-      add_drawn(key, kCrossKeys, axes.cross_rate);
-      add_drawn(key, kAccelerationKeys, axes.acceleration);
+      for (std::size_t i = 0; i < kCaseAxisCount; ++i)
+        axes[i] |= holds(kCaseAxes[i].key, key) || holds(key, kCaseAxes[i].key);
       continue;
     }
     if (!holds("cross_rate", key) && !holds("acceleration", key)) continue;

@@ -17,17 +17,11 @@ namespace beamgyro::internal {
 bool is_drawn(const DrawPlan& plan, const ConfigDocument& document,
               std::string_view key);
 
-/// The axes that a run moves besides the input axis.
-struct MovedAxes {
-  std::array<bool, 2> cross_rate{};    // about x, y
-  std::array<bool, 3> acceleration{};  // along x, y, z
-};
-
 /// Returns the axes that some device may move: those of the scenario itself,
 /// those of each choice of `plan` that can be drawn, and those with a number
 /// from a continuous distribution. `profiles` are the files that they name.
-MovedAxes moved_axes(const ScenarioPlan& scenario,
-                     const ConfigDocument& document, const DrawPlan& plan,
-                     const ProfileTables& profiles);
+PerAxis<bool> moved_axes(const ScenarioPlan& scenario,
+                         const ConfigDocument& document, const DrawPlan& plan,
+                         const ProfileTables& profiles);
 
 }  // namespace beamgyro::internal

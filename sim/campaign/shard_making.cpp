@@ -21,8 +21,8 @@ std::string first_line(const std::string& text) {
 
 // Motion about or along an axis that the run of one device does not have.
 bool is_motion(const std::string& name) {
-  return name.starts_with("true_cross_rate_") ||
-         name.starts_with("true_acceleration_");
+  return std::ranges::find(kCaseAxes.begin() + kRateX, kCaseAxes.end(), name,
+                           &AxisNames::column) != kCaseAxes.end();
 }
 
 }  // namespace
@@ -32,9 +32,9 @@ void ShardMaker::prepare(std::uint32_t range) {
   range_.reset();
   prepared_.clear();
   const CampaignPlan& campaign = plan_.campaign();
-  const std::uint32_t first = range * campaign.devices_per_file();
+  const std::uint32_t first = range * campaign.devices_per_file;
   const std::uint32_t last =
-      std::min(first + campaign.devices_per_file(), campaign.devices());
+      std::min(first + campaign.devices_per_file, campaign.devices);
   for (std::uint32_t d = first; d < last; ++d) {
     PreparedDevice device{campaign.device(d), {}, {}};
     device.row.part = static_cast<std::uint8_t>(campaign.part(d));

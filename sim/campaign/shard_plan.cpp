@@ -17,6 +17,8 @@
 
 #include "config/units.h"
 #include "dataset/files/sha256.h"
+#include "dataset/recording/signals.h"
+#include "dataset/set/shard/shard_encoding.h"
 #include "sim/scenario/simulation.h"
 
 namespace beamgyro::internal {
@@ -95,16 +97,14 @@ SetVariable set_variable(const CampaignPlan& campaign, const Column& column) {
   if (!column.comment.empty())
     variable.comment = "base device: " + column.comment;
   if (column.role == Role::kTruth) {
-    // In single precision a frequency of 9 kHz has steps of 1e-3 Hz.
-    variable.storage = campaign.output().double_precision ||
-                               column.name == "true_drive_frequency"
-                           ? Storage::kFloat64
-                           : Storage::kFloat32;
+    variable.storage =
+        campaign.output.double_precision || recorded_signal(column.name).is_fine
+            ? Storage::kFloat64
+            : Storage::kFloat32;
     variable.slow = column.name != "true_rate";
     return variable;
   }
-  const Conversion conversion =
-      conversions(campaign.base_device())[column.name];
+  const Conversion conversion = conversions(campaign.base_device)[column.name];
   variable.storage = storage_of(conversion, campaign);
   if (variable.storage == Storage::kFloat64) return variable;
   variable.scale_factor = conversion.step;
@@ -112,24 +112,16 @@ SetVariable set_variable(const CampaignPlan& campaign, const Column& column) {
   return variable;
 }
 
-template <std::size_t kAxes>
-void set_moving(const std::array<bool, kAxes>& axes,
-                std::array<RateProfile, kAxes>& profiles) {
-  for (std::size_t i = 0; i < kAxes; ++i) {
-    if (axes[i]) profiles[i] = PiecewiseLinear::constant(1e-3);
-  }
-}
-
 // Returns the columns of a run of two samples of the base device, with every
 // axis in motion that some device moves. So they do not depend on the values of
 // any device.
 std::vector<Column> columns_of(const CampaignPlan& campaign, std::size_t run) {
-  ScenarioPlan scenario = campaign.base_scenario(run);
+  ScenarioPlan scenario = campaign.runs[run].scenario;
   scenario.duration = 2 / scenario.output_rate;
-  const MovedAxes& axes = campaign.moved_axes(run);
-  set_moving(axes.cross_rate, scenario.cross_rate);
-  set_moving(axes.acceleration, scenario.acceleration);
-  DeviceParameters device = campaign.base_device();
+  for (std::size_t i = kRateX; i < kCaseAxisCount; ++i)
+    if (campaign.runs[run].moved_axes[i])
+      scenario.motion[i] = PiecewiseLinear::constant(1e-3);
+  DeviceParameters device = campaign.base_device;
   if (!device.loop_channels && campaign.is_drawn("loop_channels"))
     device.loop_channels.emplace();
   return simulated(scenario, make_gyro(device)).columns;
@@ -137,22 +129,9 @@ std::vector<Column> columns_of(const CampaignPlan& campaign, std::size_t run) {
 
 std::size_t slow_step(const CampaignPlan& campaign,
                       const ScenarioPlan& scenario) {
-  const double slow = campaign.output().truth_rate;
+  const double slow = campaign.output.truth_rate;
   if (slow == 0) return 1;
   return static_cast<std::size_t>(std::round(scenario.output_rate / slow));
-}
-
-double bytes_of(Storage storage) {
-  switch (storage) {
-    case Storage::kFloat64:
-      return 8;
-    case Storage::kFloat32:
-    case Storage::kInt32:
-      return 4;
-    case Storage::kInt16:
-      return 2;
-  }
-  return 8;
 }
 
 }  // namespace
@@ -160,10 +139,10 @@ double bytes_of(Storage storage) {
 ShardPlan::ShardPlan(const CampaignPlan& campaign,
                      const ProgramRevision& program)
     : campaign_(&campaign) {
-  const std::vector<std::string>& wanted = campaign.output().variables;
+  const std::vector<std::string>& wanted = campaign.output.variables;
   std::vector<std::string> met;
-  for (std::size_t r = 0; r < campaign.runs().size(); ++r) {
-    const ScenarioPlan& scenario = campaign.base_scenario(r);
+  for (std::size_t r = 0; r < campaign.runs.size(); ++r) {
+    const ScenarioPlan& scenario = campaign.runs[r].scenario;
     ShardHead head;
     head.time = sample_times(scenario);
     head.slow_step = slow_step(campaign, scenario);
@@ -175,38 +154,38 @@ ShardPlan::ShardPlan(const CampaignPlan& campaign,
           std::ranges::find(wanted, column.name) != wanted.end())
         head.variables.push_back(set_variable(campaign, column));
     }
-    head.parameters = campaign.parameters();
-    std::ranges::copy(campaign.run_parameters(r),
+    head.parameters = campaign.device_plan.parameters;
+    std::ranges::copy(campaign.runs[r].plan.parameters,
                       std::back_inserter(head.parameters));
-    head.compress = campaign.output().compress;
-    head.run = campaign.runs()[r].name;
+    head.compress = campaign.output.compress;
+    head.run = campaign.runs[r].name;
     head.fidelity = fidelity_name(scenario.fidelity);
     head.program_version = program.version;
     head.git_revision = program.git_revision;
-    head.seed = campaign.seed();
-    head.campaign_text = campaign.text();
-    head.scenario_text = campaign.runs()[r].scenario_text;
-    head.device_text = campaign.device_text();
+    head.seed = campaign.source.seed;
+    head.campaign_text = campaign.text;
+    head.scenario_text = campaign.runs[r].document.text();
+    head.device_text = campaign.device_document->text();
     heads_.push_back(std::move(head));
   }
   manifest_head_ = {
-      .campaign = campaign.sources().front().path.filename().string(),
-      .campaign_sha256 = sha256(campaign.text()),
+      .campaign = campaign.sources.front().path.filename().string(),
+      .campaign_sha256 = sha256(campaign.text),
       .program_version = program.version,
       .git_revision = program.git_revision,
-      .seed = campaign.seed(),
-      .devices = campaign.devices(),
-      .devices_per_file = campaign.devices_per_file(),
+      .seed = campaign.source.seed,
+      .devices = campaign.devices,
+      .devices_per_file = campaign.devices_per_file,
       .runs = {},
-      .sources = source_entries(campaign.sources())};
-  for (const CampaignRun& run : campaign.runs())
+      .sources = source_entries(campaign.sources)};
+  for (const CampaignRun& run : campaign.runs)
     manifest_head_.runs.push_back(run.name);
   for (const std::string& name : wanted) {
     if (std::ranges::find(met, name) == met.end())
       throw std::invalid_argument(fmt::format(
           "{}: no run has a variable \"{}\"; "
           "expected some of {}",
-          campaign.output().variables_place, name, fmt::join(met, ", ")));
+          campaign.output.variables_place, name, fmt::join(met, ", ")));
   }
 }
 
@@ -241,7 +220,7 @@ std::uint64_t ShardPlan::device_runs(
 double ShardPlan::run_duration() const {
   double sum = 0;
   for (std::size_t r = 0; r < heads_.size(); ++r)
-    sum += campaign_->base_scenario(r).duration;
+    sum += campaign_->runs[r].scenario.duration;
   return sum / static_cast<double>(heads_.size());
 }
 
@@ -251,10 +230,10 @@ double ShardPlan::largest_file() const {
     const auto samples = static_cast<double>(head.time.size());
     double bytes = samples;  // status
     for (const SetVariable& variable : head.variables)
-      bytes += bytes_of(variable.storage) * samples /
+      bytes += static_cast<double>(width_of(variable.storage)) * samples /
                (variable.slow ? static_cast<double>(head.slow_step) : 1);
-    largest = std::max(largest, bytes * std::min(campaign_->devices_per_file(),
-                                                 campaign_->devices()));
+    largest = std::max(largest, bytes * std::min(campaign_->devices_per_file,
+                                                 campaign_->devices));
   }
   return largest;
 }

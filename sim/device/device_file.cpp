@@ -31,22 +31,23 @@ RelaxationParameters read_relaxation(const ConfigTable& table) {
   };
 }
 
-std::array<double, kPlayOperators> read_play(
-    const ConfigTable& table, std::string_view key,
-    const std::array<double, kPlayOperators>& otherwise, const Range& range) {
-  std::array<double, kPlayOperators> result = otherwise;
+// `otherwise` is what there is without the key.
+template <std::size_t kCount>
+std::array<double, kCount> array_or(const ConfigTable& table,
+                                    std::string_view key,
+                                    std::array<double, kCount> otherwise,
+                                    const Range& range) {
   if (table.has(key))
-    std::ranges::copy(table.numbers(key, kPlayOperators, range),
-                      result.begin());
-  return result;
+    std::ranges::copy(table.numbers(key, kCount, range), otherwise.begin());
+  return otherwise;
 }
 
 HysteresisParameters read_hysteresis(const ConfigTable& table) {
   HysteresisParameters parameters{
-      .half_width = read_play(table, "half_width_K", {0.5, 1.5, 4, 10},
-                              {0, 200, true, false}),
-      .weight =
-          read_play(table, "weight", {0.2, 0.3, 0.3, 0.2}, non_negative()),
+      .half_width = array_or<kPlayOperators>(
+          table, "half_width_K", {0.5, 1.5, 4, 10}, {0, 200, true, false}),
+      .weight = array_or<kPlayOperators>(table, "weight", {0.2, 0.3, 0.3, 0.2},
+                                         non_negative()),
       .stiffness = table.number_or("stiffness", 4e-7, between(-1e-4, 1e-4)),
       .loss = table.number_or("loss", 5e-8, between(-1e-4, 1e-4)),
       .mount_axis =
@@ -121,9 +122,8 @@ double kelvin(const ConfigTable& table, std::string_view key) {
 
 PerPatch<double> per_patch(const ConfigTable& table, std::string_view key,
                            const Range& range) {
-  const std::vector<double> values = table.numbers(key, kPatchCount, range);
   PerPatch<double> result{};
-  std::copy(values.begin(), values.end(), result.begin());
+  std::ranges::copy(table.numbers(key, kPatchCount, range), result.begin());
   return result;
 }
 
@@ -199,13 +199,9 @@ BondParameters read_bond(const ConfigTable& bond) {
 }
 
 std::array<double, 3> read_g_sensitivity(const ConfigTable& mount) {
-  constexpr std::string_view kKey = "g_sensitivity_deg_per_s_per_g";
-  std::array<double, 3> result = {0.02, 0.02, 0.005};
-  if (mount.has(kKey)) {
-    const std::vector<double> values =
-        mount.numbers(kKey, result.size(), between(-10, 10));
-    std::copy(values.begin(), values.end(), result.begin());
-  }
+  std::array<double, 3> result =
+      array_or<3>(mount, "g_sensitivity_deg_per_s_per_g", {0.02, 0.02, 0.005},
+                  between(-10, 10));
   for (double& value : result) value *= kDegree / kStandardGravity;
   return result;
 }

@@ -26,8 +26,7 @@ constexpr std::array<CharacteristicQuantity, kCharacteristicQuantities>
 
 CharacteristicRow row_at(const Gyro& gyro, double celsius) {
   const double T = celsius + kZeroCelsius;
-  const ModalParameters modal =
-      modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim);
+  const ModalParameters modal = modal_at(gyro, T);
   const BeamSignal signal = beam_signal(gyro, modal, {});
   const Electronics electronics = electronics_at(gyro, T);
   const std::complex<double> terms = zero_rate_terms(gyro, modal);

@@ -61,6 +61,12 @@ Complex rebalance_reference(const Gyro& gyro, const ModalParameters& modal) {
 
 }  // namespace
 
+ModalParameters modal_at(const Gyro& gyro, double T,
+                         const MemoryState& memory) {
+  return modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim,
+                          memory);
+}
+
 Complex rate_response(const Gyro& gyro, const ModalParameters& modal) {
   constexpr double kStep = 0.1;  // [rad/s]; cubic term 1e-8 of the slope
   const auto at = [&](double z) {
@@ -79,8 +85,7 @@ Gyro make_gyro(const DeviceParameters& device) {
   Gyro gyro = untrimmed_gyro(device);
   require_passive_memory(device, gyro.beam);
   gyro.stiffness_trim = trimmed_stiffness(gyro);
-  const ModalParameters modal = modal_parameters(
-      device, gyro.beam, kCalibrationTemperature, gyro.stiffness_trim);
+  const ModalParameters modal = modal_at(gyro, kCalibrationTemperature);
   gyro.rate_axis = rate_response(gyro, modal);
   if (gyro.loop.mode == ReadoutMode::kForceRebalance) {
     gyro.rate_axis = std::polar(std::abs(gyro.rate_axis),
@@ -101,9 +106,7 @@ double built_quadrature(const DeviceParameters& device, double stiffness_trim) {
 }
 
 BeamSignal beam_signal(const Gyro& gyro, double T, const CaseMotion& motion) {
-  return beam_signal(
-      gyro, modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim),
-      motion);
+  return beam_signal(gyro, modal_at(gyro, T), motion);
 }
 
 BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
@@ -121,8 +124,7 @@ BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
 }
 
 DriveHeating drive_heating(const Gyro& gyro) {
-  const ModalParameters modal = modal_parameters(
-      gyro.device, gyro.beam, kCalibrationTemperature, gyro.stiffness_trim);
+  const ModalParameters modal = modal_at(gyro, kCalibrationTemperature);
   const BeamSignal signal = beam_signal(gyro, modal, {});
   const double w = signal.drive_frequency, V = signal.drive_voltage;
   const double velocity = w * gyro.device.drive.amplitude;

@@ -24,6 +24,10 @@ struct Gyro {
   double offset = 0;  // V_off/SF_0 at T_0 [rad/s]
 };
 
+/// Returns modal_parameters() of the trimmed unit.
+ModalParameters modal_at(const Gyro& gyro, double T,
+                         const MemoryState& memory = {});
+
 /// Solves the beam and sets the trims at T_0:
 /// - k_trim, so that the input-referred quadrature is `quadrature_trim`;
 /// - the demodulation reference psi_d = arg dr/dOmega;

@@ -32,8 +32,7 @@ double frequency_near(const Gyro& gyro, const ModalParameters& modal,
 // are half widths apart; what moves by less in one step is the same one.
 double followed(const Gyro& gyro, double from, double frequency, double to) {
   if (frequency == 0 || from == to) return frequency;
-  const ModalParameters modal =
-      modal_parameters(gyro.device, gyro.beam, to, gyro.stiffness_trim);
+  const ModalParameters modal = modal_at(gyro, to);
   const double reached = frequency_near(gyro, modal, frequency);
   const double half_width = modal.damping(0, 0) / (2 * modal.mass);
   if (std::abs(reached - frequency) < 0.5 * half_width) return reached;
@@ -52,8 +51,7 @@ double LockPath::at(const Gyro& gyro, double T) {
            (is_colder ? -kStep : kStep) * static_cast<double>(k);
   };
   if (path.empty()) {
-    const ModalParameters modal = modal_parameters(
-        gyro.device, gyro.beam, kCalibrationTemperature, gyro.stiffness_trim);
+    const ModalParameters modal = modal_at(gyro, kCalibrationTemperature);
     path.push_back(lock_near(gyro, modal, {}, 0).drive_frequency);
   }
   const auto last =

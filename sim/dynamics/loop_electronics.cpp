@@ -25,8 +25,7 @@ void set_rebalance(const ModalParameters& modal, double omega,
 }  // namespace
 
 LoopElectronics loop_electronics(const Gyro& gyro) {
-  const ModalParameters modal = modal_parameters(
-      gyro.device, gyro.beam, kCalibrationTemperature, gyro.stiffness_trim);
+  const ModalParameters modal = modal_at(gyro, kCalibrationTemperature);
   const StaticSolution solution = static_solution(gyro, modal, {});
   const DriveParameters& drive = gyro.device.drive;
   const ReadoutParameters& readout = gyro.device.readout;

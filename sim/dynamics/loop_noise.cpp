@@ -17,10 +17,6 @@ using Eigen::Matrix2d;
 using Eigen::MatrixXd;
 using Eigen::Vector2cd;
 
-ModalParameters modal_at(const Gyro& gyro, double T) {
-  return modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim);
-}
-
 Eigen::Matrix<double, 2, 4> real_row(const Vector2cd& row) {
   Matrix2cd matrix = Matrix2cd::Zero();
   matrix.row(0) = row.transpose();

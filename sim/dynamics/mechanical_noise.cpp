@@ -176,8 +176,7 @@ double RateNoiseDensity::total() const {
 RateNoiseDensity low_frequency_noise(const Gyro& gyro, double beam_temperature,
                                      double board_temperature) {
   require_positive(beam_temperature, "noise: beam temperature", "K");
-  const ModalParameters modal = modal_parameters(
-      gyro.device, gyro.beam, beam_temperature, gyro.stiffness_trim);
+  const ModalParameters modal = modal_at(gyro, beam_temperature);
   const StaticSolution solution = static_solution(gyro, modal, {});
   const NoiseDensities density = noise_densities(
       gyro.device, modal, beam_temperature, solution.drive_frequency);

@@ -31,8 +31,6 @@ Complex coupling_of(const ModalChannels& channels, Patch patch) {
 }
 
 ModalTable::ModalTable(const Gyro& gyro) : gyro_(gyro) {
-  mass_ = gyro.beam.mass;
-  coriolis_mass_ = gyro.beam.mass * gyro.beam.angular_gain;
   for (std::size_t p = 0; p < direction_.size(); ++p) {
     direction_[p] =
         patch_position(gyro.device, static_cast<Patch>(p)).normalized();
@@ -44,8 +42,7 @@ ModalTable::ModalTable(const Gyro& gyro) : gyro_(gyro) {
 
 ModalChannels modal_channels(const Gyro& gyro, double T,
                              const MemoryState& memory) {
-  const ModalParameters modal =
-      modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim, memory);
+  const ModalParameters modal = modal_at(gyro, T, memory);
   ModalChannels c;
   c.head<kCouplings>() << modal.stiffness(0, 0), modal.stiffness(0, 1),
       modal.stiffness(1, 1), modal.damping(0, 0), modal.damping(0, 1),
@@ -135,20 +132,6 @@ ModalTable::Point ModalTable::at(double T) {
   const Cubic& c = parts[part];
   return {c[0] + s * (c[1] + s * (c[2] + s * c[3])),
           (c[1] + s * (2 * c[2] + 3 * s * c[3])) * (count / kModalGrid)};
-}
-
-ModalParameters ModalTable::parameters(const ModalChannels& channels) const {
-  const ModalChannels c = channels * mass_;
-  ModalParameters modal;
-  modal.mass = mass_;
-  modal.coriolis_mass = coriolis_mass_;
-  modal.stiffness = stiffness_of(c);
-  modal.damping = damping_of(c);
-  for (std::size_t p = 0; p < direction_.size(); ++p) {
-    const auto i = kCouplings + 2 * static_cast<Eigen::Index>(p);
-    modal.coupling[p] = Complex(c(i), c(i + 1)) * direction_[p].cast<Complex>();
-  }
-  return modal;
 }
 
 }  // namespace beamgyro::internal

@@ -52,9 +52,6 @@ class ModalTable {
   /// Throws SimulationFailure outside kColdestBeam .. kHottestBeam.
   Point at(double T);
 
-  /// Returns `channels` in the form of matrices and vectors.
-  ModalParameters parameters(const ModalChannels& channels) const;
-
   const PerPatch<Eigen::Vector2d>& direction() const { return direction_; }
 
  private:
@@ -66,7 +63,6 @@ class ModalTable {
   const std::vector<Cubic>& cell(std::size_t i);
 
   Gyro gyro_;
-  double mass_, coriolis_mass_;
   PerPatch<Eigen::Vector2d> direction_;
   std::vector<std::vector<Cubic>> cells_;  // empty until needed
 };

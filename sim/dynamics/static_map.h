@@ -56,7 +56,6 @@ class StaticMap {
               std::span<Signals> signals) const;
 
   int pieces() const { return static_cast<int>(pieces_.size()); }
-  int rate_degree() const { return rate_degree_; }
 
  private:
   // Re, Im of the demodulated signal, drive frequency, voltage.
@@ -113,7 +112,6 @@ class StaticMap {
   void prune(Piece& piece) const;
   Eigen::Vector4d value(const Piece& piece, double T, double rate,
                         const MemoryState& memory) const;
-  ModalParameters modal(double T, const MemoryState& memory) const;
   Eigen::Vector4d exact(const ModalParameters& modal, double rate,
                         double guess = 0);
   std::optional<Piece> fitted(double low, double high);

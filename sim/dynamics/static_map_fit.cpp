@@ -44,15 +44,7 @@ Eigen::Map<RateBlock> rate_block(Eigen::MatrixXd& values, int m, int i,
 
 StaticMap::StaticMap(const Gyro& gyro, double low, double high,
                      double rate_limit, double tolerance)
-    : gyro_(gyro),
-      rate_limit_(rate_limit),
-      tolerance_(tolerance),
-      voltage_limit_(gyro.loop.voltage_limit) {
-  // The limit is a kink: the table holds the unlimited response, and at()
-  // scales it, which is exact because the beam is linear.
-  gyro_.loop.voltage_limit = std::numeric_limits<double>::infinity();
-  tabulate(low, high);
-}
+    : StaticMap(gyro, low, high, rate_limit, MemoryBounds{}, tolerance) {}
 
 StaticMap::StaticMap(const Gyro& gyro, double low, double high,
                      double rate_limit, MemoryBounds bounds, double tolerance)
@@ -61,6 +53,8 @@ StaticMap::StaticMap(const Gyro& gyro, double low, double high,
       rate_limit_(rate_limit),
       tolerance_(tolerance),
       voltage_limit_(gyro.loop.voltage_limit) {
+  // The limit is a kink: the table holds the unlimited response, and at()
+  // scales it, which is exact because the beam is linear.
   gyro_.loop.voltage_limit = std::numeric_limits<double>::infinity();
   const MemoryBox whole = memory_box(low, high);
   const std::array<double, 3> places = {low, 0.5 * (low + high), high};
@@ -87,11 +81,6 @@ void StaticMap::tabulate(double low, double high) {
   }
 }
 
-ModalParameters StaticMap::modal(double T, const MemoryState& memory) const {
-  return modal_parameters(gyro_.device, gyro_.beam, T, gyro_.stiffness_trim,
-                          memory);
-}
-
 // How many polynomials along one axis bring the response at rest within a tenth
 // of the tolerance, the other axes at their middle.
 int StaticMap::needed_memory_nodes(std::span<const double> temperatures,
@@ -108,7 +97,7 @@ int StaticMap::needed_memory_nodes(std::span<const double> temperatures,
       for (int k = 0; k < count; ++k) {
         MemoryPoint place{};
         place[i] = chebyshev_node(k, count);
-        values.col(k) = exact(modal(T, box.state(place)), 0,
+        values.col(k) = exact(modal_at(gyro_, T, box.state(place)), 0,
                               k > 0 ? values(kFrequency, k - 1) : 0);
       }
       const Eigen::MatrixXd coefficients = values * transform;
@@ -135,7 +124,7 @@ int StaticMap::needed_rate_degree(double low, double high) {
   const Eigen::MatrixXd transform = chebyshev_transform(kMaxRates);
   int degree = 0;
   for (const double T : {low, 0.5 * (low + high), high}) {
-    const ModalParameters at_T = modal(T, memory_box(T, T).state({}));
+    const ModalParameters at_T = modal_at(gyro_, T, memory_box(T, T).state({}));
     Eigen::Matrix<double, kChannels, kMaxRates> values;
     for (int i = 0; i < kMaxRates; ++i) {
       values.col(i) = exact(at_T, rate_limit_ * chebyshev_node(i, kMaxRates),
@@ -222,7 +211,7 @@ std::optional<Eigen::MatrixXd> StaticMap::lacking(
         const double T =
             0.5 * (piece.low + piece.high) +
             0.5 * (piece.high - piece.low) * chebyshev_node(j, count);
-        if (i == 0) at_T = modal(T, state);
+        if (i == 0) at_T = modal_at(gyro_, T, state);
         Eigen::Vector4d have = Eigen::Vector4d::Zero();
         double guess = i > 0 ? at_last_rate(j) : m > 0 ? at_first_state(j) : 0;
         if (!is_first) {
@@ -296,7 +285,7 @@ double StaticMap::error(const Piece& piece, double memory_share) {
     MemoryPoint place = kStates[i];
     for (double& x : place) x *= memory_share;
     const MemoryState memory = piece.memory.state(place);
-    const ModalParameters at_T = modal(T, memory);
+    const ModalParameters at_T = modal_at(gyro_, T, memory);
     double guess = 0;
     for (const double rate : {0.0, -0.97 * rate_limit_, rate_limit_}) {
       const Eigen::Vector4d want = exact(at_T, rate, guess);

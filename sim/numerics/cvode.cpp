@@ -17,7 +17,7 @@
 namespace beamgyro::internal {
 namespace {
 
-constexpr Eigen::Index kHighestOrder = 12;  // of CVODE's Adams formulas
+constexpr Eigen::Index kHighestOrder = 5;  // of BDF
 
 struct FreeCvode {
   void operator()(void* memory) const { CVodeFree(&memory); }
@@ -58,9 +58,7 @@ struct Cvode::Impl {
         nv_derivative(make_vector(derivative, context.get())),
         matrix(make_dense_matrix(y.size(), context.get())),
         linear_solver(make_dense_solver(y.size(), context.get())),
-        memory(
-            CVodeCreate(options.method == OdeMethod::kBdf ? CV_BDF : CV_ADAMS,
-                        context.get())) {
+        memory(CVodeCreate(CV_BDF, context.get())) {
     if (!memory) throw std::runtime_error("CVodeCreate failed");
     configure(options);
   }
@@ -77,14 +75,9 @@ struct Cvode::Impl {
     if (jacobian) {
       check(CVodeSetJacFn(mem, &Impl::call_jacobian), "CVodeSetJacFn");
     }
-    if (options.max_order > 0) {
-      check(CVodeSetMaxOrd(mem, options.max_order), "CVodeSetMaxOrd");
-    }
     if (options.stability_limit_detection) {
       check(CVodeSetStabLimDet(mem, SUNTRUE), "CVodeSetStabLimDet");
     }
-    check(CVodeSetInitStep(mem, options.initial_step), "CVodeSetInitStep");
-    check(CVodeSetMaxStep(mem, options.max_step), "CVodeSetMaxStep");
   }
 
   void set_tolerances(const CvodeOptions& options) {
@@ -142,7 +135,6 @@ struct Cvode::Impl {
     return self.errors.guarded([&] {
       const Eigen::Index n = self.y.size();
       Eigen::Map<Eigen::MatrixXd> slope(SUNDenseMatrix_Data(df_dy), n, n);
-      ++self.statistics.jacobians;
       self.jacobian(t,
                     Eigen::Map<const Eigen::VectorXd>(N_VGetArrayPointer(y), n),
                     slope);
@@ -187,12 +179,33 @@ void OdeStep::sample(Eigen::Index component, std::span<const double> times,
   sample_polynomial(std::span(terms).first(count), centre, size, times, values);
 }
 
+StateSamples::StateSamples(std::span<const double> times,
+                           std::vector<Eigen::Index> components)
+    : times_(times),
+      components_(std::move(components)),
+      columns_(components_.size(), std::vector<double>(times.size())) {}
+
+void StateSamples::take(const OdeStep& step) {
+  const auto begin = times_.begin() + static_cast<std::ptrdiff_t>(next_);
+  const auto count = static_cast<std::size_t>(
+      std::lower_bound(begin, times_.end(), step.end) - begin);
+  for (std::size_t i = 0; i < columns_.size() && count > 0; ++i) {
+    step.sample(components_[i], times_.subspan(next_, count),
+                std::span(columns_[i]).subspan(next_, count));
+  }
+  next_ += count;
+}
+
+void StateSamples::take_until(double t, const Eigen::VectorXd& y) {
+  for (; next_ < times_.size() && times_[next_] <= t; ++next_)
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+      columns_[i][next_] = y(components_[i]);
+}
+
 Cvode::Cvode(OdeRhs rhs, double t0, const Eigen::VectorXd& y0,
              const CvodeOptions& options)
     : impl_(std::make_unique<Impl>(std::move(rhs), t0, y0, options)) {}
 Cvode::~Cvode() = default;
-Cvode::Cvode(Cvode&&) noexcept = default;
-Cvode& Cvode::operator=(Cvode&&) noexcept = default;
 
 const Eigen::VectorXd& Cvode::advance_to(
     double t_end, const std::function<void(const OdeStep&)>& on_step) {
@@ -219,7 +232,6 @@ const Eigen::VectorXd& Cvode::advance_to(
 void Cvode::restart(double t, const Eigen::VectorXd& y) {
   impl_->time = t;
   impl_->y = y;
-  ++impl_->statistics.restarts;
   impl_->check(CVodeReInit(impl_->memory.get(), t, impl_->nv_y.get()),
                "CVodeReInit");
 }

@@ -10,31 +10,20 @@
 
 namespace beamgyro::internal {
 
-enum class OdeMethod {
-  kAdams,  // non-stiff: resolved vibration
-  kBdf,    // stiff: heat flow and averaged envelopes
-};
-
 struct CvodeOptions {
-  OdeMethod method = OdeMethod::kBdf;
   double relative_tolerance = 1e-8;
   /// In the unit of y: one entry for each component, or one for all.
   Eigen::VectorXd absolute_tolerance = Eigen::VectorXd::Constant(1, 1e-10);
   OdeJacobian jacobian = {};  // empty: difference quotients
-  int max_order = 0;          // 0: 12 for Adams, 5 for BDF
-  /// BDF: lower the order where an eigenvalue near the imaginary axis lies
+  /// Lower the order where an eigenvalue near the imaginary axis lies
   /// outside the stability region of orders 3 to 5.
   bool stability_limit_detection = false;
-  double initial_step = 0;  // [s], after every restart; 0: estimated
-  double max_step = 0;      // [s]; 0: no limit
   long max_steps_per_advance = 1000000;
 };
 
 struct CvodeStatistics {  // since construction, restarts included
   long steps = 0;
   long rhs_evaluations = 0;
-  long jacobians = 0;
-  long restarts = 0;
 };
 
 /// values[j] = sum_k c_k s^k, s = (times[j] - centre) / size; both spans are
@@ -58,17 +47,38 @@ struct OdeStep {
               std::span<double> values) const;
 };
 
-/// Adaptive multistep integrator (SUNDIALS CVODE, modified Newton on a dense
-/// Jacobian). Each object owns its SUNDIALS context, so different objects may
-/// be used in different threads. No SUNDIALS type leaves cvode.cpp.
+/// Components of the state at increasing times [s], filled in order of time.
+class StateSamples {
+ public:
+  /// `times` must outlive the object.
+  StateSamples(std::span<const double> times,
+               std::vector<Eigen::Index> components);
+
+  double next_time() const { return times_[next_]; }
+  bool complete() const { return next_ == times_.size(); }
+  /// Takes a step without its end: an input may jump there.
+  void take(const OdeStep& step);
+  /// Takes the state `y` at `t` [s] and at all times before it that are left.
+  void take_until(double t, const Eigen::VectorXd& y);
+  /// By component, one value for each time.
+  std::vector<std::vector<double>>& columns() { return columns_; }
+
+ private:
+  std::span<const double> times_;
+  std::vector<Eigen::Index> components_;
+  std::vector<std::vector<double>> columns_;
+  std::size_t next_ = 0;
+};
+
+/// Adaptive multistep integrator (SUNDIALS CVODE, BDF, modified Newton on a
+/// dense Jacobian). Each object owns its SUNDIALS context, so different objects
+/// may be used in different threads. No SUNDIALS type leaves cvode.cpp.
 class Cvode {
  public:
   /// Throws std::invalid_argument for tolerances that do not fit `y0`.
   Cvode(OdeRhs rhs, double t0, const Eigen::VectorXd& y0,
         const CvodeOptions& options = {});
   ~Cvode();
-  Cvode(Cvode&&) noexcept;
-  Cvode& operator=(Cvode&&) noexcept;
 
   /// Integrates to exactly `t_end` >= time() and returns y there. Neither the
   /// right-hand side nor the Jacobian is evaluated beyond `t_end`, so there may

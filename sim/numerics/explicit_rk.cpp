@@ -71,7 +71,6 @@ struct ExplicitRk::Impl {
     check(ARKStepSetTableNum(mem, ARKODE_DIRK_NONE, table_id(options.table)),
           "ARKStepSetTableNum");
     check(ARKStepSetMaxNumSteps(mem, max_steps), "ARKStepSetMaxNumSteps");
-    check(ARKStepSetMaxStep(mem, options.max_step), "ARKStepSetMaxStep");
     if (options.fixed_step > 0) {
       check(ARKStepSetFixedStep(mem, options.fixed_step),
             "ARKStepSetFixedStep");
@@ -101,8 +100,6 @@ ExplicitRk::ExplicitRk(OdeRhs rhs, double t0, const Eigen::VectorXd& y0,
                        const ExplicitRkOptions& options)
     : impl_(std::make_unique<Impl>(std::move(rhs), t0, y0, options)) {}
 ExplicitRk::~ExplicitRk() = default;
-ExplicitRk::ExplicitRk(ExplicitRk&&) noexcept = default;
-ExplicitRk& ExplicitRk::operator=(ExplicitRk&&) noexcept = default;
 
 const Eigen::VectorXd& ExplicitRk::advance_to(double t_end) {
   if (t_end == impl_->time) return impl_->y;

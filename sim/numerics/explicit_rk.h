@@ -19,7 +19,6 @@ struct ExplicitRkOptions {
   /// In the unit of y: one entry for each component, or one for all.
   Eigen::VectorXd absolute_tolerance = Eigen::VectorXd::Constant(1, 1e-9);
   double fixed_step = 0;  // [s]; 0: steps follow the tolerances
-  double max_step = 0;    // [s]; 0: no limit
   long max_steps_per_advance = 100'000'000;
 };
 
@@ -33,8 +32,6 @@ class ExplicitRk {
   ExplicitRk(OdeRhs rhs, double t0, const Eigen::VectorXd& y0,
              const ExplicitRkOptions& options = {});
   ~ExplicitRk();
-  ExplicitRk(ExplicitRk&&) noexcept;
-  ExplicitRk& operator=(ExplicitRk&&) noexcept;
 
   /// Integrates to exactly `t_end` >= time() and returns y there. The
   /// right-hand side is not evaluated beyond `t_end`. Rethrows what the

@@ -30,14 +30,8 @@ void add_borders(const PiecewiseLinear& profile, std::vector<Border>& borders) {
 template <class Visit>
 void visit_profiles(ScenarioPlan& scenario, const Visit& visit) {
   visit(scenario.ambient);
-  const auto visit_motion = [&](RateProfile& profile) {
+  for (RateProfile& profile : scenario.motion)
     if (auto* points = std::get_if<PiecewiseLinear>(&profile)) visit(*points);
-  };
-  visit_motion(scenario.rate);
-  std::for_each(scenario.cross_rate.begin(), scenario.cross_rate.end(),
-                visit_motion);
-  std::for_each(scenario.acceleration.begin(), scenario.acceleration.end(),
-                visit_motion);
 }
 
 double target_of(const Cluster& cluster, double output_rate) {

@@ -209,7 +209,7 @@ double carrier_cost(const ScenarioPlan& scenario) {
     powered +=
         std::max(0.0, std::min(interval.off, scenario.duration) - interval.on);
   }
-  return powered * kCostPerSecond * (moves(scenario.rate) ? 2 : 1);
+  return powered * kCostPerSecond * (moves(scenario.motion[kRateZ]) ? 2 : 1);
 }
 
 void simulate_carrier(const ScenarioPlan& given, const Gyro& gyro,

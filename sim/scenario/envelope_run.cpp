@@ -37,16 +37,15 @@ VectorXd error_weights(Index size) {
 }
 
 // States that a sample needs.
-constexpr std::array<Index, 12> kStoredStates = {
+const std::vector<Index> kStoredStates = {
     kFeedback2,         kFeedback2 + 1,     kPllIntegral,
     kAgcIntegral,       kOutput2,           kOutput2 + 1,
     kEnvelopeNodes + 0, kEnvelopeNodes + 1, kEnvelopeNodes + 2,
     kEnvelopeNodes + 3, kEnvelopeNodes + 4, kEnvelopeNodes + 5};
 constexpr std::size_t kFirstNode = 6;
 
-RunSamples samples_of_states(
-    const std::array<std::vector<double>, kStoredStates.size()>& c,
-    const LoopElectronics& loops, const Gyro& gyro) {
+RunSamples samples_of_states(const std::vector<std::vector<double>>& c,
+                             const LoopElectronics& loops, const Gyro& gyro) {
   const std::size_t count = c[0].size();
   RunSamples s;
   s.output.resize(count);
@@ -91,45 +90,6 @@ std::vector<Border> borders_of(const ScenarioPlan& scenario,
 }
 
 }  // namespace
-
-// The shown states at the sample times, filled in order of time.
-class EnvelopeTrajectory::Sampler {
- public:
-  explicit Sampler(std::span<const double> times) : times_(times) {
-    for (auto& column : columns_) column.resize(times.size());
-  }
-
-  double next_time() const { return times_[next_]; }
-  bool complete() const { return next_ == times_.size(); }
-
-  // Without the end of the step: an input may jump there.
-  void take(const OdeStep& step) {
-    const auto begin = times_.begin() + static_cast<std::ptrdiff_t>(next_);
-    const auto count = static_cast<std::size_t>(
-        std::lower_bound(begin, times_.end(), step.end) - begin);
-    for (std::size_t i = 0; i < kStoredStates.size() && count > 0; ++i) {
-      step.sample(kStoredStates[i], times_.subspan(next_, count),
-                  std::span(columns_[i]).subspan(next_, count));
-    }
-    next_ += count;
-  }
-
-  void take_until(double t, const VectorXd& y) {
-    for (; next_ < times_.size() && times_[next_] <= t; ++next_) {
-      for (std::size_t i = 0; i < kStoredStates.size(); ++i)
-        columns_[i][next_] = y(kStoredStates[i]);
-    }
-  }
-
-  const std::array<std::vector<double>, kStoredStates.size()>& columns() const {
-    return columns_;
-  }
-
- private:
-  std::span<const double> times_;
-  std::array<std::vector<double>, kStoredStates.size()> columns_;
-  std::size_t next_ = 0;
-};
 
 EnvelopeTrajectory::EnvelopeTrajectory(const ScenarioPlan& scenario,
                                        const Gyro& gyro, const Motion& motion,
@@ -212,7 +172,7 @@ long EnvelopeTrajectory::rhs_evaluations() const {
                    : multistep_->statistics().rhs_evaluations;
 }
 
-void EnvelopeTrajectory::advance_to(double t_end, Sampler& sampler) {
+void EnvelopeTrajectory::advance_to(double t_end, StateSamples& sampler) {
   if (multistep_) {
     multistep_->advance_to(t_end, [&](const OdeStep& step) {
       limits_.check(step.end, nodes_of(step.at(step.end)));
@@ -230,7 +190,7 @@ void EnvelopeTrajectory::advance_to(double t_end, Sampler& sampler) {
 }
 
 RunSamples EnvelopeTrajectory::advance(std::span<const double> times) {
-  Sampler sampler(times);
+  StateSamples sampler(times, kStoredStates);
   while (!sampler.complete()) {
     const Piece& piece = pieces_[piece_];
     const double end = std::min(piece.end, times.back());

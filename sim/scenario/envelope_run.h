@@ -44,11 +44,9 @@ class EnvelopeTrajectory {
   long rhs_evaluations() const;
 
  private:
-  class Sampler;
-
   EnvelopeInputs inputs(double t) const;
   void begin(std::size_t piece);
-  void advance_to(double t_end, Sampler& sampler);
+  void advance_to(double t_end, StateSamples& sampler);
   double time() const;
   const Eigen::VectorXd& state() const;
 

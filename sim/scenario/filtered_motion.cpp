@@ -104,7 +104,7 @@ std::array<Signal, 2> square_of(const SineSignal& sine) {
 
 }  // namespace
 
-SampleStream filtered_square_acceleration(const std::array<Signal, 3>& axes,
+SampleStream filtered_square_acceleration(std::span<const Signal> axes,
                                           double corner, double output_rate) {
   std::vector<SampleStream> parts;
   const OutputFilter filter(corner);
@@ -134,13 +134,10 @@ FilteredMotion::FilteredMotion(const Gyro& gyro, const Motion& motion,
     : mount_(gyro.device.mount) {
   const double corner = gyro.device.readout.corner_frequency;
   const OutputFilter filter(corner);
-  for (std::size_t i = 0; i < 3; ++i) {
-    rate_[i].filtered = filter.responses(motion.rate()[i], output_rate);
-    acceleration_[i].filtered =
-        filter.responses(motion.acceleration()[i], output_rate);
-  }
-  square_.filtered =
-      filtered_square_acceleration(motion.acceleration(), corner, output_rate);
+  for (std::size_t i = 0; i < kCaseAxisCount; ++i)
+    axes_[i].filtered = filter.responses(motion.axes()[i], output_rate);
+  square_.filtered = filtered_square_acceleration(
+      std::span(motion.axes()).subspan(kAccelerationX), corner, output_rate);
 }
 
 void FilteredMotion::Filtered::next(std::size_t count) {
@@ -149,23 +146,20 @@ void FilteredMotion::Filtered::next(std::size_t count) {
 }
 
 void FilteredMotion::next(std::size_t count) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    rate_[i].next(count);
-    acceleration_[i].next(count);
-  }
+  for (Filtered& axis : axes_) axis.next(count);
   square_.next(count);
 }
 
 CaseMotion FilteredMotion::at(std::size_t k) const {
   CaseMotion motion;
-  motion.x = rate_[0].values[k];
-  motion.y = rate_[1].values[k];
-  motion.z = rate_[2].values[k];
-  motion.in_phase =
-      in_phase_rate(mount_,
-                    {acceleration_[0].values[k], acceleration_[1].values[k],
-                     acceleration_[2].values[k]},
-                    square_.values[k]);
+  motion.x = axes_[kRateX].values[k];
+  motion.y = axes_[kRateY].values[k];
+  motion.z = axes_[kRateZ].values[k];
+  motion.in_phase = in_phase_rate(
+      mount_,
+      {axes_[kAccelerationX].values[k], axes_[kAccelerationY].values[k],
+       axes_[kAccelerationZ].values[k]},
+      square_.values[k]);
   return motion;
 }
 

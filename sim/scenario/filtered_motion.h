@@ -17,7 +17,7 @@ namespace beamgyro::internal {
 /// is exact for every signal. At t = 0 the filter has settled on the value
 /// there; on a sine it gives the periodic response. `axes` [m/s2] must outlive
 /// the stream.
-SampleStream filtered_square_acceleration(const std::array<Signal, 3>& axes,
+SampleStream filtered_square_acceleration(std::span<const Signal> axes,
                                           double corner, double output_rate);
 
 /// The motion of the case behind the output filter, sample by sample, for a
@@ -42,7 +42,7 @@ class FilteredMotion {
   };
 
   const MountParameters& mount_;
-  std::array<Filtered, 3> rate_, acceleration_;
+  PerAxis<Filtered> axes_;
   Filtered square_;
 };
 

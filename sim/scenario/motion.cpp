@@ -27,45 +27,41 @@ bool is_zero(const AxisSegment& s) { return s.a == 0 && !moving(s); }
 
 }  // namespace
 
-MotionSegment::MotionSegment(double start,
-                             const std::array<AxisSegment, 3>& rate,
-                             const std::array<AxisSegment, 3>& acceleration,
+MotionSegment::MotionSegment(double start, const PerAxis<AxisSegment>& axes,
                              const MountParameters& mount)
     : start_(start),
-      rate_(rate),
-      acceleration_(acceleration),
+      axes_(axes),
       accelerated_(
-          !std::all_of(acceleration.begin(), acceleration.end(), is_zero)),
+          !std::all_of(axes.begin() + kAccelerationX, axes.end(), is_zero)),
       mount_(mount) {}
 
 CaseMotion MotionSegment::at(double t) const {
   CaseMotion motion = at_rest(t);
-  motion.z = value(rate_[2], t - start_, t);
-  motion.z_acceleration = slope(rate_[2], t);
+  motion.z = value(axes_[kRateZ], t - start_, t);
+  motion.z_acceleration = slope(axes_[kRateZ], t);
   return motion;
 }
 
 CaseMotion MotionSegment::at_rest(double t) const {
   CaseMotion motion;
-  motion.x = value(rate_[0], t - start_, t);
-  motion.y = value(rate_[1], t - start_, t);
+  motion.x = value(axes_[kRateX], t - start_, t);
+  motion.y = value(axes_[kRateY], t - start_, t);
   if (accelerated_) {
     std::array<double, 3> a{};
     for (std::size_t i = 0; i < a.size(); ++i)
-      a[i] = value(acceleration_[i], t - start_, t);
+      a[i] = value(axes_[kAccelerationX + i], t - start_, t);
     motion.in_phase = in_phase_rate(mount_, a);
   }
   return motion;
 }
 
 bool MotionSegment::is_constant() const {
-  return std::none_of(rate_.begin(), rate_.end(), moving) &&
-         std::none_of(acceleration_.begin(), acceleration_.end(), moving);
+  return std::none_of(axes_.begin(), axes_.end(), moving);
 }
 
 Motion::Motion(const ScenarioPlan& scenario, const Gyro& gyro,
                const RunKey& key)
-    : rate_moves_(moves(scenario.rate)), mount_(gyro.device.mount) {
+    : mount_(gyro.device.mount) {
   const auto realise = [&](const RateProfile& profile,
                            RandomPurpose purpose) -> Signal {
     if (const auto* sine = std::get_if<SineSignal>(&profile)) return *sine;
@@ -75,33 +71,22 @@ Motion::Motion(const ScenarioPlan& scenario, const Gyro& gyro,
     }
     return std::get<PiecewiseLinear>(profile);
   };
-  for (std::size_t i = 0; i < cross_moves_.size(); ++i) {
-    cross_moves_[i] = moves(scenario.cross_rate[i]);
-    rate_[i] = realise(scenario.cross_rate[i], kCrossPurposes[i]);
-  }
-  rate_[2] = realise(scenario.rate, kRateProfileStream);
-  for (std::size_t i = 0; i < acceleration_.size(); ++i) {
-    acceleration_moves_[i] = moves(scenario.acceleration[i]);
-    acceleration_[i] =
-        realise(scenario.acceleration[i], kAccelerationPurposes[i]);
+  for (std::size_t i = 0; i < kCaseAxisCount; ++i) {
+    moves_[i] = moves(scenario.motion[i]);
+    axes_[i] = realise(scenario.motion[i], kCaseAxes[i].purpose);
   }
 }
 
 bool Motion::has_other_axes() const {
-  const auto is_true = [](bool moved) { return moved; };
-  return std::any_of(cross_moves_.begin(), cross_moves_.end(), is_true) ||
-         std::any_of(acceleration_moves_.begin(), acceleration_moves_.end(),
-                     is_true);
+  return std::find(moves_.begin() + kRateX, moves_.end(), true) != moves_.end();
 }
 
 std::vector<Border> Motion::borders() const {
   std::vector<Border> borders;
-  for (const auto* axes : {&rate_, &acceleration_}) {
-    for (const Signal& axis : *axes) {
-      if (const auto* points = std::get_if<PiecewiseLinear>(&axis)) {
-        const std::vector<Border> found = points->borders();
-        borders.insert(borders.end(), found.begin(), found.end());
-      }
+  for (const Signal& axis : axes_) {
+    if (const auto* points = std::get_if<PiecewiseLinear>(&axis)) {
+      const std::vector<Border> found = points->borders();
+      borders.insert(borders.end(), found.begin(), found.end());
     }
   }
   return borders;
@@ -120,22 +105,15 @@ MotionSegment Motion::segment(double start, double end) const {
     return {.a = line.start_value,
             .b = (line.end_value - line.start_value) / (end - start)};
   };
-  return {start,
-          {of(rate_[0]), of(rate_[1]), of(rate_[2])},
-          {of(acceleration_[0]), of(acceleration_[1]), of(acceleration_[2])},
-          mount_};
+  PerAxis<AxisSegment> segments;
+  std::ranges::transform(axes_, segments.begin(), of);
+  return {start, segments, mount_};
 }
 
 void Motion::sample(RunSamples& samples) const {
-  samples.rate = values_at(rate_[2], samples.time);
-  for (std::size_t i = 0; i < cross_moves_.size(); ++i) {
-    if (cross_moves_[i])
-      samples.cross_rate[i] = values_at(rate_[i], samples.time);
-  }
-  for (std::size_t i = 0; i < acceleration_moves_.size(); ++i) {
-    if (acceleration_moves_[i])
-      samples.acceleration[i] = values_at(acceleration_[i], samples.time);
-  }
+  for (std::size_t i = 0; i < kCaseAxisCount; ++i)
+    if (i == kRateZ || moves_[i])
+      samples.motion[i] = values_at(axes_[i], samples.time);
 }
 
 }  // namespace beamgyro::internal

@@ -20,9 +20,7 @@ struct AxisSegment {
 /// The motion of the case between two borders, smooth up to both ends.
 class MotionSegment {
  public:
-  /// `rate` about x, y, z [rad/s], `acceleration` along x, y, z [m/s2].
-  MotionSegment(double start, const std::array<AxisSegment, 3>& rate,
-                const std::array<AxisSegment, 3>& acceleration,
+  MotionSegment(double start, const PerAxis<AxisSegment>& axes,
                 const MountParameters& mount);
 
   CaseMotion at(double t) const;
@@ -34,7 +32,7 @@ class MotionSegment {
 
  private:
   double start_;
-  std::array<AxisSegment, 3> rate_, acceleration_;
+  PerAxis<AxisSegment> axes_;  // [rad/s] [m/s2]
   bool accelerated_;
   MountParameters mount_;
 };
@@ -48,13 +46,11 @@ class Motion {
   std::vector<Border> borders() const;
   /// Returns whether the rate about z is zero all the time, so that the twin is
   /// the run itself.
-  bool rate_is_zero() const { return !rate_moves_; }
+  bool rate_is_zero() const { return !moves_[kRateZ]; }
   /// Returns whether anything but the rate about z moves.
   bool has_other_axes() const;
 
-  /// About x, y, z [rad/s] and along x, y, z [m/s2].
-  const std::array<Signal, 3>& rate() const { return rate_; }
-  const std::array<Signal, 3>& acceleration() const { return acceleration_; }
+  const PerAxis<Signal>& axes() const { return axes_; }  // [rad/s] [m/s2]
 
   /// Returns the motion between two times that have no border between them,
   /// from the right-hand limits at `start` to the left-hand limits at `end`.
@@ -64,10 +60,8 @@ class Motion {
   void sample(RunSamples& samples) const;
 
  private:
-  std::array<Signal, 3> rate_, acceleration_;
-  std::array<bool, 2> cross_moves_{};
-  std::array<bool, 3> acceleration_moves_{};
-  bool rate_moves_;
+  PerAxis<Signal> axes_;
+  PerAxis<bool> moves_{};
   MountParameters mount_;
 };
 

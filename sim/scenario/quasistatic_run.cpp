@@ -78,11 +78,12 @@ class FilteredRate {
  public:
   FilteredRate(const Motion& motion, const OutputFilter& filter,
                const SampleGrid& grid)
-      : stream_(filter.responses(motion.rate()[2], grid.rate)) {
+      : stream_(filter.responses(motion.axes()[kRateZ], grid.rate)) {
     if (motion.rate_is_zero()) return;
     constexpr std::size_t kLong = std::size_t{1} << 18;  // 2 MB
     const bool is_kept = grid.count <= kLong;
-    SampleStream first_pass = filter.responses(motion.rate()[2], grid.rate);
+    SampleStream first_pass =
+        filter.responses(motion.axes()[kRateZ], grid.rate);
     Samples rate;
     for (std::size_t k = 0; k < grid.count; k += rate.size()) {
       rate.resize(is_kept ? grid.count
@@ -176,10 +177,9 @@ class MotionResponse {
 
  private:
   void write(std::size_t k, RunSamples& samples) {
-    const ModalParameters modal = modal_parameters(
-        gyro_.device, gyro_.beam, samples.temperature[kBeam][k],
-        gyro_.stiffness_trim,
-        samples.memory.empty() ? MemoryState{} : samples.memory[k]);
+    const ModalParameters modal =
+        modal_at(gyro_, samples.temperature[kBeam][k],
+                 samples.memory.empty() ? MemoryState{} : samples.memory[k]);
     CaseMotion motion = motion_.at(k);
     const BeamSignal at_rate = beam_signal(gyro_, modal, motion, path_);
     Complex at_rest = at_rate.demodulated;

@@ -39,6 +39,11 @@ bool moves(const Signal& signal) {
                     signal);
 }
 
+PerAxis<RateProfile> no_motion() {
+  const PiecewiseLinear still = PiecewiseLinear::constant(0);
+  return {still, still, still, still, still, still};
+}
+
 std::vector<double> values_at(const Signal& signal,
                               std::span<const double> times) {
   const auto* sine = std::get_if<SineSignal>(&signal);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -28,12 +29,36 @@ using RateProfile = std::variant<PiecewiseLinear, SineSignal, RandomRate>;
 bool moves(const RateProfile& profile);
 bool moves(const Signal& signal);
 
-/// Random streams of the profiles of the cross axes x, y and of the
-/// accelerations along x, y, z.
-inline constexpr std::array<RandomPurpose, 2> kCrossPurposes = {
-    kCrossRateXStream, kCrossRateYStream};
-inline constexpr std::array<RandomPurpose, 3> kAccelerationPurposes = {
-    kAccelerationXStream, kAccelerationYStream, kAccelerationZStream};
+/// The axes of the case: rates about z, the input axis, and about x and y, then
+/// accelerations.
+enum CaseAxis : std::size_t {
+  kRateZ,
+  kRateX,
+  kRateY,
+  kAccelerationX,
+  kAccelerationY,
+  kAccelerationZ,
+  kCaseAxisCount
+};
+template <class T>
+using PerAxis = std::array<T, kCaseAxisCount>;
+
+/// How a motion about or along an axis is named.
+struct AxisNames {
+  std::string_view key;     // of its table in a scenario
+  std::string_view column;  // of a recording
+  RandomPurpose purpose;    // stream of a random one
+};
+inline constexpr PerAxis<AxisNames> kCaseAxes = {
+    {{"rate", "true_rate", kRateProfileStream},
+     {"cross_rate.x", "true_cross_rate_x", kCrossRateXStream},
+     {"cross_rate.y", "true_cross_rate_y", kCrossRateYStream},
+     {"acceleration.x", "true_acceleration_x", kAccelerationXStream},
+     {"acceleration.y", "true_acceleration_y", kAccelerationYStream},
+     {"acceleration.z", "true_acceleration_z", kAccelerationZStream}}};
+
+/// Returns profiles that are 0 all the time.
+PerAxis<RateProfile> no_motion();
 
 /// Returns a signal at increasing times.
 std::vector<double> values_at(const Signal& signal,

@@ -20,7 +20,6 @@ namespace beamgyro::internal {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
 
 using Samples = std::vector<double>;
 
@@ -213,20 +212,15 @@ void RunRecorder::add_memory(Recording& block,
 }
 
 void RunRecorder::add_truth(Recording& block, RunSamples& samples) const {
-  add(block, "true_rate", scaled(std::move(samples.rate), 1 / kDegree));
+  for (std::size_t i = 0; i < kAccelerationX; ++i)
+    samples.motion[i] = scaled(std::move(samples.motion[i]), 1 / kDegree);
+  add(block, "true_rate", std::move(samples.motion[kRateZ]));
   add(block, "true_bias", scaled(std::move(samples.bias), 1 / kDegree));
   if (device_.loop_channels)
     add(block, "true_drive_frequency", std::move(samples.drive_frequency));
-  for (std::size_t i = 0; i < samples.cross_rate.size(); ++i) {
-    if (samples.cross_rate[i].empty()) continue;
-    add(block, fmt::format("true_cross_rate_{}", kAxes[i]),
-        scaled(std::move(samples.cross_rate[i]), 1 / kDegree));
-  }
-  for (std::size_t i = 0; i < samples.acceleration.size(); ++i) {
-    if (samples.acceleration[i].empty()) continue;
-    add(block, fmt::format("true_acceleration_{}", kAxes[i]),
-        std::move(samples.acceleration[i]));
-  }
+  for (std::size_t i = kRateX; i < kCaseAxisCount; ++i)
+    if (!samples.motion[i].empty())
+      add(block, kCaseAxes[i].column, std::move(samples.motion[i]));
   if (!samples.memory.empty()) add_memory(block, samples);
   for (std::size_t node = 0; node < kThermalNodeCount; ++node) {
     add(block, fmt::format("true_{}_temperature", kThermalNodeNames[node]),

@@ -43,11 +43,9 @@ struct RunSamples {
   std::array<std::vector<double>, kThermalNodeCount> temperature;  // [K]
   std::vector<MemoryState> memory;  // empty without memory effects
 
-  // The motion of the case: the rate about the input axis, and the other axes
-  // that the scenario moves. Axes that do not move are empty.
-  std::vector<double> rate;                         // [rad/s]
-  std::array<std::vector<double>, 2> cross_rate;    // [rad/s]
-  std::array<std::vector<double>, 3> acceleration;  // [m/s2]
+  // The motion of the case [rad/s] [m/s2]: the rate about the input axis, and
+  // the other axes that the scenario moves. Axes that do not move are empty.
+  PerAxis<std::vector<double>> motion;
 };
 
 /// Noise that the loops of a run bring to its samples.

@@ -124,25 +124,7 @@ SwingCount swings_of(const PiecewiseLinear& profile, double duration,
   return count;
 }
 
-/// A motion of one axis, as files name it.
-struct NamedMotion {
-  std::string key;
-  const RateProfile& profile;
-};
-
-std::vector<NamedMotion> motions_of(const ScenarioPlan& scenario) {
-  std::vector<NamedMotion> motions = {{"rate", scenario.rate}};
-  constexpr std::string_view kAxisNames[] = {"x", "y", "z"};
-  for (std::size_t i = 0; i < scenario.cross_rate.size(); ++i)
-    motions.push_back(
-        {fmt::format("cross_rate.{}", kAxisNames[i]), scenario.cross_rate[i]});
-  for (std::size_t i = 0; i < scenario.acceleration.size(); ++i)
-    motions.push_back({fmt::format("acceleration.{}", kAxisNames[i]),
-                       scenario.acceleration[i]});
-  return motions;
-}
-
-std::string sine_text(const std::string& key, const SineSignal& sine,
+std::string sine_text(std::string_view key, const SineSignal& sine,
                       const SampleGrid& grid) {
   const double half = grid.rate / 2;
   if (sine.amplitude == 0 || sine.frequency < half * (1 - kSameFrequency))
@@ -161,7 +143,7 @@ std::string sine_text(const std::string& key, const SineSignal& sine,
                grid.rate * std::round(sine.frequency / grid.rate)));
 }
 
-std::string random_text(const std::string& key, const RandomRate& random,
+std::string random_text(std::string_view key, const RandomRate& random,
                         const SampleGrid& grid) {
   if (random.bandwidth < grid.rate / 2 * (1 - kSameFrequency)) return {};
   return fmt::format(
@@ -170,21 +152,21 @@ std::string random_text(const std::string& key, const RandomRate& random,
       key, random.bandwidth, grid.rate, grid.count);
 }
 
-std::string aliasing_text(const NamedMotion& motion,
+std::string aliasing_text(std::string_view key, const RateProfile& profile,
                           const ScenarioPlan& scenario) {
   const SampleGrid grid = sample_grid(scenario);
-  if (!moves(motion.profile)) return {};
-  if (const auto* sine = std::get_if<SineSignal>(&motion.profile))
-    return sine_text(motion.key, *sine, grid);
-  if (const auto* random = std::get_if<RandomRate>(&motion.profile))
-    return random_text(motion.key, *random, grid);
-  const SwingCount swings = swings_of(std::get<PiecewiseLinear>(motion.profile),
-                                      scenario.duration, grid);
+  if (!moves(profile)) return {};
+  if (const auto* sine = std::get_if<SineSignal>(&profile))
+    return sine_text(key, *sine, grid);
+  if (const auto* random = std::get_if<RandomRate>(&profile))
+    return random_text(key, *random, grid);
+  const SwingCount swings =
+      swings_of(std::get<PiecewiseLinear>(profile), scenario.duration, grid);
   if (swings.lost == 0) return {};
   return fmt::format(
       "{}: {} of {} swings of the profile are lost, wholly or by more than "
       "half, between samples {:g} s apart; output_rate_Hz = {:.11g}",
-      motion.key, swings.lost, swings.all, 1 / grid.rate, grid.rate);
+      key, swings.lost, swings.all, 1 / grid.rate, grid.rate);
 }
 
 /// Returns one warning for each motion that the samples do not show:
@@ -196,8 +178,9 @@ std::string aliasing_text(const NamedMotion& motion,
 std::vector<std::string> aliasing_warnings(const ScenarioPlan& scenario) {
   const ScenarioPlan aligned = with_aligned_borders(scenario);
   std::vector<std::string> texts;
-  for (const NamedMotion& motion : motions_of(aligned)) {
-    std::string text = aliasing_text(motion, aligned);
+  for (std::size_t i = 0; i < kCaseAxisCount; ++i) {
+    std::string text =
+        aliasing_text(kCaseAxes[i].key, aligned.motion[i], aligned);
     if (!text.empty()) texts.push_back(std::move(text));
   }
   return texts;

@@ -37,12 +37,7 @@ struct ScenarioPlan {
   PiecewiseLinear ambient = PiecewiseLinear::constant(298.15);  // [K]
   std::vector<double> soak_ends;  // [s], of an ambient that is made of soaks
   bool stirred = false;
-  RateProfile rate = PiecewiseLinear::constant(0);  // input axis [rad/s]
-  std::array<RateProfile, 2> cross_rate = {         // about x, y [rad/s]
-      PiecewiseLinear::constant(0), PiecewiseLinear::constant(0)};
-  std::array<RateProfile, 3> acceleration = {  // along x, y, z [m/s2]
-      PiecewiseLinear::constant(0), PiecewiseLinear::constant(0),
-      PiecewiseLinear::constant(0)};
+  PerAxis<RateProfile> motion = no_motion();  // [rad/s] [m/s2]
   bool noise_enabled = true;
   // Temperatures before time 0 [K], which end there.
   std::optional<PiecewiseLinear> history;

@@ -183,15 +183,12 @@ RateProfile read_motion(const std::optional<ConfigTable>& axis,
                                    keys.unit.factor);
 }
 
-template <std::size_t kAxes>
-void read_axes(const ConfigTable& table, const MotionKeys& keys,
-               const ProfileFolder& folder, double duration,
-               std::array<RateProfile, kAxes>& axes) {
-  constexpr std::array<std::string_view, 3> kNames = {"x", "y", "z"};
-  for (std::size_t i = 0; i < kAxes; ++i) {
-    axes[i] =
-        read_motion(table.optional_table(kNames[i]), keys, folder, duration);
-  }
+std::optional<ConfigTable> axis_table(const ConfigTable& root,
+                                      std::string_view key) {
+  const std::size_t dot = key.find('.');
+  if (dot == key.npos) return root.optional_table(key);
+  return root.table_or_empty(key.substr(0, dot))
+      .optional_table(key.substr(dot + 1));
 }
 
 }  // namespace
@@ -227,12 +224,10 @@ ScenarioPlan read_scenario(const ConfigDocument& document,
       read_ambient(root.table("ambient"), folder, scenario.soak_ends);
   scenario.history = read_history(root.optional_table("history"));
   scenario.stirred = root.table_or_empty("chamber").flag_or("stirred", false);
-  scenario.rate = read_motion(root.optional_table("rate"), kRate, folder,
-                              scenario.duration);
-  read_axes(root.table_or_empty("cross_rate"), kRate, folder, scenario.duration,
-            scenario.cross_rate);
-  read_axes(root.table_or_empty("acceleration"), kAcceleration, folder,
-            scenario.duration, scenario.acceleration);
+  for (std::size_t i = 0; i < kCaseAxisCount; ++i)
+    scenario.motion[i] = read_motion(axis_table(root, kCaseAxes[i].key),
+                                     i < kAccelerationX ? kRate : kAcceleration,
+                                     folder, scenario.duration);
   scenario.noise_enabled =
       root.table_or_empty("noise").flag_or("enabled", true);
   return scenario;
@@ -241,13 +236,13 @@ ScenarioPlan read_scenario(const ConfigDocument& document,
 std::vector<std::filesystem::path> profile_files(
     const ConfigDocument& document) {
   std::vector<std::filesystem::path> files;
-  for (const char* table :
-       {"ambient", "rate", "cross_rate.x", "cross_rate.y", "acceleration.x",
-        "acceleration.y", "acceleration.z"}) {
+  const auto add = [&](std::string_view table) {
     const ConfigNode* file = document.value(fmt::format("{}.file", table));
     if (file != nullptr)
       files.push_back(document.path().parent_path() / file->text);
-  }
+  };
+  add("ambient");
+  for (const AxisNames& axis : kCaseAxes) add(axis.key);
   return files;
 }
 

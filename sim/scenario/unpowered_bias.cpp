@@ -33,9 +33,9 @@ void UnpoweredBias::fill_moving(const std::vector<std::size_t>& unpowered,
   for (const std::size_t k : unpowered) {
     CaseMotion motion = motion_->at(k);
     motion.z = 0;
-    const ModalParameters modal = modal_parameters(
-        gyro_.device, gyro_.beam, samples.temperature[kBeam][k],
-        gyro_.stiffness_trim, memory_ ? samples.memory[k] : MemoryState{});
+    const ModalParameters modal =
+        modal_at(gyro_, samples.temperature[kBeam][k],
+                 memory_ ? samples.memory[k] : MemoryState{});
     samples.bias[k] =
         electronics_at(gyro_, samples.temperature[kBoard][k])
             .output(beam_signal(gyro_, modal, motion, path_).demodulated)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -55,43 +56,6 @@ std::vector<Border> borders_of(const ThermalLoad& load) {
   return borders;
 }
 
-// Fills the columns of a history in order of time.
-class Recorder {
- public:
-  Recorder(std::span<const double> times, Eigen::Index components)
-      : times_(times),
-        columns_(static_cast<std::size_t>(components),
-                 std::vector<double>(times.size())) {}
-
-  void record_until(double t, const Eigen::VectorXd& y) {
-    for (; next_ < times_.size() && times_[next_] <= t; ++next_) {
-      for (std::size_t i = 0; i < columns_.size(); ++i) {
-        columns_[i][next_] = y(static_cast<Eigen::Index>(i));
-      }
-    }
-  }
-
-  // Without the end of the step: a piece may begin there with another integral.
-  void record(const OdeStep& step) {
-    const auto begin = times_.begin() + static_cast<std::ptrdiff_t>(next_);
-    const auto count = static_cast<std::size_t>(
-        std::lower_bound(begin, times_.end(), step.end) - begin);
-    if (count == 0) return;
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      step.sample(static_cast<Eigen::Index>(i), times_.subspan(next_, count),
-                  std::span(columns_[i]).subspan(next_, count));
-    }
-    next_ += count;
-  }
-
-  std::vector<std::vector<double>>& columns() { return columns_; }
-
- private:
-  std::span<const double> times_;
-  std::vector<std::vector<double>> columns_;
-  std::size_t next_ = 0;
-};
-
 std::vector<double> heater_power(const ThermalOven& oven,
                                  const ThermalLoad& load,
                                  std::span<const double> times,
@@ -115,10 +79,10 @@ bool powered_at(std::span<const PowerInterval> powered, double t) {
                      });
 }
 
-CvodeStatistics integrate_temperatures(const ThermalNetwork& network,
-                                       const ThermalLoad& load, double end,
-                                       const ThermalRunOptions& options,
-                                       const ThermalSink& sink) {
+void integrate_temperatures(const ThermalNetwork& network,
+                            const ThermalLoad& load, double end,
+                            const ThermalRunOptions& options,
+                            const ThermalSink& sink) {
   require_valid_run(load);
   const ThermalOde ode(network, load.mechanical_power, load.dielectric_power);
   const Eigen::Index size = ode.size();
@@ -152,7 +116,6 @@ CvodeStatistics integrate_temperatures(const ThermalNetwork& network,
     y = cvode.advance_to(piece.end, sink.on_step);
   }
   sink.on_state(end, y);
-  return cvode.statistics();
 }
 
 ThermalHistory simulate_temperatures(const ThermalNetwork& network,
@@ -162,19 +125,21 @@ ThermalHistory simulate_temperatures(const ThermalNetwork& network,
   require_increasing(times);
   ThermalHistory history;
   if (times.empty()) return history;
-  Recorder recorder(times, ThermalOde(network, 0, 0).size());
-  history.statistics = integrate_temperatures(
+  std::vector<Eigen::Index> components(
+      static_cast<std::size_t>(ThermalOde(network, 0, 0).size()));
+  std::iota(components.begin(), components.end(), 0);
+  StateSamples samples(times, components);
+  integrate_temperatures(
       network, load, times.back(), options,
-      {.on_state = [&](double t,
-                       const auto& y) { recorder.record_until(t, y); },
-       .on_step = [&](const OdeStep& step) { recorder.record(step); }});
+      {.on_state = [&](double t, const auto& y) { samples.take_until(t, y); },
+       .on_step = [&](const OdeStep& step) { samples.take(step); }});
   if (network.parameters().oven) {
     history.heater_power =
         heater_power(*network.parameters().oven, load, times,
-                     recorder.columns()[kMount], recorder.columns().back());
+                     samples.columns()[kMount], samples.columns().back());
   }
   for (std::size_t i = 0; i < kThermalNodeCount; ++i)
-    history.temperature[i] = std::move(recorder.columns()[i]);
+    history.temperature[i] = std::move(samples.columns()[i]);
   return history;
 }
 

@@ -40,7 +40,6 @@ struct ThermalHistory {
   /// Node temperatures [K] by ThermalNode, one value for each time.
   std::array<std::vector<double>, kThermalNodeCount> temperature;
   std::vector<double> heater_power;  // [W]; empty without an oven
-  CvodeStatistics statistics;
 };
 
 /// What an integration of temperatures hands over in order of time: the state
@@ -58,10 +57,10 @@ struct ThermalSink {
 /// every power-on with an empty integral. Throws std::invalid_argument for
 /// power intervals out of order or a power below zero, SimulationFailure as
 /// Cvode.
-CvodeStatistics integrate_temperatures(const ThermalNetwork& network,
-                                       const ThermalLoad& load, double end,
-                                       const ThermalRunOptions& options,
-                                       const ThermalSink& sink);
+void integrate_temperatures(const ThermalNetwork& network,
+                            const ThermalLoad& load, double end,
+                            const ThermalRunOptions& options,
+                            const ThermalSink& sink);
 
 /// The temperatures at increasing `times` >= 0 [s]. Throws
 /// std::invalid_argument for times out of order, otherwise as

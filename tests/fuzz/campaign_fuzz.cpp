@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     for (std::uint32_t device = 0; device < 2; ++device) {
       static_cast<void>(campaign.device(device));
       static_cast<void>(campaign.part(device));
-      for (std::size_t run = 0; run < campaign.runs().size(); ++run)
+      for (std::size_t run = 0; run < campaign.runs.size(); ++run)
         static_cast<void>(campaign.run(run, device));
     }
   });

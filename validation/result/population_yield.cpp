@@ -82,7 +82,7 @@ class PopulationJudge {
     const VirtualDevice drawn = task_.campaign->device(number);
     if (!drawn.device) return {failed(drawn.failure), {}, false};
     try {
-      return judged({*drawn.device, task_.campaign->device_text(),
+      return judged({*drawn.device, task_.campaign->device_document->text(),
                      drawn.overrides, number});
     } catch (const SimulationFailure& error) {
       return {failed(error.what()), {}, false};
@@ -149,7 +149,7 @@ PopulationYield population_yield(const PopulationTask& task,
                                  std::size_t threads,
                                  const ProgressOfWork& progress) {
   const PopulationJudge population(task);
-  const std::uint32_t devices = task.campaign->devices();
+  const std::uint32_t devices = task.campaign->devices;
   std::vector<DeviceOutcome> outcomes(devices);
   std::atomic<std::uint32_t> done = 0;
   for_each_task(devices, threads, [&](std::size_t k, std::size_t) {
@@ -159,7 +159,7 @@ PopulationYield population_yield(const PopulationTask& task,
   });
 
   PopulationYield result;
-  result.campaign = task.campaign->name();
+  result.campaign = task.campaign->name;
   result.trained_on_each = task.model != nullptr;
   for (const DeviceOutcome& outcome : outcomes) {
     result.devices.push_back(outcome.verdict);

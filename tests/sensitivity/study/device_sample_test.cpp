@@ -49,7 +49,7 @@ TEST(DeviceSample, RowsAreTheHalvesOfASobolPoint) {
   EXPECT_EQ(sample.devices, 4U * (3 + 3 + 2));  // a choice has no half
   const ScrambledSobol sobol(6, 9);
   const auto at = [&](std::size_t dimension) { return sobol.at(2, dimension); };
-  const DrawPlan& plan = campaign.device_plan();
+  const DrawPlan& plan = campaign.device_plan;
   const PickFreezeValues& design = sample.merits[0].design;
   EXPECT_EQ(design.a[2], merit_at(campaign, plan, {at(0), at(1), at(2)}));
   EXPECT_EQ(design.b[2], merit_at(campaign, plan, {at(3), at(4), at(5)}));

@@ -20,7 +20,7 @@ constexpr const char* kTolerances =
 TEST(Factor, AnArrayIsOneFactorOfAllItsElements) {
   const CampaignFolder folder;
   const CampaignPlan campaign = folder.campaign(with_tolerances(kTolerances));
-  const std::vector<Factor> factors = factors_of(campaign.device_plan());
+  const std::vector<Factor> factors = factors_of(campaign.device_plan);
   ASSERT_EQ(factors.size(), 3U);
   EXPECT_EQ(factors[1].key, "patches.offset_m");
   EXPECT_EQ(factors[1].numbers, (std::vector<std::size_t>{1, 2, 3, 4}));
@@ -33,7 +33,7 @@ TEST(Factor, CorrelatedKeysAreOneFactor) {
       campaign_text(std::string("[tolerances]\n") + kTolerances +
                     "[[correlated]]\nkeys = [\"beam.length_m\", "
                     "\"beam.side_m\"]\ncorrelation = 0.5\n"));
-  const std::vector<Factor> factors = factors_of(campaign.device_plan());
+  const std::vector<Factor> factors = factors_of(campaign.device_plan);
   ASSERT_EQ(factors.size(), 2U);
   EXPECT_EQ(factors[0].key, "beam.length_m + beam.side_m");
   EXPECT_EQ(factors[0].numbers, (std::vector<std::size_t>{0, 5}));
@@ -44,7 +44,7 @@ TEST(Factor, OneOrNoneCannotBeCompared) {
   const auto message = [&](const char* tolerances) -> std::string {
     const CampaignPlan campaign = folder.campaign(with_tolerances(tolerances));
     try {
-      require_comparable(factors_of(campaign.device_plan()), "c.toml");
+      require_comparable(factors_of(campaign.device_plan), "c.toml");
     } catch (const std::invalid_argument& error) {
       return error.what();
     }

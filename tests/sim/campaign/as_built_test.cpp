@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/campaign/campaign_file.h"
+#include "sim/campaign/campaign.h"
 #include "tests/sim/device/nominal_device.h"
 
 namespace beamgyro::internal::as_built_test {

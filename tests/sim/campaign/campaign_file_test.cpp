@@ -20,20 +20,20 @@ constexpr const char* kOffset =
 TEST(CampaignFile, MinimalCampaignHasTheDefaults) {
   const CampaignFolder folder;
   const CampaignPlan c = folder.campaign(campaign_text(""));
-  EXPECT_EQ(c.name(), "test");
-  EXPECT_EQ(c.devices(), 100u);
-  EXPECT_EQ(c.devices_per_file(), 50u);
-  EXPECT_EQ(c.seed(), 3u);
-  EXPECT_TRUE(c.output().variables.empty());
-  EXPECT_FALSE(c.output().double_precision);
-  EXPECT_TRUE(c.output().compress);
-  EXPECT_EQ(c.output().truth_rate, 0);
-  ASSERT_EQ(c.runs().size(), 1u);
-  EXPECT_EQ(c.runs()[0].name, "rest");
-  EXPECT_TRUE(c.parameters().empty());
-  EXPECT_TRUE(c.run_parameters(0).empty());
+  EXPECT_EQ(c.name, "test");
+  EXPECT_EQ(c.devices, 100u);
+  EXPECT_EQ(c.devices_per_file, 50u);
+  EXPECT_EQ(c.source.seed, 3u);
+  EXPECT_TRUE(c.output.variables.empty());
+  EXPECT_FALSE(c.output.double_precision);
+  EXPECT_TRUE(c.output.compress);
+  EXPECT_EQ(c.output.truth_rate, 0);
+  ASSERT_EQ(c.runs.size(), 1u);
+  EXPECT_EQ(c.runs[0].name, "rest");
+  EXPECT_TRUE(c.device_plan.parameters.empty());
+  EXPECT_TRUE(c.runs[0].plan.parameters.empty());
   EXPECT_EQ(c.part(7), Part::kTrain);
-  EXPECT_EQ(c.base_scenario(0).seed, 3u);
+  EXPECT_EQ(c.runs[0].scenario.seed, 3u);
   EXPECT_EQ(c.run(0, 5).scenario->seed, 3u);
   EXPECT_EQ(c.device(5).device->beam.length, 0.04);
 }
@@ -51,30 +51,30 @@ TEST(CampaignFile, EveryKeyArrives) {
       "ambient_offset_K = { uniform = { low = -5, high = 5 } }\n"
       "[run.vary]\n\"ambient.constant_degC\" = { normal = { mean = 20, sigma "
       "= 3 } }\n"));
-  EXPECT_EQ(c.devices_per_file(), 7u);
-  EXPECT_EQ(c.output().variables,
+  EXPECT_EQ(c.devices_per_file, 7u);
+  EXPECT_EQ(c.output.variables,
             (std::vector<std::string>{"rate", "true_bias"}));
-  EXPECT_TRUE(c.output().double_precision);
-  EXPECT_EQ(c.output().truth_rate, 2);
-  EXPECT_FALSE(c.output().compress);
-  ASSERT_EQ(c.parameters().size(), 5u);
-  EXPECT_EQ(c.parameters()[3].name, "patches_offset_m_3");
-  EXPECT_EQ(c.parameters()[3].units, "m");
-  EXPECT_EQ(c.parameters()[3].long_name, "drawn patches.offset_m[3]");
-  EXPECT_EQ(c.parameters()[4].name, "readout_mode_choice");
-  EXPECT_EQ(c.parameters()[4].long_name,
+  EXPECT_TRUE(c.output.double_precision);
+  EXPECT_EQ(c.output.truth_rate, 2);
+  EXPECT_FALSE(c.output.compress);
+  ASSERT_EQ(c.device_plan.parameters.size(), 5u);
+  EXPECT_EQ(c.device_plan.parameters[3].name, "patches_offset_m_3");
+  EXPECT_EQ(c.device_plan.parameters[3].units, "m");
+  EXPECT_EQ(c.device_plan.parameters[3].long_name, "drawn patches.offset_m[3]");
+  EXPECT_EQ(c.device_plan.parameters[4].name, "readout_mode_choice");
+  EXPECT_EQ(c.device_plan.parameters[4].long_name,
             "drawn readout.mode, index from 0 among: \"open_loop\" | "
             "\"force_rebalance\"");
-  ASSERT_EQ(c.run_parameters(0).size(), 2u);
-  EXPECT_EQ(c.run_parameters(0)[0].name, "ambient_constant_degC");
-  EXPECT_EQ(c.run_parameters(0)[0].units, "degC");
-  EXPECT_EQ(c.run_parameters(0)[1].name, "ambient_offset_K");
+  ASSERT_EQ(c.runs[0].plan.parameters.size(), 2u);
+  EXPECT_EQ(c.runs[0].plan.parameters[0].name, "ambient_constant_degC");
+  EXPECT_EQ(c.runs[0].plan.parameters[0].units, "degC");
+  EXPECT_EQ(c.runs[0].plan.parameters[1].name, "ambient_offset_K");
 }
 
 TEST(CampaignFile, DevicesOfTheCommandReplaceThoseOfTheFile) {
   const CampaignFolder folder;
   folder.campaign(campaign_text(""));
-  EXPECT_EQ(CampaignPlan::read(folder.path() / "c.toml", 3).devices(), 3u);
+  EXPECT_EQ(CampaignPlan::read(folder.path() / "c.toml", 3).devices, 3u);
   EXPECT_TRUE(
       holds(rejection([&] { CampaignPlan::read(folder.path() / "c.toml", 0); }),
             "devices = 0: out of range"));
@@ -275,14 +275,14 @@ TEST(CampaignFile, CopiesOfTheSourcesMakeTheSameCampaign) {
       "\"rate\" = { discrete = { values = [{constant_deg_per_s = 1}, {file = "
       "\"profiles/c.csv\"}] } }\n");
   const CampaignPlan original = folder.campaign(text);
-  ASSERT_EQ(original.sources().size(), 6u);
-  EXPECT_EQ(original.sources()[0].text, text);
+  ASSERT_EQ(original.sources.size(), 6u);
+  EXPECT_EQ(original.sources[0].text, text);
 
   const CampaignFolder copy;
   std::filesystem::create_directories(copy.path() / "profiles");
   std::filesystem::remove(copy.path() / "nominal.toml");
   std::filesystem::remove(copy.path() / "rest.toml");
-  for (const SourceText& source : original.sources()) {
+  for (const SourceText& source : original.sources) {
     copy.write(source.path.lexically_relative(folder.path()).string(),
                source.text);
   }
@@ -308,10 +308,10 @@ TEST(CampaignFile, TheShippedCampaignsCanBeRead) {
                            "lifelike_population", "population"}) {
     const CampaignPlan c = CampaignPlan::read(std::string(BEAMGYRO_SCENARIOS) +
                                               "/campaigns/" + name + ".toml");
-    EXPECT_EQ(c.name(), name);
+    EXPECT_EQ(c.name, name);
     for (std::uint32_t i = 0; i < 20; ++i) {
       EXPECT_EQ(c.device(i).failure, "");
-      for (std::size_t r = 0; r < c.runs().size(); ++r)
+      for (std::size_t r = 0; r < c.runs.size(); ++r)
         EXPECT_EQ(c.run(r, i).failure, "");
     }
   }

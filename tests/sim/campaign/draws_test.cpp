@@ -118,7 +118,7 @@ TEST(Draws, OverridesHoldWhatWasNotTrimmed) {
   const CampaignPlan c = folder.campaign(campaign_text(
       "[tolerances]\n" + std::string(kOffset) + kTransitions +
       "[trims]\nquadrature = false\noffset = false\nscale_factor = false\n"));
-  const Gyro base = make_gyro(c.base_device());
+  const Gyro base = make_gyro(c.base_device);
   for (std::uint32_t i = 0; i < 8; ++i) {
     const VirtualDevice unit = c.device(i);
     ASSERT_TRUE(unit.device) << unit.failure;
@@ -127,7 +127,7 @@ TEST(Draws, OverridesHoldWhatWasNotTrimmed) {
     const Gyro gyro = make_gyro(*unit.device);
     EXPECT_NEAR(gyro.offset, base.offset, 1e-9);
     EXPECT_NE(unit.device->readout.offset_trim,
-              c.base_device().readout.offset_trim);
+              c.base_device.readout.offset_trim);
   }
 }
 
@@ -186,7 +186,7 @@ TEST(Draws, RunsVaryAndShiftTheirAmbient) {
       "= [[0, 0], [5, 20]]}] } }\n"
       "\"power.on_s\" = { discrete = { values = [[0], [2.5]], weights = [1, "
       "1] } }\n"));
-  ASSERT_EQ(c.run_parameters(0).size(), 3u);
+  ASSERT_EQ(c.runs[0].plan.parameters.size(), 3u);
   std::array<int, 2> rates{}, powers{};
   for (std::uint32_t i = 0; i < 40; ++i) {
     const VirtualRun run = c.run(0, i);
@@ -195,7 +195,8 @@ TEST(Draws, RunsVaryAndShiftTheirAmbient) {
     const std::size_t power = static_cast<std::size_t>(run.parameters[1]);
     ++rates[rate];
     ++powers[power];
-    const auto& profile = std::get<PiecewiseLinear>(run.scenario->rate);
+    const auto& profile =
+        std::get<PiecewiseLinear>(run.scenario->motion[kRateZ]);
     EXPECT_NEAR(profile.value(6) / kDegree, rate == 0 ? 10 : 20, 1e-12);
     EXPECT_EQ(run.scenario->powered[0].on, power == 0 ? 0 : 2.5);
     EXPECT_NEAR(run.scenario->ambient.value(1), 298.15 + run.parameters[2],

@@ -67,20 +67,20 @@ INSTANTIATE_TEST_SUITE_P(Samplings, Population,
 TEST_P(Population, AThousandDevicesFollowTheirDistributions) {
   constexpr std::uint32_t kDevices = 1000;
   const CampaignPlan campaign = shipped(GetParam());
-  const std::size_t parameters = campaign.parameters().size();
+  const std::size_t parameters = campaign.device_plan.parameters.size();
   ASSERT_EQ(parameters, 19u);
   std::vector<std::vector<double>> shares(parameters);
   for (std::uint32_t i = 0; i < kDevices; ++i) {
     const VirtualDevice unit = campaign.device(i);
     ASSERT_EQ(unit.failure, "");
     for (std::size_t p = 0; p < parameters; ++p) {
-      const std::string& name = campaign.parameters()[p].name;
+      const std::string& name = campaign.device_plan.parameters[p].name;
       shares[p].push_back(distribution_of(name)(unit.parameters[p]));
     }
   }
   for (std::size_t p = 0; p < parameters; ++p) {
     EXPECT_LT(kolmogorov_smirnov(shares[p]), kOnePercent)
-        << campaign.parameters()[p].name;
+        << campaign.device_plan.parameters[p].name;
     // Nothing is drawn by the same numbers: five standard errors.
     for (std::size_t q = 0; q < p; ++q) {
       double sum = 0;

@@ -55,7 +55,7 @@ TEST(ShardMaking, HasTheTrueDriveFrequencyWhereItsErrorsAreDrawn) {
                                        &SetVariable::name);
   ASSERT_NE(found, head.variables.end());
   EXPECT_EQ(found->storage, Storage::kFloat64);
-  EXPECT_EQ(campaign.parameters()[0].units, "1e-6");
+  EXPECT_EQ(campaign.device_plan.parameters[0].units, "1e-6");
 }
 
 }  // namespace

@@ -36,16 +36,14 @@ struct SensorFault : std::exception {
 };
 
 TEST(Cvode, FollowsExponentialDecay) {
-  for (const OdeMethod method : {OdeMethod::kBdf, OdeMethod::kAdams}) {
-    Cvode ode(kDecayRate, 0.0, vector_of({2.0, -3.0}),
-              {.method = method, .relative_tolerance = 1e-10});
-    for (const double t : {0.5, 3.0, 7.0}) {
-      const VectorXd& y = ode.advance_to(t);
-      // Tolerance: the local one times the number of steps, some hundreds.
-      EXPECT_NEAR(y(0), 2.0 * std::exp(-kDecay * t), 1e-7) << "t = " << t;
-      EXPECT_NEAR(y(1), -3.0 * std::exp(-kDecay * t), 1e-7) << "t = " << t;
-      EXPECT_EQ(ode.time(), t);
-    }
+  Cvode ode(kDecayRate, 0.0, vector_of({2.0, -3.0}),
+            {.relative_tolerance = 1e-10});
+  for (const double t : {0.5, 3.0, 7.0}) {
+    const VectorXd& y = ode.advance_to(t);
+    // Tolerance: the local one times the number of steps, some hundreds.
+    EXPECT_NEAR(y(0), 2.0 * std::exp(-kDecay * t), 1e-7) << "t = " << t;
+    EXPECT_NEAR(y(1), -3.0 * std::exp(-kDecay * t), 1e-7) << "t = " << t;
+    EXPECT_EQ(ode.time(), t);
   }
 }
 
@@ -130,7 +128,6 @@ TEST(Cvode, RestartsAfterAJumpOfTheRightHandSide) {
   ode.restart(2.0, at_jump);
   const double exact = -5 + (at_jump(0) + 5) * std::exp(-0.5);
   EXPECT_NEAR(ode.advance_to(3.0)(0), exact, 1e-8);
-  EXPECT_EQ(ode.statistics().restarts, 1);
 }
 
 TEST(Cvode, RethrowsWhatTheJacobianThrew) {
@@ -216,7 +213,9 @@ TEST(Cvode, AnalyticJacobianGivesTheSameWithFewerEvaluations) {
   };
   CvodeOptions options{.absolute_tolerance = vector_of({1e-12, 1e-14, 1e-12})};
   Cvode quotients(rate, 0.0, vector_of({1, 0, 0}), options);
-  options.jacobian = [](double, const auto& y, auto slope) {
+  long jacobians = 0;
+  options.jacobian = [&](double, const auto& y, auto slope) {
+    ++jacobians;
     slope.row(0) << -0.04, 1e4 * y(2), 1e4 * y(1);
     slope.row(2) << 0, 6e7 * y(1), 0;
     slope.row(1) = -slope.row(0) - slope.row(2);
@@ -226,7 +225,7 @@ TEST(Cvode, AnalyticJacobianGivesTheSameWithFewerEvaluations) {
   const VectorXd b = quotients.advance_to(40.0);
   EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-7);
   EXPECT_NEAR(a.sum(), 1.0, 1e-12);
-  EXPECT_GT(analytic.statistics().jacobians, 0);
+  EXPECT_GT(jacobians, 0);
   EXPECT_LT(analytic.statistics().rhs_evaluations,
             quotients.statistics().rhs_evaluations);
 }
@@ -245,48 +244,10 @@ long steps_of_quiet_beat(const CvodeOptions& options) {
   return ode.statistics().steps;
 }
 
-TEST(Cvode, StabilityLimitDetectionAndLowOrderSaveStepsOnAQuietBeat) {
+TEST(Cvode, StabilityLimitDetectionSavesStepsOnAQuietBeat) {
   const long plain = steps_of_quiet_beat({});
   EXPECT_LT(steps_of_quiet_beat({.stability_limit_detection = true}),
             plain / 5);
-  EXPECT_LT(steps_of_quiet_beat({.max_order = 2}), plain / 5);
-}
-
-TEST(Cvode, KeepsTheOrderAndStepAskedFor) {
-  Cvode ode(kDecayRate, 0.0, vector_of({1.0}),
-            {.max_order = 2, .initial_step = 1e-5, .max_step = 0.01});
-  bool first = true;
-  ode.advance_to(1.0, [&](const OdeStep& step) {
-    EXPECT_LE(step.order, 2);
-    EXPECT_LE(step.end - step.begin, 0.01 * (1 + 1e-12));
-    if (std::exchange(first, false)) {
-      EXPECT_DOUBLE_EQ(step.end, 1e-5);
-    }
-  });
-}
-
-TEST(Cvode, AdamsKeepsTheAmplitudeThatBdfDamps) {
-  const auto amplitude_error = [](OdeMethod method) {
-    Cvode ode(
-        [](double, const auto& y, auto dydt) {
-          dydt(0) = y(1);
-          dydt(1) = -y(0);
-        },
-        0.0, vector_of({1, 0}), {.method = method, .relative_tolerance = 1e-6});
-    return std::abs(ode.advance_to(200 * std::numbers::pi).norm() - 1);
-  };
-  EXPECT_LT(amplitude_error(OdeMethod::kAdams),
-            amplitude_error(OdeMethod::kBdf) / 3);
-}
-
-TEST(Cvode, GoesOnAfterBeingMoved) {
-  Cvode first(kDecayRate, 0.0, vector_of({1.0}));
-  first.advance_to(1.0);
-  Cvode second = std::move(first);
-  EXPECT_NEAR(second.advance_to(2.0)(0), std::exp(-1.0), 1e-6);
-  Cvode third(kDecayRate, 0.0, vector_of({5.0}));
-  third = std::move(second);
-  EXPECT_NEAR(third.advance_to(4.0)(0), std::exp(-2.0), 1e-6);
 }
 
 TEST(Verification, V47IntegratorsInTwoThreadsGiveTheSameBits) {

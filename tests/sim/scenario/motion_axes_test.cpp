@@ -42,8 +42,9 @@ AxisCase rate_axis(
 
 AxisCase acceleration_axis(const std::string& name, std::size_t i) {
   return {"acceleration." + name, "g", "acceleration_g",
-          "true_acceleration_" + name, kGravity,
-          1, [i](const RunSamples& s) -> const auto& {return s.acceleration[i];
+          "true_acceleration_" + name, kGravity, 1,
+          [i](const RunSamples& s) -> const auto& {
+                                       return s.motion[kAccelerationX + i];
 }
 };  // namespace
 }  // namespace beamgyro::internal::motion_axes_test
@@ -52,13 +53,13 @@ std::vector<AxisCase> axes() {
   return {
       rate_axis(
           "rate", "true_rate",
-          [](const RunSamples& s) -> const auto& { return s.rate; }),
+          [](const RunSamples& s) -> const auto& { return s.motion[kRateZ]; }),
       rate_axis(
           "cross_rate.x", "true_cross_rate_x",
-          [](const RunSamples& s) -> const auto& { return s.cross_rate[0]; }),
+          [](const RunSamples& s) -> const auto& { return s.motion[kRateX]; }),
       rate_axis(
           "cross_rate.y", "true_cross_rate_y",
-          [](const RunSamples& s) -> const auto& { return s.cross_rate[1]; }),
+          [](const RunSamples& s) -> const auto& { return s.motion[kRateY]; }),
       acceleration_axis("x", 0),
       acceleration_axis("y", 1),
       acceleration_axis("z", 2)};
@@ -199,7 +200,7 @@ TEST(RandomAxes, AreIndependentOfEachOther) {
 TEST(RandomAxes, LeaveTheRateAboutTheInputAxisAsItIsAlone) {
   const PiecewiseLinear alone = realised({kDegree, 5}, 10, 7, 0, 0);
   const RunSamples samples = all_random(10);
-  EXPECT_EQ(samples.rate, alone.sample(samples.time));
+  EXPECT_EQ(samples.motion[kRateZ], alone.sample(samples.time));
 }
 
 }  // namespace

@@ -130,8 +130,9 @@ TEST(Motion, OfASegmentMeetsTheSamplesOfTheRun) {
   for (const Piece& piece : pieces(scenario, motion)) {
     const MotionSegment segment = motion.segment(piece.start, piece.end);
     for (; k < samples.time.size() && samples.time[k] < piece.end; ++k) {
-      EXPECT_NEAR(segment.at(samples.time[k]).z, samples.rate[k], 1e-14);
-      EXPECT_NEAR(segment.at(samples.time[k]).y, samples.cross_rate[1][k],
+      EXPECT_NEAR(segment.at(samples.time[k]).z, samples.motion[kRateZ][k],
+                  1e-14);
+      EXPECT_NEAR(segment.at(samples.time[k]).y, samples.motion[kRateY][k],
                   1e-14);
     }
   }

@@ -41,7 +41,7 @@ TEST(ScenarioFile, AKeyInPlaceOfThePointsOfAHistoryIsNamed) {
 
 TEST(ScenarioFile, WithoutRateAndPowerItRestsAndIsOnFromTheStart) {
   const ScenarioPlan scenario = scenario_from("");
-  EXPECT_EQ(std::get<PiecewiseLinear>(scenario.rate).value(50), 0);
+  EXPECT_EQ(std::get<PiecewiseLinear>(scenario.motion[kRateZ]).value(50), 0);
   ASSERT_EQ(scenario.powered.size(), 1u);
   EXPECT_EQ(scenario.powered[0].on, 0);
   EXPECT_EQ(scenario.powered[0].off, std::numeric_limits<double>::infinity());

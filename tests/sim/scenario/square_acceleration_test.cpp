@@ -40,7 +40,7 @@ TEST(SquareAcceleration, OfAStepRisesAsTwoPolesDo) {
 
 TEST(SquareAcceleration, OfARandomOneFollowsItsSquare) {
   const PiecewiseLinear a = realised({.rms = 3, .bandwidth = 0.1}, 100, 0, 0, 0,
-                                     kAccelerationPurposes[1]);
+                                     kAccelerationYStream);
   const std::vector<double> v = shown(a, 100, 10);
   for (std::size_t k = 1; k < v.size(); ++k) {
     const double t = static_cast<double>(k) / 10 - 2 / kCorner;  // the delay

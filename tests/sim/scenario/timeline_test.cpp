@@ -83,7 +83,7 @@ TEST(Timeline, BordersMoveToTheSampleOrTheDecimalsThatAreThere) {
   scenario.powered = {{after(0.3), 0.1 + 0.6}, {after(20.123), 1e7 / 3}};
   scenario.ambient =
       PiecewiseLinear({0.3, after(40.01), 50.01}, {300, 301, 302});
-  scenario.rate = PiecewiseLinear(
+  scenario.motion[kRateZ] = PiecewiseLinear(
       {20.123, after(20.123), 40.01, 50, after(50), after(after(50))},
       {1, 2, 3, 4, 5, 6});
   const ScenarioPlan aligned = with_aligned_borders(scenario);
@@ -92,7 +92,7 @@ TEST(Timeline, BordersMoveToTheSampleOrTheDecimalsThatAreThere) {
   EXPECT_EQ(aligned.powered[1].on, 20.123);
   EXPECT_EQ(aligned.powered[1].off, 1e7 / 3);
   EXPECT_EQ(aligned.ambient.times(), (std::vector<double>{0.3, 40.01, 50.01}));
-  const auto& rate = std::get<PiecewiseLinear>(aligned.rate);
+  const auto& rate = std::get<PiecewiseLinear>(aligned.motion[kRateZ]);
   EXPECT_EQ(rate.times(), (std::vector<double>{20.123, 20.123, 40.01, 50, 50}));
   EXPECT_EQ(rate.values(), (std::vector<double>{1, 2, 3, 4, 6}));
 }
@@ -156,19 +156,19 @@ ScenarioPlan scenario_of_borders(std::uint32_t seed, double duration,
   };
   scenario.ambient =
       PiecewiseLinear(borders, {300, 300 + value(5), 300 + value(5)});
-  scenario.cross_rate[0] = bends(0.3);
+  scenario.motion[kRateX] = bends(0.3);
   if (dice.below(3) == 0)
-    scenario.cross_rate[1] = RandomRate{.rms = 0.1, .bandwidth = bandwidth};
+    scenario.motion[kRateY] = RandomRate{.rms = 0.1, .bandwidth = bandwidth};
   if (dice.below(4) == 0) return scenario;  // nothing jumps
   if (dice.below(3) == 0) {
     scenario.powered = {{0, border(0)}, {border(1), border(2)}};
   } else {
     scenario.powered = {{border(0)}};
   }
-  scenario.rate = steps(0.3);
+  scenario.motion[kRateZ] = steps(0.3);
   scenario.ambient = PiecewiseLinear({0, border(1), border(2)},
                                      {300, 300 + value(5), 300 + value(5)});
-  if (dice.below(2) > 0) scenario.acceleration[2] = steps(20);
+  if (dice.below(2) > 0) scenario.motion[kAccelerationZ] = steps(20);
   return scenario;
 }
 
