@@ -92,10 +92,9 @@ int generate(const GenerateArguments& arguments) {
                  "\n");
     return 0;
   }
-  require_set_output(arguments.output, plan.manifest_head(),
-                     campaign.sources);
-  SetWriter set(arguments.output, plan.manifest_head(), campaign.sources,
-                task, arguments.resume);
+  require_set_output(arguments.output, plan.manifest_head(), campaign.sources);
+  SetWriter set(arguments.output, plan.manifest_head(), campaign.sources, task,
+                arguments.resume);
   for (const std::string& warning : lock_warnings(set, arguments.output))
     print_warning(warning);
   if (!set.died_before().empty())

@@ -61,9 +61,9 @@ class FunctionCompensator final : public RateCompensator {
     const Asked asked(this);
     const std::lock_guard lock(one_at_a_time_);  // before the GIL, not within
     const py::gil_scoped_acquire acquired;
-    const auto answers = (*function_)(std::make_shared<Recording>(recording),
-                                      recording.run)
-                             .cast<py::tuple>();
+    const auto answers =
+        (*function_)(std::make_shared<Recording>(recording), recording.run)
+            .cast<py::tuple>();
     CompensatedRate compensated;
     compensated.rate = answered_values(answers[0]);
     if (!answers[1].is_none()) compensated.sigma = answered_values(answers[1]);
