@@ -14,11 +14,6 @@
 
 namespace beamgyro::internal {
 
-/// The modes of a unit at rest at a beam temperature [K].
-inline ModalParameters modal_at(const Gyro& gyro, double T) {
-  return modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim);
-}
-
 /// Time in which the drive mode decays to 1/e [s].
 inline double decay_time(const ModalParameters& modal) {
   return 2 * modal.mass / modal.damping(0, 0);
