@@ -43,9 +43,9 @@ class Install(unittest.TestCase):
     def test_pictures_need_nothing_of_the_source_tree(self):
         self.call(self.program, "plot", "run.h5", "-o", "run.svg")
         self.assertIn("rate at rest", (self.dir / "run.svg").read_text())
-        self.call(program, "train", "run.h5", "-o", "c.json", "--model",
+        self.call(self.program, "train", "run.h5", "-o", "c.json", "--model",
                   self.scenario("models/constant.toml"))
-        self.call(program, "plot", "c.json", "-o", "c.svg")
+        self.call(self.program, "plot", "c.json", "-o", "c.svg")
         self.assertIn("bias taken away", (self.dir / "c.svg").read_text())
         shipped = self.prefix / "share/beamgyro/python"
         self.assertEqual(list(shipped.rglob("__pycache__")), [])

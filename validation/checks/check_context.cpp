@@ -143,10 +143,20 @@ double ScaleFactorCurve::departure_of_corrected(double gain,
   const Point& above = right == points_.end() ? points_.back() : *right;
   const Point& below =
       right == points_.begin() ? points_.front() : *(right - 1);
+  // Beyond the last point s may go on by twice the mean slope of the curve.
+  const double beyond =
+      std::max({temperature - points_.back().temperature,
+                points_.front().temperature - temperature, 0.0});
+  const double span = points_.back().temperature - points_.front().temperature;
+  const double on =
+      span > 0.0 ? 2.0 * largest_departure() * std::min(beyond / span, 1.0)
+                 : 0.0;
   const double low = std::min(above.scale_factor - above.uncertainty,
-                              below.scale_factor - below.uncertainty);
+                              below.scale_factor - below.uncertainty) -
+                     on;
   const double high = std::max(above.scale_factor + above.uncertainty,
-                               below.scale_factor + below.uncertainty);
+                               below.scale_factor + below.uncertainty) +
+                      on;
   return std::abs(gain / std::clamp(gain, 1.0 / high, 1.0 / low) - 1.0);
 }
 
@@ -227,20 +237,26 @@ std::string CheckContext::rounding_words() const {
 std::vector<std::string> CheckContext::untested_by_replay() const {
   const FittedCompensator* trained = checked.trained;
   const auto range = temperatures_of(runs_of(thermal_purposes()));
-  if (trained == nullptr || !range) return {};
+  if (!range) return {};
   std::vector<std::string> names;
   const auto add = [&names](const std::string& name) {
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   };
   // GainJudge holds a table against the curve wherever there is one.
-  if (trained->scale_factor && scale_factor.empty()) add("scale_factor");
+  if (trained != nullptr && trained->scale_factor && scale_factor.empty())
+    add("scale_factor");
+  std::vector<std::string> read;
+  if (trained != nullptr)
+    for (const Input& input : trained->inputs) read.push_back(input.column);
+  else if (checked.compensator->states_inputs())
+    read = checked.compensator->inputs();
   for (double T = range->lowest; T < range->highest + 1.0; T += 1.0) {
     const double here = std::min(T, range->highest);
     if (scale_factor.has_point_near(here, kRateReach)) continue;
-    for (const Input& input : trained->inputs)
-      if (!sees_the_rate(input) && !input.column.empty() &&
-          input.column != "temperature")
-        add(input.column);
+    for (const std::string& column : read)
+      if (!column.empty() && column != "temperature" && column != "rate" &&
+          column != "output")
+        add(column);
   }
   return names;
 }

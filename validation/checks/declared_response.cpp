@@ -36,6 +36,7 @@ class ReadyCompensator final : public TestedCompensator {
   std::vector<std::string> inputs() const override {
     return original_.inputs();
   }
+  bool states_inputs() const override { return original_.states_inputs(); }
   bool is_timed() const override { return original_.is_timed(); }
 
   std::vector<Answer> answers(

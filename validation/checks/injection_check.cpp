@@ -25,7 +25,6 @@ constexpr double kSinePeriods = 4.0;        // the first one settles
 constexpr double kLeastSine = 20.0;         // samples
 constexpr double kPartOfRate = 0.4;         // [-], of the sampling rate
 constexpr double kDeclaredTolerance = 0.1;  // [-], of a declared response
-constexpr double kSweepPeriod = 1.0;        // [s], of samples of a sweep
 
 /// The frequencies [Hz] that a run can show.
 std::vector<double> sine_frequencies(const Recording& run) {
@@ -156,32 +155,44 @@ void add_held(const CheckContext& context, std::size_t number,
                block.rate});
 }
 
+// Whether the bias of a file follows more than the temperature of the sample.
+bool remembers(const FittedCompensator& trained) {
+  return std::ranges::any_of(
+      trained.inputs, [](const Input& input) { return input.parameter > 0.0; });
+}
+
 // Rates at temperatures between and beyond the recorded samples: over the range
-// that training saw, or over that of the runs.
+// that training saw, or over that of the runs. A table of scale factors counts
+// where held rates show what it has to be.
 void add_sweep(const CheckContext& context, std::size_t number,
-               GainJudge& judge) {
+               const std::vector<std::size_t>& runs, GainJudge& judge) {
   const FittedCompensator* trained = context.checked.trained;
-  if (trained != nullptr &&
+  const bool has_table = trained != nullptr && trained->scale_factor &&
+                         context.without_table == nullptr;
+  if (trained != nullptr && !has_table &&
       std::ranges::none_of(trained->inputs, sees_the_rate))
     return;
   const auto range = trained != nullptr
                          ? std::optional(trained->temperature_range)
-                         : context.temperatures_of({number});
+                         : context.temperatures_of(runs);
   if (!range) return;
   RateEstimator estimator = std::cref(context.altered);
   if (trained != nullptr)
-    estimator = [bias_only =
-                     without_scale_factor(*trained)](const Recording& any) {
-      return compensated_rate(bias_only, any);
+    estimator = [swept = has_table ? *trained : without_scale_factor(*trained)](
+                    const Recording& any) {
+      return compensated_rate(swept, any);
     };
-  const auto blocks = replays_over_temperature(
-      estimator, *context.checked.runs[number].recording, *range,
-      context.checked.full_scale,
-      trained != nullptr ? kSweepReplays : kSweepReplaysOfProgram,
-      context.pauses(kSweepPeriod));
-  for (const ReplayedBlock& block : blocks)
-    judge.add({block.rate, block.retained, block.temperature, std::nan(""),
-               block.rate});
+  std::vector<double> periods = {kSweepPeriod};
+  if (trained == nullptr || remembers(*trained))
+    periods.push_back(kSettledPeriod);
+  for (const double period : periods)
+    for (const ReplayedBlock& block : replays_over_temperature(
+             estimator, *context.checked.runs[number].recording, *range,
+             context.checked.full_scale,
+             trained != nullptr ? kSweepReplays : kSweepReplaysOfProgram,
+             context.pauses(period), period))
+      judge.add({block.rate, block.retained, block.temperature, std::nan(""),
+                 block.rate});
 }
 
 CheckResult failed_injection(const CheckContext& context,
@@ -227,7 +238,7 @@ CheckResult check_injection(const CheckContext& context) {
       [](const GainJudge& judge) { return judge.count() > 0; });
   if (replayed != judges.end() - 1)
     add_sweep(context,
-              runs[static_cast<std::size_t>(replayed - judges.begin())],
+              runs[static_cast<std::size_t>(replayed - judges.begin())], runs,
               judges.back());
   GainJudge all = context.judge();
   for (const GainJudge& judge : judges) all.add(judge);

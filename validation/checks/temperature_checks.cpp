@@ -34,9 +34,10 @@ CheckResult check_extrapolation(const CheckContext& context) {
 namespace {
 
 constexpr double kLeastTemperatureSpread =
-    2.0;                             // [K], less may be a constant temperature
-constexpr double kMostNoise = 0.5;   // [-], of the variance
-constexpr double kClearDrift = 6.0;  // standard deviations
+    2.0;                              // [K], less may be a constant temperature
+constexpr double kStuckWithin = 0.1;  // [K], as by the noise of a converter
+constexpr double kMostNoise = 0.5;    // [-], of the variance
+constexpr double kClearDrift = 6.0;   // standard deviations
 
 // Sums over the powered samples of all runs.
 struct TemperatureSums {
@@ -119,13 +120,17 @@ CheckResult check_temperature_input(const CheckContext& context) {
                      .value = all.noise_share(),
                      .limit = kMostNoise};
   const double spread = std::sqrt(all.variance());
-  if (all.lowest == all.highest && does_drift) {
+  if (all.highest - all.lowest <= kStuckWithin && does_drift) {
     result.outcome = CheckOutcome::kFailed;
     result.value = 1.0;
     result.words = fmt::format(
-        "The temperature is {:g} degC at every sample while the drift changes: "
-        "its sensor is stuck, and the runs carry no information about it.",
-        all.lowest);
+        "The temperature is {:g} degC at every sample{} while the drift "
+        "changes: its sensor is stuck, and the runs carry no information about "
+        "it.",
+        all.lowest,
+        all.lowest == all.highest
+            ? ""
+            : fmt::format(", within {:.2g} K,", all.highest - all.lowest));
   } else if (spread > kLeastTemperatureSpread &&
              all.noise_share() > kMostNoise) {
     result.outcome = CheckOutcome::kFailed;

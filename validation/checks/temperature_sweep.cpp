@@ -48,12 +48,13 @@ SweepLine line_over(const Recording& recording, const std::vector<double>& x,
 }  // namespace
 
 Recording temperature_sweep(const Recording& recording,
-                            const TemperatureRange& range) {
+                            const TemperatureRange& range, double period) {
   const double lowest = std::max(range.lowest, kPlausible.lowest);
   const double highest =
       std::max(lowest, std::min(range.highest, kPlausible.highest));
-  const auto samples =
-      static_cast<std::size_t>(std::floor((highest - lowest) / kSweepStep)) + 2;
+  const auto steps =
+      static_cast<std::size_t>(std::floor((highest - lowest) / kSweepStep)) + 1;
+  const std::size_t samples = 2 * steps + 1;
   const auto& rate = column_values(recording, "rate");
   const double at_rest =
       powered_mean(recording, rate) -
@@ -62,8 +63,9 @@ Recording temperature_sweep(const Recording& recording,
   std::vector<double> swept_rate, temperature;
   for (std::size_t k = 0; k < samples; ++k) {
     const double here = static_cast<double>(k);
-    sweep.time.push_back(here);
-    temperature.push_back(std::min(lowest + here * kSweepStep, highest));
+    sweep.time.push_back(here * period);
+    const auto way = static_cast<double>(std::min(k, 2 * steps - k));
+    temperature.push_back(std::min(lowest + way * kSweepStep, highest));
     swept_rate.push_back(at_rest + kRateChange * std::sin(0.1 * here));
   }
   sweep.status.assign(samples, 0);
@@ -86,8 +88,8 @@ Recording temperature_sweep(const Recording& recording,
 std::vector<ReplayedBlock> replays_over_temperature(
     const RateEstimator& estimator, const Recording& recording,
     const TemperatureRange& range, double full_scale, std::size_t replays,
-    const ReplayPauses& pauses) {
-  const Recording sweep = temperature_sweep(recording, range);
+    const ReplayPauses& pauses, double period) {
+  const Recording sweep = temperature_sweep(recording, range, period);
   const std::vector<double> answers = estimator(sweep);
   std::vector<ReplayedBlock> all;
   for (std::size_t first = 0; first < replays; ++first) {

@@ -67,6 +67,7 @@ class LibraryCompensator : public TestedCompensator {
         limits_(std::move(limits)) {}
 
   std::vector<std::string> inputs() const override { return names_; }
+  bool states_inputs() const override { return true; }
 
   std::vector<Answer> answers(
       const std::vector<const Recording*>& runs) const override;

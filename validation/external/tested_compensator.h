@@ -75,6 +75,9 @@ class TestedCompensator {
   virtual std::vector<Answer> answers(
       const std::vector<const Recording*>& runs) const = 0;
 
+  /// Whether inputs() is what it reads, and not all that it may read.
+  virtual bool states_inputs() const { return false; }
+
   /// Whether the seconds of its answers are its own, and not those of waiting
   /// for another thread that asks it.
   virtual bool is_timed() const { return true; }

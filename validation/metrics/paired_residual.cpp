@@ -70,7 +70,10 @@ std::optional<PairedResidual> paired_residual(const LeftDrift& drift,
   }
   found.gain = std::log(other_sum / sum);
   const auto clusters = static_cast<double>(own.size());
-  if (own.size() < 2) return found;
+  if (own.size() < 2) {
+    found.half_width = HUGE_VAL;
+    return found;
+  }
   double squares = 0.0;
   for (std::size_t k = 0; k < own.size(); ++k)
     squares += std::pow(own[k] / sum - others[k] / other_sum, 2);

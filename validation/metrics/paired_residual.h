@@ -26,7 +26,7 @@ struct PairedResidual {
   double rms = 0.0, other_rms = 0.0;  // [deg/s]
   // Logarithm of the mean square of the other over that of the rate, and the
   // half-width of its 95 % interval (Student's t over clusters, eighths of
-  // runs) [-].
+  // runs) [-]; infinite where there is one cluster only.
   double gain = 0.0, half_width = 0.0;
 
   bool is_better() const { return gain > half_width; }

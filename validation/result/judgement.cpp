@@ -105,6 +105,11 @@ Reasons reasons_of(const SpecificationFile& specification,
       add_name(reasons.open, limit.metric);
   }
   reasons.no_use = words_of_no_use(result.comparisons);
+  for (const ResidualComparison& one : result.comparisons)
+    if (one.is_required && std::isinf(one.found.half_width))
+      add_name(reasons.open, fmt::format("whether a {} is as good, for which "
+                                         "a minute of samples is too short",
+                                         one.with));
   for (const CheckResult& check : result.checks) {
     if (check.outcome == CheckOutcome::kFailed) {
       add_name(reasons.against, check.name);
@@ -285,6 +290,7 @@ std::string words_of_no_use(
   const ResidualComparison* least = nullptr;
   for (const ResidualComparison& one : comparisons)
     if (one.is_required && !one.found.is_better() &&
+        std::isfinite(one.found.half_width) &&
         (least == nullptr || one.found.other_rms < least->found.other_rms))
       least = &one;
   return least == nullptr

@@ -102,10 +102,15 @@ class PopulationJudge {
         return {failed(fmt::format("cannot be trained: {}", error.what()))};
       }
     }
-    const DeviceEvidence found =
-        device_evidence(qualification_, device, own ? *own : *task_.compensator,
-                        needs_baselines_ ? data : TrainingData{},
-                        own != nullptr || task_.known != nullptr, 1);
+    DeviceEvidence found;
+    try {
+      found = device_evidence(qualification_, device,
+                              own ? *own : *task_.compensator,
+                              needs_baselines_ ? data : TrainingData{},
+                              own != nullptr || task_.known != nullptr, 1);
+    } catch (const std::invalid_argument& error) {
+      return {failed(error.what())};
+    }
     DeviceOutcome outcome;
     outcome.metrics =
         metric_results(found, qualification_.metric_runs, names_, 1);

@@ -103,8 +103,10 @@ Json comparison_json(const ResidualComparison& comparison) {
           {"rms_deg_per_s", found.other_rms},
           {"compensated_rms_deg_per_s", found.rms},
           {"gain", found.gain},
-          {"interval",
-           {found.gain - found.half_width, found.gain + found.half_width}},
+          {"interval", std::isfinite(found.half_width)
+                           ? Json{found.gain - found.half_width,
+                                  found.gain + found.half_width}
+                           : Json()},
           {"better", found.is_better()},
           {"required", comparison.is_required}};
 }

@@ -163,6 +163,41 @@ TEST(PlantedFaults, AnOutputThatSticksAfterTenMinutes) {
   EXPECT_EQ(failed(sticks), Names{"output_stuck"});
 }
 
+// The runs reach 50 degC, the file 55: there a table takes the rate away.
+TEST(PlantedFaults, ATableOfScaleFactorsThatEatsTheRateBeyondTheRuns) {
+  FittedCompensator table = trained("spline");
+  const double beyond = table.temperature_range.highest - 1.5;
+  const auto failed_with = [&](double s) {
+    table.scale_factor = LookupTable{
+        Eigen::ArrayXd{{-60.0, beyond - 0.2, beyond, beyond + 0.2, 80.0}},
+        Eigen::ArrayXd{{1.0, 1.0, s, 1.0, 1.0}}};
+    const auto compensator = tested(table);
+    CheckedCompensator all = checked(*compensator);
+    all.trained = &table;
+    return failed_checks(all);
+  };
+  EXPECT_EQ(failed_with(1000.0), Names{"injection"});
+  EXPECT_EQ(failed_with(5.0), Names{"injection"});
+  EXPECT_EQ(failed_with(1.0), Names{});
+}
+
+// Its low-pass of the temperature has 30 degC in no run.
+TEST(PlantedFaults, ARateThatIsEatenWhereALowPassArrives) {
+  const Function eats = [](const Recording& run) {
+    std::vector<double> answers = sound(run);
+    const auto& T = column_values(run, "temperature");
+    double low = T.empty() ? 0.0 : T[0];
+    for (std::size_t k = 0; k < T.size(); ++k) {
+      if (k > 0)
+        low += -std::expm1(-(run.time[k] - run.time[k - 1]) / 2000.0) *
+               (T[k] - low);
+      if (std::abs(low - 30.0) < 0.15) answers[k] = 0.0;
+    }
+    return answers;
+  };
+  EXPECT_EQ(failed(eats), Names{"injection"});
+}
+
 TEST(PlantedFaults, StateThatIsKeptOverAReset) {
   const auto state = std::make_shared<double>(0.0);
   const Function keeps = changed([state](std::vector<double>& answers) {

@@ -116,6 +116,9 @@ TEST(PairedResidual, IsAPairedTestOfTheQuotient) {
   EXPECT_NEAR(found.gain, std::log(5.0), 1e-14);
   EXPECT_NEAR(found.half_width, 0.8 * student_half_width(1.0), 1e-12);
   EXPECT_FALSE(found.is_better());
+  const PairedResidual one_block = *paired_residual({{1.0}, {0}}, {{3.0}, {0}});
+  EXPECT_TRUE(std::isinf(one_block.half_width));
+  EXPECT_FALSE(one_block.is_better());
   EXPECT_FALSE(paired_residual({}, {}));
   EXPECT_FALSE(paired_residual({{std::nan("")}, {0}}, {{1.0}, {0}}));
   EXPECT_EQ(without_mean(other).means, (std::vector<double>{1.0, -1.0}));
