@@ -44,7 +44,8 @@ class Install(unittest.TestCase):
         self.call(self.program, "plot", "run.h5", "-o", "run.svg")
         self.assertIn("rate at rest", (self.dir / "run.svg").read_text())
         self.call(self.program, "train", "run.h5", "-o", "c.json", "--model",
-                  self.scenario("models/constant.toml"))
+                  self.prefix
+                  / "share/beamgyro/scenarios/models/constant.toml")
         self.call(self.program, "plot", "c.json", "-o", "c.svg")
         self.assertIn("bias taken away", (self.dir / "c.svg").read_text())
         shipped = self.prefix / "share/beamgyro/python"
