@@ -107,9 +107,11 @@ Reasons reasons_of(const SpecificationFile& specification,
   reasons.no_use = words_of_no_use(result.comparisons);
   for (const ResidualComparison& one : result.comparisons)
     if (one.is_required && std::isinf(one.found.half_width))
-      add_name(reasons.open, fmt::format("whether a {} is as good, for which "
-                                         "a minute of samples is too short",
-                                         one.with));
+      add_name(
+          reasons.open,
+          fmt::format("whether the compensator is better than {} (one minute "
+                      "of samples has no interval)",
+                      one.with == "before" ? "no compensator" : "a constant"));
   for (const CheckResult& check : result.checks) {
     if (check.outcome == CheckOutcome::kFailed) {
       add_name(reasons.against, check.name);
