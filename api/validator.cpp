@@ -15,6 +15,7 @@
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/rows/set_runs.h"
 #include "config/option_message.h"
+#include "dataset/files/file_state.h"
 #include "dataset/files/json_node.h"
 #include "dataset/files/sha256.h"
 #include "dataset/files/text_file.h"
@@ -78,6 +79,7 @@ struct Validator::State {
   std::optional<FittedCompensator> workbench;
   std::optional<RunSource> set;
   std::vector<ValidationInput> inputs;
+  std::vector<FileState> recording_states;  // before they were read
 
   void add_file(const std::string& group, const fs::path& path,
                 std::string text) {
@@ -113,11 +115,13 @@ struct Validator::State {
   }
 
   void hash_recordings(bool keeps_inputs) {
-    for (const fs::path& path : options.recordings)
+    for (const fs::path& path : options.recordings) {
+      recording_states.push_back(state_of_file(path));
       if (keeps_inputs)
         add_file("runs", path, read_text_file(path));
       else
         inputs.push_back({"runs", path, sha256_of_file(path), ""});
+    }
   }
 
   void read_workbench() {
@@ -135,13 +139,14 @@ struct Validator::State {
       add_file("campaign", file.path, file.text);
   }
 
-  // Recordings are read after they were hashed.
+  // Recordings are read after they were hashed. One that was replaced and
+  // replaced back is another file, or was moved or written later.
   void require_same_recordings() const {
-    for (const ValidationInput& input : inputs)
-      if (input.group == "runs" && !options.recordings.empty() &&
-          sha256_of_file(input.path) != input.sha256)
-        throw std::runtime_error(input.path.string() +
-                                 ": changed while it was read");
+    for (std::size_t k = 0; k < options.recordings.size(); ++k) {
+      const fs::path& path = options.recordings[k];
+      if (state_of_file(path) != recording_states[k])
+        throw std::runtime_error(path.string() + ": changed while it was read");
+    }
   }
 
   // Over the runs of all devices of a set.
