@@ -61,11 +61,7 @@ RunSource noting(const RunSource& runs, RunFacts& facts) {
 // Returns the files as a compensator keeps them.
 std::vector<SourceFile> files_of(const RunFacts& facts) {
   std::vector<SourceFile> files;
-  for (const RunMark& run : facts.runs) {
-    files.push_back(run.file);
-    MeasuredSketch& sketch = files.back().sketch;
-    sketch.resize(std::min(sketch.size(), kSketch));
-  }
+  for (const RunMark& run : facts.runs) files.push_back(run.file);
   return files;
 }
 

@@ -57,6 +57,14 @@ class SeenData(ProgramTest):
             self.rejected(*self.train("a.h5", "--held-out", again),
                           says=[again, "a.h5", "must be another run"])
 
+    def test_a_verdict_knows_the_pieces_that_training_saw(self):
+        self.ok(*self.train("a.h5", "other.h5"))
+        for piece in "part.h5", "small.h5":
+            said = self.beamgyro("validate", "c.json", piece)
+            self.assertEqual(said.returncode, 3)
+            self.assertIn(f"Training saw 1 of the 1 runs, so they prove "
+                          f"nothing: {piece}", " ".join(said.stdout.split()))
+
     def test_runs_of_other_seeds_and_without_noise_stay_what_they_are(self):
         for runs in [("a.h5", "other.h5", "third.h5", "--cv", "run"),
                      ("a.h5", "other.h5", "--held-out", "third.h5"),
