@@ -61,7 +61,8 @@ struct Provenance {
   std::optional<double> held_out_rms;   // [deg/s], over the held-out rows
   double baseline_in_sample_rms = 0.0;  // [deg/s]
   std::optional<double> baseline_held_out_rms;  // [deg/s]
-  double constant_in_sample_rms = 0.0;          // [deg/s], a constant bias
+  std::optional<double> constant_bias;  // [deg/s], mean of the training rows
+  double constant_in_sample_rms = 0.0;  // [deg/s], of that constant
   std::optional<double> constant_held_out_rms;  // [deg/s]
 
   bool operator==(const Provenance&) const = default;

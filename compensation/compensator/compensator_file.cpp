@@ -186,6 +186,7 @@ Json json_of(const Provenance& p) {
           {"baseline_in_sample_rms_deg_per_s",
            finite_json(p.baseline_in_sample_rms)},
           {"baseline_held_out_rms_deg_per_s", json_of(p.baseline_held_out_rms)},
+          {"constant_bias_deg_per_s", json_of(p.constant_bias)},
           {"constant_in_sample_rms_deg_per_s",
            finite_json(p.constant_in_sample_rms)},
           {"constant_held_out_rms_deg_per_s", json_of(p.constant_held_out_rms)},
@@ -272,6 +273,8 @@ Provenance read_provenance(const JsonNode& node) {
       node.at("baseline_in_sample_rms_deg_per_s").number();
   p.baseline_held_out_rms =
       node.at("baseline_held_out_rms_deg_per_s").optional_number();
+  if (node.has("constant_bias_deg_per_s"))  // not in older files
+    p.constant_bias = node.at("constant_bias_deg_per_s").optional_number();
   p.constant_in_sample_rms =
       node.at("constant_in_sample_rms_deg_per_s").number();
   p.constant_held_out_rms =

@@ -112,6 +112,7 @@ void write_scores(const BiasModel& model, const BiasModel& baseline,
   };
   p.in_sample_rms = rms_residual(model, rows);
   p.baseline_in_sample_rms = cubic(rows);
+  p.constant_bias = rows.bias.mean();
   p.constant_in_sample_rms = rms_about(rows.bias.mean(), rows.bias);
   if (held_out.size() == 0) return;
   p.held_out_rms = rms_residual(model, held_out);

@@ -29,7 +29,8 @@ struct PairedResidual {
   // runs) [-]; infinite where there is one cluster only.
   double gain = 0.0, half_width = 0.0;
 
-  bool is_better() const { return gain > half_width; }
+  /// Not by rounding, where both rates are the same.
+  bool is_better() const { return gain > half_width + 1e-9; }
 };
 
 /// Returns nothing where nothing can be compared: without a block, or with a

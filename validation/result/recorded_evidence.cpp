@@ -24,9 +24,11 @@ ReadRun named_run(const std::string& name, const Recording& recording) try {
   throw std::invalid_argument(fmt::format("{}: {}", name, error.what()));
 }
 
-// The mean of the cubic in the file over the temperatures that training saw,
-// which stands for a constant trained on the same data.
-double baseline_mean(const FittedCompensator& compensator) {
+// The constant trained on the same data; of a file that does not state it the
+// mean of its cubic over the temperatures that training saw.
+double constant_of(const FittedCompensator& compensator) {
+  if (compensator.provenance.constant_bias)
+    return *compensator.provenance.constant_bias;
   constexpr Eigen::Index kPlaces = 201;
   const TemperatureRange& range = compensator.temperature_range;
   const Eigen::ArrayXXd temperatures =
@@ -46,7 +48,7 @@ DeviceEvidence evidence_of(std::vector<ReadRun> read,
                       .reports_clamped = by.known != nullptr};
   if (by.known != nullptr) {
     answering.baselines.push_back(
-        {"constant", [mean = baseline_mean(*by.known)](const Recording& run) {
+        {"constant", [mean = constant_of(*by.known)](const Recording& run) {
            std::vector<double> rate = column_values(run, "rate");
            for (double& value : rate) value -= mean;
            return rate;
