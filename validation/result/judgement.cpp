@@ -297,7 +297,10 @@ std::string words_of_no_use(
       least = &one;
   return least == nullptr
              ? ""
-             : fmt::format("Of no use on these runs: {}.", rms_words(*least));
+             : fmt::format("Of no use on these runs: {}{}.", rms_words(*least),
+                           least->found.gain > 0.0
+                               ? ", a difference within its 95 % interval"
+                               : "");
 }
 
 namespace {

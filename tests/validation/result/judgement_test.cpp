@@ -97,6 +97,11 @@ TEST(DecideOn, WhatHasToBeBetterAndIsNotFails) {
   EXPECT_EQ(result.words,
             "Of no use on these runs: with a constant trained on the same data "
             "0.5 deg/s rms are left, with the compensator 1.");
+  result.comparisons[1].found = {
+      .rms = 0.4, .other_rms = 0.5, .gain = 0.1, .half_width = 1.0};
+  decide_on(default_specification(), result);
+  EXPECT_TRUE(result.words.ends_with(
+      "with the compensator 0.4, a difference within its 95 % interval."));
   result.comparisons.erase(result.comparisons.begin() + 1);
   decide_on(default_specification(), result);
   EXPECT_EQ(result.verdict, kPass);
