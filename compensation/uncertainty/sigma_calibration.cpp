@@ -56,12 +56,12 @@ double mean_normalised_square(const std::map<int, std::vector<Index>>& by_group,
 // hold kSigmaLevel of normal residuals.
 double widening(std::size_t groups) {
   if (groups >= std::size_t{kLeastConformalGroups}) return 1.0;
-  constexpr double kTail = 0.5 * (1.0 - kSigmaLevel);
+  constexpr double kBeyondLevel = 0.5 * (1.0 - kSigmaLevel);
   const boost::math::students_t_distribution<double> student(
       static_cast<double>(groups));
-  return quantile(complement(student, kTail)) /
-         quantile(
-             complement(boost::math::normal_distribution<double>(), kTail));
+  return quantile(complement(student, kBeyondLevel)) /
+         quantile(complement(boost::math::normal_distribution<double>(),
+                             kBeyondLevel));
 }
 
 double quantile_of(std::vector<WeightedScore> scores) {

@@ -16,7 +16,7 @@
 
 namespace beamgyro {
 namespace internal {
-class CampaignPlan;
+struct CampaignPlan;
 }
 
 /// A population of devices and the runs of each of them, read from a campaign
