@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "config/overrides.h"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include "config/config_node.h"
@@ -122,7 +123,8 @@ TEST(Overrides, PassTheSameChecksAndNameThemselvesAsThePlace) {
        "by dots, such as beam.length_m"},
       {"beam.x=", "no value after '='; expected one in TOML syntax"}};
   for (const auto& [argument, message] : arguments)
-    EXPECT_EQ(rejection_of({argument}), "set " + argument + ": " + message);
+    EXPECT_EQ(rejection_of({argument}),
+              fmt::format("set {}: {}", argument, message));
 }
 
 TEST(Overrides, OfMoreThanOneValueAreRejected) {

@@ -31,10 +31,10 @@ class TestDirectory {
 
   const std::filesystem::path directory =
       std::filesystem::path(::testing::TempDir()) /
-      ("of test " + std::to_string(getpid()) + "." + std::to_string(count_++));
+      ("of test " + std::to_string(getpid()) + "." + std::to_string(made++));
 
  private:
-  static inline std::atomic<int> count_ = 0;
+  static inline std::atomic<int> made = 0;
 };
 
 /// A test with such a directory.
