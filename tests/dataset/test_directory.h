@@ -31,10 +31,11 @@ class TestDirectory {
 
   const std::filesystem::path directory =
       std::filesystem::path(::testing::TempDir()) /
-      ("of test " + std::to_string(getpid()) + "." + std::to_string(made++));
+      ("of test " + std::to_string(getpid()) + "." +
+       std::to_string(directories++));
 
  private:
-  static inline std::atomic<int> made = 0;
+  static inline std::atomic<int> directories = 0;
 };
 
 /// A test with such a directory.

@@ -210,15 +210,16 @@ constexpr double kChance = 3.0;      // standard deviations
 constexpr std::size_t kShifts = 64;  // of the true rate against the answers
 constexpr double kLeastRateSpread = 0.1;  // [deg/s], rms
 
-using Series = Eigen::VectorXd;
+using RateSeries = Eigen::VectorXd;
 
 /// The samples of a run that can be correlated.
 struct MixedRun {
   std::vector<double> time;
-  Series truth, temperature;
-  Series kept, corrected;  // corrections: rate - answer, rate / s(T) - answer
-  Series left;             // answer - true rate
-  Series filtered;         // true rate - what a declared filter leaves of it
+  RateSeries truth, temperature;
+  RateSeries kept,
+      corrected;        // corrections: rate - answer, rate / s(T) - answer
+  RateSeries left;      // answer - true rate
+  RateSeries filtered;  // true rate - what a declared filter leaves of it
 };
 
 MixedRun mixed_run(const CheckContext& context, std::size_t number) {
@@ -249,10 +250,11 @@ MixedRun mixed_run(const CheckContext& context, std::size_t number) {
     all[4].push_back(answer - truth[k]);
     all[5].push_back(truth[k] - after[k]);
   }
-  Series* series[] = {&mixed.truth,     &mixed.temperature, &mixed.kept,
-                      &mixed.corrected, &mixed.left,        &mixed.filtered};
+  RateSeries* series[] = {&mixed.truth, &mixed.temperature,
+                          &mixed.kept,  &mixed.corrected,
+                          &mixed.left,  &mixed.filtered};
   for (std::size_t k = 0; k < 6; ++k)
-    *series[k] = Eigen::Map<const Series>(
+    *series[k] = Eigen::Map<const RateSeries>(
         all[k].data(), static_cast<Eigen::Index>(all[k].size()));
   return mixed;
 }
@@ -264,7 +266,7 @@ struct RateShare {
 
 /// The share, and by chance that of the true rate turned round by parts of the
 /// run.
-RateShare rate_share(const Series& rate, const Series& correction) {
+RateShare rate_share(const RateSeries& rate, const RateSeries& correction) {
   const Eigen::Index n = rate.size();
   const double square = rate.squaredNorm();
   RateShare result{rate.dot(correction) / square};
@@ -288,11 +290,11 @@ CheckResult check_rate_correlation(const CheckContext& context) {
   for (const std::size_t k : context.runs_of({RunPurpose::kRandomRate})) {
     const MixedRun run = mixed_run(context, k);
     if (run.truth.size() < static_cast<Eigen::Index>(10 * kShifts)) continue;
-    const Series rate = without_drift(run.truth, run.temperature, run.time);
+    const RateSeries rate = without_drift(run.truth, run.temperature, run.time);
     if (rate.norm() <
         kLeastRateSpread * std::sqrt(static_cast<double>(rate.size())))
       continue;
-    const auto share_of = [&](const Series& correction) {
+    const auto share_of = [&](const RateSeries& correction) {
       return rate_share(rate,
                         without_drift(correction, run.temperature, run.time));
     };
@@ -300,7 +302,7 @@ CheckResult check_rate_correlation(const CheckContext& context) {
     const double allowed = context.declared().filters()
                                ? std::abs(share_of(run.filtered).share)
                                : 0.0;
-    const auto found = [&](const Series& correction, double tolerance) {
+    const auto found = [&](const RateSeries& correction, double tolerance) {
       const RateShare share = share_of(correction);
       const double limit = std::max(tolerance, share.chance) + allowed;
       return CheckResult{.outcome = passed_if(std::abs(share.share) <= limit),

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <utility>
 #include <vector>
 
 #include "validation/metrics/metric_tables.h"
@@ -37,7 +38,8 @@ std::vector<Metric> sigma_metrics() {
   const std::vector<RunPurpose> kTemperature = {kSoak, kRamp};
   const auto share = [&](std::string_view name, std::string_view definition,
                          Evaluation evaluate) {
-    return Metric{name, "%", "", definition, kTemperature, evaluate, true};
+    return Metric{name, "%", "", definition, kTemperature, std::move(evaluate),
+                  true};
   };
   return {
       share("sigma_coverage_50_soaks_percent",

@@ -243,14 +243,15 @@ std::optional<Estimate> turn_on_repeatability(const Evidence& evidence) {
 }
 
 std::optional<Estimate> in_run_stability(const Evidence& evidence) {
-  constexpr double kBlock = 100.0;    // [s]
-  constexpr double kHour = 3600.0;    // [s]
-  constexpr std::size_t kLeast = 10;  // means
+  constexpr double kBlock = 100.0;     // [s]
+  constexpr double kLongest = 3600.0;  // [s]
+  constexpr std::size_t kLeast = 10;   // means
   NoisyMeans means;
   for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kRest})) {
     const Recording& recording = *run->recording;
     auto blocks = score_blocks(recording, kBlock);
-    const double from = recording.time.back() - kHour - usual_step(recording);
+    const double from =
+        recording.time.back() - kLongest - usual_step(recording);
     std::erase_if(blocks, [&](const SampleRange& block) {
       return recording.time[block.begin] <= from;
     });
