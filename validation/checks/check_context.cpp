@@ -195,7 +195,8 @@ CheckContext::CheckContext(const CheckedCompensator& all, std::size_t count)
     missing += missing_answers(recording, answer);
     step = std::min(
         step, smallest_step(recording, answer.rate, declared().ready_after));
-    if (without_table) answer = without_table->answer(recording);
+    if (without_table)
+      answer = (ready ? *ready : *without_table).answer(recording);
     answers.push_back(bridged(recording, std::move(answer.rate)));
   }
   if (std::isfinite(step)) answer_step = step;

@@ -58,7 +58,8 @@ std::optional<double> share_taken_as_bias(const CheckContext& context) {
   return sum / (samples * rate);
 }
 
-/// Whether the answers of every run are good from half of the declared time on.
+/// Whether the answers of every run are as good in the first half of the
+/// declared time as they are later.
 bool is_ready_before(const CheckContext& context) {
   const double declared = context.declared().ready_after;
   bool seen = false;
@@ -100,8 +101,8 @@ CheckResult check_declared(const CheckContext& context) {
   }
   if (declared.ready_after > 0.0 && is_ready_before(context))
     return false_declaration(fmt::format(
-        "Answers are declared to be ready after {:g} s, but half of that time "
-        "before they are as they are later.",
+        "Answers are declared to be ready after {:g} s, but those of the first "
+        "half of that time are as good as later ones.",
         declared.ready_after));
   return {.outcome = CheckOutcome::kPassed,
           .words = fmt::format("Judged with what is declared: {}.",
