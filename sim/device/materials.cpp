@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "sim/memory/bond_relaxation.h"
-#include "sim/memory/gas_constant.h"
+#include "sim/memory/memory_parameters.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -4,7 +4,7 @@
 #include <complex>
 
 #include "sim/device/device.h"
-#include "sim/memory/memory_state.h"
+#include "sim/memory/memory_parameters.h"
 
 namespace beamgyro::internal {
 

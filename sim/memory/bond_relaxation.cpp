@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/memory/gas_constant.h"
+#include "sim/memory/memory_parameters.h"
 
 namespace beamgyro::internal {
 namespace {

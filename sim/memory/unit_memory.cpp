@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace beamgyro::internal {
 namespace {
@@ -20,6 +21,68 @@ double hot_start(double glass_transition, const UnitHistory& history,
 }
 
 }  // namespace
+
+double ageing_rate(double activation, double T) {
+  return std::exp(-activation / kGasConstant *
+                  (1 / T - 1 / kAgeingTemperature));
+}
+
+Ageing::Ageing(const AgeingParameters& parameters, double age)
+    : parameters_(parameters), age_(age) {}
+
+void Ageing::advance(double from, double to, double duration) {
+  // Simpson's rule on at most 5 K: exact to 1e-7 for E_a up to 1e5 J/mol.
+  constexpr double kWidest = 5;  // [K]
+  const int parts = 1 + static_cast<int>(std::abs(to - from) / kWidest);
+  const auto rate = [&](double place) {
+    return ageing_rate(parameters_.activation,
+                       std::lerp(from, to, place / parts));
+  };
+  double sum = 0;
+  for (int i = 0; i < parts; ++i)
+    sum += (rate(i) + 4 * rate(i + 0.5) + rate(i + 1)) / 6;
+  age_ += sum / parts * duration;
+}
+
+double Ageing::decades() const {
+  const double after = (age_ - parameters_.trim_age) /
+                       (parameters_.trim_age + parameters_.start);
+  return std::log1p(after) / std::numbers::ln10;
+}
+
+PlayOperators::PlayOperators(const HysteresisParameters& parameters,
+                             double start)
+    : parameters_(parameters), temperature_(start) {
+  states_.fill(start);
+  for (std::size_t i = 0; i < kPlayOperators; ++i)
+    largest_ += parameters_.weight[i] * parameters_.half_width[i];
+}
+
+void PlayOperators::push(double T) {
+  temperature_ = T;
+  for (std::size_t i = 0; i < kPlayOperators; ++i) {
+    const double r = parameters_.half_width[i];
+    states_[i] = std::min(std::max(states_[i], T - r), T + r);
+  }
+}
+
+double PlayOperators::value(const States& states, double T) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < kPlayOperators; ++i) {
+    // p_i - T clamped, which is -r or r to the last bit where T pushes.
+    const double r = parameters_.half_width[i];
+    sum += parameters_.weight[i] * std::clamp(states[i] - T, -r, r);
+  }
+  return sum;
+}
+
+double PlayOperators::value() const { return value(states_, temperature_); }
+
+double PlayOperators::share() const { return value() / largest_; }
+
+double PlayOperators::share(const States& states, double T) const {
+  return value(states, T) / largest_;
+}
 
 UnitMemory::UnitMemory(const MemoryParameters& parameters,
                        double glass_transition, const UnitHistory& history,

@@ -1,15 +1,73 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <optional>
 
-#include "sim/memory/ageing.h"
 #include "sim/memory/bond_relaxation.h"
-#include "sim/memory/memory_state.h"
-#include "sim/memory/play_operators.h"
+#include "sim/memory/memory_parameters.h"
 #include "sim/numerics/piecewise_linear.h"
 
 namespace beamgyro::internal {
+
+/// Temperature at which the effective age runs as fast as time, T_0 [K].
+inline constexpr double kAgeingTemperature = 298.15;
+
+/// dt_e/dt = exp[-(E_a/R) (1/T - 1/T_0)] at T [K].
+double ageing_rate(double activation, double T);
+
+/// The effective age of a unit, equation (12.5). A property is
+///   q [1 + alpha_q log10((t_e + t_1)/(t_trim + t_1))].
+class Ageing {
+ public:
+  /// Starts at effective age `age` >= 0 [s].
+  Ageing(const AgeingParameters& parameters, double age);
+
+  /// Advances by `duration` [s] while T goes from `from` to `to` [K] along a
+  /// straight line.
+  void advance(double from, double to, double duration);
+
+  double effective_age() const { return age_; }  // t_e [s]
+  double decades() const;  // log10((t_e + t_1)/(t_trim + t_1))
+
+ private:
+  AgeingParameters parameters_;
+  double age_;
+};
+
+/// Rate-independent hysteresis of Prandtl and Ishlinskii, equation (12.3). Each
+/// play operator follows the temperature only when it is pushed:
+///
+///   p_i <- min(max(p_i, T - r_i), T + r_i),   h = sum_i w_i (p_i - T).
+///
+/// h is -h_max after a long rise and +h_max after a long fall, h_max = sum_i
+/// w_i r_i. The result is exact when push() is called with every turning point
+/// of T.
+class PlayOperators {
+ public:
+  using States = std::array<double, kPlayOperators>;  // p_i [K]
+
+  /// Starts at rest at T = `start` [K], with h = 0.
+  PlayOperators(const HysteresisParameters& parameters, double start);
+
+  /// Moves T monotonically to `T` [K].
+  void push(double T);
+
+  const States& states() const { return states_; }
+
+  /// h [K] after a monotone move of T from where `states` were left to `T`.
+  double value(const States& states, double T) const;
+  double value() const;                        // h at the present T [K]
+  double largest() const { return largest_; }  // h_max [K]
+  double share() const;                        // h/h_max
+  double share(const States& states, double T) const;
+
+ private:
+  HysteresisParameters parameters_;
+  double largest_ = 0;
+  double temperature_;
+  States states_;
+};
 
 /// What lies behind a unit when a run begins.
 struct UnitHistory {

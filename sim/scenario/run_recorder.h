@@ -8,7 +8,7 @@
 
 #include "dataset/recording/recording.h"
 #include "sim/device/device.h"
-#include "sim/memory/memory_state.h"
+#include "sim/memory/memory_parameters.h"
 #include "sim/scenario/scenario.h"
 #include "sim/signal/noise.h"
 #include "sim/signal/readout.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sim/memory/play_operators.h"
+#include "sim/memory/unit_memory.h"
 
 #include <gtest/gtest.h>
 
