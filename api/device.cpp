@@ -14,7 +14,7 @@
 #include "config/overrides.h"
 #include "sim/dynamics/characteristic.h"
 #include "sim/scenario/simulation_input.h"
-#include "sim/thermal/material_range.h"
+#include "sim/thermal/thermal_parameters.h"
 
 namespace beamgyro {
 namespace {

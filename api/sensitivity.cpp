@@ -19,7 +19,7 @@
 #include "sensitivity/figures/figure_of_merit.h"
 #include "sensitivity/study/factor.h"
 #include "sensitivity/study/sensitivity_study.h"
-#include "sim/thermal/material_range.h"
+#include "sim/thermal/thermal_parameters.h"
 
 namespace beamgyro {
 namespace internal {

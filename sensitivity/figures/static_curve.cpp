@@ -7,7 +7,7 @@
 #include "sim/device/modal_model.h"
 #include "sim/dynamics/lock_path.h"
 #include "sim/thermal/thermal_network.h"
-#include "sim/thermal/thermal_oven.h"
+#include "sim/thermal/thermal_ode.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -8,7 +8,7 @@
 #include "config/units.h"
 #include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/run_recorder.h"
-#include "sim/thermal/material_range.h"
+#include "sim/thermal/thermal_parameters.h"
 
 namespace beamgyro::internal {
 namespace {

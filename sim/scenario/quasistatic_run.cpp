@@ -233,7 +233,7 @@ void simulate_quasistatic(const ScenarioPlan& given, const Gyro& gyro,
   const std::unique_ptr<MemoryTrajectory> memory =
       memory_at_start(scenario, gyro);
   const ThermalTrajectory temperatures(ThermalNetwork(gyro.device.thermal),
-                                       thermal_load(scenario, gyro), grid, {},
+                                       thermal_load(scenario, gyro), grid,
                                        memory ? memory->sink() : ThermalSink{});
   if (memory) memory->finish();
   const MaterialLimits limits(scenario, gyro.device.thermal);

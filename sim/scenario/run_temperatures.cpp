@@ -55,7 +55,7 @@ std::unique_ptr<MemoryTrajectory> memory_of_run(const ScenarioPlan& scenario,
   std::unique_ptr<MemoryTrajectory> memory = memory_at_start(scenario, gyro);
   if (!memory) return nullptr;
   integrate_temperatures(ThermalNetwork(gyro.device.thermal),
-                         thermal_load(scenario, gyro), scenario.duration, {},
+                         thermal_load(scenario, gyro), scenario.duration,
                          memory->sink());
   memory->finish();
   return memory;

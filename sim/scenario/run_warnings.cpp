@@ -17,7 +17,7 @@
 #include "sim/scenario/aligned_borders.h"
 #include "sim/scenario/drive_lock.h"
 #include "sim/scenario/scenario.h"
-#include "sim/thermal/material_range.h"
+#include "sim/thermal/thermal_parameters.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -14,7 +14,7 @@
 #include "config/config_node.h"
 #include "config/units.h"
 #include "sim/scenario/profile_keys.h"
-#include "sim/thermal/material_range.h"
+#include "sim/thermal/thermal_parameters.h"
 
 namespace beamgyro::internal {
 namespace {

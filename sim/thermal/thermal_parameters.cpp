@@ -4,25 +4,21 @@
 #include <fmt/format.h>
 
 #include <limits>
-#include <span>
 #include <stdexcept>
 #include <string>
 
 #include "config/table.h"
 #include "config/units.h"
-#include "sim/thermal/material_range.h"
 
 namespace beamgyro::internal {
 namespace {
 
-template <class Parameters>
-void read_fields(const ConfigTable& table,
-                 std::span<const ThermalField<Parameters>> fields,
+template <class Parameters, class Fields>
+void read_fields(const ConfigTable& table, const Fields& fields,
                  Parameters& parameters) {
-  for (const ThermalField<Parameters>& field : fields) {
+  for (const auto& field : fields)
     parameters.*field.value =
         table.number(field.key, field.range) + field.file_offset;
-  }
 }
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -71,10 +67,10 @@ constexpr ThermalField<ThermalOven> kOvenFields[] = {
     {"integral_time_s", &ThermalOven::integral_time, kPositive},
 };
 
-template <class Parameters>
+template <class Parameters, class Fields>
 void require_in_range(const std::string& table, const Parameters& parameters,
-                      std::span<const ThermalField<Parameters>> fields) {
-  for (const ThermalField<Parameters>& field : fields) {
+                      const Fields& fields) {
+  for (const auto& field : fields) {
     const double value = parameters.*field.value - field.file_offset;
     if (field.range.contains(value)) continue;
     throw std::invalid_argument(fmt::format(
@@ -116,10 +112,9 @@ void require_joined(const ThermalParameters& p) {
 
 ThermalParameters read_thermal(const ConfigTable& thermal) {
   ThermalParameters parameters;
-  read_fields(thermal, thermal_fields(), parameters);
-  if (const auto oven = thermal.optional_table("oven")) {
-    read_fields(*oven, oven_fields(), parameters.oven.emplace());
-  }
+  read_fields(thermal, kThermalFields, parameters);
+  if (const auto oven = thermal.optional_table("oven"))
+    read_fields(*oven, kOvenFields, parameters.oven.emplace());
   require_valid(parameters);
   return parameters;
 }
@@ -128,13 +123,10 @@ std::span<const ThermalField<ThermalParameters>> thermal_fields() {
   return kThermalFields;
 }
 
-std::span<const ThermalField<ThermalOven>> oven_fields() { return kOvenFields; }
-
 void require_valid(const ThermalParameters& parameters) {
-  require_in_range("thermal.", parameters, thermal_fields());
-  if (parameters.oven) {
-    require_in_range("thermal.oven.", *parameters.oven, oven_fields());
-  }
+  require_in_range("thermal.", parameters, kThermalFields);
+  if (parameters.oven)
+    require_in_range("thermal.oven.", *parameters.oven, kOvenFields);
   require_joined(parameters);
 }
 

@@ -10,8 +10,26 @@ namespace beamgyro::internal {
 
 class ConfigTable;
 
+/// Temperatures that the materials of a gyro stand [degC]. Files, options and
+/// runs are held against this one range.
+/// - Hard PZT has its Curie point at about 300 degC and keeps its polarisation
+///   up to half of that in degC, the rule of its makers.
+/// - Epoxies of the bond are rated to 150 degC at most.
+/// - Below -100 degC the data of epoxy and elastomer end: both are glasses that
+///   crack when the parts that they join shrink.
+inline constexpr Range kMaterialTemperatures{-100, 150};
+
+/// Where the linear coefficients of the ceramic hold [degC], kColdestCeramic to
+/// kHottestCeramic of the device. Beyond they keep the values of the nearest
+/// end.
+inline constexpr Range kLinearCeramic{-40, 80};
+
+/// What the range of the materials stands for in messages.
+inline constexpr const char* kMaterialReason =
+    "the temperatures that ceramic and bond stand";
+
 /// Heater and controller of an oven around beam and mount; equation (4.3) in
-/// thermal_oven.h. Its can and insulation are conductances of the network.
+/// thermal_ode.h. Its can and insulation are conductances of the network.
 struct ThermalOven {
   double set_point = 338.15;       // [K], of the mount
   double max_power = 3.0;          // [W]
@@ -58,14 +76,13 @@ struct ThermalField {
 };
 
 std::span<const ThermalField<ThermalParameters>> thermal_fields();
-std::span<const ThermalField<ThermalOven>> oven_fields();
 
 /// Throws std::invalid_argument naming the first field that is not a finite
 /// number in its range, or the node no conductance joins to the housing.
 void require_valid(const ThermalParameters& parameters);
 
 /// The table [thermal] of a device file: every key of thermal_fields(), and
-/// every key of oven_fields() if there is a table `oven`. Throws
+/// those of an oven if there is a table `oven`. Throws
 /// std::invalid_argument as ConfigTable and require_valid() do.
 ThermalParameters read_thermal(const ConfigTable& thermal);
 

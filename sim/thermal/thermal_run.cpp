@@ -81,8 +81,7 @@ bool powered_at(std::span<const PowerInterval> powered, double t) {
 
 void integrate_temperatures(const ThermalNetwork& network,
                             const ThermalLoad& load, double end,
-                            const ThermalRunOptions& options,
-                            const ThermalSink& sink) {
+                            const ThermalSink& sink, double tolerance) {
   require_valid_run(load);
   const ThermalOde ode(network, load.mechanical_power, load.dielectric_power);
   const Eigen::Index size = ode.size();
@@ -94,18 +93,17 @@ void integrate_temperatures(const ThermalNetwork& network,
   Eigen::VectorXd y = Eigen::VectorXd::Constant(size, load.ambient.value(0));
   y.tail(size - kThermalNodeCount).setZero();
 
-  CvodeOptions cvode_options;
-  cvode_options.relative_tolerance = 0;
-  cvode_options.absolute_tolerance =
-      Eigen::VectorXd::Constant(1, options.tolerance);
-  cvode_options.jacobian = [&](double t, const auto& state, auto slope) {
+  CvodeOptions options;
+  options.relative_tolerance = 0;
+  options.absolute_tolerance = Eigen::VectorXd::Constant(1, tolerance);
+  options.jacobian = [&](double t, const auto& state, auto slope) {
     ode.jacobian(surroundings(t), powered, state, slope);
   };
   Cvode cvode(
       [&](double t, const auto& state, auto rate) {
         ode.rate(surroundings(t), powered, state, rate);
       },
-      0.0, y, cvode_options);
+      0.0, y, options);
   for (const Piece& piece : pieces_until(end, borders_of(load))) {
     const bool was_powered = powered;
     powered = powered_at(load.powered, piece.start);
@@ -121,7 +119,7 @@ void integrate_temperatures(const ThermalNetwork& network,
 ThermalHistory simulate_temperatures(const ThermalNetwork& network,
                                      const ThermalLoad& load,
                                      std::span<const double> times,
-                                     const ThermalRunOptions& options) {
+                                     double tolerance) {
   require_increasing(times);
   ThermalHistory history;
   if (times.empty()) return history;
@@ -130,9 +128,10 @@ ThermalHistory simulate_temperatures(const ThermalNetwork& network,
   std::iota(components.begin(), components.end(), 0);
   StateSamples samples(times, components);
   integrate_temperatures(
-      network, load, times.back(), options,
+      network, load, times.back(),
       {.on_state = [&](double t, const auto& y) { samples.take_until(t, y); },
-       .on_step = [&](const OdeStep& step) { samples.take(step); }});
+       .on_step = [&](const OdeStep& step) { samples.take(step); }},
+      tolerance);
   if (network.parameters().oven) {
     history.heater_power =
         heater_power(*network.parameters().oven, load, times,

@@ -31,11 +31,6 @@ struct ThermalLoad {
   double dielectric_power = 0;  // [W], into the patches while powered
 };
 
-struct ThermalRunOptions {
-  /// Local error of one step [K]. 1e-7 keeps every node within 1e-5 K.
-  double tolerance = 1e-7;
-};
-
 struct ThermalHistory {
   /// Node temperatures [K] by ThermalNode, one value for each time.
   std::array<std::vector<double>, kThermalNodeCount> temperature;
@@ -54,13 +49,13 @@ struct ThermalSink {
 /// Integrates the temperatures of `network` over [0, end] [s], by CVODE BDF
 /// with a restart at every discontinuity of the load. At 0 every node is at
 /// ambient with the power off before. An oven works while powered and starts at
-/// every power-on with an empty integral. Throws std::invalid_argument for
-/// power intervals out of order or a power below zero, SimulationFailure as
-/// Cvode.
+/// every power-on with an empty integral. `tolerance` is the local error of a
+/// step [K]; the default keeps every node within 1e-5 K. Throws
+/// std::invalid_argument for power intervals out of order or a power below
+/// zero, SimulationFailure as Cvode.
 void integrate_temperatures(const ThermalNetwork& network,
                             const ThermalLoad& load, double end,
-                            const ThermalRunOptions& options,
-                            const ThermalSink& sink);
+                            const ThermalSink& sink, double tolerance = 1e-7);
 
 /// The temperatures at increasing `times` >= 0 [s]. Throws
 /// std::invalid_argument for times out of order, otherwise as
@@ -68,6 +63,6 @@ void integrate_temperatures(const ThermalNetwork& network,
 ThermalHistory simulate_temperatures(const ThermalNetwork& network,
                                      const ThermalLoad& load,
                                      std::span<const double> times,
-                                     const ThermalRunOptions& options = {});
+                                     double tolerance = 1e-7);
 
 }  // namespace beamgyro::internal

@@ -14,7 +14,6 @@ constexpr std::size_t kNodes = kThermalNodeCount;
 ThermalTrajectory::ThermalTrajectory(const ThermalNetwork& network,
                                      const ThermalLoad& load,
                                      const SampleGrid& grid,
-                                     const ThermalRunOptions& options,
                                      const ThermalSink& also)
     : grid_(grid) {
   if (grid.count == 0) return;
@@ -22,7 +21,7 @@ ThermalTrajectory::ThermalTrajectory(const ThermalNetwork& network,
     const std::size_t k = grid_.first_from(t);
     return k < grid_.count && grid_.time(k) == t ? k + 1 : k;
   };
-  integrate_temperatures(network, load, grid.time(grid.count - 1), options,
+  integrate_temperatures(network, load, grid.time(grid.count - 1),
                          {.on_state =
                               [&](double t, const auto& y) {
                                 store(first_after(t), y);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -24,9 +23,7 @@ class ThermalTrajectory {
   /// Integrates; throws as integrate_temperatures(). `also` receives what the
   /// integration hands over, too.
   ThermalTrajectory(const ThermalNetwork& network, const ThermalLoad& load,
-                    const SampleGrid& grid,
-                    const ThermalRunOptions& options = {},
-                    const ThermalSink& also = {});
+                    const SampleGrid& grid, const ThermalSink& also = {});
 
   /// Of the temperatures of a node at the samples.
   TemperatureSpan range(ThermalNode node) const;

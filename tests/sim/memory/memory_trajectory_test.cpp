@@ -34,7 +34,7 @@ ThermalLoad load() {
 struct MemoryRun {
   MemoryRun() : memory(UnitMemory(nominal(), kGlass, {}, 283.15)) {
     const ThermalNetwork network{ThermalParameters{}};
-    integrate_temperatures(network, load(), 5000, {}, memory.sink());
+    integrate_temperatures(network, load(), 5000, memory.sink());
     memory.finish();
     for (int k = 0; k <= 5000; ++k) times.push_back(k);
     history = simulate_temperatures(network, load(), times);
@@ -71,7 +71,7 @@ std::array<double, 2> errors(const ThermalLoad& load, double end,
   const double start = load.ambient.value(0);
   const ThermalNetwork network{ThermalParameters{}};
   MemoryTrajectory memory(UnitMemory(nominal(), kGlass, {}, start));
-  integrate_temperatures(network, load, end, {}, memory.sink());
+  integrate_temperatures(network, load, end, memory.sink());
   memory.finish();
   std::vector<double> times;
   for (double t = 0; t <= end; t += spacing) times.push_back(t);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "sim/thermal/thermal_oven.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 #include <vector>
 
+#include "sim/thermal/thermal_ode.h"
 #include "sim/thermal/thermal_run.h"
 
 namespace beamgyro::internal::thermal_oven_test {

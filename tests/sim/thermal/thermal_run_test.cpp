@@ -51,13 +51,13 @@ double largest_difference(const ThermalHistory& a, const ThermalHistory& b) {
 
 TEST(ThermalRun, StaysWithinTenMicrokelvinOfATightReference) {
   const ThermalNetwork network{ThermalParameters{}};
-  const ThermalRunOptions tight{.tolerance = 1e-11 * 300};
+  constexpr double kTight = 1e-11 * 300;
   for (const ThermalLoad& load : {warm_up(), soaks_and_ramps()}) {
     // 7.3 Hz: samples fall anywhere inside the steps.
     const std::vector<double> times = at_rate(7.3, 6000);
     EXPECT_LT(
         largest_difference(simulate_temperatures(network, load, times),
-                           simulate_temperatures(network, load, times, tight)),
+                           simulate_temperatures(network, load, times, kTight)),
         1e-5);
   }
 }
@@ -118,7 +118,7 @@ TEST(ThermalRun, CoolsBackToAmbientAfterPowerOff) {
 TEST(ThermalRun, StepsGrowToManyMinutesWhereNothingHappens) {
   int steps = 0;
   integrate_temperatures(ThermalNetwork{ThermalParameters{}}, warm_up(),
-                         7 * 86400.0, {},
+                         7 * 86400.0,
                          {.on_state = [](double, const auto&) {},
                           .on_step = [&](const OdeStep&) { ++steps; }});
   EXPECT_LT(steps, 300);

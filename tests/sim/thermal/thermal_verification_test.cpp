@@ -68,7 +68,7 @@ TEST(Verification, V37PureConvectionCoolsByTheClosedForm) {
       network,
       {.ambient = PiecewiseLinear({0, jump, jump},
                                   {ambient + start, ambient + start, ambient})},
-      times, {.tolerance = 1e-9});
+      times, 1e-9);
   const double k = 1.42 * 8e-3 * std::pow(0.04, -0.25);  // [W/K^(5/4)]
   const double C = 42;                                   // [J/K]
   for (std::size_t i = 1; i < times.size(); ++i) {
