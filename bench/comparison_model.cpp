@@ -16,7 +16,7 @@
 #include "dataset/netcdf/recording_reader.h"
 #include "sim/device/device_file.h"
 #include "sim/dynamics/carrier.h"
-#include "sim/numerics/explicit_rk.h"
+#include "sim/numerics/ode.h"
 #include "sim/scenario/envelope_run.h"
 
 namespace beamgyro::internal {

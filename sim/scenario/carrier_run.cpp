@@ -12,7 +12,7 @@
 
 #include "sim/dynamics/carrier.h"
 #include "sim/dynamics/envelope.h"
-#include "sim/numerics/explicit_rk.h"
+#include "sim/numerics/ode.h"
 #include "sim/scenario/aligned_borders.h"
 #include "sim/scenario/drive_lock.h"
 #include "sim/scenario/motion.h"

@@ -112,6 +112,7 @@ EnvelopeTrajectory::EnvelopeTrajectory(const ScenarioPlan& scenario,
     options.table = RkTable::kDormandPrince;
     options.absolute_tolerance = absolute;
     explicit_ = std::make_unique<ExplicitRk>(rhs, 0.0, start, options);
+    integrator_ = explicit_.get();
   } else {
     CvodeOptions options;
     options.relative_tolerance = 0;
@@ -122,6 +123,7 @@ EnvelopeTrajectory::EnvelopeTrajectory(const ScenarioPlan& scenario,
       ode_.jacobian(inputs(t), y, slope);
     };
     multistep_ = std::make_unique<Cvode>(rhs, 0.0, start, options);
+    integrator_ = multistep_.get();
   }
   begin(0);
 }
@@ -141,35 +143,14 @@ void EnvelopeTrajectory::begin(std::size_t piece) {
   ambient_ = scenario_.ambient.stretch(p.start, p.end);
   segment_ = motion_.segment(p.start, p.end);
   if (!p.jump && piece > 0) return;
-  VectorXd y = state();
+  VectorXd y = integrator_->state();
   if (powered_ != was_powered) {
     // Vibration decays within a second after power-off, and the loops and an
     // oven start from zero.
     y.head<kEnvelopeNodes>().setZero();
     y.tail(y.size() - kEnvelopeNodes - kThermalNodeCount).setZero();
   }
-  if (explicit_) {
-    explicit_->restart(p.start, y);
-  } else {
-    multistep_->restart(p.start, y);
-  }
-}
-
-double EnvelopeTrajectory::time() const {
-  return explicit_ ? explicit_->time() : multistep_->time();
-}
-
-const VectorXd& EnvelopeTrajectory::state() const {
-  return explicit_ ? explicit_->state() : multistep_->state();
-}
-
-long EnvelopeTrajectory::steps() const {
-  return explicit_ ? explicit_->steps() : multistep_->statistics().steps;
-}
-
-long EnvelopeTrajectory::rhs_evaluations() const {
-  return explicit_ ? explicit_->rhs_evaluations()
-                   : multistep_->statistics().rhs_evaluations;
+  integrator_->restart(p.start, y);
 }
 
 void EnvelopeTrajectory::advance_to(double t_end, StateSamples& sampler) {
@@ -196,7 +177,7 @@ RunSamples EnvelopeTrajectory::advance(std::span<const double> times) {
     const double end = std::min(piece.end, times.back());
     advance_to(end, sampler);
     if (end == piece.end && piece_ + 1 < pieces_.size()) begin(piece_ + 1);
-    sampler.take_until(time(), state());
+    sampler.take_until(integrator_->time(), integrator_->state());
   }
   RunSamples samples =
       samples_of_states(sampler.columns(), ode_.loops(), gyro_);

@@ -8,8 +8,7 @@
 
 #include "sim/dynamics/envelope.h"
 #include "sim/dynamics/gyro.h"
-#include "sim/numerics/cvode.h"
-#include "sim/numerics/explicit_rk.h"
+#include "sim/numerics/ode.h"
 #include "sim/scenario/material_limits.h"
 #include "sim/scenario/motion.h"
 #include "sim/scenario/run_recorder.h"
@@ -40,15 +39,13 @@ class EnvelopeTrajectory {
   /// MaterialLimits and Cvode.
   RunSamples advance(std::span<const double> times);
 
-  long steps() const;
-  long rhs_evaluations() const;
+  long steps() const { return integrator_->steps(); }
+  long rhs_evaluations() const { return integrator_->rhs_evaluations(); }
 
  private:
   EnvelopeInputs inputs(double t) const;
   void begin(std::size_t piece);
   void advance_to(double t_end, StateSamples& sampler);
-  double time() const;
-  const Eigen::VectorXd& state() const;
 
   const ScenarioPlan& scenario_;
   const Gyro& gyro_;
@@ -64,6 +61,7 @@ class EnvelopeTrajectory {
   std::optional<MotionSegment> segment_;
   std::unique_ptr<Cvode> multistep_;  // one of the two
   std::unique_ptr<ExplicitRk> explicit_;
+  OdeIntegrator* integrator_;  // that one
 };
 
 /// Envelope run (L2): integrates the amplitudes of both modes, the drive loop,

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "sim/numerics/piecewise_linear.h"
-#include "sim/numerics/sample_grid.h"
 #include "sim/scenario/rate_profile.h"
 #include "sim/thermal/thermal_run.h"
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/numerics/cvode.h"
+#include "sim/numerics/ode.h"
 #include "sim/numerics/piecewise_linear.h"
 #include "sim/thermal/thermal_network.h"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/numerics/sample_grid.h"
+#include "sim/numerics/timeline.h"
 #include "sim/thermal/thermal_run.h"
 
 namespace beamgyro::internal {

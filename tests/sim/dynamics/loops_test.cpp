@@ -11,7 +11,7 @@
 
 #include "sim/dynamics/carrier.h"
 #include "sim/dynamics/loop_noise.h"
-#include "sim/numerics/explicit_rk.h"
+#include "sim/numerics/ode.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/dynamics/loop_response.h"
 

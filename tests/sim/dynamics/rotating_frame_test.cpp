@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "sim/dynamics/mode_forces.h"
-#include "sim/numerics/explicit_rk.h"
+#include "sim/numerics/ode.h"
 #include "tests/linear_algebra/reference_algebra.h"
 
 namespace beamgyro::internal::rotating_frame_test {

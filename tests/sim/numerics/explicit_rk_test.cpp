@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "sim/numerics/explicit_rk.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+
+#include "sim/numerics/ode.h"
 
 namespace beamgyro::internal::explicit_rk_test {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "sim/numerics/cvode.h"
+#include "sim/numerics/ode.h"
 
+#include <arkode/arkode_arkstep.h>
 #include <cvode/cvode.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
@@ -22,39 +23,81 @@ constexpr Eigen::Index kHighestOrder = 5;  // of BDF
 struct FreeCvode {
   void operator()(void* memory) const { CVodeFree(&memory); }
 };
+struct FreeArkStep {
+  void operator()(void* memory) const { ARKStepFree(&memory); }
+};
+
+Eigen::Map<const Eigen::VectorXd> state_of(N_Vector y, Eigen::Index size) {
+  return {N_VGetArrayPointer(y), size};
+}
 
 }  // namespace
 
-struct Cvode::Impl {
+// The equation and its state. Integrators are created from the context, which
+// must outlive them: they are members of derived types.
+struct OdeIntegrator::Problem {
   OdeRhs rhs;
-  OdeJacobian jacobian;
-  long max_steps;
   double time;
-  Eigen::VectorXd y;           // CVODE reads and writes it through `nv_y`
-  Eigen::VectorXd derivative;  // the same through `nv_derivative`
-  OdeStep step;
-  CvodeStatistics statistics;
+  Eigen::VectorXd y;  // SUNDIALS reads and writes it through `nv_y`
+  long rhs_evaluations = 0;
   CallErrors errors;
-
-  // Destroyed bottom-up: the context must outlive everything created from it.
   OwnedContext context;
   OwnedVector nv_y;
+
+  Problem(OdeRhs f, double t0, const Eigen::VectorXd& y0)
+      : rhs(std::move(f)),
+        time(t0),
+        y(y0),
+        context(make_context()),
+        nv_y(make_vector(y, context.get())) {}
+  virtual ~Problem() = default;
+
+  virtual long steps() const = 0;
+
+  void check(int flag, const char* call) { errors.check(flag, call); }
+
+  static int call_rhs(double t, N_Vector y, N_Vector dydt, void* user) {
+    Problem& self = *static_cast<Problem*>(user);
+    return self.errors.guarded([&] {
+      const Eigen::Index n = self.y.size();
+      Eigen::Map<Eigen::VectorXd> rate(N_VGetArrayPointer(dydt), n);
+      ++self.rhs_evaluations;
+      self.rhs(t, state_of(y, n), rate);
+      require_finite(rate.allFinite(), "right-hand side", t);
+    });
+  }
+};
+
+OdeIntegrator::OdeIntegrator(std::unique_ptr<Problem> problem)
+    : problem_(std::move(problem)) {}
+OdeIntegrator::~OdeIntegrator() = default;
+
+double OdeIntegrator::time() const { return problem_->time; }
+const Eigen::VectorXd& OdeIntegrator::state() const { return problem_->y; }
+long OdeIntegrator::steps() const { return problem_->steps(); }
+long OdeIntegrator::rhs_evaluations() const {
+  return problem_->rhs_evaluations;
+}
+
+struct Cvode::Memory : Problem {
+  OdeJacobian jacobian;
+  long max_steps;
+  Eigen::VectorXd derivative;  // as y, through `nv_derivative`
+  OdeStep step;
+  long step_count = 0;
+
   OwnedVector nv_derivative;
   OwnedMatrix matrix;
   OwnedSolver linear_solver;
   Owned<void*, FreeCvode> memory;
 
-  Impl(OdeRhs f, double t0, const Eigen::VectorXd& y0,
-       const CvodeOptions& options)
-      : rhs(std::move(f)),
+  Memory(OdeRhs f, double t0, const Eigen::VectorXd& y0,
+         const CvodeOptions& options)
+      : Problem(std::move(f), t0, y0),
         jacobian(options.jacobian),
         max_steps(options.max_steps_per_advance),
-        time(t0),
-        y(y0),
         derivative(y0.size()),
         step{t0, t0, t0, 0, 0, Eigen::MatrixXd(y0.size(), kHighestOrder + 1)},
-        context(make_context()),
-        nv_y(make_vector(y, context.get())),
         nv_derivative(make_vector(derivative, context.get())),
         matrix(make_dense_matrix(y.size(), context.get())),
         linear_solver(make_dense_solver(y.size(), context.get())),
@@ -63,17 +106,20 @@ struct Cvode::Impl {
     configure(options);
   }
 
+  long steps() const override { return step_count; }
+
   void configure(const CvodeOptions& options) {
     void* mem = memory.get();
     check(CVodeSetErrHandlerFn(mem, &CallErrors::on_error, &errors),
           "CVodeSetErrHandlerFn");
-    check(CVodeInit(mem, &Impl::call_rhs, time, nv_y.get()), "CVodeInit");
-    check(CVodeSetUserData(mem, this), "CVodeSetUserData");
+    check(CVodeInit(mem, &Problem::call_rhs, time, nv_y.get()), "CVodeInit");
+    check(CVodeSetUserData(mem, static_cast<Problem*>(this)),
+          "CVodeSetUserData");
     set_tolerances(options);
     check(CVodeSetLinearSolver(mem, linear_solver.get(), matrix.get()),
           "CVodeSetLinearSolver");
     if (jacobian) {
-      check(CVodeSetJacFn(mem, &Impl::call_jacobian), "CVodeSetJacFn");
+      check(CVodeSetJacFn(mem, &Memory::call_jacobian), "CVodeSetJacFn");
     }
     if (options.stability_limit_detection) {
       check(CVodeSetStabLimDet(mem, SUNTRUE), "CVodeSetStabLimDet");
@@ -89,14 +135,12 @@ struct Cvode::Impl {
           "CVodeSVtolerances");
   }
 
-  void check(int flag, const char* call) { errors.check(flag, call); }
-
   void take_step(double t_end) {
     void* mem = memory.get();
     step.begin = time;
     check(CVode(mem, t_end, nv_y.get(), &time, CV_ONE_STEP), "CVode");
     step.end = time;
-    ++statistics.steps;
+    ++step_count;
   }
 
   // Scaled derivatives at the end of the step: CVODE's own interpolant as
@@ -117,27 +161,13 @@ struct Cvode::Impl {
     }
   }
 
-  static int call_rhs(double t, N_Vector y, N_Vector dydt, void* user) {
-    Impl& self = *static_cast<Impl*>(user);
-    return self.errors.guarded([&] {
-      const Eigen::Index n = self.y.size();
-      Eigen::Map<Eigen::VectorXd> rate(N_VGetArrayPointer(dydt), n);
-      ++self.statistics.rhs_evaluations;
-      self.rhs(t, Eigen::Map<const Eigen::VectorXd>(N_VGetArrayPointer(y), n),
-               rate);
-      require_finite(rate.allFinite(), "right-hand side", t);
-    });
-  }
-
   static int call_jacobian(double t, N_Vector y, N_Vector, SUNMatrix df_dy,
                            void* user, N_Vector, N_Vector, N_Vector) {
-    Impl& self = *static_cast<Impl*>(user);
+    Memory& self = static_cast<Memory&>(*static_cast<Problem*>(user));
     return self.errors.guarded([&] {
       const Eigen::Index n = self.y.size();
       Eigen::Map<Eigen::MatrixXd> slope(SUNDenseMatrix_Data(df_dy), n, n);
-      self.jacobian(t,
-                    Eigen::Map<const Eigen::VectorXd>(N_VGetArrayPointer(y), n),
-                    slope);
+      self.jacobian(t, state_of(y, n), slope);
       require_finite(slope.allFinite(), "Jacobian", t);
     });
   }
@@ -204,40 +234,108 @@ void StateSamples::take_until(double t, const Eigen::VectorXd& y) {
 
 Cvode::Cvode(OdeRhs rhs, double t0, const Eigen::VectorXd& y0,
              const CvodeOptions& options)
-    : impl_(std::make_unique<Impl>(std::move(rhs), t0, y0, options)) {}
-Cvode::~Cvode() = default;
+    : OdeIntegrator(std::make_unique<Memory>(std::move(rhs), t0, y0, options)) {
+}
+
+Cvode::Memory& Cvode::memory() { return static_cast<Memory&>(*problem_); }
 
 const Eigen::VectorXd& Cvode::advance_to(
     double t_end, const std::function<void(const OdeStep&)>& on_step) {
-  if (t_end == impl_->time) return impl_->y;
-  impl_->check(CVodeSetStopTime(impl_->memory.get(), t_end),
-               "CVodeSetStopTime");
-  const long last = impl_->statistics.steps + impl_->max_steps;
-  while (impl_->time != t_end) {
-    if (impl_->statistics.steps >= last) {
+  Memory& m = memory();
+  if (t_end == m.time) return m.y;
+  m.check(CVodeSetStopTime(m.memory.get(), t_end), "CVodeSetStopTime");
+  const long last = m.step_count + m.max_steps;
+  while (m.time != t_end) {
+    if (m.step_count >= last) {
       throw SimulationFailure("no arrival at t = " + std::to_string(t_end) +
-                              " s within " + std::to_string(impl_->max_steps) +
-                              " steps; reached " + std::to_string(impl_->time) +
+                              " s within " + std::to_string(m.max_steps) +
+                              " steps; reached " + std::to_string(m.time) +
                               " s");
     }
-    impl_->take_step(t_end);
+    m.take_step(t_end);
     if (on_step) {
-      impl_->fill_interpolant();
-      on_step(impl_->step);
+      m.fill_interpolant();
+      on_step(m.step);
     }
   }
-  return impl_->y;
+  return m.y;
 }
 
 void Cvode::restart(double t, const Eigen::VectorXd& y) {
-  impl_->time = t;
-  impl_->y = y;
-  impl_->check(CVodeReInit(impl_->memory.get(), t, impl_->nv_y.get()),
-               "CVodeReInit");
+  Memory& m = memory();
+  m.time = t;
+  m.y = y;
+  m.check(CVodeReInit(m.memory.get(), t, m.nv_y.get()), "CVodeReInit");
 }
 
-double Cvode::time() const { return impl_->time; }
-const Eigen::VectorXd& Cvode::state() const { return impl_->y; }
-const CvodeStatistics& Cvode::statistics() const { return impl_->statistics; }
+struct ExplicitRk::Memory : Problem {
+  Owned<void*, FreeArkStep> memory;
+
+  Memory(OdeRhs f, double t0, const Eigen::VectorXd& y0,
+         const ExplicitRkOptions& options)
+      : Problem(std::move(f), t0, y0),
+        memory(ARKStepCreate(&Problem::call_rhs, nullptr, t0, nv_y.get(),
+                             context.get())) {
+    if (!memory) throw std::runtime_error("ARKStepCreate failed");
+    configure(options);
+  }
+
+  long steps() const override {
+    long count = 0;
+    ARKStepGetNumSteps(memory.get(), &count);
+    return count;
+  }
+
+  void configure(const ExplicitRkOptions& options) {
+    void* mem = memory.get();
+    Eigen::VectorXd absolute = full_tolerances(
+        options.relative_tolerance, options.absolute_tolerance, y.size());
+    const OwnedVector nv_absolute = make_vector(absolute, context.get());
+    check(ARKStepSetErrHandlerFn(mem, &CallErrors::on_error, &errors),
+          "ARKStepSetErrHandlerFn");
+    check(ARKStepSetUserData(mem, static_cast<Problem*>(this)),
+          "ARKStepSetUserData");
+    check(
+        ARKStepSVtolerances(mem, options.relative_tolerance, nv_absolute.get()),
+        "ARKStepSVtolerances");
+    const ARKODE_ERKTableID table = options.table == RkTable::kFehlberg
+                                        ? ARKODE_FEHLBERG_13_7_8
+                                        : ARKODE_DORMAND_PRINCE_7_4_5;
+    check(ARKStepSetTableNum(mem, ARKODE_DIRK_NONE, table),
+          "ARKStepSetTableNum");
+    check(ARKStepSetMaxNumSteps(mem, options.max_steps_per_advance),
+          "ARKStepSetMaxNumSteps");
+    if (options.fixed_step > 0) {
+      check(ARKStepSetFixedStep(mem, options.fixed_step),
+            "ARKStepSetFixedStep");
+    }
+  }
+};
+
+ExplicitRk::ExplicitRk(OdeRhs rhs, double t0, const Eigen::VectorXd& y0,
+                       const ExplicitRkOptions& options)
+    : OdeIntegrator(std::make_unique<Memory>(std::move(rhs), t0, y0, options)) {
+}
+
+ExplicitRk::Memory& ExplicitRk::memory() {
+  return static_cast<Memory&>(*problem_);
+}
+
+const Eigen::VectorXd& ExplicitRk::advance_to(double t_end) {
+  Memory& m = memory();
+  if (t_end == m.time) return m.y;
+  void* mem = m.memory.get();
+  m.check(ARKStepSetStopTime(mem, t_end), "ARKStepSetStopTime");
+  m.check(ARKStepEvolve(mem, t_end, m.nv_y.get(), &m.time, ARK_NORMAL),
+          "ARKStepEvolve");
+  return m.y;
+}
+
+void ExplicitRk::restart(double t, const Eigen::VectorXd& y) {
+  Memory& m = memory();
+  m.time = t;
+  m.y = y;
+  m.check(ARKStepReset(m.memory.get(), t, m.nv_y.get()), "ARKStepReset");
+}
 
 }  // namespace beamgyro::internal
