@@ -5,7 +5,7 @@
 
 #include "config/units.h"
 #include "sim/device/modal_model.h"
-#include "sim/dynamics/lock_path.h"
+#include "sim/dynamics/gyro.h"
 #include "sim/thermal/thermal_network.h"
 #include "sim/thermal/thermal_ode.h"
 

@@ -10,7 +10,6 @@
 namespace beamgyro::internal {
 namespace {
 
-using Eigen::Index;
 using Eigen::Vector2cd;
 using Eigen::Vector2d;
 

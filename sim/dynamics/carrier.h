@@ -6,7 +6,7 @@
 
 #include "sim/dynamics/loop_electronics.h"
 #include "sim/dynamics/modal_table.h"
-#include "sim/dynamics/mode_forces.h"
+#include "sim/dynamics/static_solution.h"
 
 namespace beamgyro::internal {
 

@@ -73,9 +73,4 @@ std::string characteristic_csv(std::span<const double> temperatures,
   return csv;
 }
 
-std::string characteristic_csv(const Gyro& gyro,
-                               std::span<const double> temperatures) {
-  return characteristic_csv(temperatures, characteristic(gyro, temperatures));
-}
-
 }  // namespace beamgyro::internal

@@ -36,7 +36,5 @@ std::vector<CharacteristicRow> characteristic(
 /// temperature.
 std::string characteristic_csv(std::span<const double> temperatures,
                                std::span<const CharacteristicRow> rows);
-std::string characteristic_csv(const Gyro& gyro,
-                               std::span<const double> temperatures);
 
 }  // namespace beamgyro::internal

@@ -35,20 +35,13 @@ TEST(DeviceMerits, TheCurveIsThatOfCharacterise) {
   const StaticCurve curve = static_curve(gyro, grid);
   const Eigen::ArrayXd slope = scale_factor_curve(gyro, grid);
   const std::vector<double> temperatures = {-40, -10, 20, 50};
-  const std::string csv = characteristic_csv(gyro, temperatures);
-  std::size_t at = csv.find('\n') + 1;
+  const auto rows = characteristic(gyro, temperatures);
   for (Eigen::Index k = 0; k < 4; ++k) {
-    std::vector<double> row;
-    for (int column = 0; column < 10; ++column) {
-      const std::size_t end = csv.find_first_of(",\n", at);
-      row.push_back(std::stod(csv.substr(at, end - at)));
-      at = end + 1;
-    }
-    // The table has twelve digits.
-    EXPECT_NEAR(curve.bias(k), row[1], 1e-11 * (1 + std::abs(row[1])));
-    EXPECT_NEAR(curve.drive_frequency(k), row[4], 1e-8);
-    EXPECT_NEAR(curve.drive_voltage(k), row[8], 1e-10);
-    EXPECT_NEAR(slope(k), row[9], 1e-11);
+    const CharacteristicRow& row = rows[static_cast<std::size_t>(k)];
+    EXPECT_NEAR(curve.bias(k), row[0], 1e-11 * (1 + std::abs(row[0])));
+    EXPECT_NEAR(curve.drive_frequency(k), row[3], 1e-8);
+    EXPECT_NEAR(curve.drive_voltage(k), row[7], 1e-10);
+    EXPECT_NEAR(slope(k), row[8], 1e-11);
   }
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which lock of a drive loop is the static solution, where strongly coupled
 // modes have more than one.
-#include "sim/dynamics/lock_path.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -15,6 +13,7 @@
 #include <vector>
 
 #include "sim/dynamics/envelope.h"
+#include "sim/dynamics/gyro.h"
 #include "sim/dynamics/loop_noise.h"
 #include "sim/dynamics/static_map.h"
 #include "tests/linear_algebra/reference_algebra.h"

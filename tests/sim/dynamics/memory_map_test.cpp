@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/dynamics/modal_memory.h"
+#include "sim/dynamics/modal_table.h"
 #include "sim/dynamics/static_map.h"
 #include "sim/numerics/simulation_failure.h"
 #include "tests/config/rejection.h"

@@ -8,7 +8,7 @@
 #include <functional>
 #include <numbers>
 
-#include "sim/dynamics/mode_forces.h"
+#include "sim/dynamics/static_solution.h"
 #include "sim/numerics/ode.h"
 #include "tests/linear_algebra/reference_algebra.h"
 

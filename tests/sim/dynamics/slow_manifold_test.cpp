@@ -5,7 +5,7 @@
 #include <cmath>
 #include <complex>
 
-#include "sim/dynamics/envelope_plant.h"
+#include "sim/dynamics/envelope.h"
 #include "tests/linear_algebra/reference_algebra.h"
 
 namespace beamgyro::internal::slow_manifold_test {
