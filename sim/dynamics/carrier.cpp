@@ -5,24 +5,15 @@
 #include <numbers>
 
 #include "sim/dynamics/complex_form.h"
-#include "sim/dynamics/envelope.h"
 
 namespace beamgyro::internal {
 namespace {
 
-using Eigen::Vector2cd;
 using Eigen::Vector2d;
 
 }  // namespace
 
-CarrierOde::CarrierOde(const Gyro& gyro)
-    : loops_(loop_electronics(gyro)),
-      table_(gyro),
-      angular_gain_(gyro.beam.angular_gain),
-      amplitude_(gyro.device.drive.amplitude),
-      mass_amplitude_(gyro.beam.mass * gyro.device.drive.amplitude),
-      phase_tc_(gyro.device.readout.phase_tc),
-      phase_tc2_(gyro.device.readout.phase_tc2) {
+CarrierOde::CarrierOde(const Gyro& gyro) : LoopedBeam(gyro) {
   set_temperatures(kCalibrationTemperature, kCalibrationTemperature);
 }
 
@@ -31,17 +22,8 @@ void CarrierOde::set_temperatures(double beam, double board,
   const ModalChannels modal = table_.at(beam).value + memory;
   stiffness_ = stiffness_of(modal);
   damping_ = damping_of(modal);
-  const auto along = [&](Patch patch) -> Vector2cd {
-    return coupling_of(modal, patch) *
-           table_.direction()[patch].cast<Complex>();
-  };
-  drive_ = along(kDrive) / amplitude_;
-  damping_patch_ = along(kDamping) / amplitude_;
-  feedback_ =
-      along(kFeedback).transpose() * (-mass_amplitude_ / loops_.feedback_scale);
-  readout_ = along(kReadout).transpose() * mass_amplitude_;
-  const double dT = board - kCalibrationTemperature;
-  turn_ = std::polar(1.0, (phase_tc_ + phase_tc2_ * dT) * dT);
+  couplings_ = couplings(modal);
+  turn_ = turn(board);
 }
 
 void CarrierOde::begin_window(double elapsed) {
@@ -60,14 +42,14 @@ void CarrierOde::rate(double t, const CaseMotion& motion,
   const Complex carrier(std::cos(theta), std::sin(theta));
   const Complex demodulator = 2.0 * std::conj(carrier);
 
-  const Complex r1 = complex_at(y, kReadout1), r2 = complex_at(y, kReadout2);
+  const Complex r2 = complex_at(y, kReadout2);
   Complex z = r2;
-  Vector2d force = (drive_ * (drive.voltage * carrier)).real();
+  Vector2d force = (couplings_.drive * (drive.voltage * carrier)).real();
   if (loops_.rebalance) {
     z = -(loops_.rebalance_integral * complex_at(y, kRebalance) +
           loops_.rebalance_proportional * r2);
     const Complex V_B = loops_.voltage_axis * std::conj(turn_) * z;
-    force += (damping_patch_ * (V_B * carrier)).real();
+    force += (couplings_.damping * (V_B * carrier)).real();
   }
   const auto [position, velocity] =
       mode_forces(stiffness_, damping_, angular_gain_, motion);
@@ -77,24 +59,13 @@ void CarrierOde::rate(double t, const CaseMotion& motion,
       (force - (position + euler_force(angular_gain_, motion)) * x) / w -
       velocity * v;
 
-  const double wf = loops_.demodulator_corner, wo = loops_.output_corner;
-  const Complex U_F = demodulator * (feedback_(0) * x(0) + feedback_(1) * x(1));
-  dydt(kFeedback1) = wf * (U_F.real() - y(kFeedback1));
-  dydt(kFeedback1 + 1) = wf * (-U_F.imag() - y(kFeedback1 + 1));
-  dydt(kFeedback2) = wf * (y(kFeedback1) - y(kFeedback2));
-  dydt(kFeedback2 + 1) = wf * (y(kFeedback1 + 1) - y(kFeedback2 + 1));
-  dydt(kPllIntegral) = loops_.pll_integral * drive.phase_error();
-  dydt(kAgcIntegral) = drive.integral_rate;
-
-  const Complex charge = readout_(0) * x(0) + readout_(1) * x(1) +
+  const Complex U_F = demodulator * (couplings_.feedback(0) * x(0) +
+                                     couplings_.feedback(1) * x(1));
+  const Complex charge = couplings_.readout(0) * x(0) +
+                         couplings_.readout(1) * x(1) +
                          loops_.feedthrough * drive.voltage * carrier.real();
   const Complex r = demodulator * charge * turn_ / loops_.charge_axis;
-  put(dydt, kReadout1, wf * (r - r1));
-  put(dydt, kReadout2, wf * (r1 - r2));
-  const Complex o1 = complex_at(y, kOutput1), o2 = complex_at(y, kOutput2);
-  put(dydt, kOutput1, wo * (z - o1));
-  put(dydt, kOutput2, wo * (o1 - o2));
-  put(dydt, kRebalance, loops_.rebalance ? r2 : Complex(0));
+  put_loop_rates(drive, U_F, r, z, y, dydt);
   dydt(kCarrierPhase) = drive.frequency - w;
 }
 

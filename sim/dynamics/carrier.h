@@ -2,11 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <complex>
 
-#include "sim/dynamics/loop_electronics.h"
-#include "sim/dynamics/modal_table.h"
-#include "sim/dynamics/static_solution.h"
+#include "sim/dynamics/envelope.h"
 
 namespace beamgyro::internal {
 
@@ -26,7 +23,7 @@ enum CarrierState {
 /// included. Temperatures are those of the last set_temperatures(). Time counts
 /// from the last begin_window(), which keeps the phase exact over hours. Not
 /// safe for use by two threads at once.
-class CarrierOde {
+class CarrierOde : public LoopedBeam {
  public:
   explicit CarrierOde(const Gyro& gyro);
 
@@ -47,22 +44,13 @@ class CarrierOde {
             const Eigen::Ref<const Eigen::VectorXd>& y,
             Eigen::Ref<Eigen::VectorXd> dydt) const;
 
-  const LoopElectronics& loops() const { return loops_; }
-
  private:
-  LoopElectronics loops_;
-  ModalTable table_;
-  double angular_gain_;
-  double amplitude_;       // A_ref [m]
-  double mass_amplitude_;  // m A_ref [kg m]
-  double phase_tc_, phase_tc2_;
   double window_phase_ = 0;  // theta - residual at time 0 of the window [rad]
 
   // At the temperatures set last.
-  Eigen::Matrix2d stiffness_, damping_;     // per mass
-  Eigen::Vector2cd drive_, damping_patch_;  // per mass and A_ref [1/(s2 V)]
-  Eigen::RowVector2cd feedback_, readout_;  // per A_ref
-  std::complex<double> turn_;               // e^{i phi_el}
+  Eigen::Matrix2d stiffness_, damping_;  // per mass
+  Couplings couplings_;
+  Complex turn_;
 };
 
 }  // namespace beamgyro::internal

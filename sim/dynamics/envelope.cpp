@@ -50,18 +50,56 @@ EnvelopePlant::Slope EnvelopePlant::by(const Matrix2d& stiffness,
   return slope(dP, stiffness.cast<std::complex<double>>() + kI * omega_ * dP);
 }
 
-EnvelopeOde::EnvelopeOde(const Gyro& gyro, const DriveHeating& heating,
-                         const ModalMemory* memory)
+LoopedBeam::LoopedBeam(const Gyro& gyro)
     : loops_(loop_electronics(gyro)),
       table_(gyro),
-      memory_(memory),
-      thermal_(ThermalNetwork(gyro.device.thermal), heating.mechanical,
-               heating.dielectric),
       phase_tc_(gyro.device.readout.phase_tc),
       phase_tc2_(gyro.device.readout.phase_tc2),
       angular_gain_(gyro.beam.angular_gain),
       amplitude_(gyro.device.drive.amplitude),
       mass_amplitude_(gyro.beam.mass * gyro.device.drive.amplitude) {}
+
+LoopedBeam::Couplings LoopedBeam::couplings(const ModalChannels& modal) const {
+  const auto along = [&](Patch patch) -> Vector2cd {
+    return coupling_of(modal, patch) *
+           table_.direction()[patch].cast<Complex>();
+  };
+  const double to_feedback = -mass_amplitude_ / loops_.feedback_scale;
+  return {along(kDrive) / amplitude_, along(kDamping) / amplitude_,
+          along(kFeedback).transpose() * to_feedback,
+          along(kReadout).transpose() * mass_amplitude_};
+}
+
+Complex LoopedBeam::turn(double board_temperature) const {
+  const double dT = board_temperature - kCalibrationTemperature;
+  return std::polar(1.0, (phase_tc_ + phase_tc2_ * dT) * dT);
+}
+
+void LoopedBeam::put_loop_rates(const DriveSignals& drive, Complex U_F,
+                                Complex r, Complex z, const State& y,
+                                Eigen::Ref<Eigen::VectorXd> dydt) const {
+  const double wf = loops_.demodulator_corner, wo = loops_.output_corner;
+  dydt(kFeedback1) = wf * (U_F.real() - y(kFeedback1));
+  dydt(kFeedback1 + 1) = wf * (-U_F.imag() - y(kFeedback1 + 1));
+  dydt(kFeedback2) = wf * (y(kFeedback1) - y(kFeedback2));
+  dydt(kFeedback2 + 1) = wf * (y(kFeedback1 + 1) - y(kFeedback2 + 1));
+  dydt(kPllIntegral) = loops_.pll_integral * drive.phase_error();
+  dydt(kAgcIntegral) = drive.integral_rate;
+  const Complex r1 = complex_at(y, kReadout1), r2 = complex_at(y, kReadout2);
+  put(dydt, kReadout1, wf * (r - r1));
+  put(dydt, kReadout2, wf * (r1 - r2));
+  const Complex o1 = complex_at(y, kOutput1), o2 = complex_at(y, kOutput2);
+  put(dydt, kOutput1, wo * (z - o1));
+  put(dydt, kOutput2, wo * (o1 - o2));
+  put(dydt, kRebalance, loops_.rebalance ? r2 : Complex(0));
+}
+
+EnvelopeOde::EnvelopeOde(const Gyro& gyro, const DriveHeating& heating,
+                         const ModalMemory* memory)
+    : LoopedBeam(gyro),
+      memory_(memory),
+      thermal_(ThermalNetwork(gyro.device.thermal), heating.mechanical,
+               heating.dielectric) {}
 
 Eigen::VectorXd EnvelopeOde::at_rest(double temperature) const {
   Eigen::VectorXd y = Eigen::VectorXd::Zero(size());
@@ -76,25 +114,13 @@ ModalTable::Point EnvelopeOde::modal_at(double time, double beam_temperature) {
   return modal;
 }
 
-EnvelopeCouplings EnvelopeOde::couplings(const ModalChannels& modal) const {
-  const auto along = [&](Patch patch) -> Vector2cd {
-    return coupling_of(modal, patch) *
-           table_.direction()[patch].cast<Complex>();
-  };
-  const double to_feedback = -mass_amplitude_ / loops_.feedback_scale;
-  return {along(kDrive) / amplitude_, along(kDamping) / amplitude_,
-          along(kFeedback).transpose() * to_feedback,
-          along(kReadout).transpose() * mass_amplitude_};
-}
-
 EnvelopeCoefficients EnvelopeOde::coefficients(const ModalChannels& modal,
                                                const CaseMotion& motion,
                                                double board_temperature) const {
   const auto [stiffness, velocity] = mode_forces(
       stiffness_of(modal), damping_of(modal), angular_gain_, motion);
   const double dT = board_temperature - kCalibrationTemperature;
-  return {couplings(modal), stiffness, velocity,
-          std::polar(1.0, (phase_tc_ + phase_tc2_ * dT) * dT),
+  return {couplings(modal), stiffness, velocity, turn(board_temperature),
           phase_tc_ + 2 * phase_tc2_ * dT};
 }
 
@@ -150,25 +176,11 @@ void EnvelopeOde::rate(const EnvelopeInputs& inputs, const State& y,
                        plant.from_force_rate() * m.force_rate;
   put(dydt, kAmplitude, dU(0));
   put(dydt, kAmplitude + 2, dU(1));
-
-  const double wf = loops_.demodulator_corner, wo = loops_.output_corner;
   const Complex U_F = now.couplings.feedback * m.U;
-  dydt(kFeedback1) = wf * (U_F.real() - m.i1);
-  dydt(kFeedback1 + 1) = wf * (-U_F.imag() - m.q1);
-  dydt(kFeedback2) = wf * (m.i1 - m.i2);
-  dydt(kFeedback2 + 1) = wf * (m.q1 - m.q2);
-  dydt(kPllIntegral) = loops_.pll_integral * m.drive.phase_error();
-  dydt(kAgcIntegral) = m.drive.integral_rate;
-
   const Complex charge = now.couplings.readout * m.U;
   const Complex r = (charge + loops_.feedthrough * m.drive.voltage) * now.turn /
                     loops_.charge_axis;
-  put(dydt, kReadout1, wf * (r - m.r1));
-  put(dydt, kReadout2, wf * (m.r1 - m.r2));
-  const Complex o1 = complex_at(y, kOutput1), o2 = complex_at(y, kOutput2);
-  put(dydt, kOutput1, wo * (m.z - o1));
-  put(dydt, kOutput2, wo * (o1 - o2));
-  put(dydt, kRebalance, loops_.rebalance ? m.r2 : Complex(0));
+  put_loop_rates(m.drive, U_F, r, m.z, y, dydt);
 }
 
 }  // namespace beamgyro::internal

@@ -45,17 +45,62 @@ class EnvelopePlant {
   Eigen::Matrix2cd r_, s_, a_, b_, d_;
 };
 
-/// The couplings at a point of the modal table, or their slopes over
-/// temperature.
-struct EnvelopeCouplings {
-  Eigen::Vector2cd drive, damping;        // Theta/(m A_ref) [1/(s2 V)]
-  Eigen::RowVector2cd feedback, readout;  // U to U_F, and to charge [C]
+/// Indices of the state vector of EnvelopeOde. A complex number takes two
+/// entries, real part first. Amplitudes are divided by A_ref; signals are rates
+/// [rad/s].
+enum EnvelopeState {
+  kAmplitude = 0,      // U = u/A_ref, complex X then Y
+  kFeedback1 = 4,      // i_1, q_1
+  kFeedback2 = 6,      // i_2, q_2
+  kPllIntegral = 8,    // xi [rad/s]
+  kAgcIntegral = 9,    // eta
+  kReadout1 = 10,      // r after one pole w_f [rad/s]
+  kReadout2 = 12,      // r after both
+  kOutput1 = 14,       // z after one pole w_o
+  kOutput2 = 16,       // z after both: rate and minus the quadrature
+  kRebalance = 18,     // int r dt [rad], stays 0 in open loop
+  kEnvelopeNodes = 20  // the state of ThermalOde
+};
+
+/// The beam in the loops of loop_electronics.h, as envelope and carrier have
+/// it.
+class LoopedBeam {
+ public:
+  explicit LoopedBeam(const Gyro& gyro);
+
+  const LoopElectronics& loops() const { return loops_; }
+
+  /// The couplings at a point of the modal table, or their slopes over
+  /// temperature.
+  struct Couplings {
+    Eigen::Vector2cd drive, damping;        // Theta/(m A_ref) [1/(s2 V)]
+    Eigen::RowVector2cd feedback, readout;  // U to U_F, and to charge [C]
+  };
+
+ protected:
+  Couplings couplings(const ModalChannels& modal) const;
+  Complex turn(double board_temperature) const;  // e^{i phi_el}
+
+  /// Writes the rates of the states from kFeedback1 to kRebalance: of the
+  /// demodulated feedback U_F, the readout r and the output z [rad/s].
+  void put_loop_rates(const DriveSignals& drive, Complex U_F, Complex r,
+                      Complex z, const Eigen::Ref<const Eigen::VectorXd>& y,
+                      Eigen::Ref<Eigen::VectorXd> dydt) const;
+
+  LoopElectronics loops_;
+  ModalTable table_;
+  double phase_tc_, phase_tc2_;
+  double angular_gain_;
+
+ private:
+  double amplitude_;       // A_ref [m]
+  double mass_amplitude_;  // m A_ref [kg m]
 };
 
 /// The coefficients of the envelope's equations at one beam temperature, motion
 /// of the case and board temperature.
 struct EnvelopeCoefficients {
-  EnvelopeCouplings couplings;
+  LoopedBeam::Couplings couplings;
   Eigen::Matrix2d stiffness, velocity;  // of EnvelopePlant
   Complex turn;                         // e^{i phi_el}
   double turn_slope;                    // d phi_el / dT_board [rad/K]
@@ -76,23 +121,6 @@ struct EnvelopeMoment {
 /// Below this amplitude the slope of |i + jq| is taken as 0.
 inline constexpr double kNoAmplitude = 1e-12;
 
-/// Indices of the state vector of EnvelopeOde. A complex number takes two
-/// entries, real part first. Amplitudes are divided by A_ref; signals are rates
-/// [rad/s].
-enum EnvelopeState {
-  kAmplitude = 0,      // U = u/A_ref, complex X then Y
-  kFeedback1 = 4,      // i_1, q_1
-  kFeedback2 = 6,      // i_2, q_2
-  kPllIntegral = 8,    // xi [rad/s]
-  kAgcIntegral = 9,    // eta
-  kReadout1 = 10,      // r after one pole w_f [rad/s]
-  kReadout2 = 12,      // r after both
-  kOutput1 = 14,       // z after one pole w_o
-  kOutput2 = 16,       // z after both: rate and minus the quadrature
-  kRebalance = 18,     // int r dt [rad], stays 0 in open loop
-  kEnvelopeNodes = 20  // the state of ThermalOde
-};
-
 /// Inputs of the gyro at one moment.
 struct EnvelopeInputs {
   CaseMotion motion;
@@ -107,7 +135,7 @@ struct EnvelopeInputs {
 /// f = (Theta_D V_D + Theta_B V_B)/(m A_ref). Without power the amplitudes and
 /// the states of the electronics stay as they are. Not safe for use by two
 /// threads at once.
-class EnvelopeOde {
+class EnvelopeOde : public LoopedBeam {
  public:
   /// `memory`, which must outlive the object, is null for a unit without.
   EnvelopeOde(const Gyro& gyro, const DriveHeating& heating,
@@ -128,11 +156,8 @@ class EnvelopeOde {
                 const Eigen::Ref<const Eigen::VectorXd>& y,
                 Eigen::Ref<Eigen::MatrixXd> slope);
 
-  const LoopElectronics& loops() const { return loops_; }
-
  private:
   ModalTable::Point modal_at(double time, double beam_temperature);
-  EnvelopeCouplings couplings(const ModalChannels& modal) const;
   EnvelopeCoefficients coefficients(const ModalChannels& modal,
                                     const CaseMotion& motion,
                                     double board_temperature) const;
@@ -153,15 +178,9 @@ class EnvelopeOde {
                               const EnvelopePlant& plant,
                               Eigen::Ref<Eigen::MatrixXd> slope) const;
 
-  LoopElectronics loops_;
-  ModalTable table_;
   const ModalMemory* memory_;
   std::size_t memory_interval_ = 0;
   ThermalOde thermal_;
-  double phase_tc_, phase_tc2_;
-  double angular_gain_;
-  double amplitude_;       // A_ref [m]
-  double mass_amplitude_;  // m A_ref [kg m]
 };
 
 }  // namespace beamgyro::internal

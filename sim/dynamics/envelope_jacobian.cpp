@@ -179,7 +179,7 @@ void EnvelopeOde::add_temperature_slopes(const ModalChannels& modal_slope,
   const double wf = loops_.demodulator_corner;
   const Index beam = kEnvelopeNodes + Index{kBeam};
   const Index board = kEnvelopeNodes + Index{kBoard};
-  const EnvelopeCouplings per_K = couplings(modal_slope);
+  const Couplings per_K = couplings(modal_slope);
   const EnvelopePlant::Slope by_T =
       plant.by(stiffness_of(modal_slope), damping_of(modal_slope));
   add_amplitude_column(

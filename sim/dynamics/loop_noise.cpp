@@ -33,31 +33,27 @@ Eigen::VectorXd settled_state(const Gyro& gyro, const EnvelopeOde& ode,
   const LoopElectronics& loops = ode.loops();
   Eigen::VectorXd y = ode.at_rest(T_beam);
   y(kEnvelopeNodes + Index{kBoard}) = T_board;
-  const auto put = [&](Index i, Complex z) {
-    y(i) = z.real();
-    y(i + 1) = z.imag();
-  };
-  put(kAmplitude, s.amplitude(0) / gyro.device.drive.amplitude);
-  put(kAmplitude + 2, s.amplitude(1) / gyro.device.drive.amplitude);
+  put(y, kAmplitude, s.amplitude(0) / gyro.device.drive.amplitude);
+  put(y, kAmplitude + 2, s.amplitude(1) / gyro.device.drive.amplitude);
   Complex feedback(std::sin(loops.pll_phase), std::cos(loops.pll_phase));
   if (!s.amplitude_locked) {
     feedback *= std::abs(charge_of(modal.coupling[kFeedback], s.amplitude)) /
                 loops.feedback_scale;
   }
-  put(kFeedback1, feedback);
-  put(kFeedback2, feedback);
+  put(y, kFeedback1, feedback);
+  put(y, kFeedback2, feedback);
   y(kPllIntegral) = s.drive_frequency - loops.nominal_frequency;
   y(kAgcIntegral) = s.drive_voltage / loops.nominal_voltage;
   const Complex z =
       s.signal / gyro.rate_axis * electronics_at(gyro, T_board).turn;
   if (loops.rebalance) {
-    put(kRebalance, -z / loops.rebalance_integral);
+    put(y, kRebalance, -z / loops.rebalance_integral);
   } else {
-    put(kReadout1, z);
-    put(kReadout2, z);
+    put(y, kReadout1, z);
+    put(y, kReadout2, z);
   }
-  put(kOutput1, z);
-  put(kOutput2, z);
+  put(y, kOutput1, z);
+  put(y, kOutput2, z);
   return y;
 }
 
