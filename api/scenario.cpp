@@ -8,7 +8,7 @@
 #include "api/scenario_state.h"
 #include "config/overrides.h"
 #include "dataset/files/text_file.h"
-#include "sim/scenario/carrier_run.h"
+#include "sim/scenario/simulation.h"
 
 namespace beamgyro {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bench/shipped_device.h"
-#include "sim/scenario/carrier_run.h"
 #include "sim/scenario/envelope_run.h"
+#include "sim/scenario/simulation.h"
 
 namespace beamgyro::internal {
 namespace {

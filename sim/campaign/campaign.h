@@ -15,8 +15,8 @@
 #include "sim/campaign/draw_plan.h"
 #include "sim/campaign/drawn_keys.h"
 #include "sim/dynamics/gyro.h"
-#include "sim/scenario/profile_keys.h"
 #include "sim/scenario/scenario.h"
+#include "sim/scenario/scenario_file.h"
 
 namespace beamgyro::internal {
 

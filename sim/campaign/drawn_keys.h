@@ -6,8 +6,8 @@
 
 #include "config/document.h"
 #include "sim/campaign/draw_plan.h"
-#include "sim/scenario/profile_keys.h"
 #include "sim/scenario/scenario.h"
+#include "sim/scenario/scenario_file.h"
 
 namespace beamgyro::internal {
 

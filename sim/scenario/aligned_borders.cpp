@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "sim/scenario/aligned_borders.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "sim/scenario/scenario.h"
 
 namespace beamgyro::internal {
 namespace {

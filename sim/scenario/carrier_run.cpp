@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "sim/scenario/carrier_run.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,14 +9,11 @@
 #include <utility>
 
 #include "sim/dynamics/carrier.h"
-#include "sim/dynamics/envelope.h"
 #include "sim/numerics/ode.h"
-#include "sim/scenario/aligned_borders.h"
 #include "sim/scenario/drive_lock.h"
-#include "sim/scenario/motion.h"
+#include "sim/scenario/loop_run.h"
 #include "sim/scenario/run_temperatures.h"
-#include "sim/scenario/sensing_noise.h"
-#include "sim/scenario/unpowered_bias.h"
+#include "sim/scenario/simulation.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -216,23 +211,14 @@ void simulate_carrier(const ScenarioPlan& given, const Gyro& gyro,
                       const RunKey& key, const BlockSink& on_block) {
   const ScenarioPlan scenario = with_aligned_borders(given);
   require_rate(scenario, gyro);
-  const Motion motion(scenario, gyro, key);
   const RunTemperatures temperatures(scenario, gyro, kThermalStep);
-  const std::unique_ptr<MemoryTrajectory> memory =
-      memory_of_run(scenario, gyro);
-  std::optional<ModalMemory> remembered;
-  if (memory) remembered.emplace(gyro, *memory);
-  const ModalMemory* added = remembered ? &*remembered : nullptr;
-  CarrierTrajectory trajectory(scenario, gyro, motion, temperatures, added,
-                               false);
+  LoopRun run(scenario, gyro, key);
+  const Motion& motion = run.motion();
+  CarrierTrajectory trajectory(scenario, gyro, motion, temperatures,
+                               run.memory(), false);
   std::optional<CarrierTrajectory> twin;
   if (!motion.rate_is_zero())
-    twin.emplace(scenario, gyro, motion, temperatures, added, true);
-  UnpoweredBias unpowered_bias(scenario, gyro, motion, memory.get());
-  std::optional<SensingNoise> noise;
-  if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
-  RunRecorder recorder(scenario, gyro.device, key,
-                       noise ? noise->rms() : RunNoise{});
+    twin.emplace(scenario, gyro, motion, temperatures, run.memory(), true);
   const SampleGrid grid = sample_grid(scenario);
   // Blocks are short, because progress is reported after each.
   const auto block_size =
@@ -241,16 +227,8 @@ void simulate_carrier(const ScenarioPlan& given, const Gyro& gyro,
   for (std::size_t k = 0; k < grid.count; k += block_size) {
     const std::vector<double> block =
         grid.times(k, std::min(block_size, grid.count - k));
-    RunSamples samples = samples_at(block, gyro, temperatures, trajectory,
-                                    twin ? &*twin : nullptr);
-    if (memory) {
-      samples.memory.resize(block.size());
-      memory->sample(block, samples.temperature[kBeam], samples.memory);
-    }
-    unpowered_bias.fill_next(samples);
-    motion.sample(samples);
-    if (noise) noise->add_next(samples);
-    on_block(recorder.block(std::move(samples)));
+    on_block(run.block(samples_at(block, gyro, temperatures, trajectory,
+                                  twin ? &*twin : nullptr)));
   }
 }
 

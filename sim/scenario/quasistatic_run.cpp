@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "sim/scenario/quasistatic_run.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,12 +13,12 @@
 
 #include "sim/dynamics/mechanical_noise.h"
 #include "sim/dynamics/static_map.h"
-#include "sim/scenario/aligned_borders.h"
 #include "sim/scenario/filtered_motion.h"
 #include "sim/scenario/material_limits.h"
 #include "sim/scenario/motion.h"
 #include "sim/scenario/run_temperatures.h"
 #include "sim/scenario/sensing_noise.h"
+#include "sim/scenario/simulation.h"
 #include "sim/signal/readout.h"
 #include "sim/thermal/thermal_trajectory.h"
 

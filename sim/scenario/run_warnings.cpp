@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "config/units.h"
-#include "sim/scenario/aligned_borders.h"
 #include "sim/scenario/drive_lock.h"
 #include "sim/scenario/scenario.h"
 #include "sim/thermal/thermal_parameters.h"

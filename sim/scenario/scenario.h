@@ -58,6 +58,17 @@ SampleGrid sample_grid(const ScenarioPlan& scenario);
 /// Returns the times of all samples.
 std::vector<double> sample_times(const ScenarioPlan& scenario);
 
+/// Returns the scenario with times that only rounding keeps apart
+/// (is_same_time()) made equal. Power switches, jumps and bends of profiles at
+/// the same time move together:
+/// - to the sample at that time, if there is one;
+/// - else to the number of nine decimals at that time;
+/// - else to the last of them.
+/// A single switch or jump moves likewise; a single bend stays. Two points of
+/// one profile at the same time make a jump. Random motions have no points yet
+/// and are not changed.
+ScenarioPlan with_aligned_borders(const ScenarioPlan& scenario);
+
 /// Returns the highest output rate [Hz] that a fidelity allows.
 double highest_output_rate(Fidelity fidelity);
 

@@ -2,13 +2,17 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <vector>
 
 #include "config/document.h"
-#include "sim/scenario/profile_keys.h"
+#include "dataset/log/csv_file.h"
 #include "sim/scenario/scenario.h"
 
 namespace beamgyro::internal {
+
+/// Profile files that were read before, by their lexically normal path.
+using ProfileTables = std::map<std::filesystem::path, CsvTable>;
 
 /// Reads a scenario and checks every key (docs/reference/scenario_file.md).
 /// Files that it names are relative to its own folder; `device_file` is

@@ -4,9 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/scenario/carrier_run.h"
 #include "sim/scenario/envelope_run.h"
-#include "sim/scenario/quasistatic_run.h"
 
 namespace beamgyro::internal {
 namespace {

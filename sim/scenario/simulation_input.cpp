@@ -10,7 +10,6 @@
 #include "dataset/files/text_file.h"
 #include "dataset/log/csv_file.h"
 #include "sim/device/device_file.h"
-#include "sim/scenario/profile_keys.h"
 #include "sim/scenario/scenario_file.h"
 
 namespace beamgyro::internal {

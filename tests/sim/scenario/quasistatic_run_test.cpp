@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "sim/scenario/quasistatic_run.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "random/random_stream.h"
-#include "sim/scenario/aligned_borders.h"
+#include "sim/scenario/scenario.h"
 #include "sim/scenario/simulation.h"
 #include "tests/config/rejection.h"
 #include "tests/sim/device/nominal_device.h"

@@ -1,37 +1,66 @@
 // SPDX-License-Identifier: MIT
-#include "sim/scenario/unpowered_bias.h"
+#include "sim/scenario/loop_run.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "sim/dynamics/static_map.h"
+#include "sim/scenario/run_temperatures.h"
 
 namespace beamgyro::internal {
+namespace {
 
-UnpoweredBias::UnpoweredBias(const ScenarioPlan& scenario, const Gyro& gyro,
-                             const Motion& motion,
-                             const MemoryTrajectory* memory)
-    : scenario_(scenario), gyro_(gyro), memory_(memory) {
-  if (motion.has_other_axes())
-    motion_.emplace(gyro, motion, scenario.output_rate);
+std::optional<SensingNoise> noise_of(const ScenarioPlan& scenario,
+                                     const Gyro& gyro, const RunKey& key) {
+  std::optional<SensingNoise> noise;
+  if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
+  return noise;
 }
 
-void UnpoweredBias::fill_next(RunSamples& samples) {
-  if (motion_) motion_->next(samples.time.size());
+}  // namespace
+
+LoopRun::LoopRun(const ScenarioPlan& scenario, const Gyro& gyro,
+                 const RunKey& key)
+    : scenario_(scenario),
+      gyro_(gyro),
+      motion_(scenario, gyro, key),
+      memory_(memory_of_run(scenario, gyro)),
+      noise_(noise_of(scenario, gyro, key)),
+      recorder_(scenario, gyro.device, key,
+                noise_ ? noise_->rms() : RunNoise{}) {
+  if (memory_) added_.emplace(gyro, *memory_);
+  if (motion_.has_other_axes())
+    filtered_.emplace(gyro, motion_, scenario.output_rate);
+}
+
+Recording LoopRun::block(RunSamples&& samples) {
+  if (memory_) {
+    samples.memory.resize(samples.time.size());
+    memory_->sample(samples.time, samples.temperature[kBeam], samples.memory);
+  }
+  fill_unpowered_bias(samples);
+  motion_.sample(samples);
+  if (noise_) noise_->add_next(samples);
+  return recorder_.block(std::move(samples));
+}
+
+void LoopRun::fill_unpowered_bias(RunSamples& samples) {
+  if (filtered_) filtered_->next(samples.time.size());
   std::vector<std::size_t> unpowered;
   for (std::size_t k = 0; k < samples.time.size(); ++k)
     if (!powered_at(scenario_.powered, samples.time[k])) unpowered.push_back(k);
   if (unpowered.empty()) return;
-  if (motion_) {
+  if (filtered_) {
     fill_moving(unpowered, samples);
   } else {
     fill_still(unpowered, samples);
   }
 }
 
-void UnpoweredBias::fill_moving(const std::vector<std::size_t>& unpowered,
-                                RunSamples& samples) {
+void LoopRun::fill_moving(const std::vector<std::size_t>& unpowered,
+                          RunSamples& samples) {
   for (const std::size_t k : unpowered) {
-    CaseMotion motion = motion_->at(k);
+    CaseMotion motion = filtered_->at(k);
     motion.z = 0;
     const ModalParameters modal =
         modal_at(gyro_, samples.temperature[kBeam][k],
@@ -43,8 +72,8 @@ void UnpoweredBias::fill_moving(const std::vector<std::size_t>& unpowered,
   }
 }
 
-void UnpoweredBias::fill_still(const std::vector<std::size_t>& unpowered,
-                               RunSamples& samples) const {
+void LoopRun::fill_still(const std::vector<std::size_t>& unpowered,
+                         RunSamples& samples) const {
   std::vector<double> beam;
   for (const std::size_t k : unpowered)
     beam.push_back(samples.temperature[kBeam][k]);
