@@ -17,7 +17,7 @@
 #include "dataset/files/json_text.h"
 #include "report/sensitivity_report.h"
 #include "sensitivity/figures/figure_of_merit.h"
-#include "sensitivity/study/factor.h"
+#include "sensitivity/study/device_sample.h"
 #include "sensitivity/study/sensitivity_study.h"
 #include "sim/thermal/thermal_parameters.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sensitivity/figures/static_curve.h"
+#include "sensitivity/figures/figure_of_merit.h"
 #include "sensitivity/study/device_sample.h"
 #include "sensitivity/study/sensitivity_study.h"
 

@@ -13,7 +13,6 @@
 #include "config/document.h"
 #include "dataset/set/source_copies.h"
 #include "sim/campaign/draw_plan.h"
-#include "sim/campaign/drawn_keys.h"
 #include "sim/dynamics/gyro.h"
 #include "sim/scenario/scenario.h"
 #include "sim/scenario/scenario_file.h"
@@ -45,6 +44,13 @@ struct Trims {
 /// Throws SimulationFailure when the drive loop does not lock.
 void set_as_built(const Trims& trims, const Gyro& base,
                   DeviceParameters& device);
+
+/// Returns the axes that some device may move: those of the scenario itself,
+/// those of each choice of `plan` that can be drawn, and those with a number
+/// from a continuous distribution. `profiles` are the files that they name.
+PerAxis<bool> moved_axes(const ScenarioPlan& scenario,
+                         const ConfigDocument& document, const DrawPlan& plan,
+                         const ProfileTables& profiles);
 
 /// One scenario that every device goes through.
 struct CampaignRun {
@@ -89,6 +95,8 @@ struct CampaignPlan {
                                 std::optional<long> devices = {});
 
   /// Returns whether devices may differ in this dotted key of the device file.
+  /// In a drawn table they differ unless every choice has the value of the
+  /// file.
   bool is_drawn(std::string_view device_key) const;
 
   /// Draws device number `index`, which may be larger than `devices`.

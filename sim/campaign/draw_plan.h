@@ -96,4 +96,8 @@ DrawnValues drawn_values(const DrawPlan& plan, std::vector<double> uniform);
 Overrides overrides_of(const DrawPlan& plan,
                        const std::vector<ConfigNode>& values);
 
+/// Returns the unit that the end of a key names, spelled as in recordings:
+/// "degree/s" for "offset_trim_deg_per_s", "1" when it names none.
+std::string units_of(std::string_view key);
+
 }  // namespace beamgyro::internal

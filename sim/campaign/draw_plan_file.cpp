@@ -15,7 +15,7 @@
 #include "config/suggestion.h"
 #include "config/table.h"
 #include "sim/campaign/distribution.h"
-#include "sim/campaign/parameter_units.h"
+#include "sim/campaign/draw_plan.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -15,8 +15,9 @@
 namespace beamgyro::internal {
 namespace {
 
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find('\n'));
+void fail(DeviceRow& row, const std::string& why, DeviceStatus status) {
+  row.failure = why.substr(0, why.find('\n'));  // its first line
+  row.device_status = status;
 }
 
 // Motion about or along an axis that the run of one device does not have.
@@ -39,14 +40,12 @@ void ShardMaker::prepare(std::uint32_t range) {
     PreparedDevice device{campaign.device(d), {}, {}};
     device.row.part = static_cast<std::uint8_t>(campaign.part(d));
     if (!device.drawn.device) {
-      device.row.failure = device.drawn.failure;
-      device.row.device_status = kInvalidParameters;
+      fail(device.row, device.drawn.failure, kInvalidParameters);
     } else {
       try {
         device.gyro = make_gyro(*device.drawn.device);
       } catch (const SimulationFailure& error) {
-        device.row.failure = first_line(error.what());
-        device.row.device_status = kNoConvergence;
+        fail(device.row, error.what(), kNoConvergence);
       }
     }
     prepared_.push_back(std::move(device));
@@ -60,19 +59,16 @@ Recording ShardMaker::recorded(const PreparedDevice& device,
                                const ShardHead& head, DeviceRow& row) const {
   Recording recording;
   if (!run.scenario) {
-    row.failure = run.failure;
-    row.device_status = kInvalidParameters;
+    fail(row, run.failure, kInvalidParameters);
     return recording;
   }
   try {
     recording = simulated(*run.scenario, *device.gyro, key);
   } catch (const std::invalid_argument& error) {
-    row.failure = first_line(error.what());
-    row.device_status = kInvalidParameters;
+    fail(row, error.what(), kInvalidParameters);
     return recording;
   } catch (const SimulationFailure& error) {
-    row.failure = first_line(error.what());
-    row.device_status = kNoConvergence;
+    fail(row, error.what(), kNoConvergence);
     return recording;
   }
   for (const Column& column : recording.columns) {
@@ -105,8 +101,7 @@ EncodedDevice ShardMaker::encoded(const ShardBuilder& file,
     try {
       if (row.failure.empty()) return file.encode(position, row, &recording);
     } catch (const UnstorableSamples& error) {
-      row.failure = first_line(error.what());
-      row.device_status = kNotFinite;
+      fail(row, error.what(), kNotFinite);
     }
   }
   return file.encode(position, row, nullptr);

@@ -87,7 +87,7 @@ class CheckIncludes(unittest.TestCase):
     def test_commands_use_the_public_library(self):
         self.assert_clean("cli/a.cpp", '#include "include/beamgyro/plan.h"\n')
         for inner in ["planning/planner.h", "sim/device/device.h",
-                      "compensation/inputs/features.h", "sensitivity/study/factor.h"]:
+                      "compensation/inputs/features.h", "sensitivity/study/device_sample.h"]:
             self.assert_offends("cli/a.cpp", f'#include "{inner}"\n', f'include "{inner}"')
 
     def test_unknown_rooms_and_relative_includes(self):

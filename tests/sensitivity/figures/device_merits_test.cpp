@@ -10,7 +10,6 @@
 #include "config/document.h"
 #include "config/units.h"
 #include "sensitivity/figures/figure_of_merit.h"
-#include "sensitivity/figures/static_curve.h"
 #include "sim/device/device_file.h"
 #include "sim/dynamics/characteristic.h"
 #include "sim/numerics/simulation_failure.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "sensitivity/study/factor.h"
-
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 #include <vector>
 
+#include "sensitivity/study/device_sample.h"
 #include "tests/config/rejection.h"
 #include "tests/sim/campaign/campaign_folder.h"
 

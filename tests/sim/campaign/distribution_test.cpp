@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "sim/campaign/parameter_units.h"
+#include "sim/campaign/draw_plan.h"
 
 namespace beamgyro::internal::distribution_test {
 namespace {
