@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "planning/soak_design.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>

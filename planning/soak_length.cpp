@@ -3,11 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <utility>
 
 #include "config/units.h"
-#include "planning/chamber.h"
 #include "sim/numerics/piecewise_linear.h"
 #include "sim/thermal/thermal_network.h"
 #include "sim/thermal/thermal_run.h"

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <numbers>
 #include <optional>
-#include <utility>
 
 #include "compensation/models/polynomial.h"
 #include "config/units.h"

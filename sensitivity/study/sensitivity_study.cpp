@@ -8,8 +8,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "statistics/intervals.h"
-
 namespace beamgyro::internal {
 namespace {
 

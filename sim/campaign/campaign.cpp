@@ -9,7 +9,6 @@
 #include "random/random_stream.h"
 #include "sim/device/device_file.h"
 #include "sim/numerics/simulation_failure.h"
-#include "sim/scenario/scenario_file.h"
 
 namespace beamgyro::internal {
 namespace {

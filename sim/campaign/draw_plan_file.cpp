@@ -7,15 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "config/config_node.h"
 #include "config/suggestion.h"
 #include "config/table.h"
 #include "sim/campaign/distribution.h"
-#include "sim/campaign/draw_plan.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <optional>
-#include <string>
 
 #include "sim/memory/memory_parameters.h"
 #include "sim/signal/loop_channels.h"

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "sim/device/device_file.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <numbers>
 #include <numeric>
-#include <vector>
 
 #include "config/table.h"
 #include "config/units.h"

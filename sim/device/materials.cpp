@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "sim/memory/bond_relaxation.h"
-#include "sim/memory/memory_parameters.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <complex>
 
 #include "sim/dynamics/loop_electronics.h"
 #include "sim/dynamics/modal_table.h"

@@ -2,7 +2,6 @@
 #include "sim/dynamics/static_map.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstddef>

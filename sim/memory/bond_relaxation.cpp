@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/memory/memory_parameters.h"
-
 namespace beamgyro::internal {
 namespace {
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "sim/memory/memory_trajectory.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace beamgyro::internal {

@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "linear_algebra/linear_systems.h"

@@ -5,17 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
-#include <vector>
 
 #include "config/units.h"
 #include "sim/scenario/drive_lock.h"
-#include "sim/scenario/scenario.h"
 #include "sim/thermal/thermal_parameters.h"
 
 namespace beamgyro::internal {

@@ -7,7 +7,6 @@
 
 #include "random/random_stream.h"
 #include "sim/dynamics/loop_noise.h"
-#include "sim/scenario/drive_lock.h"
 
 namespace beamgyro::internal {
 

@@ -8,8 +8,6 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "random/random_stream.h"
-
 namespace beamgyro::internal {
 namespace {
 

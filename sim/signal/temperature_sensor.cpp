@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "config/units.h"
-#include "random/random_stream.h"
 #include "sim/signal/readout.h"
 
 namespace beamgyro::internal {
