@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "dataset/netcdf/recording_reader.h"
-#include "dataset/recording/attributes.h"
 #include "dataset/recording/recording.h"
 #include "dataset/recording/recording_defect.h"
 #include "dataset/recording/signals.h"
