@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "dataset/files/publish.h"
+#include "dataset/files/set_files.h"
 #include "dataset/files/sha256.h"
 #include "dataset/netcdf/hdf5_id.h"
 #include "dataset/netcdf/hdf5_write.h"

@@ -10,7 +10,6 @@
 
 #include "config/file_error.h"
 #include "config/option_message.h"
-#include "dataset/files/publish.h"
 #include "dataset/files/set_files.h"
 #include "dataset/files/sha256.h"
 #include "dataset/set/set_view.h"
