@@ -14,7 +14,6 @@
 #include "dataset/files/sha256.h"
 #include "dataset/set/set_view.h"
 #include "dataset/set/shard/shard_reader.h"
-#include "dataset/set/view_check.h"
 
 namespace beamgyro::internal {
 namespace {
