@@ -25,7 +25,7 @@
 #include "compensation/firmware/c_text.h"
 #include "config/option_message.h"
 #include "dataset/files/atomic_file.h"
-#include "dataset/files/made_directories.h"
+#include "dataset/files/directory.h"
 #include "dataset/files/sha256.h"
 
 namespace beamgyro {

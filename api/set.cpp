@@ -15,8 +15,8 @@
 #include "api/reported_progress.h"
 #include "api/set_defects.h"
 #include "dataset/set/manifest.h"
+#include "dataset/set/set_view.h"
 #include "dataset/set/shard/shard_reader.h"
-#include "dataset/set/view_check.h"
 
 namespace beamgyro {
 namespace internal {

@@ -15,7 +15,7 @@
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/rows/set_runs.h"
 #include "config/option_message.h"
-#include "dataset/files/file_state.h"
+#include "dataset/files/directory.h"
 #include "dataset/files/json_node.h"
 #include "dataset/files/sha256.h"
 #include "dataset/files/text_file.h"

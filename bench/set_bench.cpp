@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dataset/files/open_file.h"
-#include "dataset/files/publish.h"
+#include "dataset/files/set_files.h"
 #include "dataset/files/sha256.h"
 #include "dataset/set/shard/shard_builder.h"
 #include "sim/campaign/shard_making.h"

@@ -14,7 +14,7 @@
 #include "config/document.h"
 #include "dataset/files/text_file.h"
 #include "dataset/log/log_import.h"
-#include "report/import_report.h"
+#include "report/recording_report.h"
 
 namespace beamgyro::internal {
 namespace {

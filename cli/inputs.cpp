@@ -18,7 +18,6 @@
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/directory.h"
-#include "dataset/files/made_directories.h"
 #include "dataset/files/sha256.h"
 
 namespace beamgyro::internal {

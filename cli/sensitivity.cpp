@@ -21,7 +21,7 @@
 #include "cli/progress.h"
 #include "cli/terminal.h"
 #include "dataset/files/atomic_file.h"
-#include "dataset/files/made_directories.h"
+#include "dataset/files/directory.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -17,7 +17,7 @@
 #include "cli/terminal.h"
 #include "cli/validate.h"
 #include "dataset/files/atomic_file.h"
-#include "dataset/files/made_directories.h"
+#include "dataset/files/directory.h"
 #include "validation/bundle/bundle.h"
 
 namespace beamgyro::internal {

@@ -4,39 +4,91 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <iterator>
-#include <vector>
+
+#include "dataset/log/log_statistics.h"
 
 namespace beamgyro::internal {
 namespace {
 
-struct Extent {
-  double low = 0, high = 0;
-  std::size_t finite = 0;
-};
-
-Extent extent(const std::vector<double>& values) {
-  Extent e;
-  for (const double v : values) {
-    if (std::isnan(v)) continue;
-    e.low = e.finite == 0 ? v : std::min(e.low, v);
-    e.high = e.finite == 0 ? v : std::max(e.high, v);
-    ++e.finite;
-  }
-  return e;
+std::string status_words(const Recording& recording) {
+  const auto samples = [&](StatusBit bit) {
+    return std::ranges::count_if(
+        recording.status, [bit](unsigned status) { return status & bit; });
+  };
+  return fmt::format("{} unpowered, {} saturated, {} not locked",
+                     samples(kUnpowered), samples(kOutputSaturated),
+                     samples(kLoopNotLocked));
 }
 
-std::string status_line(const Recording& recording) {
-  std::size_t unpowered = 0, saturated = 0, unlocked = 0;
-  for (const std::uint8_t s : recording.status) {
-    unpowered += (s & kUnpowered) != 0;
-    saturated += (s & kOutputSaturated) != 0;
-    unlocked += (s & kLoopNotLocked) != 0;
+std::string rows_text(const LogCounts& counts) {
+  std::string text =
+      fmt::format("{} rows read, {} kept\n", counts.rows, counts.kept);
+  for (std::size_t i = 0; i < kDropReasons; ++i) {
+    const DroppedRows& dropped = counts.dropped[i];
+    if (dropped.rows == 0) continue;
+    fmt::format_to(std::back_inserter(text),
+                   "dropped      {} {}, the first in line {}\n", dropped.rows,
+                   reason_name(static_cast<DropReason>(i)), dropped.first_line);
   }
-  return fmt::format("{} unpowered, {} saturated, {} not locked", unpowered,
-                     saturated, unlocked);
+  return text;
+}
+
+// What a clock that is coarser than the rows looks like.
+std::string counts_text(const LogCounts& counts) {
+  const DroppedRows& equal =
+      counts.dropped[static_cast<std::size_t>(DropReason::kDuplicate)];
+  if (equal.rows <= counts.kept) return {};
+  return "question     is the clock of the log coarser than its rows? [time] "
+         "with rate_Hz and no column counts the rows\n";
+}
+
+// What a signal that is logged at a lower rate looks like.
+std::string blank_text(const LogCounts& counts, const std::string& path) {
+  if (!counts.is_mostly_blank()) return {};
+  return fmt::format(
+      "question     is the {0} logged at a lower rate? it is missing in {1} "
+      "rows; [join] with its table and --join {2} interpolate it in the same "
+      "log\n",
+      counts.most_blank.signal, counts.most_blank.rows, path);
+}
+
+// A gyro's loop and its filters are slower than this rate of samples.
+constexpr double kFastestSampling = 50e3;  // [Hz]
+
+std::string sampling_text(const Recording& recording) {
+  const Sampling sampling = sampling_of(recording);
+  std::string text = fmt::format(
+      "time         {:g} to {:g} s\n"
+      "sampling     median step {:.6g} s ({:.6g} Hz), jitter {:.3g} s rms\n",
+      recording.time.front(), recording.time.back(), sampling.median_step,
+      1 / sampling.median_step, sampling.jitter);
+  if (sampling.median_step * kFastestSampling < 1) {
+    fmt::format_to(std::back_inserter(text),
+                   "question     is that right? more than {:g} Hz often means "
+                   "a wrong time.unit\n",
+                   kFastestSampling);
+  }
+  if (sampling.bursts > 1) {
+    fmt::format_to(std::back_inserter(text),
+                   "bursts       {}, the longest {:g} s; {} gap{}, the longest "
+                   "{:g} s\n",
+                   sampling.bursts, sampling.longest_burst, sampling.bursts - 1,
+                   sampling.bursts == 2 ? "" : "s", sampling.longest_gap);
+  }
+  return text;
+}
+
+std::string range_text(const Recording& recording, const char* column,
+                       const char* unit) {
+  const ValueRange range = range_of(recording, column);
+  if (range.samples == 0)
+    return fmt::format("{:<12} unpowered throughout\n", column);
+  if (range.smallest_step == 0)
+    return fmt::format("{:<12} {:.6g} {} throughout\n", column, range.low,
+                       unit);
+  return fmt::format("{:<12} {:.6g} to {:.6g} {}, smallest step {:.3g}\n",
+                     column, range.low, range.high, unit, range.smallest_step);
 }
 
 }  // namespace
@@ -62,17 +114,44 @@ std::string recording_report(const std::string& path,
   if (!recording.compensator.empty())
     fmt::format_to(out, "compensated by {} (SHA-256 {})\n",
                    recording.compensator, recording.compensator_sha256);
-  fmt::format_to(out, "samples {}\n", status_line(recording));
+  fmt::format_to(out, "samples {}\n", status_words(recording));
   if (!recording.overrides_text.empty())
     fmt::format_to(out, "overrides\n{}", recording.overrides_text);
   fmt::format_to(out, "\n{:<26} {:<10} {:<12} {:>12} {:>12}\n", "variable",
                  "units", "role", "minimum", "maximum");
   for (const Column& column : recording.columns) {
-    const Extent e = extent(column.values);
+    const ValueRange range = range_of(recording, column.name);
     fmt::format_to(out, "{:<26} {:<10} {:<12} {:>12} {:>12}\n", column.name,
                    column.units, role_name(column.role),
-                   e.finite ? fmt::format("{:.6g}", e.low) : "-",
-                   e.finite ? fmt::format("{:.6g}", e.high) : "-");
+                   range.samples ? fmt::format("{:.6g}", range.low) : "-",
+                   range.samples ? fmt::format("{:.6g}", range.high) : "-");
+  }
+  return text;
+}
+
+std::string import_report(const ImportedLog& log, const std::string& path,
+                          const std::string& joined) {
+  const Recording& recording = log.recording;
+  std::string text = path + ": " + rows_text(log.counts);
+  text += counts_text(log.counts) + blank_text(log.counts, path);
+  if (log.joined) text += joined + ": " + rows_text(*log.joined);
+  text += sampling_text(recording);
+  if (std::ranges::count(recording.status, 0) < std::ssize(recording.status))
+    text += fmt::format("status       {}\n", status_words(recording));
+  text += range_text(recording, "rate", "deg/s");
+  if (find_column(recording, "temperature") != nullptr) {
+    text += range_text(recording, "temperature", "degC");
+  } else {
+    text +=
+        "temperature  not stated by the map: allan needs none, every other "
+        "command does ([temperature])\n";
+  }
+  if (find_column(recording, "true_rate") != nullptr) {
+    text += range_text(recording, "true_rate", "deg/s");
+  } else {
+    text +=
+        "true_rate    not stated by the map: train and validate need one "
+        "([true_rate] at_rest = true, or a column)\n";
   }
   return text;
 }

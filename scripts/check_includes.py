@@ -115,7 +115,7 @@ NAMED_OPTIONS = {
     # why a device of a set failed: bytes of the set
     "config/overrides.cpp": {"--set"},
     # import is a command of the program alone
-    "report/import_report.cpp": {"--join"},
+    "report/recording_report.cpp": {"--join"},
     "validation/bundle/bundle.cpp": {"--bundle"},
 }
 PUBLIC = "include/beamgyro/"

@@ -181,4 +181,40 @@ void Directory::sync() const {
   }
 }
 
+MadeDirectories::MadeDirectories(const std::filesystem::path& path) {
+  try {
+    std::filesystem::path place;
+    for (const std::filesystem::path& part : path) {
+      place /= part;
+      if (uninterrupted([&] { return mkdir(place.c_str(), 0777); }) == 0)
+        made_.push_back(place);
+      else if (errno != EEXIST)
+        throw_file_error(path, "cannot make this directory",
+                         {errno, std::generic_category()},
+                         "one that is there or can be made");
+    }
+    if (!std::filesystem::is_directory(status_of(path)))
+      throw std::invalid_argument(fmt::format(
+          "{}: is no directory; expected one that is there or can be made",
+          path.string()));
+  } catch (...) {
+    remove_empty();
+    throw;
+  }
+}
+
+void MadeDirectories::remove_empty() noexcept {
+  for (; !made_.empty(); made_.pop_back()) rmdir(made_.back().c_str());
+}
+
+FileState state_of_file(const fs::path& path) {
+  struct stat found {};
+  if (::stat(path.c_str(), &found) != 0) return {};
+  return {found.st_dev,
+          found.st_ino,
+          found.st_size,
+          {found.st_mtim.tv_sec, found.st_mtim.tv_nsec, found.st_ctim.tv_sec,
+           found.st_ctim.tv_nsec}};
+}
+
 }  // namespace beamgyro::internal

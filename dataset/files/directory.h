@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <sys/types.h>
+
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -60,5 +63,36 @@ class Directory {
 
   OpenFile file_;
 };
+
+/// Makes a directory and those above it that are missing. The destructor
+/// removes those that were made and are empty, so that a failure leaves none.
+class MadeDirectories {
+ public:
+  /// Throws as throw_file_error() when they cannot be made, and
+  /// std::invalid_argument when `path` is there and is no directory.
+  explicit MadeDirectories(const std::filesystem::path& path);
+  ~MadeDirectories() { remove_empty(); }
+  MadeDirectories(const MadeDirectories&) = delete;
+  MadeDirectories& operator=(const MadeDirectories&) = delete;
+
+ private:
+  void remove_empty() noexcept;
+
+  std::vector<std::filesystem::path> made_;  // outer ones first
+};
+
+/// Which file a path names, and when it was last written or moved. A file that
+/// is replaced, and replaced back, has another state than before.
+struct FileState {
+  dev_t device = 0;
+  ino_t number = 0;
+  off_t size = 0;               // [bytes]
+  std::array<long, 4> times{};  // st_mtim and st_ctim: [s], [ns] of each
+
+  bool operator==(const FileState&) const = default;
+};
+
+/// Returns the state of a file, through links; of one that is not there zeros.
+FileState state_of_file(const std::filesystem::path& path);
 
 }  // namespace beamgyro::internal

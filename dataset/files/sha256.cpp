@@ -58,4 +58,14 @@ std::string sha256_of_file(const std::filesystem::path& path) {
   return hash.digits();
 }
 
+std::string sha256_of_rest(OpenFile& file,
+                           const std::function<void(std::size_t)>& on_piece) {
+  Sha256 hash;
+  file.read_pieces([&](std::span<const std::byte> piece) {
+    hash.add(piece);
+    if (on_piece) on_piece(piece.size());
+  });
+  return hash.digits();
+}
+
 }  // namespace beamgyro::internal

@@ -3,10 +3,13 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "dataset/files/open_file.h"
 
 namespace beamgyro::internal {
 
@@ -36,5 +39,10 @@ std::string sha256(std::string_view bytes);
 
 /// The same for the content of a file. Throws as read_text_file().
 std::string sha256_of_file(const std::filesystem::path& path);
+
+/// The same for the rest of an open file. Calls `on_piece`, if there is one,
+/// with the size of each piece. Throws as OpenFile::read_pieces().
+std::string sha256_of_rest(
+    OpenFile& file, const std::function<void(std::size_t)>& on_piece = {});
 
 }  // namespace beamgyro::internal

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "dataset/log/log_quantity.h"
+#include "dataset/log/log_column.h"
 #include "dataset/log/log_text.h"
 
 namespace beamgyro::internal {

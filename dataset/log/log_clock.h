@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "dataset/log/log_column.h"
 #include "dataset/log/log_numbers.h"
-#include "dataset/log/log_time.h"
 
 namespace beamgyro::internal {
 

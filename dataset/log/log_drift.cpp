@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "dataset/log/log_outliers.h"
+#include "dataset/log/log_statistics.h"
 #include "dataset/recording/units.h"
 
 namespace beamgyro::internal {

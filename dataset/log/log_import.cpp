@@ -16,7 +16,7 @@
 #include "dataset/log/log_drift.h"
 #include "dataset/log/log_join.h"
 #include "dataset/log/log_numbers.h"
-#include "dataset/log/log_outliers.h"
+#include "dataset/log/log_statistics.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -297,6 +297,26 @@ class LogReader {
 };
 
 }  // namespace
+
+const char* reason_name(DropReason reason) {
+  constexpr std::array<const char*, kDropReasons> kNames = {
+      "filtered out",
+      "wrong number of cells",
+      "missing values",
+      "duplicate times",
+      "backward times",
+      "outliers of the rate",
+      "outliers of the temperature",
+      "outside time.from and time.to",
+      "without a value of the joined log"};
+  return kNames[static_cast<std::size_t>(reason)];
+}
+
+void LogCounts::drop(DropReason reason, std::size_t line) {
+  DroppedRows& rows_of = dropped[static_cast<std::size_t>(reason)];
+  if (rows_of.rows == 0 || line < rows_of.first_line) rows_of.first_line = line;
+  ++rows_of.rows;
+}
 
 ImportedLog import_log(std::string_view text, const std::filesystem::path& path,
                        const LogMap& map,

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "dataset/log/log_outliers.h"
+#include "dataset/log/log_statistics.h"
 
 namespace beamgyro::internal {
 

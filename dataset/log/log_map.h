@@ -10,9 +10,8 @@
 #include <vector>
 
 #include "config/document.h"
-#include "dataset/log/log_quantity.h"
+#include "dataset/log/log_column.h"
 #include "dataset/log/log_text.h"
-#include "dataset/log/log_time.h"
 
 namespace beamgyro::internal {
 

@@ -5,6 +5,8 @@
 
 #include <system_error>
 
+#include "dataset/netcdf/hdf5_exit.h"
+
 namespace beamgyro::internal {
 
 void check_hdf5(herr_t status, const std::string& action) {
@@ -44,5 +46,7 @@ H5Id access_properties() {
              "choose the file format");
   return access;
 }
+
+void keep_hdf5_open_at_exit() { check_hdf5(H5dont_atexit(), "start HDF5"); }
 
 }  // namespace beamgyro::internal

@@ -8,8 +8,6 @@
 #include <array>
 #include <cstdint>
 
-#include "dataset/recording/signals.h"
-
 namespace beamgyro::internal {
 namespace {
 

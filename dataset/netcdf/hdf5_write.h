@@ -7,8 +7,7 @@
 #include <string_view>
 
 #include "dataset/netcdf/hdf5_id.h"
-#include "dataset/recording/attributes.h"
-#include "dataset/recording/recording.h"
+#include "dataset/recording/signals.h"
 
 namespace beamgyro::internal {
 

@@ -2,11 +2,13 @@
 #include "dataset/netcdf/recording_file.h"
 
 #include <fmt/format.h>
+#include <hdf5.h>
 
 #include <array>
 #include <bit>
 #include <charconv>
 #include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -14,8 +16,10 @@
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/file_checksum.h"
+#include "dataset/netcdf/hdf5_driver.h"
 #include "dataset/netcdf/hdf5_id.h"
-#include "dataset/netcdf/recording_layout.h"
+#include "dataset/netcdf/hdf5_write.h"
+#include "dataset/netcdf/recording_reader.h"
 #include "dataset/recording/recording_defect.h"
 
 namespace beamgyro {
@@ -41,6 +45,101 @@ void append_number(double value, std::string& text) {
 std::string described(const Column& column) {
   return fmt::format("{} [{}], {}", column.name, column.units,
                      role_name(column.role));
+}
+
+/// Positions in a file [bytes] at which the values of each variable begin:
+/// little-endian doubles, and the bytes of the status.
+struct Hdf5Layout {
+  std::uint64_t time = 0, status = 0;
+  std::vector<std::uint64_t> columns;
+};
+
+/// Makes variables over one time axis, contiguous and without their values:
+/// deflate would be the slowest part of a run by far.
+class VariableMaker {
+ public:
+  VariableMaker(hid_t file, hsize_t length)
+      : file_(file),
+        space_(space_of({&length, 1})),
+        properties_(creation_properties(H5P_DATASET_CREATE)) {
+    check_hdf5(H5Pset_alloc_time(properties_, H5D_ALLOC_TIME_EARLY),
+               "place values");
+    check_hdf5(H5Pset_fill_time(properties_, H5D_FILL_TIME_NEVER),
+               "leave values open");
+  }
+
+  /// Without `time` the variable becomes the time axis itself.
+  H5Id make(const VariableAbout& about, hid_t type, const H5Id* time) const {
+    const std::span<const H5Id* const> axes(&time, time == nullptr ? 0 : 1);
+    return make_variable(file_, about, type, space_, properties_, axes);
+  }
+
+ private:
+  hid_t file_;
+  H5Id space_, properties_;
+};
+
+std::uint64_t place_of(const H5Id& variable, const std::string& name) {
+  const haddr_t place = H5Dget_offset(variable);
+  check_hdf5(place == HADDR_UNDEF ? -1 : 0, "place " + name);
+  return place;
+}
+
+H5Id make_status(const VariableMaker& maker, const H5Id& time) {
+  H5Id status = maker.make(status_about(), H5T_STD_U8LE, &time);
+  write_status_bits(status);
+  return status;
+}
+
+Hdf5Layout make_variables(hid_t file, const Recording& head,
+                          std::size_t samples) {
+  const VariableMaker maker(file, samples);
+  H5Id time = maker.make({"time", "s", "time"}, H5T_IEEE_F64LE, nullptr);
+  Hdf5Layout layout;
+  layout.time = place_of(time, "time");
+  const std::size_t status_at = status_position(head);
+  for (std::size_t i = 0; i <= head.columns.size(); ++i) {
+    if (i == status_at) {
+      H5Id status = make_status(maker, time);
+      layout.status = place_of(status, "status");
+      status.close("write status");
+    }
+    if (i == head.columns.size()) break;
+    const Column& column = head.columns[i];
+    H5Id variable = maker.make({column.name, column.units, column.long_name,
+                                column.role, column.comment},
+                               H5T_IEEE_F64LE, &time);
+    layout.columns.push_back(place_of(variable, column.name));
+    variable.close("write " + column.name);
+  }
+  time.close("write time");
+  return layout;
+}
+
+/// Makes `bytes` an HDF5 file for `samples` samples that is complete except for
+/// the values. The caller writes these without the library, because HDF5 1.10
+/// is unreliable after one of its own writes has failed (a full disk). Throws
+/// Hdf5Error.
+Hdf5Layout make_hdf5_file(const Recording& head, std::size_t samples,
+                          OpenFile& bytes) {
+  const QuietHdf5 quiet;
+  H5Id file = create_hdf5_file(bytes);
+  write_origin(file, kRecordingFiletype, kRecordingFormatVersion, head);
+  const std::array<NamedText, 4> about = {
+      {{"title", head.title},
+       {"history", head.history},
+       {"compensator", head.compensator},
+       {"compensator_sha256", head.compensator_sha256}}};
+  for (const NamedText& text : about)
+    if (!text.text.empty()) write_text(file, text.name, text.text);
+  Hdf5Layout layout = make_variables(file, head, samples);
+  const std::array<NamedText, 3> texts = {{{"scenario", head.scenario_text},
+                                           {"device", head.device_text},
+                                           {"overrides", head.overrides_text}}};
+  write_meta(file, texts);
+  file.close("close the file");
+  check_system_calls();
+  return layout;
 }
 
 }  // namespace

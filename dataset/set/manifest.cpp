@@ -18,7 +18,6 @@
 #include "config/file_error.h"
 #include "config/option_message.h"
 #include "dataset/files/json_node.h"
-#include "dataset/files/publish.h"
 #include "dataset/files/set_files.h"
 #include "dataset/files/sha256.h"
 
@@ -324,20 +323,16 @@ void start_manifest(const std::filesystem::path& directory,
 OpenFile open_listed(const std::filesystem::path& directory,
                      const ManifestEntry& entry) {
   OpenFile file = open_set_file(directory, entry.file, O_RDONLY);
-  Sha256 hash;
   try {
-    if (file.size() == entry.bytes)
-      file.read_pieces(
-          [&](std::span<const std::byte> piece) { hash.add(piece); });
+    if (file.size() == entry.bytes && sha256_of_rest(file) == entry.sha256)
+      return file;
   } catch (const std::system_error& error) {
     throw_file_error(directory / entry.file, "cannot read", error.code());
   }
-  if (hash.digits() != entry.sha256)
-    throw std::invalid_argument(
-        fmt::format("{}: holds other bytes than the manifest says; run "
-                    "beamgyro verify",
-                    (directory / entry.file).string()));
-  return file;
+  throw std::invalid_argument(
+      fmt::format("{}: holds other bytes than the manifest says; run beamgyro "
+                  "verify",
+                  (directory / entry.file).string()));
 }
 
 void append_entry(const std::filesystem::path& directory,

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <span>
 #include <system_error>
 
 #include "config/file_error.h"
@@ -178,13 +177,10 @@ class Check {
   std::string hash_of(const Listed& file) {
     try {
       OpenFile opened = set_.open(file.file, O_RDONLY | O_NONBLOCK);
-      Sha256 hash;
-      opened.read_pieces([&](std::span<const std::byte> piece) {
-        hash.add(piece);
-        done_ += piece.size();
+      return sha256_of_rest(opened, [&](std::size_t size) {
+        done_ += size;
         if (progress_) progress_(done_, std::max(done_, total_));
       });
-      return hash.digits();
     } catch (const std::system_error& error) {
       add(file.file, "cannot be read: " + error.code().message(), file.index);
       return {};

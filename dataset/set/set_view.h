@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dataset/set/manifest.h"
+#include "dataset/set/set_check.h"
 #include "dataset/set/shard/shard.h"
 
 namespace beamgyro::internal {
@@ -27,5 +28,12 @@ std::vector<std::byte> view_bytes(const ShardHead& head,
 ManifestView write_view(const std::filesystem::path& directory,
                         const ShardHead& head,
                         std::span<const ManifestEntry> entries);
+
+/// Returns the views that differ from what write_view() makes of their files,
+/// in the manifest or on the disk. It reads the first file of each run, so a
+/// run with one of the `known` defects is left out. Throws as ShardFile.
+std::vector<FileDefect> check_views(const std::filesystem::path& directory,
+                                    const Manifest& manifest,
+                                    std::span<const FileDefect> known);
 
 }  // namespace beamgyro::internal

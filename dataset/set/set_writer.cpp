@@ -10,12 +10,10 @@
 
 #include "config/file_error.h"
 #include "config/option_message.h"
-#include "dataset/files/publish.h"
 #include "dataset/files/set_files.h"
 #include "dataset/files/sha256.h"
 #include "dataset/set/set_view.h"
 #include "dataset/set/shard/shard_reader.h"
-#include "dataset/set/view_check.h"
 
 namespace beamgyro::internal {
 namespace {

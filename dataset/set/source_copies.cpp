@@ -10,7 +10,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "dataset/files/publish.h"
 #include "dataset/files/set_files.h"
 #include "dataset/files/sha256.h"
 #include "dataset/set/shard/shard_reader.h"

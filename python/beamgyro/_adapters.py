@@ -45,9 +45,7 @@ def inputs_of(thing: object,
         names[name] = getattr(thing, name, None)
     for name, given in names.items():
         if given is not None:
-            found = _checks.texts(given, name)
-            _arguments.not_empty(found, name)
-            return found
+            return _checks.some_texts(given, name)
     return list(DEFAULT_INPUTS)
 
 

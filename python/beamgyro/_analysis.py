@@ -6,11 +6,9 @@ from __future__ import annotations
 import inspect
 import os
 import tempfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
-
-import numpy as np
 
 from beamgyro import _arguments, _checks, _core, _shipped, _toml
 from beamgyro._compensation import Compensator, compensator_of
@@ -32,11 +30,6 @@ Range = tuple[float, float]
 
 # Kinds of files that may be any CSV with a column of samples.
 _TABLES = ("a table that characterise wrote", "a profile over time")
-
-
-def _given(**options: Any) -> dict[str, Any]:
-    return {name: value for name, value in options.items()
-            if value is not None}
 
 
 class _Files:
@@ -158,8 +151,8 @@ def validate(compensator: Any, runs: Optional[Runs] = None, *,
             given["device"] = device_of(device)._native
             given.setdefault("qualification", _shipped.file(
                 "scenarios/qualification.toml"))
-        found = _judged(compensator, given, function)
-    text, json_text, warnings, page = found
+        text, json_text, warnings, page = _judged(compensator, given,
+                                                  function)
     warn(warnings)
     return ValidationResult(text, json_text, warnings, page)
 
@@ -183,7 +176,7 @@ class _Option(NamedTuple):
         if self.type == "number":
             return _arguments.number(value, self.keyword, above=0)
         if self.type == "whole":
-            return _arguments.whole(value, self.keyword, least=1)
+            return _arguments.count(value, self.keyword)
         return (_checks.texts if self.type == "texts"
                 else _checks.wholes)(value, self.keyword)
 
@@ -231,31 +224,6 @@ def _judged(compensator: Any, options: dict[str, Any],
                           function)
 
 
-def _checked_rate(data: Any, rate_Hz: float) -> float:
-    """Return the rate of samples, whose times an array may state, too."""
-    times = _arguments.stated_times(data)
-    if times is None or data.size < 2:
-        return rate_Hz
-    steps = np.diff(_arguments.seconds(times, "time"))
-    if not np.allclose(steps * rate_Hz, 1.0, atol=0.5) or abs(
-            steps.mean() * rate_Hz - 1.0) > 0.01:
-        raise ValueError(
-            f"rate_Hz {rate_Hz:g}: the times of the array have steps from "
-            f"{steps.min():g} to {steps.max():g} s; expected their rate, or a "
-            "dataset, which may have gaps")
-    return rate_Hz
-
-
-def _checked_unit(data: Any, unit: Optional[str]) -> str:
-    """Return the unit of samples, which an array of xarray may state."""
-    units = [unit, getattr(data, "attrs", {}).get("units")]
-    given, stated = ["deg/s" if one == "degree/s" else one for one in units]
-    if None not in (given, stated) and given != stated:
-        raise ValueError(f"unit {unit!r}: the array states {stated!r}; "
-                         "expected that one, or no unit")
-    return str(given or stated or "deg/s")
-
-
 def allan(data: Union[xr.Dataset, Path, npt.ArrayLike], *,
           column: Optional[str] = None, rate_Hz: Optional[float] = None,
           unit: Optional[str] = None,
@@ -285,10 +253,9 @@ def allan(data: Union[xr.Dataset, Path, npt.ArrayLike], *,
         rate_Hz = _arguments.number(rate_Hz, "rate_Hz", above=0)
     column = None if column is None else _checks.text(column, "column")
     unit = None if unit is None else _checks.text(unit, "unit")
-    names = _checks.texts(kinds, "kinds")
-    _arguments.not_empty(names, "kinds")
     options = {
-        "kinds": names, "from_s": _checks.bound(from_s, "from_s"),
+        "kinds": _checks.some_texts(kinds, "kinds"),
+        "from_s": _checks.bound(from_s, "from_s"),
         "to_s": _checks.bound(to_s, "to_s"), "taus": _checks.text(
             taus, "taus", "\"octave\", \"decade\" or \"all\"")}
     if isinstance(data, (str, os.PathLike)):
@@ -309,11 +276,25 @@ def allan(data: Union[xr.Dataset, Path, npt.ArrayLike], *,
             raise ValueError("rate_Hz: is missing, which an array needs; "
                              "expected the number of samples in a second")
         found = _core.allan_samples(
-            samples, _checked_rate(data, rate_Hz),
-            _checked_unit(data, unit), options)
+            samples, _arguments.rate_of(data, rate_Hz),
+            _arguments.unit_of(data, unit), options)
     text, json_text, warnings = found
     warn(warnings)
     return AllanResult(text, json_text, warnings)
+
+
+def _candidates(value: Any, name: str) -> list[list[float]]:
+    return _checks.several(value, name, lambda one, of: list(
+        _arguments.numbers(one, of).tolist()))
+
+
+_PLAN_OPTIONS: dict[str, Callable[[Any, str], Any]] = {
+    "bias_only": _checks.flag, "soaks": _arguments.count,
+    "hold_min": _arguments.count, "hours": _arguments.number,
+    "residual_deg_per_s": _arguments.number,
+    "ramp_K_per_min": _arguments.number, "start_degC": _arguments.number,
+    "range_degC": _arguments.ends, "chamber_degC": _arguments.ends,
+    "candidates": _candidates}
 
 
 def plan(population: Union[Compensator, Path], device: DeviceLike, *,
@@ -346,21 +327,13 @@ def plan(population: Union[Compensator, Path], device: DeviceLike, *,
             in the device or an argument.
     """
     unit = device_of(device)
-    options = _given(bias_only=_checks.flag(bias_only, "bias_only"),
-                     device_name=unit.name)
-    for name, value in _given(soaks=soaks, hold_min=hold_min).items():
-        options[name] = _arguments.whole(value, name, least=1)
-    for name, value in _given(
-            hours=hours, residual_deg_per_s=residual_deg_per_s,
-            ramp_K_per_min=ramp_K_per_min, start_degC=start_degC).items():
-        options[name] = _arguments.number(value, name)
-    for name, value in _given(range_degC=range_degC,
-                              chamber_degC=chamber_degC).items():
-        options[name] = _arguments.ends(value, name)
-    if candidates is not None:
-        options["candidates"] = _checks.several(
-            candidates, "candidates", lambda one, name: list(
-                _arguments.numbers(one, name).tolist()))
+    options = _checks.given(
+        _PLAN_OPTIONS, bias_only=bias_only, soaks=soaks, hold_min=hold_min,
+        hours=hours, residual_deg_per_s=residual_deg_per_s,
+        ramp_K_per_min=ramp_K_per_min, start_degC=start_degC,
+        range_degC=range_degC, chamber_degC=chamber_degC,
+        candidates=candidates)
+    options["device_name"] = unit.name
     text, json_text, warnings, schedule = _core.plan(
         compensator_of(population)._trained("population"), unit._native,
         options)
@@ -408,13 +381,14 @@ def sensitivity(campaign: CampaignLike, *, figures: Sequence[str] = (),
         RuntimeError: no device works.
     """
     low, high = _arguments.ends(range_degC, "range_degC")
-    options = _given(
-        figures=_checks.texts(figures, "figures"), lowest_degC=low,
-        highest_degC=high, linear=_checks.flag(linear, "linear"),
-        limits=_limits(limits),
-        samples=_arguments.whole(samples, "samples", least=1),
-        seed=None if seed is None else _arguments.seed(seed),
-        jobs=_arguments.jobs(jobs))
+    options: dict[str, Any] = {
+        "figures": _checks.texts(figures, "figures"), "lowest_degC": low,
+        "highest_degC": high, "linear": _checks.flag(linear, "linear"),
+        "limits": _limits(limits),
+        "samples": _arguments.count(samples, "samples"),
+        "jobs": _arguments.jobs(jobs)}
+    if seed is not None:
+        options["seed"] = _arguments.seed(seed)
     if compensator is not None:
         options["compensator"] = compensator_of(compensator)._trained("file")
     with watched(progress, "studying") as function:

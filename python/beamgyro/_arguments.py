@@ -51,6 +51,11 @@ def whole(value: Any, name: str, least: int = 0,
     return int(value)
 
 
+def count(value: Any, name: str) -> int:
+    """Return a whole number of one or more."""
+    return whole(value, name, least=1)
+
+
 def jobs(value: Any) -> int:
     """Return a number of threads; 0: one for each core."""
     return whole(value, "jobs", 0, _MOST_JOBS)
@@ -186,6 +191,31 @@ def stated_times(values: Any) -> Any:
         return values.coords["time"]
     index = getattr(values, "index", None)
     return index if getattr(index, "name", None) == "time" else None
+
+
+def rate_of(data: Any, rate_Hz: float) -> float:
+    """Return the rate of samples, whose times an array may state, too."""
+    times = stated_times(data)
+    if times is None or data.size < 2:
+        return rate_Hz
+    steps = np.diff(seconds(times, "time"))
+    if not np.allclose(steps * rate_Hz, 1.0, atol=0.5) or abs(
+            steps.mean() * rate_Hz - 1.0) > 0.01:
+        raise ValueError(
+            f"rate_Hz {rate_Hz:g}: the times of the array have steps from "
+            f"{steps.min():g} to {steps.max():g} s; expected their rate, or a "
+            "dataset, which may have gaps")
+    return rate_Hz
+
+
+def unit_of(data: Any, unit: Optional[str]) -> str:
+    """Return the unit of samples, which an array of xarray may state."""
+    units = [unit, getattr(data, "attrs", {}).get("units")]
+    given, stated = ["deg/s" if one == "degree/s" else one for one in units]
+    if None not in (given, stated) and given != stated:
+        raise ValueError(f"unit {unit!r}: the array states {stated!r}; "
+                         "expected that one, or no unit")
+    return str(given or stated or "deg/s")
 
 
 def not_empty(values: Sized, name: str) -> None:

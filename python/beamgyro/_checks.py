@@ -27,6 +27,13 @@ def refuse(reason: str, **options: Any) -> None:
                              f"no {name}")
 
 
+def given(checks: Mapping[str, Callable[[Any, str], Any]],
+          **options: Any) -> dict[str, Any]:
+    """Return what its check returns of each option that is not None."""
+    return {name: checks[name](value, name)
+            for name, value in options.items() if value is not None}
+
+
 def flag(value: Any, name: str) -> bool:
     """Return True or False."""
     if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):
@@ -69,16 +76,19 @@ def several(values: Any, name: str,
     return [one(value, name) for value in values]
 
 
-def _anything(value: Any, _: str) -> Any:
-    return value
-
-
 def texts(values: Any, name: str) -> list[str]:
     """Return a list of texts."""
-    found: list[Any] = several(values, name, _anything)
+    found: list[Any] = several(values, name, lambda value, _: value)
     if not all(isinstance(one, str) for one in found):
         raise wrong(values, name, "a sequence of texts")
     return [text(one, name) for one in found]
+
+
+def some_texts(values: Any, name: str) -> list[str]:
+    """Return a list of texts, at least one."""
+    found = texts(values, name)
+    _arguments.not_empty(found, name)
+    return found
 
 
 def wholes(values: Any, name: str) -> list[int]:

@@ -120,19 +120,9 @@ class Compensator(Wrapper):
         """
         self._trained("file").write(_checks.path(path, "path"))
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Compensator):
-            return NotImplemented
-        mine, others = self._native, other._native
-        if isinstance(mine, _core.Compensator) and isinstance(
-                others, _core.Compensator):
-            return mine.text == others.text
-        return mine is others
-
-    def __hash__(self) -> int:
+    def _identity(self) -> Any:
         core = self._native
-        return hash(core.text if isinstance(core, _core.Compensator)
-                    else id(core))
+        return core.text if isinstance(core, _core.Compensator) else id(core)
 
     def __repr__(self) -> str:
         method = (f", {self._native.method}"

@@ -74,13 +74,8 @@ class Device(Wrapper):
     name = Native(str, "The name of the file, as messages give it.")
     overrides = Native(list[str], "The keys that were replaced, as KEY=VALUE.")
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Device):
-            return NotImplemented
-        return (self.text, self.overrides) == (other.text, other.overrides)
-
-    def __hash__(self) -> int:
-        return hash((self.text, tuple(self.overrides)))
+    def _identity(self) -> Any:
+        return self.text, tuple(self.overrides)
 
     def __repr__(self) -> str:
         changes = "".join(f", {text}" for text in self.overrides)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path as FilePath
 from typing import Any, Optional
 
@@ -29,15 +29,6 @@ _EXPORT_OPTIONS: dict[str, Callable[[Any, str], Any]] = {
     "temperature_degC": _arguments.number}
 
 
-def _export_options(given: Mapping[str, Any]) -> dict[str, Any]:
-    for name in given:
-        if name not in _EXPORT_OPTIONS:
-            raise ValueError(f"{name}: no option of export; expected one of "
-                             f"{', '.join(sorted(_EXPORT_OPTIONS))}")
-    return {name: _EXPORT_OPTIONS[name](value, name)
-            for name, value in given.items() if value is not None}
-
-
 def export(compensators: Any, format: str,
            directory: Optional[Path] = None, **options: Any
            ) -> dict[str, str]:
@@ -58,13 +49,18 @@ def export(compensators: Any, format: str,
             for it, or the directory cannot be made.
         RuntimeError: writing failed.
     """
+    for name in options:
+        if name not in _EXPORT_OPTIONS:
+            raise ValueError(f"{name}: no option of export; expected one of "
+                             f"{', '.join(sorted(_EXPORT_OPTIONS))}")
     several = (compensators if isinstance(compensators, (list, tuple))
                else [compensators])
     folder = None if directory is None else FilePath(_checks.path(
         directory, "directory", "the name of a directory"))
     files, warnings = _core.export_files(
         [compensator_of(one)._trained("formula") for one in several],
-        _checks.text(format, "format"), _export_options(options))
+        _checks.text(format, "format"),
+        _checks.given(_EXPORT_OPTIONS, **options))
     warn(warnings)
     if folder is not None:
         _core.write_texts(folder, files)

@@ -46,3 +46,15 @@ class Wrapper:
     def _parsed(cls, *parts: Any) -> Self:
         """Return the object whose compiled part is made of these."""
         return cls._of(getattr(_core, cls.__name__).parse(*parts))
+
+    def _identity(self) -> Any:
+        """Return what equal objects share."""
+        raise NotImplementedError
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, type(self)):
+            return NotImplemented
+        return bool(self._identity() == other._identity())
+
+    def __hash__(self) -> int:
+        return hash(self._identity())

@@ -102,15 +102,9 @@ class Scenario(Wrapper):
     fidelity = Native(str, "How much of the physics is simulated.")
     seed = Native(int, "The seed of everything random.")
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Scenario):
-            return NotImplemented
-        return (self.text, self.overrides, self.device,
-                self._native.profiles) == (
-            other.text, other.overrides, other.device, other._native.profiles)
-
-    def __hash__(self) -> int:
-        return hash((self.text, tuple(self.overrides)))
+    def _identity(self) -> Any:
+        return (self.text, tuple(self.overrides), self.device,
+                tuple(self._native.profiles))
 
     def __repr__(self) -> str:
         changes = "".join(f", {text}" for text in self.overrides)

@@ -44,7 +44,7 @@ class Campaign(Wrapper):
     def __init__(self, source: CampaignLike,
                  devices: Optional[int] = None) -> None:
         count = (None if devices is None else
-                 _arguments.whole(devices, "devices", least=1))
+                 _arguments.count(devices, "devices"))
         if isinstance(source, Campaign):
             self._native = (source._native if count is None else
                             _core.Campaign.parse(source._native.files, count))
@@ -67,14 +67,8 @@ class Campaign(Wrapper):
         return Device._of(self._native.device(
             _arguments.whole(number, "device")))
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Campaign):
-            return NotImplemented
-        return (self._native.files, self.devices) == (
-            other._native.files, other.devices)
-
-    def __hash__(self) -> int:
-        return hash((self.text, self.devices))
+    def _identity(self) -> Any:
+        return tuple(self._native.files), self.devices
 
     def __repr__(self) -> str:
         return (f"<beamgyro.Campaign {self.name}: {self.devices} devices, "
@@ -231,13 +225,8 @@ class Set(Wrapper, Mapping[tuple[str, int], "xr.Dataset"]):
     def __len__(self) -> int:
         return len(self.runs) * self.devices - len(self._failed())
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Set):
-            return NotImplemented
-        return self.directory == other.directory
-
-    def __hash__(self) -> int:
-        return hash(self.directory)
+    def _identity(self) -> Any:
+        return self.directory
 
     def __repr__(self) -> str:
         return (f"<beamgyro.Set {self.directory}: {self.devices} devices, "
@@ -279,8 +268,8 @@ def generate(campaign: CampaignLike, directory: Path, *,
     threads = _arguments.jobs(jobs)
     go_on = _checks.flag(resume, "resume")
     with watched(progress, "generating") as function:
-        failures, warnings, _ = _core.generate(core, folder, threads, go_on,
-                                               function)
+        failures, warnings = _core.generate(core, folder, threads, go_on,
+                                            function)
     warn(warnings)
     if failures:
         warn([f"{folder}: {failures} runs have no values, since "

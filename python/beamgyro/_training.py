@@ -126,7 +126,7 @@ def train(model: Union[Path, Mapping[str, Any]],
             found = _core.train_recordings(
                 core, _recordings(fitted), _recordings(kept), seed, groups,
                 function)
-    compensator, warnings, _ = found
+    compensator, warnings = found
     warn(warnings)
     return Compensator._of(compensator)
 
@@ -141,13 +141,8 @@ def features(recording: Union[xr.Dataset, Path],
     Raises:
         ValueError: there is no such input, or the recording lacks one.
     """
-    return _core.features(_features(inputs), core_recording(recording))
-
-
-def _features(inputs: Sequence[str]) -> list[str]:
-    found = _checks.texts(inputs, "inputs")
-    _arguments.not_empty(found, "inputs")
-    return found
+    return _core.features(_checks.some_texts(inputs, "inputs"),
+                          core_recording(recording))
 
 
 def training_rows(runs: Union[Runs, Set],
@@ -171,7 +166,7 @@ def training_rows(runs: Union[Runs, Set],
     """
     recordings: Iterable[_core.Recording]
     every_s = _arguments.number(every_s, "every_s", least=0)
-    names = _features(inputs)
+    names = _checks.some_texts(inputs, "inputs")
     if isinstance(runs, Set):
         recordings = runs._recordings_of("train" if part is None else part)
     else:

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -26,16 +23,19 @@
 #include "include/beamgyro/sensitivity.h"
 #include "include/beamgyro/validate.h"
 #include "python/core/bindings.h"
-#include "python/core/given_options.h"
 #include "python/core/long_call.h"
-#include "python/core/recording.h"
 #include "validation/external/compensator_source.h"
 
 namespace beamgyro::python {
 namespace {
 
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Path = std::filesystem::path;
+
+/// Sets `member` to the entry `name` of `given`, if there is one.
+template <class Member>
+void take(const py::dict& given, const char* name, Member& member) {
+  if (given.contains(name)) member = given[name].cast<Member>();
+}
 
 /// Returns (text, JSON, warnings), what every analysis gives.
 template <class Result>
@@ -66,11 +66,10 @@ py::tuple allan_recording(const SharedRecording& recording,
 
 py::tuple allan_samples(const Doubles& samples, double rate_Hz,
                         const std::string& unit, const py::dict& given) {
-  const std::vector<double> values(samples.data(),
-                                   samples.data() + samples.size());
-  return allan_report(given, [=](const AllanOptions& options) {
-    return allan(values, rate_Hz, unit, options);
-  });
+  return allan_report(
+      given, [=, values = values_of(samples)](const AllanOptions& options) {
+        return allan(values, rate_Hz, unit, options);
+      });
 }
 
 py::tuple allan_file(const Path& file, const std::optional<std::string>& column,

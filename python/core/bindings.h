@@ -1,19 +1,36 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "include/beamgyro/recording.h"
 
 namespace beamgyro::python {
 
-// Each adds the classes and functions of one header of the library to the
-// module `_core`; `_core.pyi` declares them for Python. bind_errors() gives
-// exceptions of the library the words of Python.
-void bind_errors(pybind11::module_& core);
-void bind_recording(pybind11::module_& core);
-void bind_device(pybind11::module_& core);
-void bind_scenario(pybind11::module_& core);
-void bind_set(pybind11::module_& core);
-void bind_compensation(pybind11::module_& core);
-void bind_analysis(pybind11::module_& core);
+namespace py = pybind11;
+
+// Each adds the classes and functions of one part of the library to the module
+// `_core`; `_core.pyi` declares them for Python.
+void bind_recording(py::module_& core);
+void bind_simulation(py::module_& core);
+void bind_compensation(py::module_& core);
+void bind_analysis(py::module_& core);
+
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+inline std::vector<double> values_of(const Doubles& values) {
+  return {values.data(), values.data() + values.size()};
+}
+
+using SharedRecording = std::shared_ptr<Recording>;
+
+/// Returns (recording, warnings).
+py::tuple with_warnings(Recording&& recording,
+                        const std::vector<std::string>& warnings);
 
 }  // namespace beamgyro::python

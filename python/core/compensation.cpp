@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 #include <pybind11/eigen.h>
-#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -11,7 +10,6 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -22,24 +20,16 @@
 #include "include/beamgyro/compensator.h"
 #include "include/beamgyro/set.h"
 #include "include/beamgyro/train.h"
-#include "python/core/asked.h"
 #include "python/core/bindings.h"
 #include "python/core/long_call.h"
-#include "python/core/recording.h"
 
 namespace beamgyro::python {
 namespace {
 
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using SharedCompensator = std::shared_ptr<RateCompensator>;
 
 /// Compensators of Python that may ask each other, one within the other.
 constexpr std::size_t kMostNested = 16;
-
-std::vector<double> answered_values(const py::object& given) {
-  const auto values = given.cast<Doubles>();
-  return {values.data(), values.data() + values.size()};
-}
 
 /// A Python function that takes a Recording with the measured signals of a
 /// powered stretch and the name of its run, and returns (rates, sigmas or
@@ -65,8 +55,9 @@ class FunctionCompensator final : public RateCompensator {
         (*function_)(std::make_shared<Recording>(recording), recording.run)
             .cast<py::tuple>();
     CompensatedRate compensated;
-    compensated.rate = answered_values(answers[0]);
-    if (!answers[1].is_none()) compensated.sigma = answered_values(answers[1]);
+    compensated.rate = values_of(answers[0].cast<Doubles>());
+    if (!answers[1].is_none())
+      compensated.sigma = values_of(answers[1].cast<Doubles>());
     return compensated;
   }
 
@@ -146,7 +137,7 @@ TrainingOptions training_options(std::uint64_t seed,
 py::tuple trained(TrainedCompensator found) {
   return py::make_tuple(
       std::make_shared<Compensator>(std::move(found.compensator)),
-      std::move(found.warnings), std::move(found.text));
+      std::move(found.warnings));
 }
 
 py::tuple train_files(const Model& model,
@@ -186,7 +177,6 @@ void bind_compensators(py::module_& core) {
       .def_property_readonly("inputs", &RateCompensator::inputs);
   py::class_<Compensator, RateCompensator, std::shared_ptr<Compensator>>(
       core, "Compensator")
-      .def_static("read", &Compensator::read)
       .def_static("parse", &Compensator::parse)
       .def("write", &Compensator::write)
       .def_property_readonly("text", &Compensator::text)
@@ -195,9 +185,7 @@ void bind_compensators(py::module_& core) {
                              &Compensator::lowest_temperature)
       .def_property_readonly("highest_temperature",
                              &Compensator::highest_temperature)
-      .def_property_readonly("states_sigma", &Compensator::states_sigma)
-      .def_property_readonly("curve", &Compensator::curve)
-      .def_property_readonly("warnings", &Compensator::warnings);
+      .def_property_readonly("curve", &Compensator::curve);
 }
 
 }  // namespace

@@ -15,13 +15,36 @@
 #include <thread>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "include/beamgyro/progress.h"
-#include "python/core/asked.h"
 
 namespace beamgyro::python {
 
 namespace py = pybind11;
+
+/// Marks a compensator of Python as asked for an answer by this thread, and by
+/// the threads of long_call() that work for it meanwhile.
+class Asked {
+ public:
+  using Compensators = std::vector<const void*>;  // outer ones first
+
+  explicit Asked(const void* compensator) { here().push_back(compensator); }
+  ~Asked() { here().pop_back(); }
+  Asked(const Asked&) = delete;
+  Asked& operator=(const Asked&) = delete;
+
+  /// Those that wait for this thread.
+  static const Compensators& all() { return here(); }
+  /// Begins a thread that works for those compensators.
+  static void inherit(Compensators all) { here() = std::move(all); }
+
+ private:
+  static Compensators& here() {
+    static thread_local Compensators all;
+    return all;
+  }
+};
 
 /// Time between two looks at the signals of Python.
 constexpr std::chrono::milliseconds kSignalPeriod{50};

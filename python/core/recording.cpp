@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "python/core/recording.h"
+#include "dataset/recording/recording.h"
 
 #include <fmt/format.h>
-#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -18,8 +17,6 @@
 #include <vector>
 
 #include "dataset/netcdf/recording_reader.h"
-#include "dataset/recording/attributes.h"
-#include "dataset/recording/recording.h"
 #include "dataset/recording/recording_defect.h"
 #include "dataset/recording/signals.h"
 #include "python/core/bindings.h"
@@ -27,9 +24,6 @@
 namespace beamgyro::python {
 namespace {
 
-namespace py = pybind11;
-
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Bytes =
     py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>;
 
@@ -130,10 +124,6 @@ Role role_of(std::string_view name) {
   throw std::invalid_argument(fmt::format(
       "role \"{}\": expected \"measured\", \"truth\" or \"compensated\"",
       name));
-}
-
-std::vector<double> values_of(const Doubles& values) {
-  return {values.data(), values.data() + values.size()};
 }
 
 /// A column with the attributes of a variable; those of a signal that beamgyro

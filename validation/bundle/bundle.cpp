@@ -16,8 +16,6 @@
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/directory.h"
 #include "dataset/files/json_text.h"
-#include "dataset/files/made_directories.h"
-#include "dataset/files/publish.h"
 #include "dataset/files/set_files.h"
 #include "dataset/files/sha256.h"
 #include "dataset/files/text_file.h"

@@ -62,12 +62,4 @@ struct DeviceRow {
   std::uint8_t device_status = 0;  // DeviceStatus
 };
 
-/// Returns truth_time: every slow_step-th time.
-std::vector<double> slow_times(const ShardHead& head);
-std::size_t slow_length(const ShardHead& head);
-
-/// Returns the length of the chunks of a row of `values` values: rows are
-/// divided into equal parts of up to 128 Ki values.
-std::size_t chunk_length(std::size_t values);
-
 }  // namespace beamgyro::internal

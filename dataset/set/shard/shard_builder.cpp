@@ -11,9 +11,7 @@
 
 #include "dataset/netcdf/hdf5_id.h"
 #include "dataset/netcdf/hdf5_write.h"
-#include "dataset/set/shard/hdf5_image.h"
-#include "dataset/set/shard/hdf5_variable.h"
-#include "dataset/set/shard/shard_encoding.h"
+#include "dataset/set/shard/shard_layout.h"
 
 namespace beamgyro::internal {
 namespace {

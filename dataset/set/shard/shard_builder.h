@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "dataset/set/shard/device_encoding.h"
+#include "dataset/set/shard/shard_encoding.h"
 
 namespace beamgyro::internal {
 

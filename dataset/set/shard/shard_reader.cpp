@@ -20,8 +20,8 @@
 #include "dataset/recording/recording_defect.h"
 #include "dataset/recording/signals.h"
 #include "dataset/recording/units.h"
-#include "dataset/set/shard/hdf5_variable.h"
 #include "dataset/set/shard/shard_encoding.h"
+#include "dataset/set/shard/shard_layout.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -17,7 +17,7 @@ from typing import Any, Mapping, Sequence, Union
 
 from matplotlib.figure import Figure
 
-from .errors import PlotError
+from .documents import PlotError
 from .kinds import KINDS, figure_of, kind_of
 from .recording import Run
 from .style import look, names_of, save

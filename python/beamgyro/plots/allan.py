@@ -11,9 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
-from .documents import (NOT_NEGATIVE, NUMBER, POSITIVE, TEXT, both, in_order,
-                        maybe, record, rows, WrongValue)
-from .errors import PlotError
+from .documents import (NOT_NEGATIVE, NUMBER, POSITIVE, TEXT, PlotError,
+                        WrongValue, both, in_order, maybe, record, rows)
 from .units import duration
 
 KINDS = {"oadev": "overlapping Allan", "adev": "Allan",

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import documents, style
-from .errors import PlotError
+from .documents import PlotError
 from .units import unit_of
 
 SCORES = [("constant", "constant", style.GREY),

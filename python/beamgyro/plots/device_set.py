@@ -14,8 +14,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import documents, hdf5, style
+from .documents import PlotError
 from .envelope import means_of
-from .errors import PlotError
 from .units import time_unit
 
 Values = npt.NDArray[np.float64]

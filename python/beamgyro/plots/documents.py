@@ -13,12 +13,14 @@ import re
 from dataclasses import dataclass
 from typing import Any, Callable, Mapping, Sequence
 
-from .errors import PlotError
-
 # Where the squares and ratios of numbers are numbers, too.
 SMALLEST, LARGEST = 1e-100, 1e100
 LONGEST_INTEGER = 18  # [digits] that are read exactly
 LETTERS = 40  # of a wrong value that are shown
+
+
+class PlotError(ValueError):
+    """An input that has no picture: what, where, and what would be right."""
 
 
 class WrongValue(Exception):

@@ -9,7 +9,7 @@ from typing import Any, Iterator
 
 import numpy.typing as npt
 
-from .errors import PlotError
+from .documents import PlotError
 
 Values = npt.NDArray[Any]
 

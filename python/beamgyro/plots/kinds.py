@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from . import (allan, compensator, device_set, documents, hdf5, plan,
                recording, sensitivity, style, table, validation)
-from .errors import PlotError
+from .documents import PlotError
 
 Source = Any  # what a kind reads from a file
 

@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from . import hdf5, style
+from .documents import PlotError
 from .envelope import MEANS, bins_of, envelope, lonely, spans
-from .errors import PlotError
 from .units import converted, duration, time_unit, unit_of
 
 Values = npt.NDArray[np.float64]
@@ -186,7 +186,7 @@ def _draw_one(figure: Figure, run: Run) -> None:
     for kind, axes in zip(panels, rows):
         _PANELS[kind](axes, run, scale)
         _shade(axes, run, scale)
-    style.legend_above(rows[0], extra=_patches(run))
+        style.legend_above(axes, extra=_patches(run) if axes is rows[0] else ())
     _time_axis(rows, [run], unit, scale)
     words = [run.title] if run.title else []
     if run.compensator:
@@ -240,7 +240,6 @@ def _rate(axes: Axes, run: Run, scale: float) -> None:
         _true_bias(axes, run, scale)
         axes.set_ylabel("rate at rest [°/s]" if "true_rate" in run
                         else "rate [°/s]")
-    style.legend_above(axes)
 
 
 def _true_bias(axes: Axes, run: Run, scale: float) -> None:
@@ -254,7 +253,6 @@ def _error(axes: Axes, run: Run, scale: float) -> None:
           "measured less true rate", True)
     _true_bias(axes, run, scale)
     axes.set_ylabel("error [°/s]")
-    style.legend_above(axes)
 
 
 def _left(axes: Axes, run: Run, scale: float) -> None:
@@ -274,7 +272,6 @@ def _left(axes: Axes, run: Run, scale: float) -> None:
     if known:
         axes.axhline(0, color=style.BLACK, lw=0.8)
     axes.set_ylabel("error left [°/s]" if known else "compensated [°/s]")
-    style.legend_above(axes)
 
 
 def _temperature(axes: Axes, run: Run, scale: float) -> None:
@@ -286,7 +283,6 @@ def _temperature(axes: Axes, run: Run, scale: float) -> None:
             _band(axes, run, run.values[f"true_{node}_temperature"], scale,
                   color, node, ls=dash, lw=1.2)
     axes.set_ylabel("temp. [°C]")
-    style.legend_above(axes)
 
 
 def _drive_frequency(axes: Axes, run: Run, scale: float) -> None:
@@ -295,14 +291,12 @@ def _drive_frequency(axes: Axes, run: Run, scale: float) -> None:
     _band(axes, run, values - middle, scale, style.GREY,
           f"drive frequency − {middle:.0f} Hz")
     axes.set_ylabel("drive [Hz]")
-    style.legend_above(axes)
 
 
 def _quadrature(axes: Axes, run: Run, scale: float) -> None:
     _band(axes, run, run.values["quadrature"], scale, style.GREY,
           "quadrature")
     axes.set_ylabel("quad. [°/s]")
-    style.legend_above(axes)
 
 
 _PANELS = {"rate": _rate, "error": _error, "left": _left,

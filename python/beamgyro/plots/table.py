@@ -11,7 +11,7 @@ import numpy.typing as npt
 from matplotlib.figure import Figure
 
 from . import documents, style
-from .errors import PlotError
+from .documents import PlotError
 
 Values = npt.NDArray[np.float64]
 

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from .errors import PlotError
+from .documents import PlotError
 
 _DEG = 180 / math.pi
 # As docs/reference/recording.md has them: unit: (factor, offset), to the first

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "compensation/training/train.h"
-#include "dataset/files/publish.h"
+#include "dataset/files/set_files.h"
 #include "dataset/files/sha256.h"
 #include "dataset/set/manifest.h"
 #include "dataset/set/shard/shard_builder.h"

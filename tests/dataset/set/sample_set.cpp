@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "dataset/files/publish.h"
+#include "dataset/files/set_files.h"
 #include "dataset/files/sha256.h"
 #include "dataset/set/set_view.h"
 #include "dataset/set/shard/shard_builder.h"

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "dataset/files/atomic_file.h"
-#include "dataset/files/publish.h"
+#include "dataset/files/set_files.h"
 #include "dataset/files/text_file.h"
 #include "dataset/netcdf/recording_file.h"
 #include "dataset/set/shard/shard_builder.h"

@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "dataset/log/log_map.h"
+#include "dataset/recording/recording.h"
 
 namespace beamgyro::internal {
 
@@ -33,5 +35,26 @@ double smallest_step(std::span<const double> values);
 std::vector<bool> find_outliers(std::span<const double> time,
                                 std::span<const double> values,
                                 const OutlierRule& rule);
+
+/// Sampling of a recording. A step longer than kGapSteps median steps is a gap.
+struct Sampling {
+  double median_step = 0;  // [s]
+  double jitter = 0;       // [s], rms of step - median step within bursts
+  std::size_t bursts = 0;
+  double longest_burst = 0;  // [s]
+  double longest_gap = 0;    // [s]
+};
+
+Sampling sampling_of(const Recording& recording);
+
+/// Range of a variable without its NaN.
+struct ValueRange {
+  std::size_t samples = 0;
+  double low = 0, high = 0;
+  double smallest_step = 0;  // between successive samples, 0: constant
+};
+
+/// Throws as column_values().
+ValueRange range_of(const Recording& recording, std::string_view column);
 
 }  // namespace beamgyro::internal

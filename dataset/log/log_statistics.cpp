@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dataset/log/log_outliers.h"
+#include "dataset/log/log_statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,6 +82,44 @@ std::vector<bool> find_outliers(std::span<const double> time,
     for (std::size_t k = edges[burst]; k < edges[burst + 1]; ++k)
       found[k] = check.is_outlier(k, edges[burst], edges[burst + 1]);
   return found;
+}
+
+Sampling sampling_of(const Recording& recording) {
+  const std::vector<double>& time = recording.time;
+  Sampling sampling;
+  sampling.median_step = median_step(time);
+  std::vector<std::size_t> edges = burst_starts(time);
+  sampling.bursts = edges.size();
+  edges.push_back(time.size());
+  double squares = 0.0, steps = 0.0;
+  for (std::size_t b = 0; b < sampling.bursts; ++b) {
+    const std::size_t begin = edges[b], end = edges[b + 1];
+    if (begin > 0)
+      sampling.longest_gap =
+          std::max(sampling.longest_gap, time[begin] - time[begin - 1]);
+    sampling.longest_burst =
+        std::max(sampling.longest_burst, time[end - 1] - time[begin]);
+    for (std::size_t k = begin + 1; k < end; ++k) {
+      const double off = time[k] - time[k - 1] - sampling.median_step;
+      squares += off * off;
+      steps += 1.0;
+    }
+  }
+  sampling.jitter = steps > 0.0 ? std::sqrt(squares / steps) : 0.0;
+  return sampling;
+}
+
+ValueRange range_of(const Recording& recording, std::string_view column) {
+  const std::vector<double>& values = column_values(recording, column);
+  ValueRange range;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    range.low = range.samples > 0 ? std::min(range.low, value) : value;
+    range.high = range.samples > 0 ? std::max(range.high, value) : value;
+    ++range.samples;
+  }
+  range.smallest_step = smallest_step(values);
+  return range;
 }
 
 }  // namespace beamgyro::internal

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
-#include <string_view>
 
 #include "dataset/netcdf/hdf5_write.h"
 #include "dataset/set/shard/shard.h"
@@ -11,6 +12,13 @@ namespace beamgyro::internal {
 
 // The layout that files of a set and views over them have in common. Each
 // function throws Hdf5Error.
+
+/// Makes a new HDF5 file in memory.
+H5Id make_image();
+
+/// Returns the present bytes of such a file. They are valid until its next
+/// change. All its variables must be closed.
+std::span<const std::byte> image_bytes(const H5Id& file);
 
 hid_t file_type(Storage storage);
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "dataset/log/log_outliers.h"
+#include "dataset/log/log_statistics.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "dataset/log/log_report.h"
 #include "tests/config/rejection.h"
 
-namespace beamgyro::internal::log_outliers_test {
+namespace beamgyro::internal::log_statistics_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -116,4 +115,4 @@ TEST(LogReport, CountsRowsAndTheirFirstLine) {
 }
 
 }  // namespace
-}  // namespace beamgyro::internal::log_outliers_test
+}  // namespace beamgyro::internal::log_statistics_test

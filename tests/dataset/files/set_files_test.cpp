@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dataset/files/publish.h"
+#include "dataset/files/set_files.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 #include "tests/dataset/child_process.h"
 #include "tests/dataset/test_directory.h"
 
-namespace beamgyro::internal::publish_test {
+namespace beamgyro::internal::set_files_test {
 namespace {
 
 using Publish = DirectoryFixture;
@@ -115,4 +115,4 @@ TEST_F(Publish, OnlyPartialFilesOfTheDeadAreRemoved) {
 }
 
 }  // namespace
-}  // namespace beamgyro::internal::publish_test
+}  // namespace beamgyro::internal::set_files_test
