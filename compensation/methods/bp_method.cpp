@@ -9,7 +9,6 @@
 
 #include "compensation/methods/fit.h"
 #include "compensation/methods/method_inputs.h"
-#include "compensation/network/restarts.h"
 
 namespace beamgyro::internal {
 
@@ -140,7 +139,7 @@ Fit BpSpec::fit(const FitTask& task) const {
   options.goal = goal_deg_per_s / unit;
   options.rate_direction = rate_direction(task, fit.model);
   if (training.observer) {
-    options.observer = [&](EpochReport report) {
+    options.observer = [&](TrainingProgress report) {
       report.rms *= unit;
       training.observer(report);
     };
