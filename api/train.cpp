@@ -14,7 +14,6 @@
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/compensator/run_comparison.h"
 #include "compensation/rows/run_source.h"
-#include "compensation/rows/set_runs.h"
 #include "compensation/training/model_file.h"
 #include "compensation/training/train.h"
 #include "include/beamgyro/progress.h"

@@ -15,7 +15,7 @@
 #include "compensation/methods/bias_model.h"
 #include "compensation/methods/population_json.h"
 #include "compensation/models/parameter_json.h"
-#include "compensation/uncertainty/bias_sigma_json.h"
+#include "compensation/uncertainty/bias_sigma.h"
 #include "dataset/files/json_node.h"
 #include "dataset/files/text_file.h"
 

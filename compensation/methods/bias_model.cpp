@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "compensation/methods/method_inputs.h"
-#include "compensation/models/undetermined_fit.h"
+#include "compensation/models/bias_function.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "compensation/models/undetermined_fit.h"
+#include "compensation/models/bias_function.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "compensation/models/array_view.h"
 #include "compensation/models/parameter_json.h"
-#include "compensation/uncertainty/bias_sigma_json.h"
+#include "compensation/uncertainty/bias_sigma.h"
 
 namespace beamgyro::internal {
 namespace {

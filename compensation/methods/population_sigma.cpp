@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "compensation/models/array_view.h"
-#include "compensation/models/undetermined_fit.h"
+#include "compensation/models/bias_function.h"
 
 namespace beamgyro::internal {
 namespace {

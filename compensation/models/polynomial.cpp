@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "compensation/firmware/runtime.h"
+#include "compensation/models/bias_function.h"
 #include "compensation/models/parameter_json.h"
-#include "compensation/models/undetermined_fit.h"
 #include "linear_algebra/cholesky.h"
 #include "linear_algebra/least_squares.h"
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "compensation/models/undetermined_fit.h"
+#include "compensation/models/bias_function.h"
 #include "parallel/work_queue.h"
 
 namespace beamgyro::internal {
