@@ -13,7 +13,6 @@
 
 namespace beamgyro::internal {
 
-struct BiasModel;
 struct Fit;
 struct Population;
 
@@ -65,8 +64,5 @@ struct FitTask {
 //
 //   static constexpr bool kFitsSamples = true;   rows are samples by default
 //   static constexpr bool kIsCandidate = true;   `kind = "auto"` may name it
-
-/// Root of the mean square residual [deg/s] over the rows.
-double rms_residual(const BiasModel& model, const TrainingRows& rows);
 
 }  // namespace beamgyro::internal
