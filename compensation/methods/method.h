@@ -13,6 +13,7 @@
 
 namespace beamgyro::internal {
 
+struct BiasModel;
 struct Fit;
 struct Population;
 
