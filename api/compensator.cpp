@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "api/compensators.h"
+#include "compensation/compensator/compensator.h"
 #include "compensation/compensator/compensator_file.h"
-#include "compensation/compensator/settled_curve.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/text_file.h"
 

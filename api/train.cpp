@@ -14,7 +14,6 @@
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/compensator/run_comparison.h"
 #include "compensation/rows/run_source.h"
-#include "compensation/rows/set_runs.h"
 #include "compensation/training/model_file.h"
 #include "compensation/training/train.h"
 #include "include/beamgyro/progress.h"
@@ -55,14 +54,9 @@ void observe_epochs(internal::ModelSpec& spec, const TrainingOptions& options) {
   if (!options.progress) return;
   auto one_at_a_time = std::make_shared<std::mutex>();
   internal::observe(spec, [one_at_a_time, on_epoch = options.progress](
-                              const internal::EpochReport& report) {
+                              const TrainingProgress& report) {
     const std::lock_guard lock(*one_at_a_time);
-    const bool goes_on =
-        on_epoch({static_cast<std::size_t>(report.restart),
-                  static_cast<std::size_t>(report.restarts),
-                  static_cast<std::size_t>(report.epoch),
-                  static_cast<std::size_t>(report.max_epochs), report.rms});
-    if (!goes_on) throw Cancelled();
+    if (!on_epoch(report)) throw Cancelled();
   });
 }
 

@@ -13,7 +13,7 @@
 #include "api/scenario_state.h"
 #include "api/validation_members.h"
 #include "compensation/compensator/compensator_file.h"
-#include "compensation/rows/set_runs.h"
+#include "compensation/rows/run_source.h"
 #include "config/option_message.h"
 #include "dataset/files/directory.h"
 #include "dataset/files/json_node.h"

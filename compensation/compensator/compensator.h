@@ -106,4 +106,7 @@ std::vector<double> baseline_rate(const FittedCompensator& compensator,
 std::size_t clamped_samples(const FittedCompensator& compensator,
                             const Recording& recording);
 
+/// Returns what beamgyro::Compensator::curve() says.
+std::string settled_curve(const FittedCompensator& compensator);
+
 }  // namespace beamgyro::internal

@@ -13,9 +13,9 @@
 #include <system_error>
 
 #include "compensation/methods/bias_model.h"
-#include "compensation/methods/population_json.h"
+#include "compensation/methods/method_inputs.h"
 #include "compensation/models/parameter_json.h"
-#include "compensation/uncertainty/bias_sigma_json.h"
+#include "compensation/uncertainty/bias_sigma.h"
 #include "dataset/files/json_node.h"
 #include "dataset/files/text_file.h"
 

@@ -7,9 +7,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 #include "compensation/methods/method_inputs.h"
-#include "compensation/network/restarts.h"
 
 namespace beamgyro::internal {
 
@@ -140,7 +139,7 @@ Fit BpSpec::fit(const FitTask& task) const {
   options.goal = goal_deg_per_s / unit;
   options.rate_direction = rate_direction(task, fit.model);
   if (training.observer) {
-    options.observer = [&](EpochReport report) {
+    options.observer = [&](TrainingProgress report) {
       report.rms *= unit;
       training.observer(report);
     };

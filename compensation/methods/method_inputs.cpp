@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "compensation/models/undetermined_fit.h"
+#include "compensation/models/bias_function.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -70,6 +70,19 @@ std::vector<Input> read_inputs(const ConfigTable& root) {
     }
     if (std::count(inputs.begin(), inputs.end(), inputs.back()) > 1)
       root.fail("inputs", fmt::format("\"{}\" is there twice", name));
+  }
+  return inputs;
+}
+
+std::vector<Input> read_inputs(const JsonNode& node) {
+  std::vector<Input> inputs;
+  for (const JsonNode& input : node.elements()) {
+    const std::string name = input.text();
+    try {
+      inputs.push_back(parse_input(name));
+    } catch (const std::invalid_argument& error) {
+      input.fail(error.what());
+    }
   }
   return inputs;
 }

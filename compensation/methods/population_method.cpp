@@ -8,34 +8,12 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 #include "compensation/methods/method_inputs.h"
-#include "compensation/methods/population_sigma.h"
+#include "compensation/methods/population.h"
 #include "dataset/files/sha256.h"
 
 namespace beamgyro::internal {
-
-PopulationSpec PopulationSpec::read(MethodSource& source) {
-  return {source.table(kName).number_or("grid_K", 5.0, positive())};
-}
-
-std::string PopulationSpec::method_name() const {
-  return "mean of a population";
-}
-
-Fit PopulationSpec::fit(const FitTask& task) const {
-  Population p = fit_population(task.inputs, task.rows, grid_K);
-  Fit fit = BiasModel{
-      unscaled(task), {}, bias_curve(p, p.mean.head(p.grid()).array())};
-  fit.choices.push_back(
-      fmt::format("{} devices, {} modes on {} temperatures from {:.2f} to "
-                  "{:.2f} degC",
-                  p.devices, p.modes.cols(), p.grid(), p.range().lowest,
-                  p.range().highest));
-  fit.population = std::move(p);
-  return fit;
-}
-
 namespace {
 
 // The temperature and the population's channels, or some of them.
@@ -55,6 +33,23 @@ std::vector<Input> adapted_inputs(const ConfigTable& root,
 }
 
 }  // namespace
+
+PopulationSpec PopulationSpec::read(MethodSource& source) {
+  return {source.table(kName).number_or("grid_K", 5.0, positive())};
+}
+
+Fit PopulationSpec::fit(const FitTask& task) const {
+  Population p = fit_population(task.inputs, task.rows, grid_K);
+  Fit fit =
+      model_of(unscaled(task), bias_curve(p, p.mean.head(p.grid()).array()));
+  fit.choices.push_back(
+      fmt::format("{} devices, {} modes on {} temperatures from {:.2f} to "
+                  "{:.2f} degC",
+                  p.devices, p.modes.cols(), p.grid(), p.range().lowest,
+                  p.range().highest));
+  fit.population = std::move(p);
+  return fit;
+}
 
 AdaptedSpec AdaptedSpec::read(MethodSource& source) {
   const ConfigTable root = source.root();
@@ -80,17 +75,13 @@ AdaptedSpec AdaptedSpec::read(MethodSource& source) {
   return spec;
 }
 
-std::string AdaptedSpec::method_name() const {
-  return "spline adapted from a population";
-}
-
 Fit AdaptedSpec::fit(const FitTask& task) const {
   const AdaptedBias adapted =
       adapted_bias(population, task.inputs, task.rows, noise);
   const BiasSigma sigma = adapted_sigma(population, adapted.deviation, noise);
   Eigen::Index worst = 0;
   const double largest = sigma.factor * sigma.curve.values.maxCoeff(&worst);
-  Fit fit = BiasModel{unscaled(task), {}, bias_curve(population, adapted.mean)};
+  Fit fit = model_of(unscaled(task), bias_curve(population, adapted.mean));
   fit.choices = {
       fmt::format("population: {}", source),
       fmt::format(

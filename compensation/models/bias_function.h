@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
+#include <stdexcept>
 
 #include "compensation/firmware/firmware_arrays.h"
 #include "dataset/files/json_node.h"
@@ -30,5 +31,12 @@ enum class InputUse { kNone, kOne, kAny };
 // read() as JsonNode, put_arrays() as single(). firmware_code() does, operation
 // by operation, what firmware_value() does. A function that reads no input has
 // neither of the two: its value is the one number of its array, or 0 without.
+
+/// The rows do not determine the parameters of a fit. Fits to some of the rows
+/// may end so though a fit to all of them does not.
+class UndeterminedFit : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
 
 }  // namespace beamgyro::internal

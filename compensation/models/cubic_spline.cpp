@@ -10,8 +10,8 @@
 
 #include "compensation/firmware/runtime.h"
 #include "compensation/models/array_view.h"
+#include "compensation/models/bias_function.h"
 #include "compensation/models/parameter_json.h"
-#include "compensation/models/undetermined_fit.h"
 #include "linear_algebra/least_squares.h"
 #include "linear_algebra/linear_systems.h"
 

@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "compensation/firmware/runtime.h"
+#include "compensation/models/bias_function.h"
 #include "compensation/models/parameter_json.h"
-#include "compensation/models/undetermined_fit.h"
 #include "linear_algebra/cholesky.h"
 #include "linear_algebra/least_squares.h"
 
@@ -25,14 +25,6 @@ Eigen::MatrixXd terms(const Eigen::Ref<const ArrayXXd>& x, int degree) {
     columns.col(n) = columns.col(n - 1).array() * x.col(0);
   columns.rightCols(x.cols() - 1) = x.rightCols(x.cols() - 1).matrix();
   return columns;
-}
-
-[[noreturn]] void fail_degree(int degree, Index rows, Index rank,
-                              Index needed) {
-  throw UndeterminedFit(
-      fmt::format("polynomial of degree {}: the {} rows determine only {} of "
-                  "its {} coefficients",
-                  degree, rows, rank, needed));
 }
 
 Polynomial polynomial_of(const Eigen::VectorXd& c, int degree) {
@@ -56,7 +48,10 @@ Polynomial fit_polynomial(const Eigen::Ref<const ArrayXXd>& x,
   const Eigen::MatrixXd columns = terms(x, degree);
   const auto [solution, rank] = least_squares(columns, y.matrix());
   if (rank < columns.cols())
-    fail_degree(degree, x.rows(), rank, columns.cols());
+    throw UndeterminedFit(
+        fmt::format("polynomial of degree {}: the {} rows determine only {} of "
+                    "its {} coefficients",
+                    degree, x.rows(), rank, columns.cols()));
   return polynomial_of(solution, degree);
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/network/gradient_trainer.h"
-
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
 #include <vector>
+
+#include "compensation/network/network_training.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -30,6 +30,28 @@ void check_finite(double rms, double learning_rate) {
         std::to_string(learning_rate) + "; a smaller learning_rate is needed");
 }
 
+// Calls `epoch`, which returns the in-sample rms, until the goal is reached,
+// `why_stop` has a reason, or the held-out error rises.
+template <class Epoch, class WhyStop>
+TrainSummary train_by_epochs(const ScaledRows& rows, const ScaledRows& held_out,
+                             const TrainOptions& options, BpNetwork& network,
+                             const Epoch& epoch, const WhyStop& why_stop) {
+  TrainSummary summary;
+  BestWeights best(held_out, options.patience);
+  std::optional<StopReason> stop;
+  while (!stop && summary.epochs < options.max_epochs) {
+    ++summary.epochs;
+    const double rms = epoch();
+    report_epoch(options, summary.epochs, rms);
+    const bool stale = best.stale_after(summary.epochs, network);
+    stop = rms <= options.goal ? StopReason::kGoalReached : why_stop();
+    if (!stop && stale) stop = StopReason::kHeldOutRising;
+  }
+  summary.stop_reason = stop.value_or(StopReason::kMaxEpochs);
+  best.restore(rows, network, summary);
+  return summary;
+}
+
 }  // namespace
 
 bool AdaptiveRate::keep_step(double old_error, double new_error) {
@@ -45,14 +67,10 @@ TrainSummary train_incremental(const ScaledRows& rows,
                                const ScaledRows& held_out,
                                const TrainOptions& options, RandomStream& order,
                                BpNetwork& network) {
-  TrainSummary summary;
-  BestWeights best(held_out, options.patience);
   std::vector<Index> sequence(static_cast<std::size_t>(rows.size()));
   std::iota(sequence.begin(), sequence.end(), 0);
   VectorXd step = VectorXd::Zero(network.weights().size()), gradient;
-  std::optional<StopReason> stop;
-  while (!stop && summary.epochs < options.max_epochs) {
-    ++summary.epochs;
+  const auto epoch = [&] {
     shuffle_rows(sequence, order);
     for (const Index k : sequence) {
       network.predict_with_gradient(rows.inputs.middleRows(k, 1),
@@ -62,24 +80,16 @@ TrainSummary train_incremental(const ScaledRows& rows,
     }
     const double rms = rms_error(network, rows);
     check_finite(rms, options.learning_rate);
-    report_epoch(options, summary.epochs, rms);
-    const bool stale = best.stale_after(summary.epochs, network);
-    if (rms <= options.goal)
-      stop = StopReason::kGoalReached;
-    else if (stale)
-      stop = StopReason::kHeldOutRising;
-  }
-  summary.stop_reason = stop.value_or(StopReason::kMaxEpochs);
-  best.restore(rows, network, summary);
-  return summary;
+    return rms;
+  };
+  return train_by_epochs(rows, held_out, options, network, epoch,
+                         [] { return std::optional<StopReason>(); });
 }
 
 TrainSummary train_gradient_adaptive(const ScaledRows& rows,
                                      const ScaledRows& held_out,
                                      const TrainOptions& options,
                                      BpNetwork& network) {
-  TrainSummary summary;
-  BestWeights best(held_out, options.patience);
   AdaptiveRate adaptive{options.learning_rate};
   const double count = static_cast<double>(rows.size());
   VectorXd gradient, trial_gradient;
@@ -91,9 +101,7 @@ TrainSummary train_gradient_adaptive(const ScaledRows& rows,
   };
   double error = squares(gradient);
   VectorXd step = VectorXd::Zero(gradient.size());
-  std::optional<StopReason> stop;
-  while (!stop && summary.epochs < options.max_epochs) {
-    ++summary.epochs;
+  const auto epoch = [&] {
     const VectorXd w = network.weights();
     step = options.momentum * step - adaptive.rate / count * gradient;
     network.set_weights(w + step);
@@ -105,21 +113,16 @@ TrainSummary train_gradient_adaptive(const ScaledRows& rows,
       network.set_weights(w);
       step.setZero();
     }
-    const double rms = std::sqrt(error / count);
-    report_epoch(options, summary.epochs, rms);
-    const bool stale = best.stale_after(summary.epochs, network);
-    if (rms <= options.goal)
-      stop = StopReason::kGoalReached;
-    else if (gradient.lpNorm<Eigen::Infinity>() <= options.min_gradient * count)
-      stop = StopReason::kGradientSmall;
-    else if (adaptive.rate < options.min_learning_rate)
-      stop = StopReason::kRateSmall;
-    else if (stale)
-      stop = StopReason::kHeldOutRising;
-  }
-  summary.stop_reason = stop.value_or(StopReason::kMaxEpochs);
-  best.restore(rows, network, summary);
-  return summary;
+    return std::sqrt(error / count);
+  };
+  const auto why_stop = [&]() -> std::optional<StopReason> {
+    if (gradient.lpNorm<Eigen::Infinity>() <= options.min_gradient * count)
+      return StopReason::kGradientSmall;
+    if (adaptive.rate < options.min_learning_rate)
+      return StopReason::kRateSmall;
+    return std::nullopt;
+  };
+  return train_by_epochs(rows, held_out, options, network, epoch, why_stop);
 }
 
 }  // namespace beamgyro::internal

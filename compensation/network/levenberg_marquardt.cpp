@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/network/levenberg_marquardt.h"
-
 #include <algorithm>
 #include <cmath>
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "compensation/models/bp_network.h"
+#include "include/beamgyro/progress.h"
 
 namespace beamgyro::internal {
 
@@ -33,15 +35,8 @@ enum class StopReason {
 
 std::string sentence(StopReason reason);
 
-/// What a training tells after each epoch.
-struct EpochReport {
-  int restart = 1, restarts = 1;  // restart: 1 .. restarts
-  int epoch = 0, max_epochs = 0;
-  double rms = 0.0;  // in-sample
-};
-
 /// Is called by the threads of all restarts. It has no influence on a training.
-using EpochObserver = std::function<void(const EpochReport&)>;
+using EpochObserver = std::function<void(const TrainingProgress&)>;
 
 /// Errors are of scaled quantities (order one). F = mean(e^2) / 2 +
 /// weight_decay |w|^2 / 2.
@@ -91,9 +86,6 @@ void report_epoch(const TrainOptions& options, int epoch, double rms);
 
 double rms_error(const BpNetwork& network, const ScaledRows& rows);
 
-/// Returns the squared error of each row.
-Eigen::ArrayXd squared_errors(const BpNetwork& network, const ScaledRows& rows);
-
 /// Returns whether squared errors are no larger than `least`, those of the same
 /// rows with other weights, within noise: the mean difference is within two
 /// standard errors. These come from the means of 20 stretches of rows, because
@@ -127,11 +119,88 @@ class BestWeights {
   Eigen::VectorXd weights_;
 };
 
+/// The learning rate of the full-batch rule: a step after which the error is
+/// more than 1.05 times the old one is discarded and the rate multiplied by
+/// 0.70; any other step is kept, and when the error fell the rate is multiplied
+/// by 1.05.
+struct AdaptiveRate {
+  double rate;  // > 0
+
+  /// Updates the rate. Returns true when the step is to be kept.
+  bool keep_step(double old_error, double new_error);
+};
+
+/// Trains sample by sample. After each row, in an order that is shuffled again
+/// for every epoch,
+///
+///   dw(t+1) = h dw(t) - eta dE/dw,   E = e^2 / 2,   w(t+1) = w(t) + dw(t+1)
+///
+/// This is equation (5) with the momentum h applied to the step. Applied to the
+/// weight itself, as (5) is printed, h < 1 would shrink every weight at every
+/// sample.
+TrainSummary train_incremental(const ScaledRows& rows,
+                               const ScaledRows& held_out,
+                               const TrainOptions& options, RandomStream& order,
+                               BpNetwork& network);
+
+/// Trains on the full batch: the same rule once for each epoch, with E =
+/// mean(e^2) / 2 and the rate of AdaptiveRate; `error` is the sum of squares. A
+/// discarded step clears the momentum, or it would be tried again.
+TrainSummary train_gradient_adaptive(const ScaledRows& rows,
+                                     const ScaledRows& held_out,
+                                     const TrainOptions& options,
+                                     BpNetwork& network);
+
+/// Damped Gauss-Newton on F(w) = mean(e^2) / 2 + decay |w|^2 / 2 with geodesic
+/// acceleration. The step is w -> w + v + a with
+///
+///   A = J^T J / N + decay I + mu I
+///   A v = -dF/dw
+///   A a = -J^T y_vv / (2 N),   y_vv = d2y/dt2 at t = 0 along w + t v
+///
+/// The step is kept when it lowers F and 2 |a| <= 0.75 |v|. The acceleration a
+/// follows the bends of the narrow valleys that tanh networks have. Damping is
+/// that of Nielsen (IMM-REP-1999-05): let rho be the decrease of F divided by
+/// the decrease that the quadratic model predicts for v. A kept step multiplies
+/// mu by max(1/3, 1 - (2 rho - 1)^3), a discarded one by 2, 4, 8, ... An epoch
+/// is one step tried. The held-out error is computed after every kept step.
+/// References: Marquardt, J. SIAM 11 (1963) 431; Transtrum and Sethna,
+/// arXiv:1201.5885.
+TrainSummary train_levenberg_marquardt(const ScaledRows& rows,
+                                       const ScaledRows& held_out,
+                                       const TrainOptions& options,
+                                       BpNetwork& network);
+
 /// Trains once from the present weights of `network` and leaves the best
 /// weights in it. `held_out` may be empty. `order` shuffles the rows of the
 /// incremental rule; other trainers do not use it.
 TrainSummary train_network(const ScaledRows& rows, const ScaledRows& held_out,
                            const TrainOptions& options, RandomStream& order,
                            BpNetwork& network);
+
+/// Trainings of one network from several sets of initial weights.
+struct Restarts {
+  std::vector<TrainSummary> summaries;  // one per restart
+  std::size_t chosen = 0;               // best_network()
+  BpNetwork network;                    // of the chosen restart
+};
+
+/// Returns the index of the network to keep. Of those that are no_worse() on
+/// the held-out rows than the best one there, it is the one with the least
+/// squared error over training and held-out rows together. Without held-out
+/// rows it is the one with the least in-sample error. The rate penalty of the
+/// network is added to every error, because rows at rest are predicted best by
+/// cancelling the rate.
+std::size_t best_network(const std::vector<BpNetwork>& networks,
+                         const ScaledRows& rows, const ScaledRows& held_out,
+                         const TrainOptions& options);
+
+/// Runs `options.restarts` trainings on `options.cores` threads; 0 means one
+/// per core. Restart k draws from the streams (seed, 0, k, kInitialWeights) and
+/// (seed, 0, k, kSampleOrder), so the result does not depend on the threads.
+/// Throws std::runtime_error when a restart diverges.
+Restarts train_from_restarts(const std::vector<int>& layer_sizes,
+                             const ScaledRows& rows, const ScaledRows& held_out,
+                             const TrainOptions& options, std::uint64_t seed);
 
 }  // namespace beamgyro::internal

@@ -2,6 +2,8 @@
 #include "compensation/rows/row_groups.h"
 
 #include <algorithm>
+#include <set>
+#include <vector>
 
 namespace beamgyro::internal {
 namespace {
@@ -39,10 +41,8 @@ std::vector<LegRows> leg_rows(const TrainingRows& rows, const RowGroups& legs) {
   };
   const double least = kLeastLeg * span(0, rows.size());
   std::vector<LegRows> result;
-  for (Index begin = 0, end = 0; begin < rows.size(); begin = end) {
-    while (end < rows.size() && legs.of_row(end) == legs.of_row(begin)) ++end;
+  for (const auto& [begin, end] : stretches_of(legs.of_row))
     result.push_back({begin, end, rows.cycle(begin), span(begin, end) < least});
-  }
   return result;
 }
 
@@ -81,34 +81,7 @@ const ArrayXi& labels(const TrainingRows& rows, Grouping by) {
   return by == Grouping::kCycle ? rows.cycle : rows.leg;
 }
 
-}  // namespace
-
-std::string grouping_name(Grouping by) {
-  constexpr const char* kNames[] = {"run", "cycle", "leg", "segment"};
-  return kNames[static_cast<std::size_t>(by)];
-}
-
-RowGroups group_rows(const TrainingRows& rows, Grouping by) {
-  if (by == Grouping::kSegment) return segments(rows.size());
-  const ArrayXi& label = labels(rows, by);
-  RowGroups groups{by, ArrayXi(rows.size()), 0};
-  for (Index begin = 0; begin < rows.size();) {
-    Index end = begin;
-    while (end < rows.size() && label(end) == label(begin)) ++end;
-    if (end - begin >= kLeastRows || groups.count == 0) ++groups.count;
-    groups.of_row.segment(begin, end - begin).setConstant(groups.count - 1);
-    begin = end;
-  }
-  return groups;
-}
-
-RowGroups coarsest_groups(const TrainingRows& rows, int least) {
-  for (const Grouping by : kIndependent)
-    if (RowGroups groups = group_rows(rows, by); groups.count >= least)
-      return groups;
-  return group_rows(rows, Grouping::kSegment);
-}
-
+// For each tenth of the span of temperatures that has rows, their groups.
 std::vector<std::set<int>> groups_in_tenths(const TrainingRows& rows,
                                             const ArrayXi& group_of_row) {
   const double lowest = rows.temperature.minCoeff();
@@ -123,6 +96,30 @@ std::vector<std::set<int>> groups_in_tenths(const TrainingRows& rows,
   }
   std::erase_if(tenths, [](const auto& groups) { return groups.empty(); });
   return tenths;
+}
+
+}  // namespace
+
+std::string grouping_name(Grouping by) {
+  constexpr const char* kNames[] = {"run", "cycle", "leg", "segment"};
+  return kNames[static_cast<std::size_t>(by)];
+}
+
+RowGroups group_rows(const TrainingRows& rows, Grouping by) {
+  if (by == Grouping::kSegment) return segments(rows.size());
+  RowGroups groups{by, ArrayXi(rows.size()), 0};
+  for (const auto& [begin, end] : stretches_of(labels(rows, by))) {
+    if (end - begin >= kLeastRows || groups.count == 0) ++groups.count;
+    groups.of_row.segment(begin, end - begin).setConstant(groups.count - 1);
+  }
+  return groups;
+}
+
+RowGroups coarsest_groups(const TrainingRows& rows, int least) {
+  for (const Grouping by : kIndependent)
+    if (RowGroups groups = group_rows(rows, by); groups.count >= least)
+      return groups;
+  return group_rows(rows, Grouping::kSegment);
 }
 
 bool others_cover(const TrainingRows& rows, const RowGroups& groups) {

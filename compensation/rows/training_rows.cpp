@@ -341,12 +341,13 @@ TrainingRows training_rows(const RunSource& runs,
   return rows;
 }
 
-TrainingRows training_rows(const std::vector<TrainingRun>& runs,
-                           const std::vector<Input>& inputs,
-                           const RowOptions& options,
-                           const TemperatureRange& range,
-                           const LookupTable* scale_factor) {
-  return training_rows(source_of(runs), inputs, options, range, scale_factor);
+std::vector<RowStretch> stretches_of(const Eigen::ArrayXi& labels) {
+  std::vector<RowStretch> stretches;
+  for (Index k = 0; k < labels.size(); ++k) {
+    if (k == 0 || labels(k) != labels(k - 1)) stretches.push_back({k, k});
+    stretches.back().end = k + 1;
+  }
+  return stretches;
 }
 
 TrainingRows selected(const TrainingRows& rows,

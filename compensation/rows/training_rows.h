@@ -71,11 +71,15 @@ TrainingRows training_rows(const RunSource& runs,
                            const RowOptions& options,
                            const TemperatureRange& range = {},
                            const LookupTable* scale_factor = nullptr);
-TrainingRows training_rows(const std::vector<TrainingRun>& runs,
-                           const std::vector<Input>& inputs,
-                           const RowOptions& options,
-                           const TemperatureRange& range = {},
-                           const LookupTable* scale_factor = nullptr);
+
+/// Rows begin <= k < end.
+struct RowStretch {
+  Eigen::Index begin, end;
+};
+
+/// Returns the stretches of rows that follow each other with one label, such as
+/// TrainingRows::cycle.
+std::vector<RowStretch> stretches_of(const Eigen::ArrayXi& labels);
 
 /// Returns the rows for which `keep` is true. The range stays.
 TrainingRows selected(const TrainingRows& rows,

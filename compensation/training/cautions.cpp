@@ -7,12 +7,13 @@
 #include <cmath>
 #include <map>
 
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 
 namespace beamgyro::internal {
 namespace {
 
 using Eigen::ArrayXd;
+using Eigen::ArrayXXd;
 using Eigen::Index;
 
 constexpr double kAtRest = 1.0;  // [deg/s], span of the true rate
@@ -112,6 +113,90 @@ std::string rate_caution(const FittedCase& fitted) {
       input_name(*input), kFeelsTheRate);
 }
 
+// Which way the temperature went over the leg of each row: +1, -1, or 0 where
+// it did not move by kLegReversal.
+std::vector<int> directions(const TrainingRows& rows) {
+  std::vector<int> direction(static_cast<std::size_t>(rows.size()), 0);
+  for (const auto& [begin, end] : stretches_of(rows.leg)) {
+    const double change = rows.temperature(end - 1) - rows.temperature(begin);
+    if (std::abs(change) >= kLegReversal)
+      std::fill(direction.begin() + begin, direction.begin() + end,
+                change > 0.0 ? 1 : -1);
+  }
+  return direction;
+}
+
+struct Cell {
+  double sum = 0.0, squares = 0.0, count = 0.0;
+
+  double mean() const { return sum / count; }
+  double scatter() const { return squares - sum * sum / count; }
+};
+
+constexpr Index kTemperatures = 46, kPlaces = 9;
+constexpr double kSmall = 1.0;  // [deg/s]
+
+// [deg/s]: half of what the bias spans over the training rows.
+double half_span_of_bias(const FittedCompensator& c) {
+  if (c.bias.bias_scale != Scale{}) return c.bias.bias_scale.half_width;
+  const TemperatureRange& range = c.temperature_range;
+  const ArrayXXd T =
+      ArrayXd::LinSpaced(kTemperatures, range.lowest, range.highest);
+  const ArrayXd cubic = c.baseline.predict(T);
+  return 0.5 * (cubic.maxCoeff() - cubic.minCoeff());
+}
+
+// Whether cautions() warned of an input that feels the rate with training at
+// rest.
+bool warned_of_rate(const std::vector<std::string>& warnings) {
+  return std::ranges::any_of(warnings, [](const std::string& warning) {
+    return warning.find(kFeelsTheRate) != std::string::npos;
+  });
+}
+
+// Returns the change of each input with the rate, per deg/s; 0 where it is not
+// known.
+std::vector<double> slopes_over_rate(const FittedCompensator& c) {
+  std::vector<double> slopes(c.inputs.size(), 0.0);
+  const bool at_rest = warned_of_rate(c.provenance.warnings);
+  for (std::size_t i = 0; i < c.inputs.size(); ++i) {
+    if (c.inputs[i].column == "rate") slopes[i] = 1.0;
+    if (c.inputs[i].column == "output" && at_rest)
+      if (const double span = half_span_of_bias(c); span > 0.0)
+        slopes[i] = c.bias.input_scales[i].half_width / span;
+  }
+  return slopes;
+}
+
+// Steady inputs: every temperature with every place of the inputs that see the
+// rate between the ends of what they were in training.
+ArrayXXd places(const FittedCompensator& c) {
+  const TemperatureRange& range = c.temperature_range;
+  ArrayXXd x(kTemperatures * kPlaces, static_cast<Index>(c.inputs.size()));
+  for (std::size_t i = 0; i < c.inputs.size(); ++i) {
+    const Input& input = c.inputs[i];
+    const Scale& scale = c.bias.input_scales[i];
+    for (Index k = 0; k < x.rows(); ++k) {
+      double& value = x(k, static_cast<Index>(i));
+      value = 0.0;  // temperature_rate, since_power_on
+      if (sees_the_rate(input))
+        value =
+            scale.centre +
+            scale.half_width *
+                (2.0 * static_cast<double>(k % kPlaces) / (kPlaces - 1) - 1.0);
+      else if (input.column == "temperature" &&
+               input.kind != InputKind::kTemperatureRate)
+        value =
+            range.lowest + (range.highest - range.lowest) *
+                               std::floor(static_cast<double>(k) / kPlaces) /
+                               (kTemperatures - 1);
+      else if (input.kind == InputKind::kColumn)
+        value = scale.centre;
+    }
+  }
+  return x;
+}
+
 }  // namespace
 
 std::vector<std::string> cautions(const FittedCase& fitted) {
@@ -124,12 +209,6 @@ std::vector<std::string> cautions(const FittedCase& fitted) {
   return found;
 }
 
-bool warned_of_rate(const std::vector<std::string>& warnings) {
-  return std::ranges::any_of(warnings, [](const std::string& warning) {
-    return warning.find(kFeelsTheRate) != std::string::npos;
-  });
-}
-
 double temperature_resolution(const Recording& recording) {
   const Column* column = find_column(recording, "temperature");
   if (column == nullptr) return 0.0;
@@ -140,33 +219,6 @@ double temperature_resolution(const Recording& recording) {
   }
   return std::isfinite(smallest) ? smallest : 0.0;
 }
-
-namespace {
-
-// Which way the temperature went over the leg of each row: +1, -1, or 0 where
-// it did not move by kLegReversal.
-std::vector<int> directions(const TrainingRows& rows) {
-  std::vector<int> direction(static_cast<std::size_t>(rows.size()), 0);
-  for (Index begin = 0; begin < rows.size();) {
-    Index end = begin;
-    while (end < rows.size() && rows.leg(end) == rows.leg(begin)) ++end;
-    const double change = rows.temperature(end - 1) - rows.temperature(begin);
-    if (std::abs(change) >= kLegReversal)
-      std::fill(direction.begin() + begin, direction.begin() + end,
-                change > 0.0 ? 1 : -1);
-    begin = end;
-  }
-  return direction;
-}
-
-struct Cell {
-  double sum = 0.0, squares = 0.0, count = 0.0;
-
-  double mean() const { return sum / count; }
-  double scatter() const { return squares - sum * sum / count; }
-};
-
-}  // namespace
 
 std::optional<Hysteresis> hysteresis(const TrainingRows& rows,
                                      const ArrayXd& residual) {
@@ -228,6 +280,19 @@ std::string objection_to_claim(const std::optional<GroupErrors>& model,
   if (gain.mean() > error) return "";
   return fmt::format("{}; the standard error of the difference is {:.2g} deg/s",
                      figures, error / (rms + plain));
+}
+
+std::optional<double> rate_kept(const FittedCompensator& c) {
+  const std::vector<double> slopes = slopes_over_rate(c);
+  if (std::ranges::all_of(slopes, [](double slope) { return slope == 0.0; }))
+    return std::nullopt;
+  ArrayXXd above = places(c), below = above;
+  for (std::size_t i = 0; i < slopes.size(); ++i) {
+    above.col(static_cast<Index>(i)) += kSmall * slopes[i];
+    below.col(static_cast<Index>(i)) -= kSmall * slopes[i];
+  }
+  return 1.0 - (c.bias.predict(above) - c.bias.predict(below)).mean() /
+                   (2.0 * kSmall);
 }
 
 }  // namespace beamgyro::internal

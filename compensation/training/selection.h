@@ -6,12 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 #include "compensation/rows/training_rows.h"
 #include "compensation/training/cross_validation.h"
 #include "compensation/training/model_file.h"
 
 namespace beamgyro::internal {
+
+/// Whether it is "none" or "constant".
+bool is_constant(const FitSpec& kind);
 
 /// Returns whether the bias moves more than slow noise would: its variance is
 /// above n s^2 / 20, with n rows and s^2 half the mean square second difference

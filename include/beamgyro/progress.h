@@ -3,6 +3,7 @@
 /// Progress and cancellation of long calls.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <stdexcept>
 
@@ -13,6 +14,13 @@ namespace beamgyro {
 /// function asks for nothing. An exception that it throws ends the work, too,
 /// and reaches the caller.
 using Progress = std::function<bool(double share)>;
+
+/// How far the training of a network is.
+struct TrainingProgress {
+  std::size_t restart = 0, restarts = 0;
+  std::size_t epoch = 0, max_epochs = 0;
+  double rms = 0;  ///< [deg/s], over the training rows
+};
 
 /// Thrown where a Progress returned false. Nothing that was under way is left
 /// under its final name; the finished files of a set stay.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "beamgyro/compensator.h"
+#include "beamgyro/progress.h"
 #include "beamgyro/recording.h"
 #include "beamgyro/set.h"
 #include "beamgyro/shared.h"
@@ -38,13 +39,6 @@ class Model : public Shared<internal::ModelSpec> {
   std::vector<std::filesystem::path> files() const;  ///< that were read
 
   using Shared::Shared;
-};
-
-/// How far the training of a network is.
-struct TrainingProgress {
-  std::size_t restart = 0, restarts = 0;
-  std::size_t epoch = 0, max_epochs = 0;
-  double rms = 0;  ///< [deg/s], over the training rows
 };
 
 struct TrainingOptions {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/network/gradient_trainer.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
+#include "compensation/network/network_training.h"
 #include "random/random_stream.h"
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/sample_compensators.h"

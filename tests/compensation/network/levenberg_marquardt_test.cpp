@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/network/levenberg_marquardt.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "compensation/network/restarts.h"
+#include "compensation/network/network_training.h"
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/sample_compensators.h"
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/rows/set_runs.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
+#include "compensation/rows/run_source.h"
 #include "compensation/training/train.h"
 #include "dataset/files/set_files.h"
 #include "dataset/files/sha256.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/uncertainty/bias_sigma_json.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "compensation/compensator/compensator_file.h"
+#include "compensation/uncertainty/bias_sigma.h"
 #include "tests/compensation/sample_compensators.h"
 #include "tests/config/rejection.h"
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "compensation/methods/population_sigma.h"
-#include "compensation/models/undetermined_fit.h"
-#include "compensation/training/left_out_sigma.h"
+#include "compensation/methods/population.h"
+#include "compensation/models/bias_function.h"
+#include "compensation/training/sigma_fit.h"
 #include "compensation/training/train.h"
 #include "compensation/uncertainty/sigma_calibration.h"
 #include "tests/compensation/recorded_run.h"
