@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "sim/memory/unit_memory.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "sim/memory/unit_memory.h"
 
 namespace beamgyro::internal::ageing_test {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "sim/memory/unit_memory.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <vector>
+
+#include "sim/memory/unit_memory.h"
 
 namespace beamgyro::internal::play_operators_test {
 namespace {
