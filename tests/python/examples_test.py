@@ -93,7 +93,9 @@ beamgyro\\._core\\.[A-Z]\\w+(\\.__init__)?
 beamgyro\\.([a-z_0-9]+\\.)*(Callable|Generic|Iterable|Iterator|Mapping|ModuleType|NamedTuple|Sequence|Sized|TypeGuard|field)(\\.\\w+)?
 # An alias of a Literal, which stubtest takes for a Union.
 beamgyro\\._scenario\\.Fidelity
-# Properties of the class Native, which cannot be set, as mypy knows.
+# Properties of the compiled part (Final in the stub) and of the class Native,
+# which cannot be set, as mypy knows.
+beamgyro\\._core\\.[A-Z]\\w+\\.(curve|device|duration|files|highest_temperature|lowest_temperature|method|output_rate|profiles)
 beamgyro\\.(_\\w+\\.)?[A-Z]\\w+\\.(devices|directory|duration_s|failures|fidelity|inputs|name|output_rate_Hz|overrides|runs|samples|seed|text|title)
 # Its keywords come from the compiled part; the test below looks at them.
 beamgyro\\.(_analysis\\.)?validate
