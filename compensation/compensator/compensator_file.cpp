@@ -13,7 +13,7 @@
 #include <system_error>
 
 #include "compensation/methods/bias_model.h"
-#include "compensation/methods/population_json.h"
+#include "compensation/methods/method_inputs.h"
 #include "compensation/models/parameter_json.h"
 #include "compensation/uncertainty/bias_sigma.h"
 #include "dataset/files/json_node.h"

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 #include "compensation/models/array_view.h"
 
 namespace beamgyro::internal {
@@ -146,19 +146,11 @@ BiasModel fit_as_ardupilot(const TrainingRows& samples, int least_samples) {
                      array_view(points.bias));
 }
 
-Px4Spec Px4Spec::read(MethodSource&) { return {}; }
-
-std::string Px4Spec::method_name() const { return "cubic as PX4 fits it"; }
-
 Fit Px4Spec::fit(const FitTask& task) const { return fit_as_px4(task.rows); }
 
 ArduPilotSpec ArduPilotSpec::read(MethodSource& source) {
   return {static_cast<int>(
       source.table(kName).integer_or("least_samples", 100, 1, 1000000))};
-}
-
-std::string ArduPilotSpec::method_name() const {
-  return "cubic as ArduPilot fits it";
 }
 
 Fit ArduPilotSpec::fit(const FitTask& task) const {

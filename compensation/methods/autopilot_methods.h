@@ -34,8 +34,8 @@ struct Px4Spec {
   static constexpr InputRule kInputRule = InputRule::kMeasuredOnly;
   static constexpr bool kFitsSamples = true;
   using Function = Polynomial;
-  static Px4Spec read(MethodSource& source);
-  std::string method_name() const;
+  static Px4Spec read(MethodSource&) { return {}; }
+  std::string method_name() const { return "cubic as PX4 fits it"; }
   Fit fit(const FitTask& task) const;
 };
 
@@ -48,7 +48,7 @@ struct ArduPilotSpec {
   static constexpr bool kFitsSamples = true;
   using Function = Polynomial;
   static ArduPilotSpec read(MethodSource& source);
-  std::string method_name() const;
+  std::string method_name() const { return "cubic as ArduPilot fits it"; }
   Fit fit(const FitTask& task) const;
 };
 

@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
+#include <variant>
 
 #include "compensation/methods/method_inputs.h"
 #include "compensation/models/bias_function.h"
@@ -91,6 +94,41 @@ EquationOne equation_one(const BiasModel& model) {
   for (std::size_t n = 1; n < c.size(); ++n)
     result.coefficients.push_back(c[n] / c[0]);
   return result;
+}
+
+std::string method_name(const FitSpec& kind) {
+  return std::visit([](const auto& spec) { return spec.method_name(); }, kind);
+}
+
+double rms_residual(const BiasModel& model, const TrainingRows& rows) {
+  return std::sqrt((rows.bias - model.predict(rows.inputs)).square().mean());
+}
+
+Fit fit_model(const FitSpec& kind, const std::vector<Input>& inputs,
+              const TrainingRows& rows, const TrainingRows& held_out,
+              std::uint64_t seed) {
+  const FitTask task{inputs, rows, held_out, seed};
+  Fit fit = std::visit([&](const auto& spec) { return spec.fit(task); }, kind);
+  if (fit.restarts.empty()) {
+    TrainSummary& summary = fit.restarts.emplace_back();
+    summary.stop_reason = StopReason::kLeastSquares;
+    summary.in_sample_rms = rms_residual(fit.model, rows);
+    if (held_out.size() > 0)
+      summary.held_out_rms = rms_residual(fit.model, held_out);
+  }
+  return fit;
+}
+
+BiasModel fit_baseline(const TrainingRows& rows) {
+  const Eigen::ArrayXd& T = rows.temperature;
+  constexpr int kCubic = 3;
+  const int degree = std::min(kCubic, distinct_temperatures(T) - 1);
+  const Scale scale =
+      degree == 0 ? Scale{T.mean(), 1.0} : scale_to_unit(T, "temperature");
+  return {
+      {scale},
+      {},
+      fit_polynomial((T - scale.centre) / scale.half_width, rows.bias, degree)};
 }
 
 }  // namespace beamgyro::internal

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 #include "compensation/methods/method_inputs.h"
 
 namespace beamgyro::internal {

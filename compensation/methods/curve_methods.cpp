@@ -3,10 +3,40 @@
 
 #include <fmt/format.h>
 
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 #include "compensation/methods/method_inputs.h"
+#include "compensation/models/parameter_json.h"
 
 namespace beamgyro::internal {
+
+nlohmann::ordered_json NoBias::parameters() const {
+  return nlohmann::ordered_json::object();
+}
+
+Eigen::ArrayXd ConstantBias::predict(
+    const Eigen::Ref<const Eigen::ArrayXXd>& x) const {
+  return Eigen::ArrayXd::Constant(x.rows(), value);
+}
+
+nlohmann::ordered_json ConstantBias::parameters() const {
+  return {{"value_deg_per_s", finite_json(value)}};
+}
+
+ConstantBias ConstantBias::read(const JsonNode& node, std::size_t) {
+  return {node.at("value_deg_per_s").number()};
+}
+
+void ConstantBias::put_arrays(FirmwareArrays& arrays) const {
+  arrays.add({"constant", "[deg/s]", {single(value)}});
+}
+
+Fit NoneSpec::fit(const FitTask& task) const {
+  return model_of(unscaled(task), NoBias{});
+}
+
+Fit ConstantSpec::fit(const FitTask& task) const {
+  return model_of(unscaled(task), ConstantBias{task.rows.bias.mean()});
+}
 
 PolynomialSpec PolynomialSpec::read(MethodSource& source) {
   const ConfigTable table = source.table(kName);
@@ -27,20 +57,16 @@ Fit PolynomialSpec::fit(const FitTask& task) const {
   std::vector<Scale> scales = unscaled(task);
   if (!normalised) {
     scales[0].centre = kReferenceTemperature;
-    return BiasModel{
-        scales,
-        {},
-        fit_polynomial_by_normal_equations(scaled(task.rows.inputs, scales),
-                                           task.rows.bias, degree)};
+    return model_of(
+        scales, fit_polynomial_by_normal_equations(
+                    scaled(task.rows.inputs, scales), task.rows.bias, degree));
   }
   if (degree == 0 && task.inputs.size() == 1)
     scales[0].centre = temperature.mean();
   else
     scales = scales_of(task);
-  return BiasModel{
-      scales,
-      {},
-      fit_polynomial(scaled(task.rows.inputs, scales), task.rows.bias, degree)};
+  return model_of(scales, fit_polynomial(scaled(task.rows.inputs, scales),
+                                         task.rows.bias, degree));
 }
 
 SplineSpec SplineSpec::read(MethodSource& source) {
@@ -55,15 +81,12 @@ SplineSpec SplineSpec::read(MethodSource& source) {
   return spec;
 }
 
-std::string SplineSpec::method_name() const { return "cubic spline"; }
-
 Fit SplineSpec::fit(const FitTask& task) const {
   const Eigen::ArrayXd temperature = first_input(task);
-  return BiasModel{
+  return model_of(
       unscaled(task),
-      {},
       fit_cubic_spline(temperature, task.rows.bias,
-                       spline_knots(temperature, knot_spacing_K), end)};
+                       spline_knots(temperature, knot_spacing_K), end));
 }
 
 TableSpec TableSpec::read(MethodSource& source) {
@@ -75,23 +98,18 @@ std::string TableSpec::method_name() const {
 }
 
 Fit TableSpec::fit(const FitTask& task) const {
-  return BiasModel{
+  return model_of(
       unscaled(task),
-      {},
-      fit_lookup_table(first_input(task), task.rows.bias, bin_width_K)};
+      fit_lookup_table(first_input(task), task.rows.bias, bin_width_K));
 }
 
 ThermistorSpec ThermistorSpec::read(MethodSource& source) {
   return {source.table(kName).number_or("b_K", 3950.0, positive())};
 }
 
-std::string ThermistorSpec::method_name() const { return "thermistor network"; }
-
 Fit ThermistorSpec::fit(const FitTask& task) const {
-  return BiasModel{
-      unscaled(task),
-      {},
-      fit_thermistor_network(first_input(task), task.rows.bias, b_K)};
+  return model_of(unscaled(task), fit_thermistor_network(first_input(task),
+                                                         task.rows.bias, b_K));
 }
 
 FuzzySpec FuzzySpec::read(MethodSource& source) {
@@ -105,10 +123,8 @@ std::string FuzzySpec::method_name() const {
 
 Fit FuzzySpec::fit(const FitTask& task) const {
   const std::vector<Scale> scales = scales_of(task);
-  return BiasModel{scales,
-                   {},
-                   fit_takagi_sugeno(scaled(task.rows.inputs, scales),
-                                     task.rows.bias, rules)};
+  return model_of(scales, fit_takagi_sugeno(scaled(task.rows.inputs, scales),
+                                            task.rows.bias, rules));
 }
 
 }  // namespace beamgyro::internal

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <Eigen/Core>
+#include <string>
+
 #include "compensation/methods/method.h"
 #include "compensation/models/cubic_spline.h"
 #include "compensation/models/lookup_table.h"
@@ -9,6 +12,52 @@
 #include "compensation/models/thermistor_network.h"
 
 namespace beamgyro::internal {
+
+/// No bias at all: the raw rate.
+struct NoBias {
+  static constexpr const char* kKind = "none";
+  static constexpr InputUse kInputUse = InputUse::kNone;
+  Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const {
+    return Eigen::ArrayXd::Zero(x.rows());
+  }
+  nlohmann::ordered_json parameters() const;
+  static NoBias read(const JsonNode&, std::size_t) { return {}; }
+  void put_arrays(FirmwareArrays&) const {}
+};
+
+/// The same bias everywhere.
+struct ConstantBias {
+  double value = 0.0;
+
+  static constexpr const char* kKind = "constant";
+  static constexpr InputUse kInputUse = InputUse::kNone;
+  Eigen::ArrayXd predict(const Eigen::Ref<const Eigen::ArrayXXd>& x) const;
+  nlohmann::ordered_json parameters() const;
+  static ConstantBias read(const JsonNode& node, std::size_t inputs);
+  void put_arrays(FirmwareArrays& arrays) const;
+};
+
+/// The raw rate.
+struct NoneSpec {
+  static constexpr const char* kName = "none";
+  static constexpr InputRule kInputRule = InputRule::kAny;
+  static constexpr bool kIsCandidate = true;
+  using Function = NoBias;
+  static NoneSpec read(MethodSource&) { return {}; }
+  std::string method_name() const { return kName; }
+  Fit fit(const FitTask& task) const;
+};
+
+/// The mean of the training rows.
+struct ConstantSpec {
+  static constexpr const char* kName = "constant";
+  static constexpr InputRule kInputRule = InputRule::kAny;
+  static constexpr bool kIsCandidate = true;
+  using Function = ConstantBias;
+  static ConstantSpec read(MethodSource&) { return {}; }
+  std::string method_name() const { return kName; }
+  Fit fit(const FitTask& task) const;
+};
 
 /// Table [polynomial].
 struct PolynomialSpec {
@@ -34,7 +83,7 @@ struct SplineSpec {
   static constexpr bool kIsCandidate = true;
   using Function = CubicSpline;
   static SplineSpec read(MethodSource& source);
-  std::string method_name() const;
+  std::string method_name() const { return "cubic spline"; }
   Fit fit(const FitTask& task) const;
 };
 
@@ -60,7 +109,7 @@ struct ThermistorSpec {
   static constexpr bool kIsCandidate = true;
   using Function = ThermistorNetwork;
   static ThermistorSpec read(MethodSource& source);
-  std::string method_name() const;
+  std::string method_name() const { return "thermistor network"; }
   Fit fit(const FitTask& task) const;
 };
 

@@ -66,7 +66,4 @@ struct FitTask {
 //   static constexpr bool kFitsSamples = true;   rows are samples by default
 //   static constexpr bool kIsCandidate = true;   `kind = "auto"` may name it
 
-/// Root of the mean square residual [deg/s] over the rows.
-double rms_residual(const BiasModel& model, const TrainingRows& rows);
-
 }  // namespace beamgyro::internal

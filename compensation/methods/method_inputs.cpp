@@ -74,6 +74,19 @@ std::vector<Input> read_inputs(const ConfigTable& root) {
   return inputs;
 }
 
+std::vector<Input> read_inputs(const JsonNode& node) {
+  std::vector<Input> inputs;
+  for (const JsonNode& input : node.elements()) {
+    const std::string name = input.text();
+    try {
+      inputs.push_back(parse_input(name));
+    } catch (const std::invalid_argument& error) {
+      input.fail(error.what());
+    }
+  }
+  return inputs;
+}
+
 void check_inputs(const ConfigTable& root, const std::vector<Input>& inputs,
                   InputRule rule, const std::string& method) {
   switch (rule) {

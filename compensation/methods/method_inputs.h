@@ -7,6 +7,7 @@
 
 #include "compensation/methods/bias_model.h"
 #include "compensation/methods/method.h"
+#include "dataset/files/json_node.h"
 
 namespace beamgyro::internal {
 
@@ -14,6 +15,9 @@ namespace beamgyro::internal {
 /// ConfigTable for none, for a name that is not an input and for one that is
 /// there twice.
 std::vector<Input> read_inputs(const ConfigTable& root);
+
+/// The inputs that a compensator file names. Throws as JsonNode.
+std::vector<Input> read_inputs(const JsonNode& node);
 
 /// Throws as ConfigTable for inputs that the rule forbids; `method` is its name
 /// in the message.

@@ -5,7 +5,6 @@
 
 #include "compensation/methods/autopilot_methods.h"
 #include "compensation/methods/bp_method.h"
-#include "compensation/methods/constant_method.h"
 #include "compensation/methods/curve_methods.h"
 #include "compensation/methods/population_method.h"
 #include "compensation/methods/radial_basis.h"

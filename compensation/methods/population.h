@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "compensation/models/cubic_spline.h"
 #include "compensation/rows/training_rows.h"
 #include "compensation/uncertainty/bias_sigma.h"
+#include "dataset/files/json_node.h"
 
 namespace beamgyro::internal {
 
@@ -108,5 +110,13 @@ AdaptedBias adapted_bias(const Population& population,
 /// Returns the spline through values of the bias [deg/s] on the grid.
 CubicSpline bias_curve(const Population& population,
                        const Eigen::ArrayXd& values);
+
+/// Returns the value of the key `population` of a compensator file
+/// (docs/reference/compensator_file.md). Throws std::runtime_error for a number
+/// that is not finite.
+nlohmann::ordered_json population_json(const Population& population);
+
+/// Reads a value that population_json() wrote. Throws as JsonNode.
+Population read_population(const JsonNode& node);
 
 }  // namespace beamgyro::internal

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/methods/population_json.h"
-
+// A population as a member of compensator files.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
+#include <nlohmann/json.hpp>
 
+#include "compensation/methods/method_inputs.h"
+#include "compensation/methods/population.h"
 #include "compensation/models/array_view.h"
 #include "compensation/models/parameter_json.h"
 #include "compensation/uncertainty/bias_sigma.h"
@@ -65,19 +66,6 @@ Eigen::MatrixXd read_coefficients(const JsonNode& node, Index modes,
 }
 
 }  // namespace
-
-std::vector<Input> read_inputs(const JsonNode& node) {
-  std::vector<Input> inputs;
-  for (const JsonNode& input : node.elements()) {
-    const std::string name = input.text();
-    try {
-      inputs.push_back(parse_input(name));
-    } catch (const std::invalid_argument& error) {
-      input.fail(error.what());
-    }
-  }
-  return inputs;
-}
 
 Json population_json(const Population& population) {
   Json json = {{"devices", population.devices},

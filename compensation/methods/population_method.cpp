@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 #include "compensation/methods/method_inputs.h"
 #include "compensation/methods/population_sigma.h"
 #include "dataset/files/sha256.h"
@@ -19,14 +19,10 @@ PopulationSpec PopulationSpec::read(MethodSource& source) {
   return {source.table(kName).number_or("grid_K", 5.0, positive())};
 }
 
-std::string PopulationSpec::method_name() const {
-  return "mean of a population";
-}
-
 Fit PopulationSpec::fit(const FitTask& task) const {
   Population p = fit_population(task.inputs, task.rows, grid_K);
-  Fit fit = BiasModel{
-      unscaled(task), {}, bias_curve(p, p.mean.head(p.grid()).array())};
+  Fit fit =
+      model_of(unscaled(task), bias_curve(p, p.mean.head(p.grid()).array()));
   fit.choices.push_back(
       fmt::format("{} devices, {} modes on {} temperatures from {:.2f} to "
                   "{:.2f} degC",
@@ -80,17 +76,13 @@ AdaptedSpec AdaptedSpec::read(MethodSource& source) {
   return spec;
 }
 
-std::string AdaptedSpec::method_name() const {
-  return "spline adapted from a population";
-}
-
 Fit AdaptedSpec::fit(const FitTask& task) const {
   const AdaptedBias adapted =
       adapted_bias(population, task.inputs, task.rows, noise);
   const BiasSigma sigma = adapted_sigma(population, adapted.deviation, noise);
   Eigen::Index worst = 0;
   const double largest = sigma.factor * sigma.curve.values.maxCoeff(&worst);
-  Fit fit = BiasModel{unscaled(task), {}, bias_curve(population, adapted.mean)};
+  Fit fit = model_of(unscaled(task), bias_curve(population, adapted.mean));
   fit.choices = {
       fmt::format("population: {}", source),
       fmt::format(

@@ -14,7 +14,7 @@ struct PopulationSpec {
   static constexpr InputRule kInputRule = InputRule::kChannels;
   using Function = CubicSpline;
   static PopulationSpec read(MethodSource& source);
-  std::string method_name() const;
+  std::string method_name() const { return "mean of a population"; }
   Fit fit(const FitTask& task) const;
 };
 
@@ -28,7 +28,7 @@ struct AdaptedSpec {
   static constexpr InputRule kInputRule = InputRule::kOfItsOwn;
   using Function = CubicSpline;
   static AdaptedSpec read(MethodSource& source);
-  std::string method_name() const;
+  std::string method_name() const { return "spline adapted from a population"; }
   Fit fit(const FitTask& task) const;
 };
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "compensation/firmware/runtime.h"
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 #include "compensation/methods/method_inputs.h"
 #include "compensation/models/parameter_json.h"
 #include "linear_algebra/least_squares.h"
@@ -191,11 +191,9 @@ std::string RadialBasisSpec::method_name() const {
 
 Fit RadialBasisSpec::fit(const FitTask& task) const {
   const std::vector<Scale> scales = scales_of(task);
-  return BiasModel{
-      scales,
-      {},
-      fit_radial_basis(scaled(task.rows.inputs, scales), task.rows.bias,
-                       centres, width_share, ridge)};
+  return model_of(
+      scales, fit_radial_basis(scaled(task.rows.inputs, scales), task.rows.bias,
+                               centres, width_share, ridge));
 }
 
 }  // namespace beamgyro::internal

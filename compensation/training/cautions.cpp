@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 
 namespace beamgyro::internal {
 namespace {

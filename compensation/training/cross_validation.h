@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 #include "compensation/rows/row_groups.h"
 #include "compensation/uncertainty/sigma_calibration.h"
 

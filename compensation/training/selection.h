@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 #include "compensation/rows/training_rows.h"
 #include "compensation/training/cross_validation.h"
 #include "compensation/training/model_file.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <variant>
 
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 #include "compensation/methods/population.h"
 #include "compensation/methods/population_sigma.h"
 #include "compensation/models/array_view.h"

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "compensation/compensator/run_comparison.h"
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 #include "compensation/scoring/scale_factor.h"
 #include "compensation/training/cautions.h"
 #include "compensation/training/selection.h"

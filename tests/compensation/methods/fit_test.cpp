@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/methods/fit.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "compensation/methods/bias_model.h"
 #include "tests/compensation/bias_curve.h"
 #include "tests/config/rejection.h"
 

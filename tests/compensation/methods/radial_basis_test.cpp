@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 
 namespace beamgyro::internal::radial_basis_test {
 namespace {

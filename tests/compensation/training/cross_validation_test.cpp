@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/rows_of.h"
 #include "tests/config/rejection.h"

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "compensation/methods/fit.h"
+#include "compensation/methods/bias_model.h"
 #include "tests/config/rejection.h"
 
 namespace beamgyro::internal::model_file_test {
