@@ -341,14 +341,6 @@ TrainingRows training_rows(const RunSource& runs,
   return rows;
 }
 
-TrainingRows training_rows(const std::vector<TrainingRun>& runs,
-                           const std::vector<Input>& inputs,
-                           const RowOptions& options,
-                           const TemperatureRange& range,
-                           const LookupTable* scale_factor) {
-  return training_rows(source_of(runs), inputs, options, range, scale_factor);
-}
-
 TrainingRows selected(const TrainingRows& rows,
                       const Eigen::Array<bool, Eigen::Dynamic, 1>& keep) {
   std::vector<Index> which;

@@ -71,11 +71,6 @@ TrainingRows training_rows(const RunSource& runs,
                            const RowOptions& options,
                            const TemperatureRange& range = {},
                            const LookupTable* scale_factor = nullptr);
-TrainingRows training_rows(const std::vector<TrainingRun>& runs,
-                           const std::vector<Input>& inputs,
-                           const RowOptions& options,
-                           const TemperatureRange& range = {},
-                           const LookupTable* scale_factor = nullptr);
 
 /// Returns the rows for which `keep` is true. The range stays.
 TrainingRows selected(const TrainingRows& rows,

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -176,19 +175,6 @@ EvenSeries whole_series(std::span<const double> rates, double interval) {
   return series;
 }
 
-nlohmann::ordered_json list(const std::vector<AllanPoint>& points) {
-  auto all = nlohmann::ordered_json::array();
-  for (const AllanPoint& point : points) {
-    all.push_back({{"tau_s", point.tau},
-                   {"deviation", point.deviation},
-                   {"clusters", point.clusters},
-                   {"interval", {point.interval.low, point.interval.high}},
-                   {"freedom", point.freedom},
-                   {"noise", name_of(point.noise)}});
-  }
-  return all;
-}
-
 }  // namespace
 
 double relative_uncertainty(const AllanPoint& point) {
@@ -249,14 +235,9 @@ AllanCurve allan_curve(const EvenSeries& series, std::span<const double> taus) {
   return {std::move(curves[0].points), std::move(curves[1].points)};
 }
 
-std::vector<AllanPoint> adev(std::span<const double> rates, double interval,
-                             std::span<const double> taus) {
-  return allan_curve(whole_series(rates, interval), taus).plain;
-}
-
-std::vector<AllanPoint> oadev(std::span<const double> rates, double interval,
-                              std::span<const double> taus) {
-  return allan_curve(whole_series(rates, interval), taus).overlapping;
+AllanCurve allan_curve(std::span<const double> rates, double interval,
+                       std::span<const double> taus) {
+  return allan_curve(whole_series(rates, interval), taus);
 }
 
 std::vector<SampleRange> gapless_ranges(const Recording& recording,
@@ -283,12 +264,6 @@ SampleRange longest_gapless_range(const Recording& recording,
   for (const SampleRange& range : gapless_ranges(recording, values))
     if (range.size() > longest.size()) longest = range;
   return longest;
-}
-
-nlohmann::ordered_json to_json(const std::vector<DeviationSeries>& curves) {
-  nlohmann::ordered_json json;
-  for (const auto& [kind, points] : curves) json[name_of(kind)] = list(points);
-  return json;
 }
 
 }  // namespace beamgyro::internal

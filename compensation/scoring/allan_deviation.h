@@ -94,14 +94,11 @@ std::vector<DeviationSeries> deviation_curves(
 /// Returns adev and oadev of it.
 AllanCurve allan_curve(const EvenSeries& series, std::span<const double> taus);
 
-/// Return the plain and the overlapping deviation of rates without a gap,
-/// sampled every `interval` [s]. Both also throw std::invalid_argument for a
-/// rate that is not finite (with its index), fewer than two rates, or an
-/// interval that is not positive.
-std::vector<AllanPoint> adev(std::span<const double> rates, double interval,
-                             std::span<const double> taus);
-std::vector<AllanPoint> oadev(std::span<const double> rates, double interval,
-                              std::span<const double> taus);
+/// Of rates without a gap, sampled every `interval` [s]. Also throws
+/// std::invalid_argument for a rate that is not finite (with its index), fewer
+/// than two rates, or an interval that is not positive.
+AllanCurve allan_curve(std::span<const double> rates, double interval,
+                       std::span<const double> taus);
 
 /// Returns the ranges of samples that are powered, finite in `values` (one per
 /// time) and without a gap.

@@ -163,12 +163,11 @@ StackingWeight stacking_weight(const Predictions& constant,
               q.sum()};
 }
 
-std::size_t choose(const std::vector<Scored>& models) {
-  const auto rms = [](const Scored& model) { return rms_of(model.errors); };
-  const auto best = std::ranges::min_element(models, {}, rms);
-  const double limit = (1.0 + kAllowedExcess) * rms(*best);
+std::size_t choose(const std::vector<GroupErrors>& models) {
+  const auto best = std::ranges::min_element(models, {}, rms_of);
+  const double limit = (1.0 + kAllowedExcess) * rms_of(*best);
   const auto chosen = std::ranges::find_if(
-      models, [&](const Scored& model) { return rms(model) <= limit; });
+      models, [&](const GroupErrors& model) { return rms_of(model) <= limit; });
   return static_cast<std::size_t>(std::min(chosen, best) - models.begin());
 }
 

@@ -78,12 +78,6 @@ StackingWeight stacking_weight(const Predictions& constant,
                                const Eigen::ArrayXd& bias,
                                const RowGroups& groups);
 
-/// One model among several and its residuals on unseen groups.
-struct Scored {
-  std::string name;
-  GroupErrors errors;
-};
-
 /// Fewer groups than this are no evidence.
 constexpr int kLeastGroups = 3;
 
@@ -94,7 +88,8 @@ constexpr double kUsefulGain = 0.1;  // [-]
 constexpr double kAllowedExcess = 0.02;  // [-]
 
 /// Returns the index of the first model whose rms residual exceeds the least
-/// one by no more than kAllowedExcess. Models are in order, simplest first.
-std::size_t choose(const std::vector<Scored>& models);
+/// one by no more than kAllowedExcess. Models are in order, simplest first;
+/// of each the residuals on unseen groups.
+std::size_t choose(const std::vector<GroupErrors>& models);
 
 }  // namespace beamgyro::internal

@@ -70,14 +70,9 @@ std::vector<Candidate> one_decay_each(
   return result;
 }
 
-bool is_constant(const Candidate& candidate) {
-  return std::holds_alternative<NoneSpec>(candidate.kind) ||
-         std::holds_alternative<ConstantSpec>(candidate.kind);
-}
-
 bool is_curve(const Candidate& candidate) {
   const auto* polynomial = std::get_if<PolynomialSpec>(&candidate.kind);
-  return is_constant(candidate) ||
+  return is_constant(candidate.kind) ||
          (polynomial != nullptr && polynomial->degree <= 3 &&
           candidate.inputs.size() == 1);
 }
@@ -89,31 +84,31 @@ std::size_t richest_curve(const std::vector<Judged>& judged) {
   double least = std::numeric_limits<double>::infinity();
   std::size_t best = 0;
   for (std::size_t k = 0; k < judged.size(); ++k) {
-    if (is_constant(judged[k].candidate)) least = std::min(least, error(k));
+    if (is_constant(judged[k].candidate.kind))
+      least = std::min(least, error(k));
     if (error(k) < error(best)) best = k;
   }
   for (std::size_t k = judged.size(); k-- > 0;)
-    if (!is_constant(judged[k].candidate) && error(k) < least) return k;
+    if (!is_constant(judged[k].candidate.kind) && error(k) < least) return k;
   return best;
 }
 
 std::size_t simplest(const std::vector<Judged>& judged) {
-  std::vector<Scored> scores;
-  for (const Judged& each : judged)
-    scores.push_back({each.candidate.name, each.errors});
-  return choose(scores);
+  std::vector<GroupErrors> errors;
+  for (const Judged& each : judged) errors.push_back(each.errors);
+  return choose(errors);
 }
 
 // Returns the curve or network, unless "none" or "constant" is about as good.
 const Judged& useful(const Judged& chosen, const std::vector<Judged>& judged) {
   const Judged* flat = nullptr;
   for (const Judged& each : judged)
-    if (is_constant(each.candidate) &&
+    if (is_constant(each.candidate.kind) &&
         (flat == nullptr || flat->rms() > (1.0 + kAllowedExcess) * each.rms()))
       flat = &each;
   const bool gains =
       flat == nullptr || chosen.rms() <= (1.0 - kUsefulGain) * flat->rms();
-  return gains || is_constant(chosen.candidate) ? chosen : *flat;
+  return gains || is_constant(chosen.candidate.kind) ? chosen : *flat;
 }
 
 class Selector {
@@ -203,7 +198,7 @@ class Selector {
   Judged judge(const Candidate& candidate, const Predictions& flat) const {
     const Predictions found = predictions(candidate);
     Judged alone{candidate, 1.0, errors_of(found)};
-    if (one_leg() || is_constant(candidate)) return alone;
+    if (one_leg() || is_constant(candidate.kind)) return alone;
     const StackingWeight weight =
         stacking_weight(flat, found, judging().bias, groups_);
     const auto average = [&](double share) {
@@ -273,7 +268,7 @@ bool sees_power_on(const Candidate& candidate) {
 // they can.
 std::string objection(const Candidate& candidate, const TrainingRows& rows,
                       const RowGroups& groups) {
-  if (is_constant(candidate)) return "";
+  if (is_constant(candidate.kind)) return "";
   if (groups.by == Grouping::kSegment && !is_curve(candidate))
     return "the recordings are one leg of temperature, or legs that share too "
            "little of it, and nothing independent can be held out: curves up "
@@ -296,6 +291,11 @@ std::string objection(const Candidate& candidate, const TrainingRows& rows,
 }
 
 }  // namespace
+
+bool is_constant(const FitSpec& kind) {
+  return std::holds_alternative<NoneSpec>(kind) ||
+         std::holds_alternative<ConstantSpec>(kind);
+}
 
 bool moves_more_than_noise(const TrainingRows& rows) {
   double squares = 0.0, count = 0.0;

@@ -13,6 +13,9 @@
 
 namespace beamgyro::internal {
 
+/// Whether it is "none" or "constant".
+bool is_constant(const FitSpec& kind);
+
 /// Returns whether the bias moves more than slow noise would: its variance is
 /// above n s^2 / 20, with n rows and s^2 half the mean square second difference
 /// within a cycle. White noise alone gives s^2 / 3, a random walk alone n s^2 /

@@ -135,17 +135,12 @@ CrossValidated summary_of(const RowGroups& groups, const Selected& selected) {
           roots(*selected.constant_errors)};
 }
 
-bool claims_nothing(const FitSpec& kind) {
-  return std::holds_alternative<NoneSpec>(kind) ||
-         std::holds_alternative<ConstantSpec>(kind);
-}
-
 // Returns why the model claims no improvement over a constant, or an empty text
 // when it may.
 std::string why_no_claim(const ModelSpec& spec,
                          const std::optional<RowGroups>& groups,
                          const Selected& selected) {
-  if (claims_nothing(selected.candidate.kind))
+  if (is_constant(selected.candidate.kind))
     return spec.candidates.empty()
                ? ""
                : fmt::format(

@@ -46,7 +46,7 @@ std::optional<NoiseCoefficients> coefficients(const Evidence& evidence) {
   const std::vector<double> taus =
       octave_taus(series.residual.size(), series.interval);
   const std::vector<AllanPoint> points =
-      oadev(series.residual, series.interval, taus);
+      allan_curve(series.residual, series.interval, taus).overlapping;
   if (!has_noise_coefficients(points)) return std::nullopt;
   return noise_coefficients(points);
 }

@@ -23,7 +23,7 @@ double cubic(double T) {
 }
 
 TrainingRows samples_of(const Recording& recording) {
-  return training_rows({{"run.h5", "", recording}},
+  return training_rows(source_of({{"run.h5", "", recording}}),
                        {parse_input("temperature")}, {0.0, {}});
 }
 

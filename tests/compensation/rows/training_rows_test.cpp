@@ -20,7 +20,7 @@ std::vector<TrainingRun> one(const Recording& recording) {
 
 TrainingRows rows_from(const Recording& recording,
                        const RowOptions& options = {}) {
-  return training_rows(one(recording), kTemperature, options);
+  return training_rows(source_of(one(recording)), kTemperature, options);
 }
 
 RecordedRun drifting_run() {
@@ -132,9 +132,10 @@ TEST(TrainingRows, KnowTheirTimeRunAndPowerCycle) {
   first.powered = [](double t) { return t < 120.0 || t >= 240.0; };
   RecordedRun second = drifting_run();
   second.duration = 120.0;
-  const TrainingRows rows = training_rows(
-      {{"a.h5", "", first.recording()}, {"b.h5", "", second.recording()}},
-      kTemperature, {});
+  const TrainingRows rows =
+      training_rows(source_of({{"a.h5", "", first.recording()},
+                               {"b.h5", "", second.recording()}}),
+                    kTemperature, {});
   ASSERT_EQ(rows.size(), 2 + 4 + 2);
   EXPECT_NEAR(rows.time(1), 89.75, 1e-12);
   EXPECT_NEAR(rows.time(2), 269.75, 1e-12);
@@ -220,16 +221,16 @@ TEST(TrainingRows, WithAScaleFactorTheLabelIsWhatItLeaves) {
   const LookupTable table{Eigen::ArrayXd::LinSpaced(2, 20.0, 26.0),
                           Eigen::ArrayXd::LinSpaced(2, 0.9, 1.2)};
   run.scale_factor = [=](double t) { return table.at(20.0 + 0.01 * t); };
-  const TrainingRows rows =
-      training_rows(one(run.recording()), kTemperature, {}, {}, &table);
+  const TrainingRows rows = training_rows(source_of(one(run.recording())),
+                                          kTemperature, {}, {}, &table);
   for (Eigen::Index k = 0; k < rows.size(); ++k)
     EXPECT_NEAR(rows.bias(k), 0.5 + 1e-3 * rows.time(k), 1e-12);
 
   // Temperatures are clamped before the table is asked, as at run time.
   const double held = table.at(22.0);
   run.scale_factor = [=](double t) { return std::min(0.9 + 5e-4 * t, held); };
-  const TrainingRows clamped = training_rows(one(run.recording()), kTemperature,
-                                             {}, {20.0, 22.0}, &table);
+  const TrainingRows clamped = training_rows(
+      source_of(one(run.recording())), kTemperature, {}, {20.0, 22.0}, &table);
   EXPECT_NEAR(clamped.bias(9), 0.5 + 1e-3 * clamped.time(9), 1e-12);
   EXPECT_EQ(clamped.temperature(9), 22.0);
   EXPECT_TRUE(clamped.beyond_range(9));
@@ -239,8 +240,8 @@ TEST(TrainingRows, WithAScaleFactorTheLabelIsWhatItLeaves) {
 TEST(TrainingRows, SelectedRowsKeepAllThatBelongsToThem) {
   RecordedRun run = drifting_run();
   run.powered = [](double t) { return t < 300.0 || t >= 310.0; };
-  const TrainingRows rows =
-      training_rows(one(run.recording()), kTemperature, {}, {20.0, 22.0});
+  const TrainingRows rows = training_rows(source_of(one(run.recording())),
+                                          kTemperature, {}, {20.0, 22.0});
   Eigen::Array<bool, Eigen::Dynamic, 1> keep =
       rows.time > 200.0 && rows.time < 400.0;
   const TrainingRows some = selected(rows, keep);
@@ -263,7 +264,7 @@ TEST(TrainingRows, ColumnsAreTakenByTheNameOfTheirInput) {
   const std::vector<Input> all{parse_input("temperature"),
                                parse_input("output"), parse_input("rate")};
   const TrainingRows rows =
-      training_rows(one(drifting_run().recording()), all, {});
+      training_rows(source_of(one(drifting_run().recording())), all, {});
   const TrainingRows two = with_columns(rows, all, {all[2], all[0]});
   EXPECT_TRUE((two.inputs.col(0) == rows.inputs.col(2)).all());
   EXPECT_TRUE((two.inputs.col(1) == rows.inputs.col(0)).all());

@@ -99,10 +99,11 @@ TEST(Cautions, HeldOutTemperaturesOutsideTheTraining) {
     return std::vector<TrainingRun>{{"run.h5", "", run.recording()}};
   };
   const TrainingRows rows =
-      training_rows(recorded(10.0, 0.01), kTemperature, {});
+      training_rows(source_of(recorded(10.0, 0.01)), kTemperature, {});
   const auto found = [&](const std::vector<TrainingRun>& held_out) {
-    return cautions_of(rows, PolynomialSpec{1},
-                       training_rows(held_out, kTemperature, {}, rows.range));
+    return cautions_of(
+        rows, PolynomialSpec{1},
+        training_rows(source_of(held_out), kTemperature, {}, rows.range));
   };
   // The same soaks, their ends among them, are not outside.
   EXPECT_EQ(found(recorded(10.0, 0.01)), Strings{});

@@ -164,14 +164,14 @@ TEST(GroupErrors, AreMeansOverTheRowsOfEach) {
 
 TEST(Choose, TakesTheFirstOfEqualOnes) {
   const GroupErrors same = errors_of({1.0, 2.0, 3.0});
-  EXPECT_EQ(choose({{"a", same}, {"b", same}}), 0u);
-  EXPECT_EQ(choose({{"a", same + 1.0}, {"b", same}, {"c", same}}), 1u);
+  EXPECT_EQ(choose({same, same}), 0u);
+  EXPECT_EQ(choose({same + 1.0, same, same}), 1u);
 }
 
 TEST(Choose, ExcusesTheAllowedExcessOfRms) {
   const GroupErrors best = errors_of({1.0, 1.0, 1.0, 1.0});
   const auto chosen = [&](double excess) {
-    return choose({{"simple", best + excess}, {"best", best}});
+    return choose({best + excess, best});
   };
   // Rms is allowed 1.02, mean square 1.0404.
   EXPECT_EQ(chosen(0.040), 0u);

@@ -237,7 +237,8 @@ TEST(Figures, AnAllanDeviationOfWhiteNoiseLiesOnItsLine) {
                 0.02 * line["y"][k].get<double>());
   // Whiskers are the intervals of the deviations.
   const auto& rate = given.before.runs[0].rate;
-  const auto points = oadev(rate, 0.1, octave_taus(rate.size(), 0.1));
+  const auto points =
+      allan_curve(rate, 0.1, octave_taus(rate.size(), 0.1)).overlapping;
   ASSERT_EQ(series[1]["x"].size(), points.size());
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto& [low, high] = points[k].interval;
