@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
+#include <cmath>
 #include <system_error>
 #include <utility>
 
@@ -18,6 +18,25 @@ constexpr double kPatience = 2, kStep = 0.2, kMinute = 60;  // [s]
 constexpr std::size_t kShortest = 12, kLogWidth = 200;      // [characters]
 
 }  // namespace
+
+void TimeLeft::note(double elapsed, double share) {
+  samples_.push_back({elapsed, share});
+  while (samples_.size() > 2 && samples_[1].elapsed <= elapsed / 2)
+    samples_.pop_front();
+}
+
+std::optional<double> TimeLeft::seconds() const {
+  const Sample &first = samples_.front(), &last = samples_.back();
+  const double done = last.share - first.share;
+  if (!(done > 0)) return {};
+  return (1 - last.share) * (last.elapsed - first.elapsed) / done;
+}
+
+std::string clock_text(double seconds) {
+  const auto whole = static_cast<long>(std::floor(seconds));
+  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60,
+                     whole % 60);
+}
 
 Progress::Progress(std::string activity)
     : Progress(std::move(activity), [this] {

@@ -83,6 +83,20 @@ bool used(const TrainingSet& part, const TrainingRun& run) {
           std::ranges::find(part.runs, run.run) != part.runs.end());
 }
 
+bool shares_stretches_of_training(const Provenance& provenance,
+                                  const Recording& recording) {
+  std::uint64_t limit = 0;
+  any_file(provenance, [&limit](const SourceFile& file) {
+    if (!file.sketch.empty()) limit = std::max(limit, file.sketch.back());
+    return false;
+  });
+  if (limit == 0) return false;
+  const auto stretches = stretches_up_to(limit, recording);
+  return any_file(provenance, [&stretches](const SourceFile& file) {
+    return shares_stretches(file.sketch, stretches);
+  });
+}
+
 }  // namespace
 
 RunMark mark_of(const TrainingRun& run) {
@@ -186,24 +200,6 @@ std::string measured_sha256(const Recording& recording) {
   }
   return hash.digits();
 }
-
-namespace {
-
-bool shares_stretches_of_training(const Provenance& provenance,
-                                  const Recording& recording) {
-  std::uint64_t limit = 0;
-  any_file(provenance, [&limit](const SourceFile& file) {
-    if (!file.sketch.empty()) limit = std::max(limit, file.sketch.back());
-    return false;
-  });
-  if (limit == 0) return false;
-  const auto stretches = stretches_up_to(limit, recording);
-  return any_file(provenance, [&stretches](const SourceFile& file) {
-    return shares_stretches(file.sketch, stretches);
-  });
-}
-
-}  // namespace
 
 bool was_used_in_training(const Provenance& provenance,
                           const std::string& file_sha256,

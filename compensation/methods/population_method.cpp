@@ -10,28 +10,10 @@
 
 #include "compensation/methods/bias_model.h"
 #include "compensation/methods/method_inputs.h"
-#include "compensation/methods/population_sigma.h"
+#include "compensation/methods/population.h"
 #include "dataset/files/sha256.h"
 
 namespace beamgyro::internal {
-
-PopulationSpec PopulationSpec::read(MethodSource& source) {
-  return {source.table(kName).number_or("grid_K", 5.0, positive())};
-}
-
-Fit PopulationSpec::fit(const FitTask& task) const {
-  Population p = fit_population(task.inputs, task.rows, grid_K);
-  Fit fit =
-      model_of(unscaled(task), bias_curve(p, p.mean.head(p.grid()).array()));
-  fit.choices.push_back(
-      fmt::format("{} devices, {} modes on {} temperatures from {:.2f} to "
-                  "{:.2f} degC",
-                  p.devices, p.modes.cols(), p.grid(), p.range().lowest,
-                  p.range().highest));
-  fit.population = std::move(p);
-  return fit;
-}
-
 namespace {
 
 // The temperature and the population's channels, or some of them.
@@ -51,6 +33,23 @@ std::vector<Input> adapted_inputs(const ConfigTable& root,
 }
 
 }  // namespace
+
+PopulationSpec PopulationSpec::read(MethodSource& source) {
+  return {source.table(kName).number_or("grid_K", 5.0, positive())};
+}
+
+Fit PopulationSpec::fit(const FitTask& task) const {
+  Population p = fit_population(task.inputs, task.rows, grid_K);
+  Fit fit =
+      model_of(unscaled(task), bias_curve(p, p.mean.head(p.grid()).array()));
+  fit.choices.push_back(
+      fmt::format("{} devices, {} modes on {} temperatures from {:.2f} to "
+                  "{:.2f} degC",
+                  p.devices, p.modes.cols(), p.grid(), p.range().lowest,
+                  p.range().highest));
+  fit.population = std::move(p);
+  return fit;
+}
 
 AdaptedSpec AdaptedSpec::read(MethodSource& source) {
   const ConfigTable root = source.root();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/methods/population_sigma.h"
-
+// The sigma of a population and of devices adapted from it.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <utility>
 
+#include "compensation/methods/population.h"
 #include "compensation/models/array_view.h"
 #include "compensation/models/bias_function.h"
 

@@ -13,6 +13,20 @@ namespace {
 constexpr Eigen::Index kBlockRows = 1024;  // keeps a block in the cache
 constexpr Eigen::Index kStretches = 20;
 
+// Of each row.
+Eigen::ArrayXd squared_errors(const BpNetwork& network,
+                              const ScaledRows& rows) {
+  Eigen::ArrayXd squares(rows.size());
+  for (Eigen::Index first = 0; first < rows.size(); first += kBlockRows) {
+    const Eigen::Index count = std::min(kBlockRows, rows.size() - first);
+    squares.segment(first, count) =
+        (network.predict(rows.inputs.middleRows(first, count)) -
+         rows.target.segment(first, count))
+            .square();
+  }
+  return squares;
+}
+
 }  // namespace
 
 std::string sentence(StopReason reason) {
@@ -34,19 +48,6 @@ void report_epoch(const TrainOptions& options, int epoch, double rms) {
         {.epoch = static_cast<std::size_t>(epoch),
          .max_epochs = static_cast<std::size_t>(options.max_epochs),
          .rms = rms});
-}
-
-Eigen::ArrayXd squared_errors(const BpNetwork& network,
-                              const ScaledRows& rows) {
-  Eigen::ArrayXd squares(rows.size());
-  for (Eigen::Index first = 0; first < rows.size(); first += kBlockRows) {
-    const Eigen::Index count = std::min(kBlockRows, rows.size() - first);
-    squares.segment(first, count) =
-        (network.predict(rows.inputs.middleRows(first, count)) -
-         rows.target.segment(first, count))
-            .square();
-  }
-  return squares;
 }
 
 double rms_error(const BpNetwork& network, const ScaledRows& rows) {

@@ -86,9 +86,6 @@ void report_epoch(const TrainOptions& options, int epoch, double rms);
 
 double rms_error(const BpNetwork& network, const ScaledRows& rows);
 
-/// Returns the squared error of each row.
-Eigen::ArrayXd squared_errors(const BpNetwork& network, const ScaledRows& rows);
-
 /// Returns whether squared errors are no larger than `least`, those of the same
 /// rows with other weights, within noise: the mean difference is within two
 /// standard errors. These come from the means of 20 stretches of rows, because

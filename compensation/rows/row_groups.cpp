@@ -2,6 +2,8 @@
 #include "compensation/rows/row_groups.h"
 
 #include <algorithm>
+#include <set>
+#include <vector>
 
 namespace beamgyro::internal {
 namespace {
@@ -81,6 +83,23 @@ const ArrayXi& labels(const TrainingRows& rows, Grouping by) {
   return by == Grouping::kCycle ? rows.cycle : rows.leg;
 }
 
+// For each tenth of the span of temperatures that has rows, their groups.
+std::vector<std::set<int>> groups_in_tenths(const TrainingRows& rows,
+                                            const ArrayXi& group_of_row) {
+  const double lowest = rows.temperature.minCoeff();
+  const double span = rows.temperature.maxCoeff() - lowest;
+  std::vector<std::set<int>> tenths(10);
+  for (Index k = 0; k < rows.size(); ++k) {
+    const double share =
+        span > 0.0 ? (rows.temperature(k) - lowest) / span : 0.0;
+    const auto tenth =
+        std::min(static_cast<std::size_t>(10.0 * share), tenths.size() - 1);
+    tenths[tenth].insert(group_of_row(k));
+  }
+  std::erase_if(tenths, [](const auto& groups) { return groups.empty(); });
+  return tenths;
+}
+
 }  // namespace
 
 std::string grouping_name(Grouping by) {
@@ -107,22 +126,6 @@ RowGroups coarsest_groups(const TrainingRows& rows, int least) {
     if (RowGroups groups = group_rows(rows, by); groups.count >= least)
       return groups;
   return group_rows(rows, Grouping::kSegment);
-}
-
-std::vector<std::set<int>> groups_in_tenths(const TrainingRows& rows,
-                                            const ArrayXi& group_of_row) {
-  const double lowest = rows.temperature.minCoeff();
-  const double span = rows.temperature.maxCoeff() - lowest;
-  std::vector<std::set<int>> tenths(10);
-  for (Index k = 0; k < rows.size(); ++k) {
-    const double share =
-        span > 0.0 ? (rows.temperature(k) - lowest) / span : 0.0;
-    const auto tenth =
-        std::min(static_cast<std::size_t>(10.0 * share), tenths.size() - 1);
-    tenths[tenth].insert(group_of_row(k));
-  }
-  std::erase_if(tenths, [](const auto& groups) { return groups.empty(); });
-  return tenths;
 }
 
 bool others_cover(const TrainingRows& rows, const RowGroups& groups) {

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <set>
 #include <string>
-#include <vector>
 
 #include "compensation/rows/training_rows.h"
 
@@ -34,11 +32,6 @@ RowGroups group_rows(const TrainingRows& rows, Grouping by);
 /// Groups the rows by run if that gives `least` groups or more, else by cycle,
 /// else by leg, else by segment.
 RowGroups coarsest_groups(const TrainingRows& rows, int least);
-
-/// Returns for each tenth of the span of temperatures the groups with rows in
-/// it. A tenth without rows is left out.
-std::vector<std::set<int>> groups_in_tenths(const TrainingRows& rows,
-                                            const Eigen::ArrayXi& group_of_row);
 
 /// Largest share of the temperatures that may be in one group alone.
 constexpr double kLargestAlone = 0.25;  // [-]

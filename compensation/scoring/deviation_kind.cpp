@@ -5,28 +5,30 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 namespace beamgyro::internal {
 
-const std::vector<std::string>& deviation_names() {
-  static const std::vector<std::string> names{"adev", "oadev", "mdev",
-                                              "hdev", "ohdev", "totdev"};
-  return names;
-}
+namespace {
+
+// In the order of DeviationKind.
+constexpr std::string_view kDeviationNames[] = {"adev", "oadev", "mdev",
+                                                "hdev", "ohdev", "totdev"};
+
+}  // namespace
 
 DeviationKind deviation_kind(std::string_view name) {
-  const auto& names = deviation_names();
-  const auto found = std::ranges::find(names, name);
-  if (found == names.end())
+  const auto* const found = std::ranges::find(kDeviationNames, name);
+  if (found == std::end(kDeviationNames))
     throw std::invalid_argument(
         fmt::format("deviation \"{}\": not known; expected {}", name,
-                    fmt::join(names, ", ")));
-  return static_cast<DeviationKind>(found - names.begin());
+                    fmt::join(kDeviationNames, ", ")));
+  return static_cast<DeviationKind>(found - kDeviationNames);
 }
 
 std::string name_of(DeviationKind kind) {
-  return deviation_names()[static_cast<std::size_t>(kind)];
+  return std::string(kDeviationNames[static_cast<std::size_t>(kind)]);
 }
 
 int order_of(DeviationKind kind) {

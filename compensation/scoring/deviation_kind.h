@@ -3,7 +3,6 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace beamgyro::internal {
 
@@ -17,9 +16,6 @@ namespace beamgyro::internal {
 ///   totdev        as oadev, of angles continued by reflection at both ends:
 ///                 2 x_0 - x_j before the first, 2 x_n - x_{n-j} after the last
 enum class DeviationKind { kAdev, kOadev, kMdev, kHdev, kOhdev, kTotdev };
-
-/// "adev", "oadev", ..., in the order of DeviationKind.
-const std::vector<std::string>& deviation_names();
 
 /// The kind of that name. Throws std::invalid_argument for any other word.
 DeviationKind deviation_kind(std::string_view name);

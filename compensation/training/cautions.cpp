@@ -112,6 +112,29 @@ std::string rate_caution(const FittedCase& fitted) {
       input_name(*input), kFeelsTheRate);
 }
 
+// Which way the temperature went over the leg of each row: +1, -1, or 0 where
+// it did not move by kLegReversal.
+std::vector<int> directions(const TrainingRows& rows) {
+  std::vector<int> direction(static_cast<std::size_t>(rows.size()), 0);
+  for (Index begin = 0; begin < rows.size();) {
+    Index end = begin;
+    while (end < rows.size() && rows.leg(end) == rows.leg(begin)) ++end;
+    const double change = rows.temperature(end - 1) - rows.temperature(begin);
+    if (std::abs(change) >= kLegReversal)
+      std::fill(direction.begin() + begin, direction.begin() + end,
+                change > 0.0 ? 1 : -1);
+    begin = end;
+  }
+  return direction;
+}
+
+struct Cell {
+  double sum = 0.0, squares = 0.0, count = 0.0;
+
+  double mean() const { return sum / count; }
+  double scatter() const { return squares - sum * sum / count; }
+};
+
 }  // namespace
 
 std::vector<std::string> cautions(const FittedCase& fitted) {
@@ -140,33 +163,6 @@ double temperature_resolution(const Recording& recording) {
   }
   return std::isfinite(smallest) ? smallest : 0.0;
 }
-
-namespace {
-
-// Which way the temperature went over the leg of each row: +1, -1, or 0 where
-// it did not move by kLegReversal.
-std::vector<int> directions(const TrainingRows& rows) {
-  std::vector<int> direction(static_cast<std::size_t>(rows.size()), 0);
-  for (Index begin = 0; begin < rows.size();) {
-    Index end = begin;
-    while (end < rows.size() && rows.leg(end) == rows.leg(begin)) ++end;
-    const double change = rows.temperature(end - 1) - rows.temperature(begin);
-    if (std::abs(change) >= kLegReversal)
-      std::fill(direction.begin() + begin, direction.begin() + end,
-                change > 0.0 ? 1 : -1);
-    begin = end;
-  }
-  return direction;
-}
-
-struct Cell {
-  double sum = 0.0, squares = 0.0, count = 0.0;
-
-  double mean() const { return sum / count; }
-  double scatter() const { return squares - sum * sum / count; }
-};
-
-}  // namespace
 
 std::optional<Hysteresis> hysteresis(const TrainingRows& rows,
                                      const ArrayXd& residual) {

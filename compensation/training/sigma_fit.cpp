@@ -12,7 +12,6 @@
 
 #include "compensation/methods/bias_model.h"
 #include "compensation/methods/population.h"
-#include "compensation/methods/population_sigma.h"
 #include "compensation/models/array_view.h"
 #include "compensation/models/bias_function.h"
 #include "compensation/rows/row_groups.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "cli/time_left.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "cli/progress.h"
 
 namespace beamgyro::internal::time_left_test {
 namespace {

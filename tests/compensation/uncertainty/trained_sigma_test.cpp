@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "compensation/methods/population_sigma.h"
+#include "compensation/methods/population.h"
 #include "compensation/models/bias_function.h"
 #include "compensation/training/sigma_fit.h"
 #include "compensation/training/train.h"
