@@ -91,9 +91,8 @@ void set_quiet(bool quiet) { prints_errors_only = quiet; }
 void print_result(std::string_view text) {
   const std::string safe = harmless(text, "\n\t");
   if (std::fwrite(safe.data(), 1, safe.size(), stdout) != safe.size() ||
-      std::fflush(stdout) != 0) {
+      std::fflush(stdout) != 0)
     throw std::runtime_error("cannot write to standard output");
-  }
 }
 
 void print_note(std::string_view text) {

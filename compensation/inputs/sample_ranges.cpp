@@ -22,9 +22,8 @@ std::vector<SampleRange> blocks_of(const std::vector<double>& time,
     const double number = std::floor((time[begin] - origin) / length);
     std::size_t end = begin + 1;
     while (end < stretch.end &&
-           std::floor((time[end] - origin) / length) == number) {
+           std::floor((time[end] - origin) / length) == number)
       ++end;
-    }
     blocks.push_back({begin, end});
     fullest = std::max(fullest, end - begin);
     begin = end;
@@ -42,13 +41,10 @@ std::vector<SampleRange> blocks_of(const std::vector<double>& time,
 
 double usual_step(const Recording& recording) {
   const auto& time = recording.time;
-  if (time.size() < 2) {
-    return 0.0;
-  }
+  if (time.size() < 2) return 0.0;
   std::vector<double> steps(time.size() - 1);
-  for (std::size_t k = 0; k < steps.size(); ++k) {
+  for (std::size_t k = 0; k < steps.size(); ++k)
     steps[k] = time[k + 1] - time[k];
-  }
   const auto middle =
       steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
@@ -57,21 +53,16 @@ double usual_step(const Recording& recording) {
 
 std::vector<SampleRange> powered_stretches(const Recording& recording) {
   const auto& status = recording.status;
-  if (status.size() != recording.time.size()) {
+  if (status.size() != recording.time.size())
     throw std::invalid_argument(
         fmt::format("status: {} entries for {} times, must be one each",
                     status.size(), recording.time.size()));
-  }
   std::vector<SampleRange> stretches;
   bool on = false;
   for (std::size_t k = 0; k < status.size(); ++k) {
     const bool powered = (status[k] & kUnpowered) == 0;
-    if (powered && !on) {
-      stretches.push_back({k, k});
-    }
-    if (powered) {
-      stretches.back().end = k + 1;
-    }
+    if (powered && !on) stretches.push_back({k, k});
+    if (powered) stretches.back().end = k + 1;
     on = powered;
   }
   return stretches;
@@ -79,10 +70,9 @@ std::vector<SampleRange> powered_stretches(const Recording& recording) {
 
 std::vector<SampleRange> score_blocks(const Recording& recording,
                                       double length) {
-  if (!(length > 0.0) || !std::isfinite(length)) {
+  if (!(length > 0.0) || !std::isfinite(length))
     throw std::invalid_argument(
         fmt::format("block length: {} s, must be positive", length));
-  }
   const double step = usual_step(recording);
   std::vector<SampleRange> blocks;
   for (const SampleRange& stretch : powered_stretches(recording)) {
@@ -95,9 +85,7 @@ std::vector<SampleRange> score_blocks(const Recording& recording,
 std::vector<SampleRange> temperature_plateaus(const Recording& recording) {
   std::vector<SampleRange> stretches = powered_stretches(recording);
   const Column* temperature = find_column(recording, "temperature");
-  if (temperature == nullptr) {
-    return stretches;
-  }
+  if (temperature == nullptr) return stretches;
   std::vector<SampleRange> plateaus;
   for (const SampleRange& stretch : stretches) {
     double first = std::numeric_limits<double>::quiet_NaN();

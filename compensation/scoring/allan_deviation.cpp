@@ -184,9 +184,8 @@ double relative_uncertainty(const AllanPoint& point) {
 
 std::vector<double> octave_taus(std::size_t samples, double interval) {
   std::vector<double> taus;
-  for (std::size_t m = 1; m <= samples / 2; m *= 2) {
+  for (std::size_t m = 1; m <= samples / 2; m *= 2)
     taus.push_back(static_cast<double>(m) * interval);
-  }
   return taus;
 }
 

@@ -12,14 +12,13 @@ using Json = nlohmann::ordered_json;
 
 Json points_json(const std::vector<AllanPoint>& points) {
   auto all = Json::array();
-  for (const AllanPoint& point : points) {
+  for (const AllanPoint& point : points)
     all.push_back({{"tau_s", point.tau},
                    {"deviation", point.deviation},
                    {"clusters", point.clusters},
                    {"interval", {point.interval.low, point.interval.high}},
                    {"freedom", point.freedom},
                    {"noise", name_of(point.noise)}});
-  }
   return all;
 }
 

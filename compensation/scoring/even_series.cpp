@@ -25,13 +25,10 @@ std::vector<std::vector<std::size_t>> usable_samples(
     usable.reserve(stretch.size());
     for (std::size_t k = stretch.begin; k < stretch.end; ++k) {
       const double t = recording.time[k];
-      if (std::isfinite(values[k]) && t >= window.from && t <= window.to) {
+      if (std::isfinite(values[k]) && t >= window.from && t <= window.to)
         usable.push_back(k);
-      }
     }
-    if (usable.size() > 1) {
-      stretches.push_back(std::move(usable));
-    }
+    if (usable.size() > 1) stretches.push_back(std::move(usable));
   }
   return stretches;
 }
@@ -44,10 +41,8 @@ double mean_step(const std::vector<double>& time,
   std::size_t steps = 0;
   for (const auto& usable : stretches) {
     for (std::size_t begin = 0, i = 1; i <= usable.size(); ++i) {
-      if (i < usable.size() &&
-          time[usable[i]] - time[usable[i - 1]] <= longest) {
+      if (i < usable.size() && time[usable[i]] - time[usable[i - 1]] <= longest)
         continue;
-      }
       duration += time[usable[i - 1]] - time[usable[begin]];
       steps += i - 1 - begin;
       begin = i;
@@ -157,13 +152,12 @@ EvenSeries even_series(const Recording& recording, std::string_view name,
     Grid grid(recording.time, values, series);
     for (const auto& usable : stretches) grid.add(usable);
   }
-  if (series.samples == 0) {
+  if (series.samples == 0)
     throw std::invalid_argument(fmt::format(
         "{}: no two powered samples in a row{}", name,
         window.from > -HUGE_VAL || window.to < HUGE_VAL
             ? fmt::format(" from {:g} to {:g} s", window.from, window.to)
             : ""));
-  }
   series.left_out = values.size() - series.samples;
   return series;
 }

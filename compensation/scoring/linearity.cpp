@@ -35,9 +35,7 @@ Line fit(std::span<const HeldRate> table) {
 double slope_of_side(std::span<const HeldRate> table, double sign) {
   std::vector<HeldRate> side;
   for (const HeldRate& held : table) {
-    if (sign * held.rate >= 0.0) {
-      side.push_back(held);
-    }
+    if (sign * held.rate >= 0.0) side.push_back(held);
   }
   return fit(side).slope;
 }

@@ -194,20 +194,16 @@ bool is_usable(const AllanPoint& point) {
 std::vector<AllanPoint> usable(const std::vector<AllanPoint>& points) {
   std::vector<AllanPoint> used;
   for (const AllanPoint& point : points) {
-    if (!std::isfinite(point.deviation)) {
+    if (!std::isfinite(point.deviation))
       throw std::invalid_argument(fmt::format(
           "deviation at {} s: {}, must be finite", point.tau, point.deviation));
-    }
-    if (is_usable(point)) {
-      used.push_back(point);
-    }
+    if (is_usable(point)) used.push_back(point);
   }
-  if (used.size() < kLeastPoints) {
+  if (used.size() < kLeastPoints)
     throw std::invalid_argument(fmt::format(
         "Allan curve: {} points with an uncertainty of {:g} % or less, must be "
         "at least {}",
         used.size(), 100.0 * kMostUncertain, kLeastPoints));
-  }
   std::ranges::sort(used, {}, &AllanPoint::tau);
   return used;
 }

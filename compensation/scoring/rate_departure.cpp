@@ -118,9 +118,8 @@ Eigen::VectorXd without_drift(const Eigen::VectorXd& rate,
   const auto hats = drift_hats(time, pieces);
   const Eigen::VectorXd term = to_unit(temperature);
   NormalEquations equations(pieces + 1);
-  for (Eigen::Index k = 0; k < rate.size(); ++k) {
+  for (Eigen::Index k = 0; k < rate.size(); ++k)
     equations.add(hats[static_cast<std::size_t>(k)], term(k), rate(k));
-  }
   equations.damp(kDriftDamping * static_cast<double>(rate.size()));
   const Drift drift = solved(std::move(equations));
   Eigen::VectorXd left_over = rate - drift.term * term;

@@ -56,21 +56,19 @@ std::optional<double> output_scale(const Recording& recording) {
       high = high == rate.size() || rate[k] > rate[high] ? k : high;
     }
   }
-  if (low == rate.size() || !(rate[high] - rate[low] > kLeastRateSpan)) {
+  if (low == rate.size() || !(rate[high] - rate[low] > kLeastRateSpan))
     return std::nullopt;
-  }
   const double span = output[high] - output[low];
   const double scale = span / (rate[high] - rate[low]);
   for (const SampleRange& stretch : powered_stretches(recording)) {
     for (std::size_t k = stretch.begin; k < stretch.end; ++k) {
       const double line = output[low] + scale * (rate[k] - rate[low]);
       if (!(std::abs(output[k] - line) <=
-            kLineTolerance * std::max(std::abs(span), std::abs(line)))) {
+            kLineTolerance * std::max(std::abs(span), std::abs(line))))
         throw std::invalid_argument(fmt::format(
             "output: {} V at {} s is not on the straight line over rate, must "
             "be rate times the nominal scale factor plus the offset",
             output[k], recording.time[k]));
-      }
     }
   }
   return scale;
@@ -130,11 +128,10 @@ void append_blocks(const Recording& recording, const Injection& injection,
           samples += 1.0;
         }
       }
-      if (samples > 0.0 && rate[begin] != 0.0) {
+      if (samples > 0.0 && rate[begin] != 0.0)
         blocks.push_back({recording.time[begin],
                           value_at(temperature, begin, kNone), rate[begin],
                           sum / (samples * rate[begin])});
-      }
       begin = k;
     }
   }
@@ -162,28 +159,21 @@ std::optional<Recording> with_injected_rate(const Recording& recording,
   std::optional<double> scale;
   if (find_column(moved, "output") != nullptr) {
     scale = output_scale(moved);
-    if (!scale) {
-      return std::nullopt;
-    }
+    if (!scale) return std::nullopt;
   }
   auto& rate = values_of(moved, "rate");
-  for (std::size_t k = 0; k < injected.size(); ++k) {
-    rate[k] += injected[k];
-  }
+  for (std::size_t k = 0; k < injected.size(); ++k) rate[k] += injected[k];
   if (scale) {
     auto& output = values_of(moved, "output");
-    for (std::size_t k = 0; k < injected.size(); ++k) {
+    for (std::size_t k = 0; k < injected.size(); ++k)
       output[k] += *scale * injected[k];
-    }
   }
   return moved;
 }
 
 void quieten(const Recording& recording, double quiet,
              std::vector<double>& added) {
-  if (quiet <= 0.0) {
-    return;
-  }
+  if (quiet <= 0.0) return;
   for (const SampleRange& stretch : powered_stretches(recording)) {
     const double begin = recording.time[stretch.begin];
     for (std::size_t k = stretch.begin;
@@ -198,9 +188,7 @@ std::optional<std::vector<ReplayedBlock>> replay(
     std::span<const double> answers, double full_scale, std::size_t first_hold,
     const ReplayPauses& pauses) {
   const std::size_t samples = recording.time.size();
-  if (samples == 0) {
-    return std::nullopt;
-  }
+  if (samples == 0) return std::nullopt;
   const double step = usual_step(recording);
   const double length = recording.time.back() - recording.time.front() + step;
   const double short_hold =
@@ -212,13 +200,9 @@ std::optional<std::vector<ReplayedBlock>> replay(
     Injection injection = injection_of(recording, hold, full_scale, first_hold);
     quieten(recording, pauses.quiet, injection.rate);
     const auto moved = with_injected_rate(recording, injection.rate);
-    if (!moved) {
-      return std::nullopt;
-    }
+    if (!moved) return std::nullopt;
     std::vector<double> difference = estimator(*moved);
-    for (std::size_t k = 0; k < samples; ++k) {
-      difference[k] -= answers[k];
-    }
+    for (std::size_t k = 0; k < samples; ++k) difference[k] -= answers[k];
     append_blocks(recording, injection, difference, full_scale, pauses.settling,
                   blocks);
   }

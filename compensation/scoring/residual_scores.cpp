@@ -17,18 +17,16 @@ std::vector<double> block_residuals(std::span<const SampleRange> blocks,
   means.reserve(blocks.size());
   for (const SampleRange& block : blocks) {
     double sum = 0.0;
-    for (std::size_t k = block.begin; k < block.end; ++k) {
+    for (std::size_t k = block.begin; k < block.end; ++k)
       sum += rate[k] - true_rate[k];
-    }
     means.push_back(sum / static_cast<double>(block.size()));
   }
   return means;
 }
 
 ResidualScores residual_scores(std::span<const double> residuals) {
-  if (residuals.empty()) {
+  if (residuals.empty())
     throw std::invalid_argument("residual: no block to score");
-  }
   const auto n = static_cast<double>(residuals.size());
   double sum = 0.0;
   double squares = 0.0;
@@ -42,9 +40,7 @@ ResidualScores residual_scores(std::span<const double> residuals) {
   }
   const double mean = sum / n;
   double about_mean = 0.0;
-  for (const double r : residuals) {
-    about_mean += (r - mean) * (r - mean);
-  }
+  for (const double r : residuals) about_mean += (r - mean) * (r - mean);
   const auto [least, most] = std::ranges::minmax(residuals);
   return {.blocks = residuals.size(),
           .mean = mean,

@@ -34,13 +34,9 @@ Eigen::VectorXd centred(const std::vector<double>& values) {
 SlopeSums sums_of(const Plateau& plateau) {
   SlopeSums none;
   none.samples = plateau.time.size();
-  if (plateau.time.empty()) {
-    return none;
-  }
+  if (plateau.time.empty()) return none;
   const Eigen::VectorXd truth = centred(plateau.truth);
-  if (truth.isZero(0.0)) {
-    return none;
-  }
+  if (truth.isZero(0.0)) return none;
   const Eigen::VectorXd temperature = centred(plateau.temperature);
   const Eigen::VectorXd v = without_drift(truth, temperature, plateau.time);
   return {.compensated = v.dot(centred(plateau.compensated)),
@@ -149,16 +145,14 @@ SlopeSums& SlopeSums::operator+=(const SlopeSums& other) {
 
 SlopeSums slope_sums(const Recording& recording,
                      std::span<const double> compensated, double largest_rate) {
-  if (compensated.size() != recording.time.size()) {
+  if (compensated.size() != recording.time.size())
     throw std::invalid_argument(fmt::format(
         "compensated rate: {} values for {} times, must be one each",
         compensated.size(), recording.time.size()));
-  }
   SlopeSums sums;
   for (const Plateau& plateau :
-       plateaus_after_steps(recording, compensated, largest_rate, kEveryRate)) {
+       plateaus_after_steps(recording, compensated, largest_rate, kEveryRate))
     sums += sums_of(plateau);
-  }
   return sums;
 }
 
@@ -171,13 +165,10 @@ std::vector<PlateauSlope> plateau_slopes(const Recording& recording,
     for (const Plateau& plateau : plateaus_after_steps(
              recording, compensated, kEveryRate, largest_step)) {
       const SlopeSums sums = sums_of(plateau);
-      if (sums.largest_departure >= least_departure) {
+      if (sums.largest_departure >= least_departure)
         slopes.push_back(slope_of(plateau, sums));
-      }
     }
-    if (!slopes.empty()) {
-      break;
-    }
+    if (!slopes.empty()) break;
   }
   return slopes;
 }
