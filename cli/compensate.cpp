@@ -33,7 +33,7 @@ namespace beamgyro::internal {
 namespace {
 
 constexpr const char* kInput = "standard input";
-constexpr int kStreamFailed = 3;
+constexpr int kCompensatorFailed = 3;
 constexpr int kLookEvery = 1000;  // [ms], whether the process still works
 
 // Samples from lines of text.
@@ -159,7 +159,6 @@ void take_line(std::string line, SampleLines& lines,
 /// each rate. Returns the exit status. Throws std::invalid_argument "standard
 /// input:line: ..." for what is no such CSV.
 int answer_stream(CompensatorStream& stream, const std::string& compensator) {
-  // A line of names, where there is more than the rate.
   if (stream.states_sigma())
     print_result("compensated_rate,compensated_rate_sigma\n");
   SampleLines lines;
@@ -187,10 +186,8 @@ int answer_stream(CompensatorStream& stream, const std::string& compensator) {
   print_answers(stream);
   if (!stream.fault()) return 0;
   print_error(fmt::format("{}: {}", compensator, stream.fault()->words));
-  return kStreamFailed;
+  return kCompensatorFailed;
 }
-
-constexpr int kCompensatorFailed = 3;
 
 struct CompensateArguments {
   std::string compensator, run, output;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include "cli/generate.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <chrono>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -12,8 +15,8 @@
 #include "api/generation.h"
 #include "api/program_version.h"
 #include "cli/commands.h"
-#include "cli/generation_progress.h"
 #include "cli/inputs.h"
+#include "cli/progress.h"
 #include "cli/terminal.h"
 #include "dataset/set/set_writer.h"
 
@@ -115,6 +118,28 @@ int generate(const GenerateArguments& arguments) {
 }
 
 }  // namespace
+
+void generate_with_progress(const std::string& activity, const ShardPlan& plan,
+                            const std::vector<std::uint32_t>& files,
+                            unsigned jobs, const ShardSink& publish) {
+  using Clock = std::chrono::steady_clock;
+  const auto total = static_cast<double>(plan.device_runs(files));
+  const double hours = plan.run_duration() / 3600;
+  const Clock::time_point start = Clock::now();
+  GenerationCounts counts;
+  const auto done = [&] {
+    const auto runs = static_cast<double>(counts.device_runs.load());
+    const double elapsed =
+        std::chrono::duration<double>(Clock::now() - start).count();
+    return Progress::Status{runs / total,
+                            fmt::format("{} of {} runs, {} failed, {:.3g} "
+                                        "device-h/s",
+                                        runs, total, counts.failures.load(),
+                                        runs * hours / elapsed)};
+  };
+  const Progress progress(activity, done);
+  generate_shards(plan, files, jobs, counts, publish);
+}
 
 void add_generate(CommandLine& program) {
   const auto [command, arguments] = program.add<GenerateArguments>(

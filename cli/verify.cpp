@@ -8,7 +8,7 @@
 #include "api/program_version.h"
 #include "api/set_defects.h"
 #include "cli/commands.h"
-#include "cli/generation_progress.h"
+#include "cli/generate.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
 #include "sim/campaign/set_repair.h"

@@ -23,25 +23,14 @@ constexpr int kPx4Bins = 2000;
 constexpr double kAveragingTime = 2.0;    // [s]
 constexpr double kTemperatureStep = 0.5;  // [K]
 
-// First rows of the power cycles, and the end.
-std::vector<Index> cycle_bounds(const TrainingRows& samples) {
-  std::vector<Index> bounds{0};
-  for (Index k = 1; k < samples.size(); ++k)
-    if (samples.cycle(k) != samples.cycle(k - 1)) bounds.push_back(k);
-  bounds.push_back(samples.size());
-  return bounds;
-}
-
 // Median over a window cut short at the ends of a power cycle.
 ArrayXd median_filtered(const TrainingRows& samples) {
   ArrayXd result(samples.size());
-  const std::vector<Index> bounds = cycle_bounds(samples);
   std::vector<double> window;
-  for (std::size_t cycle = 0; cycle + 1 < bounds.size(); ++cycle)
-    for (Index k = bounds[cycle]; k < bounds[cycle + 1]; ++k) {
-      const Index first = std::max(bounds[cycle], k - kMedianSamples / 2);
-      const Index last =
-          std::min(bounds[cycle + 1], k + kMedianSamples / 2 + 1);
+  for (const auto& [begin, end] : stretches_of(samples.cycle))
+    for (Index k = begin; k < end; ++k) {
+      const Index first = std::max(begin, k - kMedianSamples / 2);
+      const Index last = std::min(end, k + kMedianSamples / 2 + 1);
       window.assign(samples.bias.begin() + first, samples.bias.begin() + last);
       const auto middle =
           window.begin() + static_cast<std::ptrdiff_t>(window.size() / 2);
@@ -133,10 +122,8 @@ BiasModel fit_as_ardupilot(const TrainingRows& samples, int least_samples) {
         "needs {} K",
         span, kArduPilotSpan));
   BiasPoints points;
-  const std::vector<Index> bounds = cycle_bounds(samples);
-  for (std::size_t cycle = 0; cycle + 1 < bounds.size(); ++cycle)
-    add_points(samples, bounds[cycle], bounds[cycle + 1], least_samples,
-               points);
+  for (const auto& [begin, end] : stretches_of(samples.cycle))
+    add_points(samples, begin, end, least_samples, points);
   if (points.bias.size() <= kCubicDegree)
     throw std::invalid_argument(fmt::format(
         "the temperature rises by {} K over {} samples {} times in training; "

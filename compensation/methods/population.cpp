@@ -131,12 +131,6 @@ void set_modes(Population& p, const MatrixXd& X) {
   p.coefficients = coefficients_of(scaled, vectors, variance.tail(kept));
 }
 
-// Values at temperatures of the spline through values on the grid.
-ArrayXd point_between(const Population& population, const VectorXd& on_grid,
-                      const ArrayXd& T) {
-  return bias_curve(population, on_grid.array()).predict(T);
-}
-
 // Curve number `curve` (0: the bias) of each mode and of the mean at the rows,
 // over the noise: the equations H c = y of unit variance.
 struct Equations {
@@ -145,13 +139,14 @@ struct Equations {
 };
 Equations equations(const Population& p, Index curve, const ArrayXd& T,
                     const ArrayXd& measured, double noise) {
-  const Index first = curve * p.grid();
+  const auto at_rows = [&](const VectorXd& curves) -> ArrayXd {
+    const ArrayXd own = curves.segment(curve * p.grid(), p.grid());
+    return bias_curve(p, own).predict(T);
+  };
   Equations e{MatrixXd(T.size(), p.modes.cols()), VectorXd(T.size())};
   for (Index m = 0; m < p.modes.cols(); ++m)
-    e.H.col(m) =
-        point_between(p, p.modes.col(m).segment(first, p.grid()), T) / noise;
-  e.y =
-      (measured - point_between(p, p.mean.segment(first, p.grid()), T)) / noise;
+    e.H.col(m) = at_rows(p.modes.col(m)) / noise;
+  e.y = (measured - at_rows(p.mean)) / noise;
   return e;
 }
 

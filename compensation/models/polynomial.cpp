@@ -27,14 +27,6 @@ Eigen::MatrixXd terms(const Eigen::Ref<const ArrayXXd>& x, int degree) {
   return columns;
 }
 
-[[noreturn]] void fail_degree(int degree, Index rows, Index rank,
-                              Index needed) {
-  throw UndeterminedFit(
-      fmt::format("polynomial of degree {}: the {} rows determine only {} of "
-                  "its {} coefficients",
-                  degree, rows, rank, needed));
-}
-
 Polynomial polynomial_of(const Eigen::VectorXd& c, int degree) {
   return {{c.begin(), c.begin() + degree + 1},
           {c.begin() + degree + 1, c.end()}};
@@ -56,7 +48,10 @@ Polynomial fit_polynomial(const Eigen::Ref<const ArrayXXd>& x,
   const Eigen::MatrixXd columns = terms(x, degree);
   const auto [solution, rank] = least_squares(columns, y.matrix());
   if (rank < columns.cols())
-    fail_degree(degree, x.rows(), rank, columns.cols());
+    throw UndeterminedFit(
+        fmt::format("polynomial of degree {}: the {} rows determine only {} of "
+                    "its {} coefficients",
+                    degree, x.rows(), rank, columns.cols()));
   return polynomial_of(solution, degree);
 }
 

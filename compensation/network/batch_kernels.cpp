@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/network/batch_kernels.h"
-
 #include <algorithm>
 #include <cstdint>
 #include <utility>
+
+#include "compensation/network/batch_network.h"
 
 // Wider registers where the processor has them. The lanes are in the source,
 // no product is fused with a sum, so every version gives the same bits. The

@@ -41,10 +41,8 @@ std::vector<LegRows> leg_rows(const TrainingRows& rows, const RowGroups& legs) {
   };
   const double least = kLeastLeg * span(0, rows.size());
   std::vector<LegRows> result;
-  for (Index begin = 0, end = 0; begin < rows.size(); begin = end) {
-    while (end < rows.size() && legs.of_row(end) == legs.of_row(begin)) ++end;
+  for (const auto& [begin, end] : stretches_of(legs.of_row))
     result.push_back({begin, end, rows.cycle(begin), span(begin, end) < least});
-  }
   return result;
 }
 
@@ -109,14 +107,10 @@ std::string grouping_name(Grouping by) {
 
 RowGroups group_rows(const TrainingRows& rows, Grouping by) {
   if (by == Grouping::kSegment) return segments(rows.size());
-  const ArrayXi& label = labels(rows, by);
   RowGroups groups{by, ArrayXi(rows.size()), 0};
-  for (Index begin = 0; begin < rows.size();) {
-    Index end = begin;
-    while (end < rows.size() && label(end) == label(begin)) ++end;
+  for (const auto& [begin, end] : stretches_of(labels(rows, by))) {
     if (end - begin >= kLeastRows || groups.count == 0) ++groups.count;
     groups.of_row.segment(begin, end - begin).setConstant(groups.count - 1);
-    begin = end;
   }
   return groups;
 }

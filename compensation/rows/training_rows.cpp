@@ -341,6 +341,15 @@ TrainingRows training_rows(const RunSource& runs,
   return rows;
 }
 
+std::vector<RowStretch> stretches_of(const Eigen::ArrayXi& labels) {
+  std::vector<RowStretch> stretches;
+  for (Index k = 0; k < labels.size(); ++k) {
+    if (k == 0 || labels(k) != labels(k - 1)) stretches.push_back({k, k});
+    stretches.back().end = k + 1;
+  }
+  return stretches;
+}
+
 TrainingRows selected(const TrainingRows& rows,
                       const Eigen::Array<bool, Eigen::Dynamic, 1>& keep) {
   std::vector<Index> which;

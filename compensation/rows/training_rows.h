@@ -72,6 +72,15 @@ TrainingRows training_rows(const RunSource& runs,
                            const TemperatureRange& range = {},
                            const LookupTable* scale_factor = nullptr);
 
+/// Rows begin <= k < end.
+struct RowStretch {
+  Eigen::Index begin, end;
+};
+
+/// Returns the stretches of rows that follow each other with one label, such as
+/// TrainingRows::cycle.
+std::vector<RowStretch> stretches_of(const Eigen::ArrayXi& labels);
+
 /// Returns the rows for which `keep` is true. The range stays.
 TrainingRows selected(const TrainingRows& rows,
                       const Eigen::Array<bool, Eigen::Dynamic, 1>& keep);

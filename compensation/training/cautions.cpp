@@ -116,14 +116,11 @@ std::string rate_caution(const FittedCase& fitted) {
 // it did not move by kLegReversal.
 std::vector<int> directions(const TrainingRows& rows) {
   std::vector<int> direction(static_cast<std::size_t>(rows.size()), 0);
-  for (Index begin = 0; begin < rows.size();) {
-    Index end = begin;
-    while (end < rows.size() && rows.leg(end) == rows.leg(begin)) ++end;
+  for (const auto& [begin, end] : stretches_of(rows.leg)) {
     const double change = rows.temperature(end - 1) - rows.temperature(begin);
     if (std::abs(change) >= kLegReversal)
       std::fill(direction.begin() + begin, direction.begin() + end,
                 change > 0.0 ? 1 : -1);
-    begin = end;
   }
   return direction;
 }

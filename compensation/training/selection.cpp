@@ -18,10 +18,6 @@ using Eigen::Index;
 
 constexpr double kSlowNoise = 0.05;  // [-], of n s^2
 
-double variance(const TrainingRows& rows) {
-  return (rows.bias - rows.bias.mean()).square().mean();
-}
-
 // A candidate, its weight beside a constant, and the residuals of the two.
 struct Judged {
   Candidate candidate;
@@ -306,9 +302,9 @@ bool moves_more_than_noise(const TrainingRows& rows) {
     squares += second * second;
     count += 1.0;
   }
-  return count > 0.0 && variance(rows) > kSlowNoise *
-                                             static_cast<double>(rows.size()) *
-                                             0.5 * squares / count;
+  const double variance = (rows.bias - rows.bias.mean()).square().mean();
+  const auto size = static_cast<double>(rows.size());
+  return count > 0.0 && variance > kSlowNoise * size * 0.5 * squares / count;
 }
 
 Selected select_model(std::vector<Candidate> candidates,
