@@ -11,7 +11,7 @@
 
 #include "compensation/export/firmware_model.h"
 #include "compensation/scoring/scale_factor.h"
-#include "compensation/training/rate_kept.h"
+#include "compensation/training/cautions.h"
 
 namespace beamgyro::internal {
 namespace {

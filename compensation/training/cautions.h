@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compensation/compensator/compensator.h"
 #include "compensation/methods/bias_model.h"
 #include "compensation/rows/training_rows.h"
 #include "compensation/training/cross_validation.h"
@@ -38,10 +39,6 @@ struct FittedCase {
 /// - an input that feels the rate, with training at rest.
 std::vector<std::string> cautions(const FittedCase& fitted);
 
-/// Returns whether cautions() warned of an input that feels the rate with
-/// training at rest.
-bool warned_of_rate(const std::vector<std::string>& warnings);
-
 /// Returns the smallest difference of two measured temperatures [K], or 0 when
 /// all are equal.
 double temperature_resolution(const Recording& recording);
@@ -70,5 +67,17 @@ std::optional<Hysteresis> hysteresis(const TrainingRows& rows,
 std::string objection_to_claim(const std::optional<GroupErrors>& model,
                                const std::optional<GroupErrors>& constant,
                                double weight = 1.0);
+
+/// Returns the share of a small rate that a compensator passes in the range of
+/// its training: 1 less the mean slope of its bias over the rate, for rates
+/// within 1 deg/s, over the range of its temperature and of its input `rate` or
+/// `output`.
+///
+/// A compensator file does not have the scale factor of `output`. If training
+/// was at rest, only the bias moved the output, and the scale factor follows
+/// from the spans of the two. Returns nothing for an input `output` with
+/// training on rates, where a model cannot mistake them for bias, and for
+/// compensators that use neither input.
+std::optional<double> rate_kept(const FittedCompensator& compensator);
 
 }  // namespace beamgyro::internal

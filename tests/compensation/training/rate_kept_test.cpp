@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "compensation/training/rate_kept.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "compensation/training/cautions.h"
 #include "compensation/training/train.h"
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/recorded_run.h"
