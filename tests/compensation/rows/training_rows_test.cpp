@@ -14,13 +14,12 @@ namespace {
 
 const std::vector<Input> kTemperature{parse_input("temperature")};
 
-std::vector<TrainingRun> one(const Recording& recording) {
-  return {{"run.h5", "", recording}};
-}
-
 TrainingRows rows_from(const Recording& recording,
-                       const RowOptions& options = {}) {
-  return training_rows(source_of(one(recording)), kTemperature, options);
+                       const RowOptions& options = {},
+                       const TemperatureRange& range = {},
+                       const LookupTable* table = nullptr) {
+  return training_rows(source_of({{"run.h5", "", recording}}), kTemperature,
+                       options, range, table);
 }
 
 RecordedRun drifting_run() {
@@ -221,16 +220,15 @@ TEST(TrainingRows, WithAScaleFactorTheLabelIsWhatItLeaves) {
   const LookupTable table{Eigen::ArrayXd::LinSpaced(2, 20.0, 26.0),
                           Eigen::ArrayXd::LinSpaced(2, 0.9, 1.2)};
   run.scale_factor = [=](double t) { return table.at(20.0 + 0.01 * t); };
-  const TrainingRows rows = training_rows(source_of(one(run.recording())),
-                                          kTemperature, {}, {}, &table);
+  const TrainingRows rows = rows_from(run.recording(), {}, {}, &table);
   for (Eigen::Index k = 0; k < rows.size(); ++k)
     EXPECT_NEAR(rows.bias(k), 0.5 + 1e-3 * rows.time(k), 1e-12);
 
   // Temperatures are clamped before the table is asked, as at run time.
   const double held = table.at(22.0);
   run.scale_factor = [=](double t) { return std::min(0.9 + 5e-4 * t, held); };
-  const TrainingRows clamped = training_rows(
-      source_of(one(run.recording())), kTemperature, {}, {20.0, 22.0}, &table);
+  const TrainingRows clamped =
+      rows_from(run.recording(), {}, {20.0, 22.0}, &table);
   EXPECT_NEAR(clamped.bias(9), 0.5 + 1e-3 * clamped.time(9), 1e-12);
   EXPECT_EQ(clamped.temperature(9), 22.0);
   EXPECT_TRUE(clamped.beyond_range(9));
@@ -240,8 +238,7 @@ TEST(TrainingRows, WithAScaleFactorTheLabelIsWhatItLeaves) {
 TEST(TrainingRows, SelectedRowsKeepAllThatBelongsToThem) {
   RecordedRun run = drifting_run();
   run.powered = [](double t) { return t < 300.0 || t >= 310.0; };
-  const TrainingRows rows = training_rows(source_of(one(run.recording())),
-                                          kTemperature, {}, {20.0, 22.0});
+  const TrainingRows rows = rows_from(run.recording(), {}, {20.0, 22.0});
   Eigen::Array<bool, Eigen::Dynamic, 1> keep =
       rows.time > 200.0 && rows.time < 400.0;
   const TrainingRows some = selected(rows, keep);
@@ -263,8 +260,8 @@ TEST(TrainingRows, SelectedRowsKeepAllThatBelongsToThem) {
 TEST(TrainingRows, ColumnsAreTakenByTheNameOfTheirInput) {
   const std::vector<Input> all{parse_input("temperature"),
                                parse_input("output"), parse_input("rate")};
-  const TrainingRows rows =
-      training_rows(source_of(one(drifting_run().recording())), all, {});
+  const TrainingRows rows = training_rows(
+      source_of({{"run", "", drifting_run().recording()}}), all, {});
   const TrainingRows two = with_columns(rows, all, {all[2], all[0]});
   EXPECT_TRUE((two.inputs.col(0) == rows.inputs.col(2)).all());
   EXPECT_TRUE((two.inputs.col(1) == rows.inputs.col(0)).all());
