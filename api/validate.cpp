@@ -64,8 +64,8 @@ std::vector<MetricRow> metrics_of(const ValidationResult& result) {
     for (const auto& [limit, decision] : result.limits)
       if (limit.metric == found.metric->name)
         row.limits.push_back({text_of(limit), limit.relative_to,
-                              decision.result, decision.margin,
-                              decision.words});
+                              decision.result, decision.margin, decision.words,
+                              decision.met_before});
     rows.push_back(std::move(row));
   }
   return rows;

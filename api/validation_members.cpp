@@ -45,6 +45,12 @@ constexpr std::array kMembers{
                      "firmware was exported from",
                      "no comparison", kJudgedHeading, "workbench",
                      FileKind::kCompensator},
+    ValidationMember{"require_provenance", &Options::require_provenance, kOnAny,
+                     "", "require_provenance", "require-provenance", "",
+                     "Fails a compensator that does not say which runs it was "
+                     "trained on",
+                     "hold_out is not tested then", kJudgedHeading,
+                     "require_provenance"},
     ValidationMember{"qualification", &Options::qualification, kOnDevice, "",
                      "qualification", "qualification", "FILE.toml",
                      "Runs that the device goes through",
@@ -103,6 +109,7 @@ std::string_view type_name(const ValidationMember& row) {
         if constexpr (std::is_same_v<Value,
                                      std::optional<std::filesystem::path>>)
           return "file";
+        if constexpr (std::is_same_v<Value, bool>) return "flag";
         return "";
       },
       row.member);
@@ -120,7 +127,9 @@ bool is_given(const ValidationMember& row, const ValidationOptions& options) {
   return std::visit(
       [&options](auto member) {
         const auto& value = options.*member;
-        if constexpr (requires { value.has_value(); })
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, bool>)
+          return value;
+        else if constexpr (requires { value.has_value(); })
           return value.has_value();
         else
           return !value.empty();

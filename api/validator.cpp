@@ -273,7 +273,8 @@ CompletedValidation Validator::validate(std::size_t threads,
                          ? ready_compensator(*compensator, declared.ready_after)
                          : nullptr;
   const TestedCompensator& answering_one = ready ? *ready : *compensator;
-  const RecordedAnswering answering{answering_one, known, s.options.full_scale};
+  const RecordedAnswering answering{answering_one, known, s.options.full_scale,
+                                    s.options.require_provenance};
   if (s.options.device) {
     done.evidence =
         device_evidence(s.qualification, s.device, answering_one, data,
@@ -309,7 +310,8 @@ CompletedValidation Validator::validate(std::size_t threads,
   result.provenance = s.provenance();
   if (!s.set) {
     difference = s.difference_from_workbench(done.evidence);
-    judge({s.specification, s.qualification.metric_runs, *compensator, known},
+    judge({s.specification, s.qualification.metric_runs, *compensator, known,
+           nullptr, s.options.require_provenance},
           done.evidence, threads, result);
   }
   result.compensator = {s.source.name, std::string(kind_name(s.source.kind)),
@@ -382,6 +384,8 @@ void read_value(const ValidationMember& row, const Bundle& bundle,
           value = listed_path(bundle, node);
         } else if constexpr (std::is_same_v<Value, std::optional<Device>>) {
           value = Device::read(listed_path(bundle, node));
+        } else if constexpr (std::is_same_v<Value, bool>) {
+          value = node.flag();
         } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
           value = node.number();
           if (!(*value > 0)) node.fail("expected a number above 0");
@@ -423,6 +427,8 @@ BundledRequest request_of(const Bundle& bundle) {
   for (const ValidationMember& row : validation_members()) {
     if (row.bundle_key.empty()) continue;
     known.emplace_back(row.bundle_key);
+    // Bundles of older programs have no flags.
+    if (type_name(row) == "flag" && !node.has(known.back())) continue;
     read_value(row, bundle, node.at(known.back()), request.options);
   }
   for (const auto& [key, value] : bundle.request.items())

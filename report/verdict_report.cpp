@@ -113,8 +113,10 @@ std::string limit_line(const ValidationResult& result,
                     text_of(limit)),
         10);
   return wrapped(
-      fmt::format("{:<10}{}: {}, {}, margin {}", verdict_name(decision.result),
-                  limit.metric, value, text_of(limit), figure(decision.margin)),
+      fmt::format("{:<10}{}: {}, {}, margin {}{}",
+                  verdict_name(decision.result), limit.metric, value,
+                  text_of(limit), figure(decision.margin),
+                  decision.met_before ? "; met before compensation" : ""),
       10);
 }
 

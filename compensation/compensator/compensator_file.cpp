@@ -5,13 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdint>
-#include <iterator>
 #include <stdexcept>
-#include <system_error>
 
+#include "compensation/compensator/training_runs_json.h"
 #include "compensation/methods/bias_model.h"
 #include "compensation/methods/method_inputs.h"
 #include "compensation/models/parameter_json.h"
@@ -93,71 +90,9 @@ BiasModel read_bias_model(const JsonNode& node, const std::string& kind,
 
 constexpr const char* kFiletype = "beamgyro-compensator";
 constexpr long kFormatVersion = 2;
-constexpr long kLargestDevice = 4294967295;
-constexpr std::size_t kMostDevices = 100000000;
 
 Json json_of(const std::optional<double>& value) {
   return value ? finite_json(*value) : Json();
-}
-
-/// 16 hexadecimal digits each.
-std::string sketch_text(const MeasuredSketch& sketch) {
-  std::string text;
-  for (const std::uint64_t hash : sketch)
-    fmt::format_to(std::back_inserter(text), "{:016x}", hash);
-  return text;
-}
-
-MeasuredSketch read_sketch(const JsonNode& node) {
-  constexpr std::size_t kHashDigits = 16;
-  const std::string text = node.text();
-  MeasuredSketch sketch;
-  for (std::size_t k = 0; k + kHashDigits <= text.size(); k += kHashDigits) {
-    const char* begin = text.data() + k;
-    const auto [end, error] =
-        std::from_chars(begin, begin + kHashDigits, sketch.emplace_back(), 16);
-    if (error != std::errc() || end != begin + kHashDigits) break;
-  }
-  if (text.size() != kHashDigits * sketch.size() ||
-      sketch_text(sketch) != text || !std::ranges::is_sorted(sketch))
-    node.fail("must be hexadecimal numbers of 16 digits, in rising order");
-  return sketch;
-}
-
-Json json_of(const std::vector<SourceFile>& files) {
-  Json array = Json::array();
-  for (const SourceFile& file : files) {
-    array.push_back({{"name", file.name},
-                     {"sha256", file.sha256},
-                     {"measured_sha256", file.measured_sha256},
-                     {"measured_sketch", sketch_text(file.sketch)}});
-    if (file.seed) array.back()["seed"] = *file.seed;
-  }
-  return array;
-}
-
-/// [first, last] of each stretch of increasing numbers without a gap.
-Json ranges_of(const std::vector<std::uint32_t>& numbers) {
-  Json ranges = Json::array();
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
-    if (k > 0 && numbers[k] == numbers[k - 1] + 1)
-      ranges.back()[1] = numbers[k];
-    else
-      ranges.push_back({numbers[k], numbers[k]});
-  }
-  return ranges;
-}
-
-Json json_of(const std::optional<TrainingSet>& set) {
-  if (!set) return {};
-  return {{"name", set->name},
-          {"manifest_sha256", set->manifest_sha256},
-          {"devices", set->devices},
-          {"files", set->files},
-          {"campaign_sha256", set->campaign_sha256},
-          {"seed", set->seed},
-          {"runs", set->runs},
-          {"device_ranges", ranges_of(set->device_numbers)}};
 }
 
 Json json_of(const std::optional<CrossValidated>& cv) {
@@ -173,73 +108,25 @@ Json json_of(const std::optional<CrossValidated>& cv) {
 }
 
 Json json_of(const Provenance& p) {
-  return {{"method", p.method},
-          {"files", json_of(p.training)},
-          {"held_out_files", json_of(p.held_out)},
-          {"set", json_of(p.training_set)},
-          {"held_out_set", json_of(p.held_out_set)},
-          {"model", p.model_text},
-          {"seed", p.seed},
-          {"stop_reason", p.stop_reason},
-          {"in_sample_rms_deg_per_s", finite_json(p.in_sample_rms)},
-          {"held_out_rms_deg_per_s", json_of(p.held_out_rms)},
-          {"baseline_in_sample_rms_deg_per_s",
-           finite_json(p.baseline_in_sample_rms)},
-          {"baseline_held_out_rms_deg_per_s", json_of(p.baseline_held_out_rms)},
-          {"constant_bias_deg_per_s", json_of(p.constant_bias)},
-          {"constant_in_sample_rms_deg_per_s",
-           finite_json(p.constant_in_sample_rms)},
-          {"constant_held_out_rms_deg_per_s", json_of(p.constant_held_out_rms)},
-          {"cross_validation", json_of(p.cross_validated)},
-          {"choices", p.choices},
-          {"warnings", p.warnings}};
-}
-
-std::vector<SourceFile> read_files(const JsonNode& node) {
-  std::vector<SourceFile> files;
-  for (const JsonNode& file : node.elements()) {
-    files.push_back({file.at("name").text(), file.at("sha256").text()});
-    if (file.has("measured_sha256"))
-      files.back().measured_sha256 = file.at("measured_sha256").text();
-    if (file.has("measured_sketch"))
-      files.back().sketch = read_sketch(file.at("measured_sketch"));
-    if (file.has("seed"))
-      files.back().seed = file.at("seed").unsigned_integer();
-  }
-  return files;
-}
-
-std::vector<std::uint32_t> read_ranges(const JsonNode& node) {
-  std::vector<std::uint32_t> numbers;
-  for (const JsonNode& range : node.elements()) {
-    const std::vector<JsonNode> ends = range.elements();
-    if (ends.size() != 2) range.fail("must be [first, last]");
-    const long first = ends[0].integer(0, kLargestDevice);
-    const long last = ends[1].integer(first, kLargestDevice);
-    if (numbers.size() + static_cast<std::size_t>(last - first) >= kMostDevices)
-      range.fail(fmt::format("more than {} devices", kMostDevices));
-    for (long k = first; k <= last; ++k)
-      numbers.push_back(static_cast<std::uint32_t>(k));
-  }
-  return numbers;
-}
-
-// The oldest files lack the key; later ones lack the list of devices.
-std::optional<TrainingSet> read_set(const JsonNode& node,
-                                    const std::string& key) {
-  if (!node.has(key) || node.at(key).is_null()) return std::nullopt;
-  const JsonNode set = node.at(key);
-  TrainingSet part{
-      set.at("name").text(), set.at("manifest_sha256").text(),
-      static_cast<std::size_t>(set.at("devices").integer(0, kLargestDevice)),
-      static_cast<std::size_t>(set.at("files").integer(0, kLargestDevice))};
-  if (set.has("device_ranges")) {
-    part.campaign_sha256 = set.at("campaign_sha256").text();
-    part.seed = set.at("seed").unsigned_integer();
-    part.runs = set.at("runs").texts();
-    part.device_numbers = read_ranges(set.at("device_ranges"));
-  }
-  return part;
+  Json json{{"method", p.method}};
+  put_training_runs(p, json);
+  json.update(Json{
+      {"model", p.model_text},
+      {"seed", p.seed},
+      {"stop_reason", p.stop_reason},
+      {"in_sample_rms_deg_per_s", finite_json(p.in_sample_rms)},
+      {"held_out_rms_deg_per_s", json_of(p.held_out_rms)},
+      {"baseline_in_sample_rms_deg_per_s",
+       finite_json(p.baseline_in_sample_rms)},
+      {"baseline_held_out_rms_deg_per_s", json_of(p.baseline_held_out_rms)},
+      {"constant_bias_deg_per_s", json_of(p.constant_bias)},
+      {"constant_in_sample_rms_deg_per_s",
+       finite_json(p.constant_in_sample_rms)},
+      {"constant_held_out_rms_deg_per_s", json_of(p.constant_held_out_rms)},
+      {"cross_validation", json_of(p.cross_validated)},
+      {"choices", p.choices},
+      {"warnings", p.warnings}});
+  return json;
 }
 
 std::optional<CrossValidated> read_cross_validation(const JsonNode& node) {
@@ -260,10 +147,7 @@ std::optional<CrossValidated> read_cross_validation(const JsonNode& node) {
 Provenance read_provenance(const JsonNode& node) {
   Provenance p;
   p.method = node.at("method").text();
-  p.training = read_files(node.at("files"));
-  p.held_out = read_files(node.at("held_out_files"));
-  p.training_set = read_set(node, "set");
-  p.held_out_set = read_set(node, "held_out_set");
+  read_training_runs(node, p);
   p.model_text = node.at("model").text();
   p.seed = node.at("seed").unsigned_integer();
   p.stop_reason = node.at("stop_reason").text();

@@ -43,4 +43,14 @@ std::string c_comment(const std::string& text) {
   return with_underscores(text, " ().,:;+-=%");
 }
 
+std::string c_string(std::string_view text) {
+  std::string literal = "\"";
+  for (const char c : text) {
+    // Two question marks may begin a trigraph.
+    if (c == '"' || c == '\\' || c == '?') literal += '\\';
+    literal += c;
+  }
+  return literal + '"';
+}
+
 }  // namespace beamgyro::internal

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace beamgyro::internal {
 
@@ -16,5 +17,8 @@ std::string c_identifier(const std::string& text);
 /// Returns `text` for a C comment. Characters other than letters, digits,
 /// spaces and ().,:;+-=% become _, so that the text cannot end the comment.
 std::string c_comment(const std::string& text);
+
+/// Returns the C string literal of printable ASCII characters.
+std::string c_string(std::string_view text);
 
 }  // namespace beamgyro::internal

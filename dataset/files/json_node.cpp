@@ -82,6 +82,11 @@ std::uint64_t JsonNode::unsigned_integer() const {
   return value_->get<std::uint64_t>();
 }
 
+bool JsonNode::flag() const {
+  if (!value_->is_boolean()) expected("true or false");
+  return value_->get<bool>();
+}
+
 std::string JsonNode::text() const {
   if (!value_->is_string()) expected("a text");
   return value_->get<std::string>();

@@ -33,6 +33,7 @@ class JsonNode {
   long integer(long low, long high) const;
   std::uint32_t small_integer() const;  // not below 0, of 32 bits
   std::uint64_t unsigned_integer() const;
+  bool flag() const;
   std::string text() const;
   std::vector<double> numbers() const;
   std::vector<std::string> texts() const;

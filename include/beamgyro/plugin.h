@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * A compensator as a shared library, for `beamgyro validate` and `beamgyro
- * compensate`. The library defines the six functions below, in C or in any
- * language that can give functions C linkage:
+ * compensate`. The library defines the first six functions below, in C or in
+ * any language that can give functions C linkage:
  *
  *     cc -shared -fPIC mine.c -o mine.so
  *     beamgyro compensate ./mine.so run.h5 -o out.h5
@@ -58,6 +58,13 @@ BEAMGYRO_PLUGIN_EXPORT double beamgyro_plugin_step(void* instance, double time,
 
 /* Ends an instance. */
 BEAMGYRO_PLUGIN_EXPORT void beamgyro_plugin_destroy(void* instance);
+
+/* A library may define this one, too. Returns which runs it was trained on, so
+ * that a validation on them is found out: pieces of a text that ends with a
+ * null pointer. The text is a JSON object of the keys `files`,
+ * `held_out_files`, `set` and `held_out_set` as in "training" of a compensator
+ * file. What export writes has it. */
+BEAMGYRO_PLUGIN_EXPORT const char* const* beamgyro_plugin_training(void);
 
 #ifdef __cplusplus
 }

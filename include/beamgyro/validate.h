@@ -39,7 +39,9 @@ struct ValidationOptions {
   std::optional<std::filesystem::path> campaign = {};
   std::optional<std::uint32_t> campaign_devices = {};
   std::optional<double> full_scale = {};  ///< [deg/s], above 0; not of a device
-  unsigned jobs = 0;                      ///< threads; 0: one per core
+  /// Whether a compensator that does not say what it was trained on fails.
+  bool require_provenance = false;
+  unsigned jobs = 0;  ///< threads; 0: one per core
   Progress progress = {};
 };
 
@@ -57,6 +59,7 @@ struct LimitResult {
   Verdict result = Verdict::kUndecided;
   std::optional<double> margin;  ///< to the nearer limit, positive within
   std::string reason;            ///< one sentence
+  bool met_before = false;       ///< the recorded rate meets it, too
 };
 
 /// A metric of the recorded and of the compensated rate.

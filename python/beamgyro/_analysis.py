@@ -177,6 +177,8 @@ class _Option(NamedTuple):
             return _arguments.number(value, self.keyword, above=0)
         if self.type == "whole":
             return _arguments.count(value, self.keyword)
+        if self.type == "flag":
+            return _checks.flag(value, self.keyword)
         return (_checks.texts if self.type == "texts"
                 else _checks.wholes)(value, self.keyword)
 
@@ -185,10 +187,11 @@ class _Option(NamedTuple):
         types = {"file": Union[Path, Mapping[str, Any], None]
                  if self.kind == "a specification" else Optional[Path],
                  "number": Optional[float], "whole": Optional[int],
-                 "texts": Iterable[str], "wholes": Iterable[int]}
+                 "texts": Iterable[str], "wholes": Iterable[int],
+                 "flag": bool}
         return inspect.Parameter(
             self.keyword, inspect.Parameter.KEYWORD_ONLY,
-            default=() if self.type in ("texts", "wholes") else None,
+            default={"texts": (), "wholes": (), "flag": False}.get(self.type),
             annotation=types[self.type])
 
 

@@ -35,5 +35,12 @@ TEST(ValidationMembers, OneSubjectAndWhatGoesWithIt) {
   EXPECT_THROW(require_sound(options), OptionError);
 }
 
+TEST(ValidationMembers, AFlagIsGivenWhenItIsSet) {
+  const ValidationMember& row = member_named("require_provenance");
+  EXPECT_EQ(type_name(row), "flag");
+  EXPECT_FALSE(is_given(row, {}));
+  EXPECT_TRUE(is_given(row, {.require_provenance = true}));
+}
+
 }  // namespace
 }  // namespace beamgyro::internal::validation_members_test

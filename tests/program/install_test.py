@@ -54,7 +54,8 @@ class Install(unittest.TestCase):
     def test_the_specifications_are_installed(self):
         specs = self.prefix / "share/beamgyro/specs"
         self.assertEqual(sorted(path.name for path in specs.iterdir()),
-                         ["default.toml", "paper.toml", "tactical.toml", "uav.toml"])
+                         ["default.toml", "paper.toml", "share.toml",
+                          "tactical.toml", "uav.toml"])
 
     def test_the_python_package_runs_from_the_prefix(self):
         package = self.prefix / "lib/python3/dist-packages"

@@ -122,7 +122,8 @@ class Methods(ProgramTest):
                 self.assertLess(left, 0.02 * raw)
             answer = self.beamgyro("validate", f"{name}.json", "test.h5")
             if name in ("none", "constant"):
-                self.assertIn("\nFAIL: Of no use", answer.stdout)
+                self.assertIn("\nFAIL: The compensator", answer.stdout)
+                self.assertIn("Of no use", answer.stdout)
                 self.assertNotIn("Not met", answer.stdout)
             elif name == "output_and_temperature":
                 self.assertIn("\nFAIL: ", answer.stdout)

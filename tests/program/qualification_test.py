@@ -213,6 +213,21 @@ class Populations(Qualified):
             self.assertIn("temperature", device["words"])
         self.assertEqual(found["not_simulated"], 0)
 
+    def test_a_device_whose_drive_never_locks_fails(self):
+        """However little drift it shows to a compensator that it did not
+        train."""
+        self.write("spec.toml", limits(residual_rms_deg_per_s=1e6))
+        self.change("campaign.toml", '^"readout.*', '"drive.voltage_limit_V" = '
+                    "{ discrete = { values = [0.01, 5], weights = [1, 1] } }")
+        said, _ = self.validate("--campaign", "campaign.toml", "--devices", 6,
+                                "--spec", "spec.toml",
+                                model=self.trained_file())
+        words = [device["words"] for device in said["population"]["verdicts"]]
+        unlocked = [one for one in words if one.startswith(
+            "the drive loop never locks in ")]
+        self.assertIn(len(unlocked), range(1, 6), words)
+        self.assertEqual(said["population"]["failed"], len(unlocked))
+
     def test_a_device_that_cannot_be_built_is_not_simulated(self):
         self.change("campaign.toml", '^"readout.*', '"bond.thickness_m" = '
                     "{ normal = { mean = 1e-5, sigma = 1e-5 } }")

@@ -8,7 +8,8 @@ import shutil
 import h5py
 import numpy as np
 
-from program import NETWORK, ROOT, ProgramTest, by_name, failed, limit, ramp
+from program import (NETWORK, ROOT, ProgramTest, by_name, failed, limit,
+                     limits, ramp)
 
 UNIT = {"centre": 0.0, "half_width": 1.0}
 HEAD = """\
@@ -224,7 +225,21 @@ class Yardsticks(Validate):
             said, answer = self.judged(compensator)
             self.assertEqual(said["verdict"], "fail")
             self.assertIn(than, self.worse(said))
-            self.assertIn("Of no use", answer.stdout)
+            self.assertIn("Of no use", " ".join(answer.stdout.split()))
+
+    def test_what_does_nothing_fails_where_every_limit_is_met(self):
+        """For a reason that stands first."""
+        self.write("lax.toml", limits(residual_rms_deg_per_s=1e3))
+        for compensator, begins in [
+                ("x", "The compensator does nothing"),
+                (self.constant(self.offset),
+                 f"The compensator takes away one constant, {self.offset:.4g}")]:
+            said, answer = self.judged(compensator, "--spec", "lax.toml")
+            self.assertEqual(said["verdict"], "fail")
+            self.assertTrue(said["words"].startswith(begins), said["words"])
+            self.assertTrue(said["limits"][0]["met_before"])
+            self.assertIn("met before compensation",
+                          " ".join(answer.stdout.split()))
 
     def test_a_damaged_baseline_is_refused(self):
         baseline = {**self.cubic["baseline"], "parameters": {
@@ -250,6 +265,8 @@ class Yardsticks(Validate):
                 change(file["temperature"])
             said, _ = self.judged(self.cubic, runs=["other.h5"])
             self.assertIn(check, failed(said), change)
+            self.assertIn(by_name(said["checks"])[check]["words"],
+                          said["words"])
 
 
 class Honest(Validate):

@@ -88,6 +88,8 @@ ARGUMENTS = [
     (lambda g: bg.validate(g.cubic, g.sweep, jobs=1.5), "jobs 1.5", "whole"),
     (lambda g: bg.validate(g.cubic, g.sweep, full_scale="x"),
      "full_scale 'x'", "number"),
+    (lambda g: bg.validate(g.cubic, g.sweep, require_provenance="no"),
+     "require_provenance 'no'", "True or False"),
     (lambda g: bg.validate(g.cubic, set=g.set, set_devices=["a"]),
      "set_devices 'a'", "whole"),
     (lambda g: bg.allan(g.run, taus=[1, 2]), "taus [1, 2]", "octave"),

@@ -63,8 +63,8 @@ constexpr std::array kChecks{
               kWithoutRate, "a run with random rates"},
              check_rate_correlation},
     CheckRow{{"hold_out", "runs that training used",
-              "validate on runs that training has not seen: other seeds, other "
-              "temperatures",
+              "validate on runs that training has not seen (other seeds, other "
+              "temperatures), a compensator that names its training",
               "a compensator file, which names its training", true},
              check_hold_out,
              Stage::kFaults},

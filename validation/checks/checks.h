@@ -25,6 +25,7 @@ struct CheckedRun {
   Answer answer = {};                     // to the recording as it is
   std::string sha256 = {};                // of its file, if it has one
   std::string device = {}, set_run = {};  // of a set: whose run, and which one
+  bool is_limited = false;  // a limit is on a metric that reads it
 };
 
 /// What is checked.
@@ -34,6 +35,7 @@ struct CheckedCompensator {
   double full_scale = 150.0;  // [deg/s]
   // What the compensator says of its training, where it says anything.
   const Provenance* provenance = nullptr;  // not owned
+  bool requires_provenance = false;        // it has to say something
   // The same compensator as training wrote it, if it is one of a file.
   const FittedCompensator* trained = nullptr;  // not owned
   const TrainingSet* set =

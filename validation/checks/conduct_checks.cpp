@@ -89,14 +89,20 @@ std::optional<std::string> leak(const Provenance& provenance) {
 
 CheckResult check_hold_out(const CheckContext& context) {
   const Provenance* provenance = context.checked.provenance;
+  const auto unknown = [&](const std::string& words) {
+    CheckResult result = not_tested(words + ".");
+    if (context.checked.requires_provenance)
+      result = {.outcome = CheckOutcome::kFailed,
+                .words = words + ", which is required here."};
+    return result;
+  };
   if (provenance == nullptr || !warning_of_no_training(*provenance).empty())
-    return not_tested(
-        "The compensator names no recording that it was trained on.");
+    return unknown("The compensator names no recording that it was trained on");
   if (context.checked.set != nullptr &&
       may_have_used(*provenance, *context.checked.set))
-    return not_tested(
+    return unknown(
         "The compensator was trained on this set and does not say on which "
-        "devices: these runs may be in-sample.");
+        "devices, so that these runs may be in-sample");
   std::vector<std::string> used, sharing;
   for (const CheckedRun& run : context.checked.runs) {
     if (was_used(context.checked, run)) {

@@ -38,6 +38,9 @@ class ReadyCompensator final : public TestedCompensator {
   }
   bool states_inputs() const override { return original_.states_inputs(); }
   bool is_timed() const override { return original_.is_timed(); }
+  const Provenance* provenance() const override {
+    return original_.provenance();
+  }
 
   std::vector<Answer> answers(
       const std::vector<const Recording*>& runs) const override {

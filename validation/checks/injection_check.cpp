@@ -228,7 +228,10 @@ std::vector<SineResponse> sine_responses(const CheckContext& context,
 }
 
 CheckResult check_injection(const CheckContext& context) {
-  const auto runs = context.runs_of(thermal_purposes());
+  auto runs = context.runs_of(thermal_purposes());
+  for (std::size_t k = 0; k < context.checked.runs.size(); ++k)
+    if (context.checked.runs[k].is_limited && std::ranges::count(runs, k) == 0)
+      runs.push_back(k);
   std::vector<GainJudge> judges(runs.size() + 1, context.judge());
   context.for_each(
       runs, [&](std::size_t k) { add_held(context, runs[k], judges[k]); });

@@ -64,6 +64,10 @@ class FileCompensator : public TestedCompensator {
     return {names.begin(), names.end()};
   }
 
+  const Provenance* provenance() const override {
+    return &compensator_.provenance;
+  }
+
   std::vector<Answer> answers(
       const std::vector<const Recording*>& runs) const override {
     std::vector<Answer> all;

@@ -50,10 +50,6 @@ struct CompensatorSource {
   std::optional<FittedCompensator> trained = {};         // of a file
   std::optional<ModelSpec> model = {};
   std::vector<SourceText> files = {};  // that it was read from
-
-  const Provenance* provenance() const {
-    return trained ? &trained->provenance : nullptr;
-  }
 };
 
 /// Opens what an argument names. Throws std::invalid_argument when it cannot be

@@ -10,7 +10,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "compensation/compensator/training_runs_json.h"
 #include "compensation/inputs/sample_ranges.h"
+#include "dataset/files/json_node.h"
 #include "validation/external/answering.h"
 #include "validation/external/conversation.h"
 #include "validation/external/measured_signals.h"
@@ -58,16 +60,26 @@ class HostLanguage : public AnswerLanguage {
   MeasuredSignals signals_;
 };
 
+// What a library says of itself.
+struct LibraryStatement {
+  std::vector<std::string> names;  // of the signals that it wants
+  std::optional<Provenance> training = {};
+};
+
 class LibraryCompensator : public TestedCompensator {
  public:
-  LibraryCompensator(std::filesystem::path library,
-                     std::vector<std::string> names, ProcessLimits limits)
+  LibraryCompensator(std::filesystem::path library, LibraryStatement statement,
+                     ProcessLimits limits)
       : library_(std::move(library)),
-        names_(std::move(names)),
+        names_(std::move(statement.names)),
+        training_(std::move(statement.training)),
         limits_(std::move(limits)) {}
 
   std::vector<std::string> inputs() const override { return names_; }
   bool states_inputs() const override { return true; }
+  const Provenance* provenance() const override {
+    return training_ ? &*training_ : nullptr;
+  }
 
   std::vector<Answer> answers(
       const std::vector<const Recording*>& runs) const override;
@@ -75,6 +87,7 @@ class LibraryCompensator : public TestedCompensator {
  private:
   std::filesystem::path library_;
   std::vector<std::string> names_;
+  std::optional<Provenance> training_;
   ProcessLimits limits_;
 };
 
@@ -148,14 +161,26 @@ std::vector<std::string> split_names(const std::string& text) {
   return names;
 }
 
-// Asks the library which signals it wants.
-std::vector<std::string> described(const std::filesystem::path& library,
-                                   const ProcessLimits& limits) {
+// Reads the names of signals, and after a line feed the runs of training.
+LibraryStatement read_statement(const std::string& text,
+                                const std::filesystem::path& library) {
+  const std::size_t end = text.find('\n');
+  LibraryStatement statement{split_names(text.substr(0, end))};
+  if (end == std::string::npos) return statement;
+  const std::string place = library.string() + ": beamgyro_plugin_training()";
+  const auto json = parse_json(text.substr(end + 1), place);
+  read_training_runs(JsonNode(json, place), statement.training.emplace());
+  return statement;
+}
+
+// Asks the library what it is.
+LibraryStatement described(const std::filesystem::path& library,
+                           const ProcessLimits& limits) {
   ChildProcess process(plugin_host_words(limits.program, library,
                                          HostTask::kDescribe, limits.memory));
   process.input().reset();
   bool in_time = true;
-  const std::string names =
+  const std::string text =
       read_until_end(*process.output(), limits.stall, in_time);
   const std::optional<ProcessEnd> end =
       in_time ? process.wait(limits.stall) : std::nullopt;
@@ -164,7 +189,8 @@ std::vector<std::string> described(const std::filesystem::path& library,
   };
   if (!end)
     refuse(fmt::format("cannot be loaded: hung for {:.3g} s", limits.stall));
-  if (end->status == 0 && end->signal == 0) return split_names(names);
+  if (end->status == 0 && end->signal == 0)
+    return read_statement(text, library);
   const std::string error =
       read_until_end(*process.error(), limits.stall, in_time);
   if (end->status == 2 && !error.empty()) refuse(error);
@@ -173,18 +199,18 @@ std::vector<std::string> described(const std::filesystem::path& library,
   return {};
 }
 
-std::vector<std::string> wanted_signals(const std::filesystem::path& library,
-                                        const ProcessLimits& limits) {
+LibraryStatement statement_of(const std::filesystem::path& library,
+                              const ProcessLimits& limits) {
   if (limits.program.empty())
     throw std::logic_error("ProcessLimits::program is not given");
-  std::vector<std::string> names = described(library, limits);
+  LibraryStatement statement = described(library, limits);
   try {
-    for (const std::string& name : names) require_measurable(name);
+    for (const std::string& name : statement.names) require_measurable(name);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(
         fmt::format("{}: {}", library.string(), error.what()));
   }
-  return names;
+  return statement;
 }
 
 }  // namespace
@@ -192,14 +218,14 @@ std::vector<std::string> wanted_signals(const std::filesystem::path& library,
 std::unique_ptr<TestedCompensator> open_library(
     const std::filesystem::path& library, const ProcessLimits& limits) {
   return std::make_unique<LibraryCompensator>(
-      library, wanted_signals(library, limits), limits);
+      library, statement_of(library, limits), limits);
 }
 
 AnsweringProcess library_process(const std::filesystem::path& library,
                                  const ProcessLimits& limits) {
   return {plugin_host_words(limits.program, library, HostTask::kAnswer,
                             limits.memory),
-          std::make_unique<HostLanguage>(wanted_signals(library, limits)),
+          std::make_unique<HostLanguage>(statement_of(library, limits).names),
           true};
 }
 

@@ -11,7 +11,8 @@ namespace beamgyro::internal {
 
 /// Opens a shared library with the interface of beamgyro/plugin.h. It is loaded
 /// by processes of limits.program only. Throws std::invalid_argument with its
-/// name when it is no such library or asks for what is not measured.
+/// name when it is no such library, asks for what is not measured, or states
+/// runs of training that cannot be read.
 std::unique_ptr<TestedCompensator> open_library(
     const std::filesystem::path& library, const ProcessLimits& limits);
 

@@ -29,6 +29,7 @@ namespace {
 constexpr std::size_t kBatchBytes = 1 << 16;
 constexpr std::size_t kAnswerBatch = 64;  // lost at most when the library hangs
 constexpr std::string_view kOutOfMemory = "out of memory\n";
+constexpr std::size_t kMostOfTraining = std::size_t{1} << 24;  // characters
 
 // Answers that are not written yet, where the handler of a crash finds them.
 struct PendingAnswers {
@@ -83,6 +84,7 @@ struct Plugin {
   decltype(&beamgyro_plugin_reset) reset;
   decltype(&beamgyro_plugin_step) step;
   decltype(&beamgyro_plugin_destroy) destroy;
+  decltype(&beamgyro_plugin_training) training;  // null: has none
 };
 
 template <class Function>
@@ -119,6 +121,8 @@ Plugin load_plugin(const std::filesystem::path& file) {
       function_of<decltype(plugin.step)>(library, "beamgyro_plugin_step");
   plugin.destroy =
       function_of<decltype(plugin.destroy)>(library, "beamgyro_plugin_destroy");
+  plugin.training = reinterpret_cast<decltype(plugin.training)>(
+      ::dlsym(library, "beamgyro_plugin_training"));
   return plugin;
 }
 
@@ -127,6 +131,22 @@ std::string signals_of(const Plugin& plugin) {
   if (names == nullptr)
     throw std::invalid_argument("beamgyro_plugin_signals() returned no names");
   return names;
+}
+
+// Returns "\nTEXT", or nothing for a library that states no training.
+std::string training_of(const Plugin& plugin) {
+  if (plugin.training == nullptr) return "";
+  const char* const* piece = plugin.training();
+  if (piece == nullptr) return "";
+  std::string text = "\n";
+  for (; *piece != nullptr; ++piece) {
+    text += *piece;
+    if (text.size() > kMostOfTraining)
+      throw std::invalid_argument(fmt::format(
+          "beamgyro_plugin_training() returned more than {} characters",
+          kMostOfTraining));
+  }
+  return text;
 }
 
 // Adds the memory that the program has anyway.
@@ -215,8 +235,8 @@ void serve(const std::filesystem::path& file, bool describe) {
   handle_crashes();
   const Plugin plugin = load_plugin(file);
   if (!describe) return answer_records(plugin, input);
-  const std::string names = signals_of(plugin);
-  output.write(std::as_bytes(std::span(names)));
+  const std::string text = signals_of(plugin) + training_of(plugin);
+  output.write(std::as_bytes(std::span(text)));
 }
 
 }  // namespace

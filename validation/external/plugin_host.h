@@ -27,7 +27,8 @@ std::vector<std::string> plugin_host_words(const std::filesystem::path& program,
 enum class HostRecord { kStep = 0, kReset = 1 };
 
 /// Serves a library of beamgyro/plugin.h in a process of its own. To describe,
-/// it writes the names of the signals on standard output. To answer, it reads
+/// it writes the names of the signals on standard output, and after a line feed
+/// the runs that it was trained on, if it states them. To answer, it reads
 /// records on standard input to its end, and writes one double for each kStep.
 /// On standard error it writes why it failed. `words` are those after
 /// kPluginHostWord. Returns the exit status: 0, 1 when the library failed, or

@@ -11,6 +11,8 @@
 
 namespace beamgyro::internal {
 
+struct Provenance;
+
 /// What can be wrong with the way a compensator answers.
 enum class AnswerFault {
   kCrashed,           // its process ended by a signal or with a status
@@ -81,6 +83,9 @@ class TestedCompensator {
   /// Whether the seconds of its answers are its own, and not those of waiting
   /// for another thread that asks it.
   virtual bool is_timed() const { return true; }
+
+  /// Returns what it states of its training, or a null pointer.
+  virtual const Provenance* provenance() const { return nullptr; }
 
   /// Returns its answers to one run.
   Answer answer(const Recording& run) const {

@@ -12,6 +12,7 @@
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/residual_scores.h"
 #include "parallel/work_queue.h"
+#include "validation/metrics/no_effect.h"
 #include "validation/metrics/sigma_evidence.h"
 #include "validation/metrics/sigma_report.h"
 
@@ -31,21 +32,6 @@ std::optional<Estimate> evaluated(const Metric& metric, const Evidence& all,
     if (std::ranges::count(named->second, run.name) > 0)
       read.runs.push_back(run);
   return metric.evaluate(read);
-}
-
-std::optional<Estimate> estimate_of(const MetricResult& result,
-                                    const std::string& reference) {
-  if (reference == "before") return result.before;
-  for (const BaselineEstimate& baseline : result.baselines)
-    if (baseline.name == reference) return baseline.estimate;
-  return std::nullopt;
-}
-
-double temperature_span(const std::vector<Recording>& runs) {
-  std::vector<const Recording*> all;
-  for (const Recording& run : runs) all.push_back(&run);
-  const auto range = temperatures_of(all);
-  return range ? range->highest - range->lowest : 0.0;
 }
 
 bool is_required(const SpecificationFile& specification,
@@ -74,9 +60,13 @@ std::string rms_words(const ResidualComparison& comparison) {
 struct Reasons {
   std::vector<std::string> against, open;  // names of limits and checks
   std::string no_use;
-  const CheckResult* failed = nullptr;  // the first
+  const CheckResult* failed = nullptr;  // the first, or what explains it
   std::vector<const CheckResult*> untested;
 };
+
+std::string joined_sentences(const std::string& one, const std::string& other) {
+  return one.empty() || other.empty() ? one + other : one + " " + other;
+}
 
 void add_name(std::vector<std::string>& names, const std::string& name) {
   if (std::ranges::count(names, name) == 0) names.push_back(name);
@@ -104,7 +94,8 @@ Reasons reasons_of(const SpecificationFile& specification,
     if (decision.result == Verdict::kUndecided)
       add_name(reasons.open, limit.metric);
   }
-  reasons.no_use = words_of_no_use(result.comparisons);
+  reasons.no_use =
+      joined_sentences(result.no_effect, words_of_no_use(result.comparisons));
   for (const ResidualComparison& one : result.comparisons)
     if (one.is_required && std::isinf(one.found.half_width))
       add_name(
@@ -115,7 +106,9 @@ Reasons reasons_of(const SpecificationFile& specification,
   for (const CheckResult& check : result.checks) {
     if (check.outcome == CheckOutcome::kFailed) {
       add_name(reasons.against, check.name);
-      if (reasons.failed == nullptr) reasons.failed = &check;
+      // What comes of a temperature that is none shows in other checks, too.
+      if (reasons.failed == nullptr || check.name == "temperature_input")
+        reasons.failed = &check;
     }
     if (check.outcome != CheckOutcome::kNotTested) continue;
     reasons.untested.push_back(&check);
@@ -139,9 +132,9 @@ std::string as_good_words(const std::vector<ResidualComparison>& comparisons) {
 
 std::string failure_words(const Reasons& reasons) {
   if (reasons.against.empty()) return reasons.no_use;
-  std::string words = fmt::format("{}{}Not met: {}.", reasons.no_use,
-                                  reasons.no_use.empty() ? "" : " ",
-                                  fmt::join(reasons.against, ", "));
+  std::string words = joined_sentences(
+      reasons.no_use,
+      fmt::format("Not met: {}.", fmt::join(reasons.against, ", ")));
   if (reasons.failed != nullptr) words += " " + reasons.failed->words;
   return words;
 }
@@ -167,8 +160,14 @@ std::string pass_words(const ValidationResult& result, const Reasons& reasons) {
                                   comparison.found.rms,
                                   comparison.found.other_rms));
     }
-  if (!result.limits.empty())
+  if (!result.limits.empty()) {
+    const auto before = std::ranges::count_if(
+        result.limits,
+        [](const DecidedLimit& one) { return one.decision.met_before; });
     parts.push_back(number_words(result.limits.size(), "limit") + " met");
+    if (before > 0)
+      parts.back() += fmt::format(" ({} of them before compensation)", before);
+  }
   parts.push_back(number_words(passed, "check") + " passed");
   std::string words =
       fmt::format("{}The compensator passes: {}",
@@ -245,26 +244,6 @@ std::vector<RunResidual> run_residuals(const DeviceEvidence& found) {
   return runs;
 }
 
-std::vector<DecidedLimit> decided_limits(
-    const SpecificationFile& specification,
-    const std::vector<MetricResult>& metrics) {
-  std::vector<DecidedLimit> decided;
-  for (const Limit& limit : specification.limits) {
-    const auto result =
-        std::ranges::find_if(metrics, [&](const MetricResult& one) {
-          return one.metric->name == limit.metric;
-        });
-    std::optional<Estimate> after, reference;
-    if (result != metrics.end()) {
-      after = result->after;
-      reference = estimate_of(*result, limit.relative_to);
-    }
-    decided.push_back({limit, decide(limit, after, reference,
-                                     specification.false_accept_risk)});
-  }
-  return decided;
-}
-
 std::vector<ResidualComparison> comparisons_of(
     const SpecificationFile& specification, const DeviceEvidence& found) {
   const LeftDrift own = left_drift(found.after);
@@ -282,7 +261,7 @@ std::vector<ResidualComparison> comparisons_of(
   for (const Baseline& baseline : found.baselines)
     if (baseline.name != "none" && baseline.name != "spline")
       add(baseline.name, left_drift(baseline.evidence));
-  if (temperature_span(found.runs) >= kLeastSpanOfRuns)
+  if (temperature_span(found.before) >= kLeastSpanOfRuns)
     add(kConstantOfRuns, without_mean(before));
   return all;
 }
@@ -336,17 +315,16 @@ void decide_without_seeds(const SpecificationFile& specification,
 }
 
 // Runs of a set share the seed of their campaign and nothing else.
-std::vector<std::string> shared_seeds(const FittedCompensator* trained,
+std::vector<std::string> shared_seeds(const Provenance* provenance,
                                       const DeviceEvidence& found) {
   std::vector<std::string> sentences;
-  if (trained == nullptr) return sentences;
+  if (provenance == nullptr) return sentences;
   for (std::size_t k = 0; k < found.runs.size(); ++k) {
     if (!found.read[k].device.empty() ||
-        was_used_in_training(trained->provenance, found.read[k].sha256,
-                             found.runs[k]))
+        was_used_in_training(*provenance, found.read[k].sha256, found.runs[k]))
       continue;
     const std::string words =
-        shared_seed(trained->provenance, found.read[k].name, found.runs[k]);
+        shared_seed(*provenance, found.read[k].name, found.runs[k]);
     if (!words.empty()) sentences.push_back(words + ".");
   }
   return sentences;
@@ -380,15 +358,23 @@ void judge(const JudgedBy& by, const DeviceEvidence& found, std::size_t threads,
   if (states_sigma(found.after))
     result.sigma = sigma_report(sigma_evidence(found.after));
   result.limits = decided_limits(by.specification, result.metrics);
+  result.no_effect = words_of_no_effect(found.before, found.after);
   result.comparisons = comparisons_of(by.specification, found);
   result.runs = run_residuals(found);
   CheckedCompensator checked = checked_runs(found, by.compensator);
   checked.trained = by.trained;
-  if (by.trained != nullptr) checked.provenance = &by.trained->provenance;
+  checked.provenance = by.compensator.provenance();
+  checked.requires_provenance = by.requires_provenance;
+  for (CheckedRun& run : checked.runs)
+    run.is_limited =
+        std::ranges::any_of(by.specification.limits, [&](const Limit& limit) {
+          return reads_run(*find_metric(limit.metric), by.metric_runs, run.name,
+                           run.purpose);
+        });
   checked.set = by.set;
   checked.declared = by.specification.declared;
   result.checks = run_checks(checked, threads);
-  result.shared_seeds = shared_seeds(by.trained, found);
+  result.shared_seeds = shared_seeds(checked.provenance, found);
   decide_on(by.specification, result);
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "validation/result/decided_limits.h"
 #include "validation/result/device_evidence.h"
 #include "validation/result/validation_result.h"
 #include "validation/specification/specification_file.h"
@@ -21,16 +22,10 @@ std::vector<MetricResult> metric_results(const DeviceEvidence& found,
                                          std::span<const std::string> names,
                                          std::size_t threads);
 
-/// Decides on every limit of a specification.
-std::vector<DecidedLimit> decided_limits(
-    const SpecificationFile& specification,
-    const std::vector<MetricResult>& metrics);
-
 /// Compares what the compensator leaves with what the recorded rate, the
 /// baselines and a constant of the runs themselves leave. The last is only
 /// there where the runs differ by kLeastSpanOfRuns or more, because at one
 /// temperature no correction can be better than it.
-constexpr double kLeastSpanOfRuns = 10.0;  // [K]
 std::vector<ResidualComparison> comparisons_of(
     const SpecificationFile& specification, const DeviceEvidence& found);
 
@@ -39,10 +34,11 @@ std::vector<ResidualComparison> comparisons_of(
 std::string words_of_no_use(const std::vector<ResidualComparison>& comparisons);
 
 /// Writes the verdict, its reason and the next step into `result`, from its
-/// limits, checks and comparisons: kFail when one of them fails, else
-/// kUndecided when a limit is, or when a check was not tested that the
-/// specification wants tested, else kPass. Where the specification wants none
-/// tested, one that shows whether rates come out must be.
+/// limits, checks and comparisons: kFail when one of them fails or the
+/// compensator has no effect, else kUndecided when a limit is, or when a check
+/// was not tested that the specification wants tested, else kPass. Where the
+/// specification wants none tested, one that shows whether rates come out must
+/// be.
 void decide_on(const SpecificationFile& specification,
                ValidationResult& result);
 
@@ -53,6 +49,7 @@ struct JudgedBy {
   const TestedCompensator& compensator;
   const FittedCompensator* trained;  // the same, if it is one of a file
   const TrainingSet* set = nullptr;  // of the runs, where they are of one
+  bool requires_provenance = false;  // the compensator states its training
 };
 
 /// Evaluates every metric, decides on the limits, runs the checks and writes

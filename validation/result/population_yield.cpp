@@ -10,10 +10,12 @@
 #include <set>
 #include <stdexcept>
 
+#include "compensation/inputs/sample_ranges.h"
 #include "parallel/work_queue.h"
 #include "sim/numerics/simulation_failure.h"
 #include "statistics/intervals.h"
 #include "validation/external/compensator_source.h"
+#include "validation/metrics/no_effect.h"
 #include "validation/result/judgement.h"
 
 namespace beamgyro::internal {
@@ -26,11 +28,8 @@ Qualification shortened_to(const Qualification& whole,
   shortened.runs.clear();
   for (const QualificationRun& run : whole.runs) {
     const bool is_read = std::ranges::any_of(names, [&](const auto& name) {
-      const auto named = whole.metric_runs.find(name);
-      return named != whole.metric_runs.end()
-                 ? std::ranges::count(named->second, run.name) > 0
-                 : std::ranges::count(find_metric(name)->reads, run.purpose) >
-                       0;
+      return reads_run(*find_metric(name), whole.metric_runs, run.name,
+                       run.purpose);
     });
     if (is_read) shortened.runs.push_back(run);
   }
@@ -45,6 +44,25 @@ struct DeviceOutcome {
 
 DeviceVerdict failed(const std::string& words) {
   return {Verdict::kFail, words.substr(0, words.find('\n'))};
+}
+
+// Names the first run in which the drive loop never locked after a power-on of
+// some seconds; empty where there is none.
+std::string words_of_no_lock(const DeviceEvidence& found) {
+  constexpr double kLongEnough = 10.0;  // [s]
+  for (std::size_t k = 0; k < found.runs.size(); ++k) {
+    const Recording& run = found.runs[k];
+    for (const SampleRange& on : powered_stretches(run))
+      if (run.time[on.end - 1] - run.time[on.begin] >= kLongEnough &&
+          std::all_of(run.status.begin() + static_cast<long>(on.begin),
+                      run.status.begin() + static_cast<long>(on.end),
+                      [](std::uint8_t status) {
+                        return (status & kLoopNotLocked) != 0;
+                      }))
+        return fmt::format("the drive loop never locks in {} from {:g} s on",
+                           found.read[k].name, run.time[on.begin]);
+  }
+  return "";
 }
 
 DeviceVerdict verdict_on(const std::vector<DecidedLimit>& limits) {
@@ -116,9 +134,11 @@ class PopulationJudge {
         metric_results(found, qualification_.metric_runs, names_, 1);
     outcome.verdict =
         verdict_on(decided_limits(*task_.specification, outcome.metrics));
-    const std::string no_use =
-        words_of_no_use(comparisons_of(*task_.specification, found));
-    if (!no_use.empty()) outcome.verdict = failed(no_use);
+    for (const std::string& words :
+         {words_of_no_use(comparisons_of(*task_.specification, found)),
+          words_of_no_effect(found.before, found.after),
+          words_of_no_lock(found)})
+      if (!words.empty()) outcome.verdict = failed(words);
     return outcome;
   }
 

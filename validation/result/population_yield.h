@@ -28,10 +28,12 @@ struct PopulationTask {
 /// Simulates the devices of a campaign, one task each, and decides on every
 /// limit of the specification for each. Runs that no limit reads are not
 /// simulated. A device passes when every limit is met. A device that cannot be
-/// simulated, or that the model cannot be trained on, fails. The words of a
-/// device that does not pass name its first limit that decided: one that is not
-/// met, or else one that is undecided. The result does not depend on the number
-/// of threads. Throws what else a device throws.
+/// simulated, whose drive loop never locks in a stretch of power of 10 s or
+/// more, or that the model cannot be trained on, fails, as one does on which
+/// the compensator is of no use or has no effect. The words of a device that
+/// does not pass name its first limit that decided: one that is not met, or
+/// else one that is undecided. The result does not depend on the number of
+/// threads. Throws what else a device throws.
 PopulationYield population_yield(const PopulationTask& task,
                                  std::size_t threads,
                                  const ProgressOfWork& progress = {});

@@ -24,6 +24,7 @@ struct RecordedAnswering {
   const FittedCompensator* known = nullptr;
   // [deg/s]; without, that of the first recording which tells it, or kFullScale
   std::optional<double> full_scale = {};
+  bool requires_provenance = false;  // a compensator without one fails
 };
 
 /// Reads a recording file, and adds what is to be warned of.

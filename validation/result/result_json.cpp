@@ -82,6 +82,7 @@ Json decided_json(const DecidedLimit& decided) {
           {"compared", estimate_json(decision.compared)},
           {"margin", number_or_null(decision.margin)},
           {"guard_band", number_or_null(decision.guard_band)},
+          {"met_before", decision.met_before},
           {"result", verdict_name(decision.result)},
           {"words", decision.words}};
 }

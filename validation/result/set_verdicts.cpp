@@ -43,7 +43,12 @@ class SetJudge {
         recorded_evidence(std::move(runs), answering_, threads_);
     if (on_device_) on_device_(evidence);
     ValidationResult result;
-    judge({specification_, {}, answering_.compensator, answering_.known, &set_},
+    judge({specification_,
+           {},
+           answering_.compensator,
+           answering_.known,
+           &set_,
+           answering_.requires_provenance},
           evidence, threads_, result);
     if (result.sigma)
       sigma_.add_device(sigma_evidence(evidence.after),

@@ -137,6 +137,7 @@ struct ValidationResult {
   std::string words;  // the reason for it, in a sentence or two
   std::string next;   // what to do next, in a sentence
   JudgedCompensator compensator;
+  std::string no_effect = {};  // a sentence on a compensator that does nothing
   std::vector<ResidualComparison> comparisons;
   std::vector<RunResidual> runs;      // of one device, in their order
   std::vector<MetricResult> metrics;  // in the order of metrics()

@@ -47,6 +47,7 @@ struct Decision {
   // limit. Nothing without a value.
   std::optional<double> margin = {};
   double guard_band = 0.0;  // at that limit, same unit
+  bool met_before = false;  // the recorded rate meets the limit, too
   std::string words;        // one sentence for a user
 };
 

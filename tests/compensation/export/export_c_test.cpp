@@ -180,6 +180,10 @@ TEST(CText, LiteralsReadBackToTheSameSingle) {
   }
 }
 
+TEST(CText, StringsHoldQuotesAndNoTrigraph) {
+  EXPECT_EQ(c_string(R"({"a": "b\c??/"})"), R"("{\"a\": \"b\\c\?\?/\"}")");
+}
+
 TEST(CText, IdentifiersStartWithALetterAndHoldLettersDigitsUnderscores) {
   EXPECT_EQ(c_identifier("gyro_2"), "gyro_2");
   EXPECT_EQ(c_identifier("left gyro-2.final"), "left_gyro_2_final");

@@ -524,7 +524,7 @@ TEST(PlantedFaults, APerfectCompensatorMeetsEveryShippedLimit) {
   const FunctionCompensator compensator(perfect);
   const Evidence after = evidence_of(checked(compensator));
   const Evidence before = recorded_evidence();
-  for (const char* name : {"paper", "uav", "tactical"})
+  for (const char* name : {"paper", "share", "uav", "tactical"})
     for (const Limit& limit :
          read_specification_file(BEAMGYRO_SPECS "/" + std::string(name) +
                                  ".toml")

@@ -27,6 +27,8 @@
 #define CRASHES_WHEN_LOADED 16
 #define WANTS_MORE 17
 #define HANGS_WHEN_LOADED 18
+#define STATES_ITS_TRAINING 19
+#define STATES_NONSENSE 20
 
 #define FAULTY_SAMPLE 700
 
@@ -100,3 +102,14 @@ double beamgyro_plugin_step(void *instance, double time,
 #endif
 
 void beamgyro_plugin_destroy(void *instance) { free(instance); }
+
+#if FAULT == STATES_ITS_TRAINING
+static const char *const training[] = {
+    "{\"files\": [{\"name\": \"a.h5\", \"sha2",
+    "56\": \"0123\"}], \"held_out_files\": []}", NULL};
+#elif FAULT == STATES_NONSENSE
+static const char *const training[] = {"trained well", NULL};
+#endif
+#if FAULT >= STATES_ITS_TRAINING
+const char *const *beamgyro_plugin_training(void) { return training; }
+#endif

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <thread>
 
+#include "compensation/compensator/compensator.h"
 #include "tests/config/rejection.h"
 #include "tests/validation/external/tested_run.h"
 #include "validation/external/answer_checks.h"
@@ -153,6 +154,19 @@ TEST(LibraryCompensator, WhatIsNoPluginIsRefused) {
   EXPECT_TRUE(holds(refusal("CRASHES_WHEN_LOADED"), "signal 11"));
   EXPECT_TRUE(holds(refusal("HANGS_WHEN_LOADED"), "hung"));
   EXPECT_TRUE(holds(refusal("missing"), "No such file"));
+}
+
+TEST(LibraryCompensator, StatesWhatItWasTrainedOnOrNothing) {
+  EXPECT_EQ(faulty_plugin("NONE")->provenance(), nullptr);
+  const auto library = faulty_plugin("STATES_ITS_TRAINING");
+  EXPECT_EQ(library->inputs(),
+            (std::vector<std::string>{"rate", "temperature"}));
+  ASSERT_NE(library->provenance(), nullptr);
+  EXPECT_EQ(library->provenance()->training,
+            (std::vector<SourceFile>{{"a.h5", "0123"}}));
+  const std::string refusal =
+      rejection([] { faulty_plugin("STATES_NONSENSE"); });
+  EXPECT_TRUE(holds(refusal, "STATES_NONSENSE.so: beamgyro_plugin_training()"));
 }
 
 TEST(LibraryCompensator, ASignalThatTheRunLacksIsNamed) {

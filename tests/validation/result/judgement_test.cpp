@@ -129,6 +129,33 @@ TEST(PairedResidual, IsAPairedTestOfTheQuotient) {
   EXPECT_EQ(without_mean(other).means, (std::vector<double>{1.0, -1.0}));
 }
 
+TEST(DecideOn, WhatDoesNothingFailsWhateverItsLimits) {
+  ValidationResult result;
+  result.limits = {decided("a", kPass)};
+  result.no_effect = "It does nothing.";
+  decide_on({}, result);
+  EXPECT_EQ(result.verdict, kFail);
+  EXPECT_EQ(result.words, "It does nothing.");
+}
+
+TEST(DecidedLimits, SayWhatTheRecordedRateMeets) {
+  SpecificationFile specification;
+  const std::string name(metrics()[0].name);
+  specification.limits = {
+      {.metric = name, .most = 3.0},
+      {.metric = name, .most = 1.0},
+      {.metric = name, .most = 1.5, .relative_to = "before"},
+      {.metric = name, .most = 1.5, .relative_to = "cubic"}};
+  const MetricResult found{
+      &metrics()[0], Estimate{2.0}, Estimate{0.5}, {{"cubic", Estimate{4.0}}}};
+  std::vector<bool> met;
+  for (const auto& [limit, decision] : decided_limits(specification, {found})) {
+    EXPECT_EQ(decision.result, kPass);
+    met.push_back(decision.met_before);
+  }
+  EXPECT_EQ(met, (std::vector<bool>{true, false, false, true}));
+}
+
 // A drift of 0.1 deg/s/K, of which the compensator leaves a tenth.
 TEST(ComparisonsOf, TheConstantOfTheRunsNeedsTenKelvin) {
   const auto names = [](double kelvin) {
