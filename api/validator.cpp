@@ -323,6 +323,7 @@ CompletedValidation Validator::validate(std::size_t threads,
                            if (progress) progress(share + (1 - share) * part);
                          });
   require_unchanged(s.source);
+  if (model != nullptr) done.trained = std::move(trained);
   return done;
 }
 

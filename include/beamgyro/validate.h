@@ -87,6 +87,11 @@ struct ValidationOutcome {
   std::string all_metrics;  ///< the same with every metric: `--all-metrics`
   std::string json;         ///< what `--json` writes
   std::string page;         ///< HTML, what `--report` writes
+  std::string junit;        ///< XML, what `--junit` writes
+  std::string lines;        ///< a line for each case of it: `--lines`
+  /// Of a model: the compensator that was trained and judged, as
+  /// `--save-trained` writes it; else empty.
+  std::string trained;
 };
 
 /// Judges a compensator by every metric, check and limit. The result does not

@@ -159,9 +159,11 @@ def validate(compensator: Any, runs: Optional[Runs] = None, *,
             given.setdefault("qualification", _shipped.file(
                 "scenarios/qualification.toml"))
         found = _judged(compensator, given, function)
-    text, json_text, warnings, page = found
+    text, json_text, warnings, page, junit, trained = found
     warn(warnings)
-    return ValidationResult(text, json_text, warnings, page)
+    return ValidationResult(
+        text, json_text, warnings, page, junit,
+        Compensator.parse(trained, "trained.json") if trained else None)
 
 
 class _Option(NamedTuple):
@@ -221,7 +223,7 @@ _describe_options()
 
 
 def _judged(compensator: Any, options: dict[str, Any],
-            function: Any) -> tuple[str, str, list[str], str]:
+            function: Any) -> tuple[str, str, list[str], str, str, str]:
     is_model = _checks.is_table(compensator) or (
         isinstance(compensator, (str, os.PathLike))
         and _core.source_kind(os.fsdecode(compensator)) == "model")

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "validation/metrics/metric_reading.h"
+
 namespace beamgyro::internal {
 namespace {
 
@@ -58,6 +60,7 @@ Json metric_json(const MetricResult& result,
                  const std::vector<DecidedLimit>& limits) {
   const Metric& metric = *result.metric;
   Json json{{"name", metric.name},
+            {"title", title_of(metric)},
             {"unit", metric.unit},
             {"clause", metric.clause},
             {"definition", metric.definition},
