@@ -78,11 +78,34 @@ std::vector<Case> cases_of_checks(const ValidationResult& result) {
   return cases;
 }
 
+// What was not worse has passed; without an interval nothing was tested.
+std::vector<Case> cases_of_earlier(const ValidationResult& result) {
+  std::vector<Case> cases;
+  if (!result.earlier) return cases;
+  for (const MetricChange& one : result.earlier->metrics)
+    cases.push_back({one.change == Change::kWorse     ? "fail"
+                     : one.change == Change::kUnknown ? "not tested"
+                                                      : "pass",
+                     "earlier_" + std::string(one.metric->name), one.own,
+                     one.metric->unit, "",
+                     fmt::format("It was {:.6g} in {}.", one.other.value,
+                                 result.earlier->name)});
+  for (const std::string& name : result.earlier->lost)
+    cases.push_back({"fail",
+                     "earlier_passed_" + name,
+                     {},
+                     "",
+                     "",
+                     fmt::format("It passed in {}.", result.earlier->name)});
+  return cases;
+}
+
 std::vector<Suite> suites_of(const ValidationResult& result) {
   std::vector<Suite> suites{
       {"limits", cases_of_limits(result)},
       {"comparisons", cases_of_comparisons(result)},
       {"checks", cases_of_checks(result)},
+      {"earlier", cases_of_earlier(result)},
       {"verdict",
        {{verdict_name(result.verdict), "verdict", {}, "", "", result.words}}}};
   std::erase_if(suites, [](const Suite& suite) { return suite.cases.empty(); });

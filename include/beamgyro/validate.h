@@ -35,6 +35,11 @@ struct ValidationOptions {
   std::optional<std::filesystem::path> specification = {};
   /// A compensator file that the answers are compared with.
   std::optional<std::filesystem::path> workbench = {};
+  /// A compensator file that is judged on the same runs, beside the first.
+  std::optional<std::filesystem::path> against = {};
+  /// A result of an earlier validation (`--json`), than which this one must not
+  /// be worse.
+  std::optional<std::filesystem::path> baseline_result = {};
   /// A campaign whose devices are judged, too, for a yield; how many of them.
   std::optional<std::filesystem::path> campaign = {};
   std::optional<std::uint32_t> campaign_devices = {};

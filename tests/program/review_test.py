@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
 """What a review of a design and a server of continuous integration take from
-`validate`: JUnit XML, lines, the trained compensator, the head of the page."""
+`validate`: JUnit XML, lines, an earlier result, another compensator."""
 
+import json
 import re
 import shutil
 import xml.etree.ElementTree as ElementTree
 
-from program import limits, ramp
+from program import IDENTITY, by_name, limits, ramp
 from qualified import Qualified
 
 # What servers read: the attributes and children that an element may have.
@@ -160,6 +161,129 @@ class Trained(Review):
         self.rejected("validate", "cubic.toml", "--device", "device.toml",
                       "--qualification", "q.toml", "--save-trained", "own.toml",
                       says="--save-trained own.toml")
+
+
+class Baseline(Review):
+    def beside(self, compensator, *arguments, status):
+        return self.validated(compensator, "test.h5", "--baseline-result",
+                              "old.json", *arguments, allowed=(status,))
+
+    def prepare(self):
+        super().prepare()
+        self.ok("validate", "cubic.json", "test.h5", "--json", "old.json")
+
+    def test_the_same_is_no_worse(self):
+        said, answer = self.beside("cubic.json", status=0)
+        self.assertFalse(said["baseline"]["worse"])
+        self.assertEqual({row["change"] for row in said["baseline"]["metrics"]},
+                         {"same"})
+        self.assertIn("Nothing is worse than in old.json.", said["words"])
+        self.assertIn("metrics beside old.json (verdict pass): 0 better",
+                      answer.stdout)
+
+    def test_what_is_worse_fails_where_it_would_pass(self):
+        cubic = self.json("cubic.json")
+        scale = cubic["bias_scale"]
+        scale["centre"] -= 0.25  # [deg/s], less than the drift of 2.8
+        self.write("worse.json", json.dumps(cubic))
+        self.ok("validate", "worse.json", "test.h5")
+        said, answer = self.beside("worse.json", "--junit", "j.xml", status=3)
+        self.assertEqual(said["verdict"], "fail")
+        self.assertTrue(said["words"].startswith("Worse than old.json: "))
+        rows = by_name(said["baseline"]["metrics"])
+        self.assertEqual(rows["residual_mean_deg_per_s"]["change"], "worse")
+        self.assertIn("FAIL: Worse than old.json", answer.stdout)
+        self.assertIsNotNone(self.junit()[
+            "earlier", "earlier_residual_mean_deg_per_s"].find("failure"))
+
+    def test_a_check_that_passed_and_fails_is_named(self):
+        said, _ = self.validated("cubic.json", "t.h5", "--baseline-result",
+                                 "old.json", allowed=(3,))
+        self.assertEqual(said["baseline"]["lost"], ["hold_out"])
+        self.assertEqual(said["baseline"]["other_inputs"], ["runs"])
+        self.assertTrue(any("old.json" in text for text in said["warnings"]))
+
+    def test_it_is_bundled(self):
+        self.beside("cubic.json", "--bundle", "bundle", status=0)
+        (self.dir / "old.json").unlink()
+        self.ok("validate", "--check", "bundle")
+
+    def test_a_file_that_is_no_result_is_refused(self):
+        for text, says in [("{}", "filetype"), ("[", "old.json"),
+                           (self.text("cubic.json"), "is a compensator")]:
+            self.write("old.json", text)
+            self.rejected("validate", "cubic.json", "test.h5",
+                          "--baseline-result", "old.json", says=says)
+
+
+class Against(Review):
+    def beside(self, one, other, *arguments, status):
+        said, answer = self.validated(one, "test.h5", "--against", other,
+                                      *arguments, allowed=(status,))
+        return said["against"], said, answer
+
+    def test_the_better_of_two(self):
+        for one, other, status in [("cubic.json", "constant.json", 0),
+                                   ("constant.json", "cubic.json", 3)]:
+            found, said, answer = self.beside(one, other, status=status)
+            self.assertTrue(found["sentence"].startswith(
+                "cubic.json is better than constant.json: "))
+            self.assertIn(found["sentence"], answer.stdout)
+            self.assertEqual(found["compensator"]["name"], other)
+            self.assertEqual({said["verdict"], found["verdict"]},
+                             {"pass", "fail"})
+            rms = by_name(found["metrics"])["residual_rms_deg_per_s"]
+            low, high = rms["difference"]["interval"]
+            self.assertEqual(rms["change"], "worse" if status else "better")
+            self.assertGreater(low if status else -high, 0)
+            self.assertAlmostEqual(rms["difference"]["value"],
+                                   rms["own"]["value"] - rms["other"]["value"],
+                                   delta=1e-9)
+
+    def test_the_other_is_judged_as_alone(self):
+        found, said, _ = self.beside("cubic.json", "constant.json", status=0)
+        for name, here in [("constant.json", found), ("cubic.json", said)]:
+            alone, _ = self.validated(name, "test.h5")
+            for key in "verdict", "checks":
+                self.assertEqual(alone[key], here[key], name)
+            values = {row["name"]: row["after"] for row in alone["metrics"]}
+            side = "other" if here is found else "own"
+            for row in found["metrics"]:
+                self.assertEqual(row[side], values[row["name"]])
+
+    def test_of_the_same_the_runs_do_not_tell(self):
+        found, _, _ = self.beside("cubic.json", "cubic.json", status=0)
+        self.assertTrue(found["sentence"].startswith(
+            "The runs do not tell which of"))
+        self.assertEqual({row["change"] for row in found["metrics"]}, {"same"})
+
+    def test_on_a_device_and_in_a_bundle(self):
+        said, _ = self.validate("--against", "constant.json", "--bundle",
+                                "bundle")
+        self.assertIn("cubic.toml is better than constant.json",
+                      said["against"]["sentence"])
+        self.ok("validate", "--check", "bundle")
+
+    def test_the_paired_difference_is_known_better(self):
+        """Two cubics that differ by less than the interval of either."""
+        cubic = self.json("cubic.json")
+        cubic["bias_scale"]["centre"] += 0.02
+        self.write("off.json", json.dumps(cubic))
+        found, _, _ = self.beside("cubic.json", "off.json", status=0)
+        rms = by_name(found["metrics"])["residual_rms_deg_per_s"]
+
+        def width(estimate):
+            low, high = estimate["interval"]
+            return high - low
+
+        self.assertLess(width(rms["difference"]), width(rms["own"]))
+
+    def test_a_command_is_refused(self):
+        self.write("same.py", IDENTITY)
+        self.rejected("validate", "cubic.json", "test.h5", "--against",
+                      "cmd:/usr/bin/python3 same.py", says="cmd:")
+        self.rejected("validate", "cubic.json", "test.h5", "--against",
+                      "cubic.toml", says="cubic.toml")
 
 
 class Page(Review):
