@@ -10,8 +10,10 @@
 #include "api/compensators.h"
 #include "api/reported_progress.h"
 #include "api/validator.h"
+#include "compensation/compensator/compensator_file.h"
 #include "dataset/files/json_text.h"
 #include "parallel/work_queue.h"
+#include "report/ci_report.h"
 #include "report/verdict_report.h"
 #include "validation/page/figures.h"
 #include "validation/page/page.h"
@@ -95,7 +97,12 @@ ValidationOutcome public_outcome(const CompletedValidation& validation) {
                             .text = verdict_report(result, false),
                             .all_metrics = verdict_report(result, true),
                             .json = json_text(json),
-                            .page = page_of(json)};
+                            .page = page_of(json),
+                            .junit = junit_report(result),
+                            .lines = line_report(result),
+                            .trained = {}};
+  if (validation.trained)
+    outcome.trained = compensator_text(*validation.trained);
   for (const CheckResult& check : result.checks)
     outcome.checks.push_back({check.name, outcome_name(check.outcome),
                               check.value, check.limit, check.words});

@@ -51,6 +51,18 @@ constexpr std::array kMembers{
                      "trained on",
                      "hold_out is not tested then", kJudgedHeading,
                      "require_provenance"},
+    ValidationMember{"against", &Options::against, kOnDevice | kOnRecordings,
+                     "", "against", "against", "COMPENSATOR.json",
+                     "Also judges this compensator on the same runs and tells "
+                     "which is better",
+                     "no comparison", kJudgedHeading, "against",
+                     FileKind::kCompensator},
+    ValidationMember{
+        "baseline_result", &Options::baseline_result, kOnDevice | kOnRecordings,
+        "", "baseline_result", "baseline-result", "RESULT.json",
+        "Fails where a metric, limit or check is worse than in "
+        "this result of an earlier validation",
+        "no comparison", kJudgedHeading, "baseline_result", FileKind::kResult},
     ValidationMember{"qualification", &Options::qualification, kOnDevice, "",
                      "qualification", "qualification", "FILE.toml",
                      "Runs that the device goes through",

@@ -26,7 +26,9 @@
 #include "validation/external/compensator_source.h"
 #include "validation/metrics/rate_noise_model.h"
 #include "validation/qualification/qualification_file.h"
+#include "validation/result/earlier_result.h"
 #include "validation/result/judgement.h"
+#include "validation/result/metric_change.h"
 #include "validation/result/population_yield.h"
 #include "validation/result/recorded_evidence.h"
 #include "validation/result/set_verdicts.h"
@@ -76,7 +78,8 @@ struct Validator::State {
   SpecificationFile specification;
   QualifiedDevice device;
   std::optional<CampaignPlan> campaign;
-  std::optional<FittedCompensator> workbench;
+  std::optional<FittedCompensator> workbench, against;
+  std::optional<EarlierResult> earlier;
   std::optional<RunSource> set;
   std::vector<ValidationInput> inputs;
   std::vector<FileState> recording_states;  // before they were read
@@ -124,10 +127,18 @@ struct Validator::State {
     }
   }
 
-  void read_workbench() {
-    const std::string text = read_text_file(*options.workbench);
-    workbench = parse_compensator(text, options.workbench->string());
-    add_file("workbench", *options.workbench, text);
+  FittedCompensator read_compensator_of(const std::string& group,
+                                        const fs::path& path) {
+    const std::string text = read_text_file(path);
+    add_file(group, path, text);
+    return parse_compensator(text, path.string());
+  }
+
+  void read_baseline() {
+    const fs::path& path = *options.baseline_result;
+    const std::string text = read_text_file(path);
+    earlier = parse_earlier_result(text, path.string());
+    add_file("baseline_result", path, text);
   }
 
   void read_campaign() {
@@ -159,6 +170,19 @@ struct Validator::State {
           evidence.answers[k],
           {.rate = compensated_rate(*workbench, evidence.runs[k])}));
     return all;
+  }
+
+  // Judges the compensator of --against on the same runs.
+  SideBySide beside(const ValidationResult& result, DeviceEvidence& evidence,
+                    std::size_t threads) const {
+    const auto other = tested(*against);
+    const double ready_after = specification.declared.ready_after;
+    const auto ready =
+        ready_after > 0.0 ? ready_compensator(*other, ready_after) : nullptr;
+    return side_by_side(
+        {specification, qualification.metric_runs, *other, &*against},
+        ready ? *ready : *other, options.against->filename().string(), result,
+        evidence, threads);
   }
 
   void require_model_can_be_trained() const {
@@ -232,7 +256,11 @@ Validator::Validator(CompensatorSource source, ValidationOptions options,
   s.require_model_can_be_trained();
   for (const SourceText& file : s.source.files)
     s.add_file("compensator", file.path, file.text);
-  if (s.options.workbench) s.read_workbench();
+  if (s.options.workbench)
+    s.workbench = s.read_compensator_of("workbench", *s.options.workbench);
+  if (s.options.against)
+    s.against = s.read_compensator_of("against", *s.options.against);
+  if (s.options.baseline_result) s.read_baseline();
   if (s.options.set) s.open_set();
   s.hash_recordings(keeps_inputs);
   s.read_specification();
@@ -317,6 +345,8 @@ CompletedValidation Validator::validate(std::size_t threads,
   result.compensator = {s.source.name, std::string(kind_name(s.source.kind)),
                         known != nullptr ? known->provenance.method : "",
                         compensator->inputs(), difference};
+  if (s.against) result.against = s.beside(result, done.evidence, threads);
+  if (s.earlier) compare_with(*s.earlier, result);
   if (s.campaign)
     result.population =
         population_yield({&*s.campaign, &s.qualification, &s.specification,
@@ -325,6 +355,7 @@ CompletedValidation Validator::validate(std::size_t threads,
                            if (progress) progress(share + (1 - share) * part);
                          });
   require_unchanged(s.source);
+  if (model != nullptr) done.trained = std::move(trained);
   return done;
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ namespace beamgyro::internal {
 struct CompletedValidation {
   ValidationResult result;
   DeviceEvidence evidence;
+  std::optional<FittedCompensator> trained = {};  // of a model, on the device
 };
 
 /// A validation whose files have been read and checked, each of them once.

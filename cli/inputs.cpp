@@ -110,16 +110,17 @@ void require_output(const fs::path& output,
 }
 
 void require_json_output(const std::string& name,
-                         const std::vector<fs::path>& inputs) {
+                         const std::vector<fs::path>& inputs,
+                         std::string_view option) {
   if (name.empty()) return;
   require_output(name, inputs);
   const std::string extension = fs::path(name).extension().string();
   for (const char* other : {".h5", ".nc", ".csv", ".toml", ".c", ".h"})
     if (extension == other)
       throw std::invalid_argument(fmt::format(
-          "--json {}: is the name of a file of another kind (\"{}\"); expected "
+          "{} {}: is the name of a file of another kind (\"{}\"); expected "
           "one that ends in .json",
-          name, extension));
+          option, name, extension));
 }
 
 void require_output_directory(const char* option, const std::string& name,

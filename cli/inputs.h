@@ -39,10 +39,11 @@ void require_directory_name(const std::filesystem::path& path,
 void require_output(const std::filesystem::path& output,
                     const std::vector<std::filesystem::path>& inputs);
 
-/// The same for the argument of --json, which may be empty: a file of another
+/// The same for the argument of `option`, which may be empty: a file of another
 /// kind is not written over by mistake. Any other name passes.
 void require_json_output(const std::string& name,
-                         const std::vector<std::filesystem::path>& inputs);
+                         const std::vector<std::filesystem::path>& inputs,
+                         std::string_view option = "--json");
 
 /// The same for `file` in the directory `name`, the argument of `option`, which
 /// may be empty. Leaves no directory that was not there.

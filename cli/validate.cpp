@@ -95,9 +95,10 @@ bool asks_for_none(const ValidateArguments& arguments) {
                               [&](const ValidationMember& row) {
                                 return is_given(row, arguments.options);
                               }) &&
-         arguments.json.empty() && arguments.report.empty() &&
+         arguments.json.empty() && arguments.junit.empty() &&
+         arguments.trained.empty() && arguments.report.empty() &&
          arguments.figures.empty() && arguments.bundle.empty() &&
-         !arguments.all_metrics;
+         !arguments.all_metrics && !arguments.lines;
 }
 
 void require_list_alone(const ValidateArguments& arguments) {
@@ -134,6 +135,9 @@ int validate_any(const ValidateArguments& arguments) {
         "COMPENSATOR is missing; expected beamgyro validate COMPENSATOR "
         "RUN.h5..., beamgyro validate COMPENSATOR --device DEVICE.toml, or "
         "beamgyro validate --check DIR");
+  if (arguments.lines && arguments.all_metrics)
+    throw std::invalid_argument(
+        "--lines and --all-metrics: expected one of them");
   require_limits_for_code(arguments.limits, arguments.compensator);
   return judge_compensator(arguments);
 }
@@ -189,6 +193,16 @@ void add_validate(CommandLine& program) {
   command.group("What is written");
   command.text({"--json", "FILE", "Writes every figure to FILE", "no file"},
                arguments.json);
+  command.text({"--junit", "FILE",
+                "Writes limits, checks and verdict to FILE as JUnit XML, which "
+                "servers of continuous integration read",
+                "no file"},
+               arguments.junit);
+  command.text({"--save-trained", "FILE",
+                "Of a model: writes the compensator that was trained and "
+                "judged to FILE",
+                "no file"},
+               arguments.trained);
   command.text({"--report", "DIR", "Writes the page DIR/index.html", "no page"},
                arguments.report);
   command.text({"--figures", "DIR",
@@ -203,6 +217,11 @@ void add_validate(CommandLine& program) {
   command.flag({"--all-metrics", "", "Prints every metric and check",
                 "those that decide"},
                arguments.all_metrics);
+  command.flag({"--lines", "",
+                "Prints one line for each limit and check and for the verdict, "
+                "with tabs between, in place of the tables",
+                "tables"},
+               arguments.lines);
   command.integer({"--jobs", "N", "Number of threads", "one per core"},
                   arguments.options.jobs, {1, 4096});
   command.group("A result made before");

@@ -15,12 +15,13 @@ constexpr int kNotPassed = 3;
 
 /// The words of `validate`.
 struct ValidateArguments {
-  std::string compensator, json, report, figures, bundle, check;
+  std::string compensator, json, junit, trained, report, figures, bundle, check;
   std::vector<std::filesystem::path> runs;  // recordings, or one set
   std::vector<std::string> device;  // a device file, or numbers of a set
   ValidationOptions options;        // without these
   LimitArguments limits;
-  bool list_metrics = false, all_metrics = false, runs_code = false;
+  bool list_metrics = false, all_metrics = false, lines = false;
+  bool runs_code = false;
 };
 
 /// Returns what the words ask for. Throws std::invalid_argument for words that

@@ -35,9 +35,11 @@ ValidationOutcome judged(const Validator& validator) {
 }
 
 std::vector<BundleOutput> outputs_of(const ValidationOutcome& found) {
-  return {{kResultFile, found.json},
-          {kReportFile, found.all_metrics},
-          {kPageFile, found.page}};
+  std::vector<BundleOutput> outputs{{kResultFile, found.json},
+                                    {kReportFile, found.all_metrics},
+                                    {kPageFile, found.page}};
+  if (!found.trained.empty()) outputs.push_back({kTrainedFile, found.trained});
+  return outputs;
 }
 
 // What an option asks for.
@@ -62,10 +64,13 @@ bool is_within(const fs::path& path, const fs::path& other) {
 
 void require_places_of_their_own(const ValidateArguments& arguments) {
   std::vector<AskedOutput> asked;
-  for (const auto& [option, name] : {std::pair("--json", arguments.json),
-                                     std::pair("--report", arguments.report),
-                                     std::pair("--figures", arguments.figures),
-                                     std::pair("--bundle", arguments.bundle)})
+  for (const auto& [option, name] :
+       {std::pair("--json", arguments.json),
+        std::pair("--junit", arguments.junit),
+        std::pair("--save-trained", arguments.trained),
+        std::pair("--report", arguments.report),
+        std::pair("--figures", arguments.figures),
+        std::pair("--bundle", arguments.bundle)})
     if (!name.empty()) asked.push_back({option, name, place_of(name)});
   for (const AskedOutput& one : asked)
     for (const AskedOutput& other : asked)
@@ -88,6 +93,8 @@ void require_outputs_of(const ValidateArguments& arguments,
                            inputs);
   require_output_directory("--bundle", arguments.bundle, kBundleFile, inputs);
   require_json_output(arguments.json, inputs);
+  if (!arguments.junit.empty()) require_output(arguments.junit, inputs);
+  require_json_output(arguments.trained, inputs, "--save-trained");
 }
 
 // Prints a result, then writes each file and directory that is asked for. What
@@ -105,10 +112,16 @@ int deliver(const ValidateArguments& arguments, const BundleContent& content,
     }
   };
   write(true, [&] {
-    print_result(arguments.all_metrics ? found.all_metrics : found.text);
+    print_result(arguments.lines         ? found.lines
+                 : arguments.all_metrics ? found.all_metrics
+                                         : found.text);
   });
   write(!arguments.json.empty(),
         [&] { write_text_file(arguments.json, found.json); });
+  write(!arguments.junit.empty(),
+        [&] { write_text_file(arguments.junit, found.junit); });
+  write(!arguments.trained.empty(),
+        [&] { write_text_file(arguments.trained, found.trained); });
   write(!arguments.report.empty(), [&] {
     const MadeDirectories made(arguments.report);
     write_text_file(fs::path(arguments.report) / "index.html", found.page);
@@ -165,6 +178,11 @@ int judge_compensator(const ValidateArguments& arguments) {
   const Validator validator(
       open_source(arguments.compensator, process_limits(arguments.limits)),
       std::move(options), !arguments.bundle.empty());
+  if (!arguments.trained.empty() && !validator.source().model)
+    throw std::invalid_argument(fmt::format(
+        "--save-trained: {} is no model, so nothing is trained; expected a "
+        "model file",
+        arguments.compensator));
   const BundleContent content = bundle_content(validator);
   // The directory of a set stands for everything below it.
   std::vector<fs::path> inputs = arguments.runs;

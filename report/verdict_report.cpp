@@ -8,6 +8,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "report/difference_report.h"
+
 namespace beamgyro::internal {
 namespace {
 
@@ -272,6 +274,8 @@ std::string verdict_report(const ValidationResult& result, bool all) {
   text += '\n' + check_lines(result, all);
   if (result.sigma) text += '\n' + sigma_lines(*result.sigma);
   if (result.population) text += '\n' + yield_lines(*result.population);
+  if (result.against) text += '\n' + side_by_side_report(*result.against, all);
+  if (result.earlier) text += '\n' + earlier_report(*result.earlier, all);
   return text + '\n' + last_lines(result);
 }
 

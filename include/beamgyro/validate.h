@@ -35,6 +35,11 @@ struct ValidationOptions {
   std::optional<std::filesystem::path> specification = {};
   /// A compensator file that the answers are compared with.
   std::optional<std::filesystem::path> workbench = {};
+  /// A compensator file that is judged on the same runs, beside the first.
+  std::optional<std::filesystem::path> against = {};
+  /// A result of an earlier validation (`--json`), than which this one must not
+  /// be worse.
+  std::optional<std::filesystem::path> baseline_result = {};
   /// A campaign whose devices are judged, too, for a yield; how many of them.
   std::optional<std::filesystem::path> campaign = {};
   std::optional<std::uint32_t> campaign_devices = {};
@@ -90,6 +95,11 @@ struct ValidationOutcome {
   std::string all_metrics;  ///< the same with every metric: `--all-metrics`
   std::string json;         ///< what `--json` writes
   std::string page;         ///< HTML, what `--report` writes
+  std::string junit;        ///< XML, what `--junit` writes
+  std::string lines;        ///< a line for each case of it: `--lines`
+  /// Of a model: the compensator that was trained and judged, as
+  /// `--save-trained` writes it; else empty.
+  std::string trained;
 };
 
 /// Judges a compensator by every metric, check and limit. The result does not

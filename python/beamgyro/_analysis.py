@@ -151,10 +151,12 @@ def validate(compensator: Any, runs: Optional[Runs] = None, *,
             given["device"] = device_of(device)._native
             given.setdefault("qualification", _shipped.file(
                 "scenarios/qualification.toml"))
-        text, json_text, warnings, page = _judged(compensator, given,
-                                                  function)
+        found = _judged(compensator, given, function)
+    text, json_text, warnings, page, junit, trained = found
     warn(warnings)
-    return ValidationResult(text, json_text, warnings, page)
+    return ValidationResult(
+        text, json_text, warnings, page, junit,
+        Compensator.parse(trained, "trained.json") if trained else None)
 
 
 class _Option(NamedTuple):
@@ -217,7 +219,7 @@ _describe_options()
 
 
 def _judged(compensator: Any, options: dict[str, Any],
-            function: Any) -> tuple[str, str, list[str], str]:
+            function: Any) -> tuple[str, str, list[str], str, str, str]:
     is_model = _checks.is_table(compensator) or (
         isinstance(compensator, (str, os.PathLike))
         and _core.source_kind(os.fsdecode(compensator)) == "model")

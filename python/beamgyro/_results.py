@@ -13,6 +13,8 @@ from beamgyro._scenario import Scenario
 if TYPE_CHECKING:
     import xarray as xr
 
+    from beamgyro._compensation import Compensator
+
 
 class Report:
     """A result: a table for people, and JSON for programs."""
@@ -78,9 +80,11 @@ class ValidationResult(Report):
     """Whether a compensator removes the drift and keeps the rate."""
 
     def __init__(self, text: str, json_text: str, warnings: Sequence[str],
-                 page: str) -> None:
+                 page: str, junit: str, trained: Optional[Compensator]) -> None:
         super().__init__(text, json_text, warnings)
         self._page = page
+        self._junit = junit
+        self._trained = trained
 
     @property
     def verdict(self) -> str:
@@ -102,9 +106,18 @@ class ValidationResult(Report):
         """The checks by name: passed, value, limit, words."""
         return {one["name"]: one for one in self.data["checks"]}
 
+    @property
+    def trained(self) -> Optional[Compensator]:
+        """The compensator that was trained and judged, of a model; or None."""
+        return self._trained
+
     def to_html(self) -> str:
         """Return the page that ``--report`` writes."""
         return self._page
+
+    def to_junit(self) -> str:
+        """Return the XML that ``--junit`` writes."""
+        return self._junit
 
     def _repr_html_(self) -> str:
         metrics = [(one["name"], one["unit"], figure(one.get("before")),

@@ -109,7 +109,7 @@ std::vector<py::tuple> validation_members() {
 
 py::tuple outcome_of(const ValidationOutcome& outcome) {
   return py::make_tuple(outcome.text, outcome.json, outcome.warnings,
-                        outcome.page);
+                        outcome.page, outcome.junit, outcome.trained);
 }
 
 /// Runs a validation; errors about options name the keywords of Python.

@@ -2,6 +2,7 @@
 """The page that `validate --report` writes, opened in headless Chromium."""
 
 import json
+import re
 import shutil
 import unittest
 
@@ -141,10 +142,46 @@ class ReportPage(unittest.TestCase):
         dark.value("window.dispatchEvent(new Event('beforeprint'))")
         self.assertEqual(dark.value(text), on_light)
 
-    def test_prints(self):
+    def test_prints_on_at_most_eight_sheets(self):
         file = self.dir / "printed.pdf"
         self.opened(dark=True).pdf(file)
-        self.assertTrue(file.read_bytes().startswith(b"%PDF"))
+        printed = file.read_bytes()
+        self.assertTrue(printed.startswith(b"%PDF"))
+        sheets = len(re.findall(rb"/Type /Page\b", printed))
+        self.assertGreater(sheets, 3)
+        self.assertLessEqual(sheets, 8)
+
+    def test_the_head_says_what_was_judged_and_can_be_signed(self):
+        head = self.opened().value("document.getElementById('head').innerText")
+        origin = self.result["provenance"]
+        for text in [NAME, origin["device"], origin["qualification"],
+                     origin["specification"], origin["beamgyro_version"],
+                     origin["git_revision"], "at most 2.5 % for each limit",
+                     "public seeds of the qualification", "Date", "Signature"]:
+            self.assertIn(text, head)
+
+    def test_names_metrics_in_words_with_their_unit_once(self):
+        names = self.opened().value(
+            "[...document.querySelectorAll('#metrics summary')]"
+            ".map((each) => each.textContent)")
+        self.assertEqual(len(set(names)), len(self.result["metrics"]))
+        self.assertIn("Vibration rectification [°/s/g²]", names)
+        for name in names:
+            self.assertNotRegex(name, r"_|\bdeg|\bper\b|Hz.*Hz|ppm.*ppm")
+        verdict = self.opened().value(
+            "document.querySelector('.verdict').innerText")
+        for metric in self.result["metrics"]:
+            self.assertNotIn(metric["name"], verdict)
+
+    def test_links_to_every_section(self):
+        links = self.opened().value(
+            "[...document.querySelectorAll('nav a')].map((link) =>"
+            " [link.textContent, document.querySelector(link.hash)"
+            ".querySelector('h2').textContent])")
+        self.assertGreater(len(links), 4)
+        for number, (link, heading) in enumerate(links, 1):
+            self.assertEqual(link, heading)
+            self.assertTrue(link.startswith(f"{number} "))
 
 
 class ReportFile(ProgramTest):

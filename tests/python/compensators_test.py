@@ -179,6 +179,16 @@ def test_a_model_is_trained_and_judged_on_a_simulated_device(tmp_path):
                          progress=shares.append)
     assert "residual_rms_deg_per_s" in result.metrics
     assert all(0 <= share <= 1 for share in shares)
+    (tmp_path / "old.json").write_text(result.to_json())
+    result.trained.save(tmp_path / "own.json")
+    again = bg.validate(result.trained, device=device, spec=limits,
+                        qualification=tmp_path / "short.toml",
+                        against=tmp_path / "own.json",
+                        baseline_result=tmp_path / "old.json")
+    assert again.metrics == result.metrics and again.trained is None
+    assert again.to_junit().startswith("<?xml")
+    assert "do not tell" in again.data["against"]["sentence"]
+    assert again.data["baseline"]["worse"] is False
     with pytest.raises(ValueError, match="one of"):
         bg.validate(CUBIC, "a.h5", device=device)
 

@@ -20,6 +20,7 @@ inline constexpr const char* kBundleFiletype = "beamgyro-bundle";
 inline constexpr const char* kResultFile = "result.json";
 inline constexpr const char* kReportFile = "report.txt";
 inline constexpr const char* kPageFile = "report/index.html";
+inline constexpr const char* kTrainedFile = "trained.json";  // of a model
 
 /// A file that a validation writes.
 struct BundleOutput {

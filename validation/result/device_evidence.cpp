@@ -166,6 +166,18 @@ namespace {
   throw std::invalid_argument(fmt::format("{}: {}", words_of(run), words));
 }
 
+// Makes the answer to a run the evidence of the compensated rate.
+void take_answer(DeviceEvidence& found, std::size_t k, bool reports_clamped) {
+  const Answer& answer = found.answers[k];
+  const Recording& part =
+      found.read[k].from > 0 ? found.late[k] : found.runs[k];
+  found.after.runs[k] = evidence_run(
+      found.read[k], part, answer.rate,
+      reports_clamped ? std::optional(answer.clamped) : std::nullopt);
+  if (!answer.sigma.empty())
+    found.after.runs[k].sigma = last_of(answer.sigma, part.time.size());
+}
+
 }  // namespace
 
 DeviceEvidence answered_evidence(std::vector<ReadRun> read,
@@ -190,9 +202,8 @@ DeviceEvidence answered_evidence(std::vector<ReadRun> read,
     const Recording& run = found.runs[k];
     if (named.from > 0) found.late[k] = later_part(run, named.from);
     const Recording& part = named.from > 0 ? found.late[k] : run;
-    const auto evidence = [&](std::vector<double> rate,
-                              std::optional<std::size_t> clamped = {}) {
-      return evidence_run(named, part, std::move(rate), clamped);
+    const auto evidence = [&](std::vector<double> rate) {
+      return evidence_run(named, part, std::move(rate), {});
     };
     found.before.runs[k] = evidence(column_values(run, "rate"));
     found.baselines[0].evidence.runs[k] = found.before.runs[k];
@@ -205,16 +216,22 @@ DeviceEvidence answered_evidence(std::vector<ReadRun> read,
       if (!answering.reports_clamped) throw;  // what is asked names its run
       throw_named(named, error);
     }
-    found.after.runs[k] = evidence(found.answers[k].rate,
-                                   answering.reports_clamped
-                                       ? std::optional(found.answers[k].clamped)
-                                       : std::nullopt);
-    if (!found.answers[k].sigma.empty())
-      found.after.runs[k].sigma =
-          last_of(found.answers[k].sigma, part.time.size());
+    take_answer(found, k, answering.reports_clamped);
     if (on_done) on_done();
   });
   return found;
+}
+
+void answer_again(DeviceEvidence& found, const TestedCompensator& compensator,
+                  bool reports_clamped, std::size_t threads) {
+  for_each_task(found.read.size(), threads, [&](std::size_t k, std::size_t) {
+    try {
+      found.answers[k] = compensator.answer(found.runs[k]);
+    } catch (const std::invalid_argument& error) {
+      throw_named(found.read[k], error);
+    }
+    take_answer(found, k, reports_clamped);
+  });
 }
 
 DeviceEvidence device_evidence(const Qualification& qualification,

@@ -87,6 +87,10 @@ DeviceEvidence answered_evidence(std::vector<ReadRun> read,
                                  std::size_t threads,
                                  const std::function<void()>& on_done = {});
 
+/// Replaces the answers, and `after`, by those of another compensator.
+void answer_again(DeviceEvidence& found, const TestedCompensator& compensator,
+                  bool reports_clamped, std::size_t threads);
+
 /// Simulates the runs of a qualification and answers them. The baselines
 /// "constant", "cubic", "spline" and "table" are trained on `data`; without
 /// training runs there are none of them.

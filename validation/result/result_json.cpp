@@ -6,6 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "validation/metrics/metric_reading.h"
+#include "validation/result/metric_change.h"
+
 namespace beamgyro::internal {
 namespace {
 
@@ -58,6 +61,7 @@ Json metric_json(const MetricResult& result,
                  const std::vector<DecidedLimit>& limits) {
   const Metric& metric = *result.metric;
   Json json{{"name", metric.name},
+            {"title", title_of(metric)},
             {"unit", metric.unit},
             {"clause", metric.clause},
             {"definition", metric.definition},
@@ -97,6 +101,11 @@ Json check_json(const CheckResult& check) {
           {"words", check.words}};
 }
 
+Json gain_interval(const PairedResidual& found) {
+  if (!std::isfinite(found.half_width)) return nullptr;
+  return {found.gain - found.half_width, found.gain + found.half_width};
+}
+
 // The gain is the logarithm of the quotient of the mean squares.
 Json comparison_json(const ResidualComparison& comparison) {
   const PairedResidual& found = comparison.found;
@@ -104,10 +113,7 @@ Json comparison_json(const ResidualComparison& comparison) {
           {"rms_deg_per_s", found.other_rms},
           {"compensated_rms_deg_per_s", found.rms},
           {"gain", found.gain},
-          {"interval", std::isfinite(found.half_width)
-                           ? Json{found.gain - found.half_width,
-                                  found.gain + found.half_width}
-                           : Json()},
+          {"interval", gain_interval(found)},
           {"better", found.is_better()},
           {"required", comparison.is_required}};
 }
@@ -142,6 +148,60 @@ Json yield_json(const PopulationYield& population) {
                        {"before", figures_json(metric.before)},
                        {"after", figures_json(metric.after)}});
   return json;
+}
+
+Json changes_json(const std::vector<MetricChange>& changes) {
+  Json list = Json::array();
+  for (const MetricChange& one : changes)
+    list.push_back({{"name", one.metric->name},
+                    {"title", title_of(*one.metric)},
+                    {"unit", one.metric->unit},
+                    {"own", estimate_json(one.own)},
+                    {"other", estimate_json(one.other)},
+                    {"difference", estimate_json(one.difference)},
+                    {"change", change_name(one.change)}});
+  return list;
+}
+
+Json compensator_json(const JudgedCompensator& compensator) {
+  return {{"name", compensator.name},
+          {"kind", compensator.kind},
+          {"method", compensator.method},
+          {"inputs", compensator.inputs}};
+}
+
+void add_decisions(const std::vector<DecidedLimit>& limits,
+                   const std::vector<CheckResult>& checks, Json& json) {
+  for (const char* list : {"limits", "checks"}) json[list] = Json::array();
+  for (const DecidedLimit& limit : limits)
+    json["limits"].push_back(decided_json(limit));
+  for (const CheckResult& check : checks)
+    json["checks"].push_back(check_json(check));
+}
+
+Json against_json(const SideBySide& other) {
+  Json json{{"sentence", other.sentence},
+            {"compensator", compensator_json(other.compensator)},
+            {"verdict", verdict_name(other.verdict)},
+            {"words", other.words},
+            {"residual", nullptr},
+            {"metrics", changes_json(other.metrics)}};
+  if (other.residual)
+    json["residual"] = {{"rms_deg_per_s", other.residual->other_rms},
+                        {"compensated_rms_deg_per_s", other.residual->rms},
+                        {"gain", other.residual->gain},
+                        {"interval", gain_interval(*other.residual)}};
+  add_decisions(other.limits, other.checks, json);
+  return json;
+}
+
+Json baseline_json(const EarlierComparison& earlier) {
+  return {{"file", earlier.name},
+          {"verdict", earlier.verdict},
+          {"worse", earlier.is_worse()},
+          {"lost", earlier.lost},
+          {"other_inputs", earlier.other_inputs},
+          {"metrics", changes_json(earlier.metrics)}};
 }
 
 Json provenance_json(const ResultProvenance& provenance) {
@@ -195,11 +255,7 @@ nlohmann::ordered_json to_json(const ValidationResult& result) {
             {"verdict", verdict_name(result.verdict)},
             {"words", result.words},
             {"next", result.next},
-            {"compensator",
-             {{"name", result.compensator.name},
-              {"kind", result.compensator.kind},
-              {"method", result.compensator.method},
-              {"inputs", result.compensator.inputs}}}};
+            {"compensator", compensator_json(result.compensator)}};
   if (const auto& workbench = result.compensator.workbench) {
     Json& compensator = json["compensator"];
     compensator["workbench"] = workbench->name;
@@ -217,11 +273,9 @@ nlohmann::ordered_json to_json(const ValidationResult& result) {
                      {{"before", number_or_null(run.before)},
                       {"after", number_or_null(run.after)}}}});
   json["metrics"] = metrics_json(result.metrics, result.limits);
-  for (const char* list : {"limits", "checks"}) json[list] = Json::array();
-  for (const DecidedLimit& limit : result.limits)
-    json["limits"].push_back(decided_json(limit));
-  for (const CheckResult& check : result.checks)
-    json["checks"].push_back(check_json(check));
+  add_decisions(result.limits, result.checks, json);
+  if (result.against) json["against"] = against_json(*result.against);
+  if (result.earlier) json["baseline"] = baseline_json(*result.earlier);
   if (result.population) json["population"] = yield_json(*result.population);
   if (result.sigma) json["sigma"] = sigma_json(*result.sigma);
   json["warnings"] = result.warnings;

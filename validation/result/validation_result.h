@@ -122,6 +122,50 @@ struct PopulationYield {
   }
 };
 
+/// How a metric compares with another value of it.
+enum class Change {
+  kSame,    // within the interval of the difference
+  kBetter,  // beyond it, closer to the best value
+  kWorse,
+  kUnknown,  // another value, and neither has an interval
+};
+
+/// A metric of the compensated rate beside another value of it.
+struct MetricChange {
+  const Metric* metric = nullptr;  // of metrics()
+  Estimate own, other;
+  Estimate difference = {0.0};  // own less other
+  Change change = Change::kSame;
+};
+
+/// A result beside an earlier one.
+struct EarlierComparison {
+  std::string name;     // of the file of the earlier one
+  std::string verdict;  // that it had
+  std::vector<MetricChange> metrics;
+  // Limits and checks that passed and do not pass any more.
+  std::vector<std::string> lost;
+  // Groups of files, such as "device", that are not the same.
+  std::vector<std::string> other_inputs;
+
+  bool is_worse() const {
+    return !lost.empty() || std::ranges::count(metrics, Change::kWorse,
+                                               &MetricChange::change) > 0;
+  }
+};
+
+/// Another compensator on the same runs.
+struct SideBySide {
+  JudgedCompensator compensator;
+  Verdict verdict = Verdict::kUndecided;
+  std::string words;     // the reason for it
+  std::string sentence;  // which of the two is better, or that it is open
+  std::optional<PairedResidual> residual = {};  // of the first, less the other
+  std::vector<MetricChange> metrics = {};
+  std::vector<DecidedLimit> limits = {};  // in the order of the specification
+  std::vector<CheckResult> checks = {};   // in the order of check_definitions()
+};
+
 /// Where a result comes from.
 struct ResultProvenance {
   std::string program_version, git_revision;
@@ -148,6 +192,8 @@ struct ValidationResult {
   std::vector<std::string> shared_seeds = {};
   // Where the compensator states a sigma; over all devices of a set.
   std::optional<SigmaReport> sigma = {};
+  std::optional<SideBySide> against = {};
+  std::optional<EarlierComparison> earlier = {};
   std::vector<std::string> warnings = {};
   ResultProvenance provenance = {};
 };
