@@ -12,6 +12,7 @@
 #include "api/validator.h"
 #include "dataset/files/json_text.h"
 #include "parallel/work_queue.h"
+#include "random/system_seed.h"
 #include "report/verdict_report.h"
 #include "validation/page/figures.h"
 #include "validation/page/page.h"
@@ -121,6 +122,8 @@ ValidationOutcome validated(const Validator& validator,
 }
 
 }  // namespace internal
+
+std::uint64_t random_seed() { return internal::system_random_bits() >> 12; }
 
 ValidationOutcome validate(const RateCompensator& compensator,
                            const ValidationOptions& options) {

@@ -23,7 +23,8 @@ using AnyOption = std::variant<
     OptionOf<std::vector<std::filesystem::path>>,
     OptionOf<std::optional<std::filesystem::path>>,
     OptionOf<std::vector<std::string>>, OptionOf<std::vector<std::uint32_t>>,
-    OptionOf<std::optional<std::uint32_t>>, OptionOf<std::optional<double>>>;
+    OptionOf<std::optional<std::uint32_t>>, OptionOf<std::optional<double>>,
+    OptionOf<std::optional<std::uint64_t>>>;
 
 /// What a compensator may be judged on, as bits.
 enum Subject : unsigned { kOnDevice = 1, kOnRecordings = 2, kOnSet = 4 };
@@ -50,8 +51,8 @@ std::span<const ValidationMember> validation_members();
 /// Returns the row of a member.
 const ValidationMember& member_named(std::string_view name);
 
-/// Returns "file", "text", "texts", "whole", "wholes" or "number"; empty for a
-/// subject.
+/// Returns "file", "text", "texts", "whole", "wholes", "seed" or "number";
+/// empty for a subject.
 std::string_view type_name(const ValidationMember& row);
 
 /// Returns which of "device", "recordings" and "set" it goes with.

@@ -182,6 +182,13 @@ class _Option(NamedTuple):
             return _checks.file(value, self.keyword, self.kind)
         if self.type == "number":
             return _arguments.number(value, self.keyword, above=0)
+        if self.type == "seed":
+            if isinstance(value, str) and value == "random":
+                return _core.random_seed()
+            if isinstance(value, str):
+                raise _checks.wrong(value, self.keyword,
+                                    'a whole number, or "random"')
+            return _arguments.seed(value, _arguments.LARGEST_JSON_SEED)
         if self.type == "whole":
             return _arguments.whole(value, self.keyword, least=1)
         return (_checks.texts if self.type == "texts"
@@ -192,6 +199,7 @@ class _Option(NamedTuple):
         types = {"file": Union[Path, Mapping[str, Any], None]
                  if self.kind == "a specification" else Optional[Path],
                  "number": Optional[float], "whole": Optional[int],
+                 "seed": Union[int, str, None],
                  "texts": Iterable[str], "wholes": Iterable[int]}
         return inspect.Parameter(
             self.keyword, inspect.Parameter.KEYWORD_ONLY,
