@@ -42,7 +42,7 @@ std::map<std::string, QualificationRun> runs_of(
 }
 
 double start_of(const QualificationRun& run) {
-  return run.scenario.ambient.at(0.0) - 273.15;  // [degC]
+  return run.scenario.ambient.value(0.0) - 273.15;  // [degC]
 }
 
 TEST(SeedDraw, TheSameSeedGivesTheSameRunsInTheSameOrder) {
@@ -89,7 +89,8 @@ TEST(SeedDraw, ARunIsThatOfItsScenarioWithItsOverrides) {
     EXPECT_EQ(again.seed, run.scenario.seed) << run.name;
     EXPECT_EQ(again.duration, run.scenario.duration) << run.name;
     for (const double t : {0.0, 4000.0, 30000.0})
-      EXPECT_EQ(again.ambient.at(t), run.scenario.ambient.at(t)) << run.name;
+      EXPECT_EQ(again.ambient.value(t), run.scenario.ambient.value(t))
+          << run.name;
   }
 }
 
@@ -104,8 +105,8 @@ TEST(SeedDraw, TheShippedSpansKeepWhatChecksAndModelsNeed) {
       if (run.purpose == RunPurpose::kRateTable)
         tables.push_back(start_of(run));
       for (double t = 0; t < run.scenario.duration; t += 600) {
-        EXPECT_GT(run.scenario.ambient.at(t) - 273.15, kLowest) << run.name;
-        EXPECT_LT(run.scenario.ambient.at(t) - 273.15, kHighest) << run.name;
+        EXPECT_GT(run.scenario.ambient.value(t) - 273.15, kLowest) << run.name;
+        EXPECT_LT(run.scenario.ambient.value(t) - 273.15, kHighest) << run.name;
       }
     }
     std::ranges::sort(tables);
