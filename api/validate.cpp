@@ -13,6 +13,7 @@
 #include "compensation/compensator/compensator_file.h"
 #include "dataset/files/json_text.h"
 #include "parallel/work_queue.h"
+#include "random/system_seed.h"
 #include "report/ci_report.h"
 #include "report/verdict_report.h"
 #include "validation/page/figures.h"
@@ -128,6 +129,8 @@ ValidationOutcome validated(const Validator& validator,
 }
 
 }  // namespace internal
+
+std::uint64_t random_seed() { return internal::system_random_bits() >> 12; }
 
 ValidationOutcome validate(const RateCompensator& compensator,
                            const ValidationOptions& options) {

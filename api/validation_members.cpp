@@ -76,6 +76,17 @@ constexpr std::array kMembers{
                      "campaign", "devices", "devices", "N",
                      "Number of these devices", "that of the campaign",
                      kDeviceHeading, "devices"},
+    ValidationMember{
+        "seed", &Options::seed, kOnDevice, "", "seed", "seed", "N|random",
+        "Draws noise, order, lengths and temperatures of the runs, "
+        "and the devices of a campaign, from this seed or a random "
+        "one",
+        "the qualification as its file says", kDeviceHeading, "seed"},
+    ValidationMember{
+        "seeds", &Options::seeds, kOnDevice, "", "seeds", "seeds", "N",
+        "Judges with so many seeds in a row, the first of them that seed or "
+        "else 1; the worst verdict counts",
+        "one seed", kDeviceHeading, "seeds"},
     ValidationMember{"runs", &Options::runs, kOnSet, "", "set_runs", "run",
                      "NAME", "Run to judge; may be repeated", "all runs",
                      kSetHeading, ""}};
@@ -84,6 +95,23 @@ unsigned subjects_of(const ValidationOptions& options) {
   return (options.device ? kOnDevice : 0U) |
          (options.recordings.empty() ? 0U : kOnRecordings) |
          (options.set ? kOnSet : 0U);
+}
+
+void require_seeds(const ValidationOptions& options) {
+  constexpr std::uint32_t kMostSeeds = 10'000;
+  const auto named = [](const char* name, std::uint64_t value) {
+    return NamedOption{name, std::to_string(value)};
+  };
+  if (options.seeds && (*options.seeds < 1 || *options.seeds > kMostSeeds))
+    throw option_error("{}: out of range; expected a whole number from 1 to {}",
+                       named("seeds", *options.seeds), kMostSeeds);
+  const std::uint64_t most = kLargestSeed - (options.seeds.value_or(1) - 1);
+  if (options.seed && *options.seed > most)
+    throw option_error("{}: out of range; expected a whole number from 0 to {}",
+                       named("seed", *options.seed), most);
+  if (options.seeds && options.campaign)
+    throw option_error("{} is for one device; expected no {} beside it",
+                       named("seeds", *options.seeds), NamedOption{"campaign"});
 }
 
 std::string words_of(unsigned subjects) {
@@ -112,6 +140,8 @@ std::string_view type_name(const ValidationMember& row) {
         using Value = std::decay_t<decltype(ValidationOptions().*member)>;
         if constexpr (std::is_same_v<Value, std::optional<double>>)
           return "number";
+        if constexpr (std::is_same_v<Value, std::optional<std::uint64_t>>)
+          return "seed";
         if constexpr (std::is_same_v<Value, std::optional<std::uint32_t>>)
           return "whole";
         if constexpr (std::is_same_v<Value, std::vector<std::uint32_t>>)
@@ -175,6 +205,7 @@ void require_sound(const ValidationOptions& options) {
     throw std::invalid_argument(
         "qualification is missing; expected a qualification file, which says "
         "what the device goes through");
+  require_seeds(options);
   std::vector<std::string> names;
   for (const std::filesystem::path& path : options.recordings)
     names.push_back(path.string());

@@ -18,14 +18,13 @@ namespace beamgyro::internal {
 /// A member of ValidationOptions by its type.
 template <class T>
 using OptionOf = T ValidationOptions::*;
-using AnyOption =
-    std::variant<OptionOf<std::optional<Device>>, OptionOf<std::optional<Set>>,
-                 OptionOf<std::vector<std::filesystem::path>>,
-                 OptionOf<std::optional<std::filesystem::path>>,
-                 OptionOf<std::vector<std::string>>,
-                 OptionOf<std::vector<std::uint32_t>>,
-                 OptionOf<std::optional<std::uint32_t>>,
-                 OptionOf<std::optional<double>>, OptionOf<bool>>;
+using AnyOption = std::variant<
+    OptionOf<std::optional<Device>>, OptionOf<std::optional<Set>>,
+    OptionOf<std::vector<std::filesystem::path>>,
+    OptionOf<std::optional<std::filesystem::path>>,
+    OptionOf<std::vector<std::string>>, OptionOf<std::vector<std::uint32_t>>,
+    OptionOf<std::optional<std::uint32_t>>, OptionOf<std::optional<double>>,
+    OptionOf<std::optional<std::uint64_t>>, OptionOf<bool>>;
 
 /// What a compensator may be judged on, as bits.
 enum Subject : unsigned { kOnDevice = 1, kOnRecordings = 2, kOnSet = 4 };
@@ -52,7 +51,8 @@ std::span<const ValidationMember> validation_members();
 /// Returns the row of a member.
 const ValidationMember& member_named(std::string_view name);
 
-/// Returns "file", "text", "texts", "whole", "wholes", "number" or "flag";
+/// Returns "file", "text", "texts", "whole", "wholes", "seed", "number" or
+/// "flag";
 /// empty for a subject.
 std::string_view type_name(const ValidationMember& row);
 

@@ -26,11 +26,13 @@
 #include "validation/external/compensator_source.h"
 #include "validation/metrics/rate_noise_model.h"
 #include "validation/qualification/qualification_file.h"
+#include "validation/qualification/seed_draw.h"
 #include "validation/result/earlier_result.h"
 #include "validation/result/judgement.h"
 #include "validation/result/metric_change.h"
 #include "validation/result/population_yield.h"
 #include "validation/result/recorded_evidence.h"
+#include "validation/result/seed_verdicts.h"
 #include "validation/result/set_verdicts.h"
 
 namespace beamgyro::internal {
@@ -68,6 +70,11 @@ std::vector<std::string> warnings_about(const Evidence& evidence) {
       unstated.size() == 1 ? ""
                            : fmt::format(" and {} more", unstated.size() - 1))};
 }
+
+// Said of code whose maker can know what it is judged on.
+constexpr std::string_view kPublicSeed =
+    " Judged with the public seed of the qualification, whose runs code can "
+    "know beforehand: a random seed is the exam for code.";
 
 }  // namespace
 
@@ -143,9 +150,12 @@ struct Validator::State {
 
   void read_campaign() {
     campaign = CampaignPlan::read(
-        *options.campaign, options.campaign_devices
-                               ? std::optional<long>(*options.campaign_devices)
-                               : std::nullopt);
+        *options.campaign,
+        options.campaign_devices
+            ? std::optional<long>(*options.campaign_devices)
+            : std::nullopt,
+        options.seed ? std::optional(drawn_campaign_seed(*options.seed))
+                     : std::nullopt);
     for (const SourceText& file : campaign->sources)
       add_file("campaign", file.path, file.text);
   }
@@ -173,16 +183,16 @@ struct Validator::State {
   }
 
   // Judges the compensator of --against on the same runs.
-  SideBySide beside(const ValidationResult& result, DeviceEvidence& evidence,
-                    std::size_t threads) const {
+  SideBySide beside(const Qualification& judged, const ValidationResult& result,
+                    DeviceEvidence& evidence, std::size_t threads) const {
     const auto other = tested(*against);
     const double ready_after = specification.declared.ready_after;
     const auto ready =
         ready_after > 0.0 ? ready_compensator(*other, ready_after) : nullptr;
-    return side_by_side(
-        {specification, qualification.metric_runs, *other, &*against},
-        ready ? *ready : *other, options.against->filename().string(), result,
-        evidence, threads);
+    return side_by_side({specification, judged.metric_runs, *other, &*against},
+                        ready ? *ready : *other,
+                        options.against->filename().string(), result, evidence,
+                        threads);
   }
 
   void require_model_can_be_trained() const {
@@ -220,7 +230,26 @@ struct Validator::State {
     }
   }
 
-  ResultProvenance provenance() const {
+  bool is_code() const {
+    return is_program(source.kind) || source.kind == SourceKind::kFunction;
+  }
+
+  CompletedValidation validated(const Qualification& judged,
+                                std::optional<std::uint64_t> seed,
+                                std::size_t threads,
+                                const ProgressOfWork& progress) const;
+
+  // Draws the runs from a seed, if there is one.
+  CompletedValidation validated_with(std::optional<std::uint64_t> seed,
+                                     std::size_t threads,
+                                     const ProgressOfWork& progress) const {
+    return validated(
+        seed ? drawn_qualification(qualification, *seed) : qualification, seed,
+        threads, progress);
+  }
+
+  ResultProvenance provenance(const Qualification& judged,
+                              std::optional<std::uint64_t> seed) const {
     ResultProvenance p{
         .program_version = kProgramVersion,
         .git_revision = kGitRevision,
@@ -231,14 +260,15 @@ struct Validator::State {
                              ? options.qualification->filename().string()
                              : "",
         .specification = specification.name,
+        .seed = seed,
         .false_accept_risk = specification.false_accept_risk,
         .files = {},
         .seeds = {}};
     for (const ValidationInput& input : inputs)
       p.files.push_back(
           {input.group, input.path.filename().string(), input.sha256});
-    for (const auto* runs : {&qualification.runs, &qualification.training,
-                             &qualification.held_out, &qualification.turning})
+    for (const auto* runs :
+         {&judged.runs, &judged.training, &judged.held_out, &judged.turning})
       for (const QualificationRun& run : *runs)
         p.seeds.emplace_back(run.name, run.scenario.seed);
     return p;
@@ -279,12 +309,28 @@ const std::vector<ValidationInput>& Validator::inputs() const {
 CompletedValidation Validator::validate(std::size_t threads,
                                         const ProgressOfWork& progress) const {
   const State& s = *state_;
+  CompletedValidation done =
+      s.options.seeds ? seed_verdicts(
+                            {s.options.seed.value_or(1), *s.options.seeds},
+                            [&s](std::uint64_t seed, std::size_t share) {
+                              return s.validated_with(seed, share, {});
+                            },
+                            s.specification, threads, progress)
+                      : s.validated_with(s.options.seed, threads, progress);
+  if (s.options.device && !s.options.seed && s.is_code())
+    done.result.words += kPublicSeed;
+  return done;
+}
+
+CompletedValidation Validator::State::validated(
+    const Qualification& judged, std::optional<std::uint64_t> seed,
+    std::size_t threads, const ProgressOfWork& progress) const {
+  const State& s = *this;
   const double share = s.campaign ? 0.05 : 0.8;  // of the work, of the device
   const ModelSpec* model = s.source.model ? &*s.source.model : nullptr;
   const TrainingData data =
-      s.options.device
-          ? training_data(s.qualification, s.device, model, threads)
-          : TrainingData{};
+      s.options.device ? training_data(judged, s.device, model, threads)
+                       : TrainingData{};
   std::optional<FittedCompensator> trained = s.source.trained;
   std::shared_ptr<const TestedCompensator> compensator = s.source.tested;
   if (model != nullptr) {
@@ -305,12 +351,11 @@ CompletedValidation Validator::validate(std::size_t threads,
                                     s.options.require_provenance};
   if (s.options.device) {
     done.evidence =
-        device_evidence(s.qualification, s.device, answering_one, data,
-                        known != nullptr, threads, [&](double part) {
+        device_evidence(judged, s.device, answering_one, data, known != nullptr,
+                        threads, [&](double part) {
                           if (progress) progress(share * part);
                         });
-    result.warnings =
-        warnings_about(s.qualification, s.device.device, done.evidence);
+    result.warnings = warnings_about(judged, s.device.device, done.evidence);
   } else if (s.set) {
     SetVerdicts found =
         set_verdicts(*s.set, answering, s.specification, threads, progress,
@@ -335,25 +380,25 @@ CompletedValidation Validator::validate(std::size_t threads,
     for (std::string& text : warnings_about(done.evidence.before))
       result.warnings.push_back(std::move(text));
   }
-  result.provenance = s.provenance();
+  result.provenance = s.provenance(judged, seed);
   if (!s.set) {
     difference = s.difference_from_workbench(done.evidence);
-    judge({s.specification, s.qualification.metric_runs, *compensator, known,
-           nullptr, s.options.require_provenance},
+    judge({s.specification, judged.metric_runs, *compensator, known, nullptr,
+           s.options.require_provenance},
           done.evidence, threads, result);
   }
   result.compensator = {s.source.name, std::string(kind_name(s.source.kind)),
                         known != nullptr ? known->provenance.method : "",
                         compensator->inputs(), difference};
-  if (s.against) result.against = s.beside(result, done.evidence, threads);
+  if (s.against)
+    result.against = s.beside(judged, result, done.evidence, threads);
   if (s.earlier) compare_with(*s.earlier, result);
   if (s.campaign)
-    result.population =
-        population_yield({&*s.campaign, &s.qualification, &s.specification,
-                          &answering_one, model, known},
-                         threads, [&](double part) {
-                           if (progress) progress(share + (1 - share) * part);
-                         });
+    result.population = population_yield(
+        {&*s.campaign, &judged, &s.specification, &answering_one, model, known},
+        threads, [&](double part) {
+          if (progress) progress(share + (1 - share) * part);
+        });
   require_unchanged(s.source);
   if (model != nullptr) done.trained = std::move(trained);
   return done;
@@ -423,6 +468,9 @@ void read_value(const ValidationMember& row, const Bundle& bundle,
         } else if constexpr (std::is_same_v<Value,
                                             std::optional<std::uint32_t>>) {
           value = static_cast<std::uint32_t>(node.integer(1, kMostDevices));
+        } else if constexpr (std::is_same_v<Value,
+                                            std::optional<std::uint64_t>>) {
+          value = node.unsigned_integer();
         } else {
           node.fail("expected none, in a bundle");
         }

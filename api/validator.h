@@ -12,16 +12,9 @@
 #include "validation/bundle/bundle.h"
 #include "validation/external/compensator_source.h"
 #include "validation/result/device_evidence.h"
-#include "validation/result/validation_result.h"
+#include "validation/result/judgement.h"
 
 namespace beamgyro::internal {
-
-/// A result and the evidence that it is drawn from.
-struct CompletedValidation {
-  ValidationResult result;
-  DeviceEvidence evidence;
-  std::optional<FittedCompensator> trained = {};  // of a model, on the device
-};
 
 /// A validation whose files have been read and checked, each of them once.
 class Validator {
@@ -42,11 +35,11 @@ class Validator {
   const std::vector<ValidationInput>& inputs() const;
 
   /// Simulates the qualification for the device, or reads the recordings, and
-  /// judges the compensator; does so with the devices of the campaign, if there
-  /// is one. Of a set every device is judged; the verdict is the worst of them,
-  /// and the result that of the first device with it. The result does not
-  /// depend on the number of threads. Throws std::runtime_error when a file has
-  /// changed since it was read first.
+  /// judges the compensator, with every seed that is asked for; does so with
+  /// the devices of the campaign, if there is one. Of a set every device is
+  /// judged; the verdict is the worst of them, and the result that of the first
+  /// device with it. The result does not depend on the number of threads.
+  /// Throws std::runtime_error when a file has changed since it was read first.
   CompletedValidation validate(std::size_t threads,
                                const ProgressOfWork& progress = {}) const;
 

@@ -76,6 +76,13 @@ void Command::choices(const OptionText& text, std::vector<std::string>& values,
   app_->get_option(text.long_name())->delimiter(',');
 }
 
+void Command::seed(const OptionText& text,
+                   std::optional<std::uint64_t>& value) {
+  add(text, Count::kOne, [&value, text](const Words& words) {
+    value = seed_or_random(text.long_name(), words[0]);
+  });
+}
+
 void Command::flag(const OptionText& text, bool& value) {
   add(text, Count::kNone, {});
   app_->add_flag(text.names, value);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -85,6 +86,8 @@ class Command {
           whole_number(text.long_name(), words[0], range.low, range.high));
     });
   }
+  /// A seed of a validation, or the word "random" for one of the system.
+  void seed(const OptionText& text, std::optional<std::uint64_t>& value);
   /// An option that takes all numbers up to the next option.
   template <class Whole>
   void integers(const OptionText& text, std::vector<Whole>& values,

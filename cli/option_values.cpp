@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "config/suggestion.h"
+#include "include/beamgyro/validate.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -44,6 +45,19 @@ long whole_number(const std::string& option, const std::string& text, long low,
     fail_value(option, text, wrong,
                fmt::format("a whole number from {} to {}", low, high));
   return number;
+}
+
+std::uint64_t seed_or_random(const std::string& option,
+                             const std::string& text) {
+  if (text == "random") return random_seed();
+  std::uint64_t seed = 0;
+  std::string wrong = read_all(text, seed, "a seed");
+  if (wrong.empty() && seed > kLargestSeed) wrong = "out of range";
+  if (!wrong.empty())
+    fail_value(
+        option, text, wrong,
+        fmt::format("random, or a whole number from 0 to {}", kLargestSeed));
+  return seed;
 }
 
 double decimal_number(const std::string& option, const std::string& text,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,10 @@ namespace beamgyro::internal {
 /// Reads a whole number in [low, high].
 long whole_number(const std::string& option, const std::string& text, long low,
                   long high);
+
+/// Reads a seed of a validation; "random" is one of the operating system.
+std::uint64_t seed_or_random(const std::string& option,
+                             const std::string& text);
 
 double decimal_number(const std::string& option, const std::string& text,
                       const Range& range);

@@ -76,6 +76,8 @@ void add_member(const ValidationMember& row, Command& command,
           command.integer(text, value, {1, 4000000000});
         else if constexpr (std::is_same_v<Value, bool>)
           command.flag(text, value);
+        else if constexpr (std::is_same_v<Value, std::optional<std::uint64_t>>)
+          command.seed(text, value);
         else if constexpr (std::is_same_v<Value, std::vector<std::string>>)
           command.list(text, value);
         else if constexpr (std::is_same_v<Value,

@@ -61,6 +61,14 @@ void insert_all(DocumentState& state) {
     insert_override(all[i], i, state.name, state.root);
 }
 
+// A value of an override has its place where its key is.
+void settle(ConfigNode& node) {
+  if (node.origin) node.position = node.key_position;
+  node.origin.reset();
+  node.bridge = node.known = false;
+  for (ConfigNode& child : node.children) settle(child);
+}
+
 }  // namespace
 
 ConfigDocument::ConfigDocument(std::shared_ptr<DocumentState> state)
@@ -101,6 +109,18 @@ ConfigDocument ConfigDocument::with(const Overrides& overrides,
   state->root = *state_->file_root;
   state->overrides = overrides.state_;
   insert_all(*state);
+  return ConfigDocument(std::move(state));
+}
+
+ConfigDocument ConfigDocument::settled() const {
+  auto state = std::make_shared<DocumentState>();
+  state->path = state_->path;
+  state->name = state_->name;
+  state->text = state_->text;
+  state->root = state_->root;
+  settle(state->root);
+  state->file_root = std::make_shared<const ConfigNode>(state->root);
+  state->overrides = std::make_shared<OverrideSet>();
   return ConfigDocument(std::move(state));
 }
 

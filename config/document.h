@@ -30,6 +30,10 @@ class ConfigDocument {
   ConfigDocument with(const Overrides& overrides,
                       const std::string& name = "") const;
 
+  /// Returns the same with its overrides as a part of the file, with no key
+  /// read yet. Its text stays that of the file.
+  ConfigDocument settled() const;
+
   /// Returns the value of a dotted key, or null. This does not count as reading
   /// the key.
   const ConfigNode* value(std::string_view dotted_key) const;

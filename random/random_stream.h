@@ -37,6 +37,9 @@ enum RandomPurpose : std::uint32_t {
   kRankResampleStream,
   kRankSampleStream,
   kResidualForecastStream,
+  kQualifiedRunSeedStream,
+  kQualifiedRunOrderStream,
+  kQualifiedCampaignStream,
 };
 
 /// Returns the inverse of the normal distribution function. Throws

@@ -169,16 +169,17 @@ std::string median_and_worst(std::vector<double> values) {
                      values[n - 1]);
 }
 
-std::string device_table(const PopulationYield& population) {
-  if (population.metrics.empty()) return "";
+// Metrics over devices or seeds: "20 seeds".
+std::string followed_table(const std::string& number,
+                           const std::vector<PopulationMetric>& metrics) {
+  if (metrics.empty()) return "";
   std::size_t width = 7;
-  for (const PopulationMetric& metric : population.metrics)
+  for (const PopulationMetric& metric : metrics)
     width = std::max(width, metric.metric->name.size());
   std::string text = fmt::format(
-      "{:<{}}{:>20}{:>20}\n{:{}}{:>10}{:>10}{:>10}{:>10}\n",
-      fmt::format("{} devices", population.devices.size()), width, "before",
-      "after", "", width, "median", "worst", "median", "worst");
-  for (const PopulationMetric& metric : population.metrics)
+      "{:<{}}{:>20}{:>20}\n{:{}}{:>10}{:>10}{:>10}{:>10}\n", number, width,
+      "before", "after", "", width, "median", "worst", "median", "worst");
+  for (const PopulationMetric& metric : metrics)
     text += fmt::format("{:<{}}{}{}\n", metric.metric->name, width,
                         median_and_worst(metric.before),
                         median_and_worst(metric.after));
@@ -197,6 +198,23 @@ std::string yield_lines(const PopulationYield& population) {
           population.trained_on_each ? "trained on each device"
                                      : "one compensator for all"),
       2);
+}
+
+std::string seed_lines(const SeedVerdicts& seeds) {
+  std::string text = wrapped(
+      fmt::format("{} of {} seeds from {} on pass, {:.1f} % [{:.1f}, {:.1f}]; "
+                  "{} fail, {} undecided; all above is of the seed {}",
+                  seeds.passed, seeds.seeds.size(), seeds.seeds.front().seed,
+                  100 * seeds.share(), 100 * seeds.interval.low,
+                  100 * seeds.interval.high, seeds.failed, seeds.undecided,
+                  seeds.shown),
+      2);
+  for (const auto& [seed, verdict, words] : seeds.seeds)
+    if (verdict != Verdict::kPass)
+      text += wrapped(
+          fmt::format("{:<10}seed {}: {}", verdict_name(verdict), seed, words),
+          10);
+  return text;
 }
 
 // "91.2 % [85, 95] of 27 soaks", of the intervals of 90 %.
@@ -227,7 +245,8 @@ std::string sigma_lines(const SigmaReport& sigma) {
 std::string evidence_words(const ValidationResult& result) {
   const ResultProvenance& provenance = result.provenance;
   if (!provenance.device.empty())
-    return provenance.device + ", " + provenance.qualification;
+    return provenance.device + ", " + provenance.qualification +
+           (provenance.seed ? fmt::format(", seed {}", *provenance.seed) : "");
   if (result.population)
     return result.population->shown.empty()
                ? result.population->campaign
@@ -267,7 +286,15 @@ std::string verdict_report(const ValidationResult& result, bool all) {
           2) +
       workbench_line(result.compensator) + '\n' + run_table(result) + '\n' +
       metric_table(result, all);
-  if (result.population) text += '\n' + device_table(*result.population);
+  if (result.population)
+    text +=
+        '\n' + followed_table(
+                   fmt::format("{} devices", result.population->devices.size()),
+                   result.population->metrics);
+  if (result.seeds)
+    text += '\n' +
+            followed_table(fmt::format("{} seeds", result.seeds->seeds.size()),
+                           result.seeds->metrics);
   if (!result.limits.empty()) text += '\n';
   for (const DecidedLimit& limit : result.limits)
     text += limit_line(result, limit);
@@ -276,6 +303,7 @@ std::string verdict_report(const ValidationResult& result, bool all) {
   if (result.population) text += '\n' + yield_lines(*result.population);
   if (result.against) text += '\n' + side_by_side_report(*result.against, all);
   if (result.earlier) text += '\n' + earlier_report(*result.earlier, all);
+  if (result.seeds) text += '\n' + seed_lines(*result.seeds);
   return text + '\n' + last_lines(result);
 }
 

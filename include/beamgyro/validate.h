@@ -18,6 +18,12 @@
 
 namespace beamgyro {
 
+constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;
+
+/// Returns a seed that nobody can know before, from the operating system. It is
+/// below 2^52, so that seeds may follow it.
+std::uint64_t random_seed();
+
 /// What a compensator is judged on and by: `device`, `recordings` or `set`.
 /// The command and Python take the same members under the names of
 /// docs/reference/commands.md and docs/guide/python.md.
@@ -43,6 +49,13 @@ struct ValidationOptions {
   /// A campaign whose devices are judged, too, for a yield; how many of them.
   std::optional<std::filesystem::path> campaign = {};
   std::optional<std::uint32_t> campaign_devices = {};
+  /// Draws noise, random rates, the order and the lengths and temperatures of
+  /// runs, and the devices of a campaign anew, at most kLargestSeed; none: the
+  /// qualification as its file says, which anybody can know. Of a device only.
+  std::optional<std::uint64_t> seed = {};
+  /// Judges with so many seeds in a row, from `seed` or else from 1 on, at most
+  /// 10000. The verdict is the worst of them. Not with a campaign.
+  std::optional<std::uint32_t> seeds = {};
   std::optional<double> full_scale = {};  ///< [deg/s], above 0; not of a device
   /// Whether a compensator that does not say what it was trained on fails.
   bool require_provenance = false;

@@ -177,6 +177,13 @@ class _Option(NamedTuple):
             return _checks.file(value, self.keyword, self.kind)
         if self.type == "number":
             return _arguments.number(value, self.keyword, above=0)
+        if self.type == "seed":
+            if isinstance(value, str) and value == "random":
+                return _core.random_seed()
+            if isinstance(value, str):
+                raise _checks.wrong(value, self.keyword,
+                                    'a whole number, or "random"')
+            return _arguments.seed(value, _arguments.LARGEST_JSON_SEED)
         if self.type == "whole":
             return _arguments.count(value, self.keyword)
         if self.type == "flag":
@@ -189,8 +196,8 @@ class _Option(NamedTuple):
         types = {"file": Union[Path, Mapping[str, Any], None]
                  if self.kind == "a specification" else Optional[Path],
                  "number": Optional[float], "whole": Optional[int],
-                 "texts": Iterable[str], "wholes": Iterable[int],
-                 "flag": bool}
+                 "seed": Union[int, str, None], "texts": Iterable[str],
+                 "wholes": Iterable[int], "flag": bool}
         return inspect.Parameter(
             self.keyword, inspect.Parameter.KEYWORD_ONLY,
             default={"texts": (), "wholes": (), "flag": False}.get(self.type),

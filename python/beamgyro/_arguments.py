@@ -18,6 +18,7 @@ from beamgyro._words import shown, wrong
 Array = np.ndarray[Any, Any]
 
 _LARGEST_SEED = 2 ** 64 - 1
+LARGEST_JSON_SEED = 2 ** 53 - 1  # whole for every reader of JSON
 LARGEST_TOML_SEED = 2 ** 63 - 1  # an integer of TOML is signed
 _LARGEST_NUMBER = 2 ** 32 - 1  # of devices, samples and the like
 _MOST_JOBS = 4096

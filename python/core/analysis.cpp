@@ -228,6 +228,7 @@ void bind_analysis(py::module_& core) {
   core.def("allan_file", &allan_file);
   core.def("validate", &validate_compensator);
   core.def("validation_members", &validation_members);
+  core.def("random_seed", &random_seed);
   core.def("source_kind", [](const std::string& argument) {
     return internal::kind_name(internal::source_kind(argument));
   });

@@ -81,12 +81,14 @@ struct VirtualRun {
 /// called by many threads at once, and what they return depends on the
 /// campaign's files and their arguments alone.
 struct CampaignPlan {
-  /// Reads a campaign. `devices` replaces the number of devices in the file.
+  /// Reads a campaign. `devices` replaces the number of devices in the file,
+  /// `seed` its seed.
   /// Checks the base device, every scenario, every choice and the median of
   /// every distribution. Throws std::invalid_argument "file:line:column: key:
   /// ...".
   static CampaignPlan read(const std::filesystem::path& file,
-                           std::optional<long> devices = {});
+                           std::optional<long> devices = {},
+                           std::optional<std::uint64_t> seed = {});
 
   /// The same from the copies that a set keeps, the campaign first. It reads no
   /// other file, because the maker of the set may have named any file. Also

@@ -30,11 +30,13 @@ constexpr std::string_view kSplitStream = "split";
 
 class CampaignReader {
  public:
-  CampaignReader(const std::filesystem::path& file, std::optional<long> devices)
+  CampaignReader(const std::filesystem::path& file, std::optional<long> devices,
+                 std::optional<std::uint64_t> seed)
       : document_(ConfigDocument::read(file)),
         root_(document_.root()),
         folder_(file.parent_path()),
-        devices_(devices) {}
+        devices_(devices),
+        seed_(seed) {}
 
   /// Reads copies of every file and nothing else.
   CampaignReader(std::span<const SourceText> copies,
@@ -80,6 +82,7 @@ class CampaignReader {
         root_.integer_or("devices_per_file", 50, 1, 100'000));
     plan_.source.seed = static_cast<std::uint64_t>(
         root_.integer("seed", 0, std::numeric_limits<long>::max()));
+    if (seed_) plan_.source.seed = *seed_;
   }
 
   void read_split() {
@@ -341,6 +344,7 @@ class CampaignReader {
   const ConfigTable& root_;
   std::filesystem::path folder_;
   std::optional<long> devices_;
+  std::optional<std::uint64_t> seed_;
   std::set<std::uint32_t> taken_;  // random streams
   CampaignPlan plan_;
 };
@@ -348,8 +352,9 @@ class CampaignReader {
 }  // namespace
 
 CampaignPlan CampaignPlan::read(const std::filesystem::path& file,
-                                std::optional<long> devices) {
-  return CampaignReader(file, devices).read();
+                                std::optional<long> devices,
+                                std::optional<std::uint64_t> seed) {
+  return CampaignReader(file, devices, seed).read();
 }
 
 CampaignPlan CampaignPlan::of_copies(std::span<const SourceText> copies,

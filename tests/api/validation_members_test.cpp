@@ -42,5 +42,32 @@ TEST(ValidationMembers, AFlagIsGivenWhenItIsSet) {
   EXPECT_TRUE(is_given(row, {.require_provenance = true}));
 }
 
+TEST(ValidationMembers, SeedsAreWholeForEveryReaderOfJson) {
+  ValidationOptions options;
+  options.device =
+      Device::read(std::string(BEAMGYRO_SCENARIOS) + "/devices/nominal.toml");
+  options.qualification = "qualification.toml";
+  options.seed = kLargestSeed;
+  EXPECT_NO_THROW(require_sound(options));
+  options.seed = kLargestSeed + 1;
+  EXPECT_THROW(require_sound(options), OptionError);
+  options.seed = kLargestSeed - 2;
+  options.seeds = 3;
+  EXPECT_NO_THROW(require_sound(options));
+  options.seeds = 4;
+  EXPECT_THROW(require_sound(options), OptionError);
+  options.seed.reset();
+  for (const std::uint32_t wrong : {0U, 10'001U}) {
+    options.seeds = wrong;
+    EXPECT_THROW(require_sound(options), OptionError);
+  }
+  options.seeds = 4;
+  EXPECT_NO_THROW(require_sound(options));
+  options.campaign = "campaign.toml";
+  EXPECT_THROW(require_sound(options), OptionError);
+  for (int k = 0; k < 100; ++k) EXPECT_LT(random_seed(), kLargestSeed / 2 + 1);
+  EXPECT_NE(random_seed(), random_seed());
+}
+
 }  // namespace
 }  // namespace beamgyro::internal::validation_members_test

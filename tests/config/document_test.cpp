@@ -87,6 +87,25 @@ TEST(Document, CopiesWithOtherOverridesStartUnread) {
   EXPECT_EQ(copy.text(), document.text());
 }
 
+TEST(Document, OverridesThatAreSettledStayUnderLaterOnes) {
+  Overrides first, later;
+  first.add({"a", "x"}, number_node(2));
+  first.add({"a", "y"}, number_node(3));
+  later.add({"a", "y"}, number_node(4));
+  const ConfigDocument settled =
+      ConfigDocument::parse("[a]\nx = 1\n", "unit.toml", first).settled();
+  EXPECT_EQ(settled.text(), "[a]\nx = 1\n");
+  EXPECT_TRUE(settled.value("a.y") != nullptr);
+  const ConfigTable a = settled.with(later).root().table("a");
+  EXPECT_EQ(a.number("x"), 2);
+  EXPECT_EQ(a.number("y"), 4);
+  EXPECT_TRUE(later.all_used());
+  EXPECT_EQ(settled.root().table("a").number("y"), 3);
+  // A wrong value has its place in the file.
+  EXPECT_TRUE(holds(rejection([&] { settled.root().table("a").text("x"); }),
+                    "unit.toml:2:1"));
+}
+
 TEST(Document, FindsTheValueOfADottedKey) {
   const ConfigDocument document =
       ConfigDocument::parse("[a.b]\nc = [1, 2]\n", "d.toml");

@@ -165,18 +165,23 @@ def test_other_units_are_refused(sweeps):
         bg.compensate(bg.train(CUBIC, sweeps[0]), other)
 
 
-def test_a_model_is_trained_and_judged_on_a_simulated_device(tmp_path):
+def short_qualification(folder):
+    """A device and the qualification that it goes through."""
     for name, text in {"short.toml": qualified.SHORT, "ramp.toml": ramp(),
                        "warm_up.toml": SCENARIO}.items():
-        (tmp_path / name).write_text(text)
-    shutil.copy(SCENARIOS / "devices/nominal.toml", tmp_path / "device.toml")
-    device = bg.Device(tmp_path / "device.toml")
+        (folder / name).write_text(text)
+    shutil.copy(SCENARIOS / "devices/nominal.toml", folder / "device.toml")
+    return {"device": bg.Device(folder / "device.toml"),
+            "qualification": folder / "short.toml"}
+
+
+def test_a_model_is_trained_and_judged_on_a_simulated_device(tmp_path):
+    on = short_qualification(tmp_path)
+    device = on["device"]
     limits = {"limits": {"residual_rms_deg_per_s":
                          {"max": 0.1, "source": "a test"}}, "name": "own"}
     shares = []
-    result = bg.validate(CUBIC, device=device, spec=limits,
-                         qualification=tmp_path / "short.toml",
-                         progress=shares.append)
+    result = bg.validate(CUBIC, spec=limits, progress=shares.append, **on)
     assert "residual_rms_deg_per_s" in result.metrics
     assert all(0 <= share <= 1 for share in shares)
     (tmp_path / "old.json").write_text(result.to_json())
@@ -191,6 +196,17 @@ def test_a_model_is_trained_and_judged_on_a_simulated_device(tmp_path):
     assert again.data["baseline"]["worse"] is False
     with pytest.raises(ValueError, match="one of"):
         bg.validate(CUBIC, "a.h5", device=device)
+
+
+def test_the_runs_of_a_device_are_drawn_from_a_seed(tmp_path):
+    on = short_qualification(tmp_path)
+    drawn = bg.validate(CUBIC, seed="random", **on).data
+    seed = drawn["provenance"]["seed"]
+    assert bg.validate(CUBIC, seed=np.int64(seed), **on).data == drawn
+    assert bg.validate(CUBIC, **on).data["runs"] != drawn["runs"]
+    over = bg.validate(CUBIC, seed=seed, seeds=3, **on).data["seeds"]
+    assert [one["seed"] for one in over["verdicts"]] == [seed, seed + 1,
+                                                         seed + 2]
 
 
 def test_runs_in_memory_that_were_fitted_are_no_unseen_runs(sweeps):

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "config/document.h"
 #include "dataset/set/source_copies.h"
+#include "sim/campaign/draw_plan.h"
+#include "sim/scenario/profile_keys.h"
 #include "sim/scenario/scenario.h"
 #include "validation/evidence/evidence.h"
 
@@ -19,6 +23,8 @@ struct QualificationRun {
   ScenarioPlan scenario;       // its device is not used
   std::string scenario_text;   // byte for byte as read
   std::string overrides_text;  // one KEY=VALUE per line
+  std::optional<ConfigDocument> document;  // the scenario with its overrides
+  DrawPlan vary;                           // its keys that a seed draws
 };
 
 /// Names of the runs that a metric reads, by its name; a metric that is not
@@ -36,6 +42,7 @@ struct Qualification {
   MetricRuns metric_runs;
   std::string text;               // byte for byte as read
   std::vector<SourceText> files;  // all that were read
+  ProfileTables profiles;         // those of the scenarios
 };
 
 }  // namespace beamgyro::internal

@@ -5,6 +5,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -14,12 +16,20 @@
 #include "config/file_error.h"
 #include "config/suggestion.h"
 #include "dataset/files/text_file.h"
+#include "dataset/log/csv_file.h"
 #include "dataset/set/manifest.h"
+#include "sim/campaign/draw_plan_file.h"
 #include "sim/scenario/scenario_file.h"
 #include "validation/metrics/metric.h"
 
 namespace beamgyro::internal {
 namespace {
+
+// Keys that a seed does not draw: the purposes of runs and their metrics rest
+// on them. The seed itself is always drawn.
+constexpr std::array<std::string_view, 7> kSameForAllSeeds = {
+    "name",           "description", "device", "fidelity",
+    "output_rate_Hz", "seed",        "noise"};
 
 std::vector<std::string> dotted_parts(const std::string& key) {
   std::vector<std::string> parts(1);
@@ -103,6 +113,7 @@ class QualificationReader {
                  fmt::format("\"{}\": another run has this name", run.name));
     read_scenario_of(table, run);
     require_own_seed(table, run);
+    read_vary(table, run);
     return run;
   }
 
@@ -132,9 +143,27 @@ class QualificationReader {
     if (!overrides.all_used()) reject_unused(table, overrides);
     run.scenario_text = document.text();
     run.overrides_text = overrides.text();
+    run.document = document.settled();
     add_file(path, document.text());
-    for (const std::filesystem::path& profile : profile_files(document))
-      add_file(profile, read_text_file(profile));
+    add_profiles(document);
+  }
+
+  void read_vary(const ConfigTable& table, QualificationRun& run) {
+    const DrawnFile file{*run.document, [this](const ConfigDocument& drawn) {
+                           read_scenario(drawn, &result_.profiles);
+                           add_profiles(drawn);
+                         }};
+    const ConfigTable vary = table.table_or_empty("vary");
+    for (const std::string& key : vary.keys()) {
+      if (std::ranges::count(kSameForAllSeeds, key.substr(0, key.find('.'))) >
+          0)
+        vary.fail(key, key == "seed"
+                           ? "is always drawn; expected other keys"
+                           : "is the same for all seeds; write it into "
+                             "overrides");
+      add_draw(read_draw(vary, key, key, file), run.name, run.vary, streams_);
+    }
+    check_medians(run.vary, file);
   }
 
   [[noreturn]] static void reject_unused(const ConfigTable& table,
@@ -196,6 +225,15 @@ class QualificationReader {
         name, purpose_name(run->purpose), fmt::join(read, ", ")));
   }
 
+  void add_profiles(const ConfigDocument& document) {
+    for (const std::filesystem::path& profile : profile_files(document)) {
+      const std::string text = read_text_file(profile);
+      add_file(profile, text);
+      result_.profiles.try_emplace(profile.lexically_normal(),
+                                   parse_csv(text, profile.filename()));
+    }
+  }
+
   // Several runs may read one file, which has to stay the same meanwhile.
   void add_file(const std::filesystem::path& path, const std::string& text) {
     const auto known =
@@ -212,6 +250,7 @@ class QualificationReader {
   Qualification result_;
   std::map<std::string, std::string> places_;   // of the names of runs
   std::map<std::uint64_t, std::string> seeds_;  // names by seed
+  std::set<std::uint32_t> streams_;             // of what a seed draws
 };
 
 }  // namespace

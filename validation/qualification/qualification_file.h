@@ -13,6 +13,7 @@ namespace beamgyro::internal {
 /// ..." for
 /// - a key, type or value that is not allowed, or an unknown key;
 /// - a scenario that is missing or wrong, also one that an override makes so;
+/// - a distribution of `vary` that is wrong, or whose choices or median are;
 /// - two runs of one name;
 /// - two runs of one seed whose noise is on, because they would have the same
 ///   noise;

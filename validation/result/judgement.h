@@ -14,6 +14,13 @@
 
 namespace beamgyro::internal {
 
+/// A result and the evidence that it is drawn from.
+struct CompletedValidation {
+  ValidationResult result;
+  DeviceEvidence evidence;
+  std::optional<FittedCompensator> trained = {};  // of a model, on the device
+};
+
 /// Evaluates metrics before, after and of every baseline, each on the
 /// `runs` that are named for it, or on all. `names` are those to evaluate;
 /// none: all of metrics(), without those of sigma where no rate has one.

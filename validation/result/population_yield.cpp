@@ -158,16 +158,35 @@ void PopulationMetric::add(const MetricResult& device) {
   after.push_back(value(device.after));
 }
 
-void count_verdicts(PopulationYield& all) {
+VerdictCount count_of(std::span<const Verdict> verdicts) {
   const auto number_of = [&](Verdict verdict) {
-    return static_cast<std::size_t>(
-        std::ranges::count(all.devices, verdict, &DeviceVerdict::verdict));
+    return static_cast<std::size_t>(std::ranges::count(verdicts, verdict));
   };
-  all.passed = number_of(Verdict::kPass);
-  all.failed = number_of(Verdict::kFail);
-  all.undecided = number_of(Verdict::kUndecided);
-  all.interval = clopper_pearson(static_cast<double>(all.passed),
-                                 static_cast<double>(all.devices.size()));
+  VerdictCount count{number_of(Verdict::kPass), number_of(Verdict::kFail),
+                     number_of(Verdict::kUndecided)};
+  count.interval = clopper_pearson(static_cast<double>(count.passed),
+                                   static_cast<double>(verdicts.size()));
+  return count;
+}
+
+std::vector<PopulationMetric> followed_metrics(
+    const SpecificationFile& specification) {
+  std::vector<PopulationMetric> followed;
+  const auto add = [&](std::string_view name) {
+    const Metric* metric = find_metric(name);
+    if (std::ranges::count(followed, metric, &PopulationMetric::metric) == 0)
+      followed.push_back({metric, {}, {}});
+  };
+  add("residual_rms_deg_per_s");
+  for (const Limit& limit : specification.limits) add(limit.metric);
+  return followed;
+}
+
+void add_figures(const ValidationResult& result,
+                 std::vector<PopulationMetric>& metrics) {
+  for (PopulationMetric& metric : metrics)
+    for (const MetricResult& one : result.metrics)
+      if (one.metric == metric.metric) metric.add(one);
 }
 
 PopulationYield population_yield(const PopulationTask& task,
@@ -183,14 +202,16 @@ PopulationYield population_yield(const PopulationTask& task,
     if (progress) progress(static_cast<double>(done) / devices);
   });
 
+  std::vector<Verdict> verdicts;
   PopulationYield result;
   result.campaign = task.campaign->name;
   result.trained_on_each = task.model != nullptr;
   for (const DeviceOutcome& outcome : outcomes) {
     result.devices.push_back(outcome.verdict);
+    verdicts.push_back(outcome.verdict.verdict);
     if (!outcome.is_simulated) ++result.not_simulated;
   }
-  count_verdicts(result);
+  static_cast<VerdictCount&>(result) = count_of(verdicts);
   for (std::size_t m = 0; m < population.metric_names().size(); ++m) {
     PopulationMetric metric{find_metric(population.metric_names()[m]), {}, {}};
     for (const DeviceOutcome& outcome : outcomes)

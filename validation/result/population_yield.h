@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
+#include <span>
+#include <vector>
 
 #include "sim/campaign/campaign.h"
 #include "validation/external/tested_compensator.h"
@@ -12,8 +13,17 @@
 
 namespace beamgyro::internal {
 
-/// Counts the verdicts on `devices`.
-void count_verdicts(PopulationYield& all);
+/// Counts verdicts; there must be one.
+VerdictCount count_of(std::span<const Verdict> verdicts);
+
+/// Returns the metrics whose figures are kept of every device or seed: the
+/// residual and those with a limit, without figures yet.
+std::vector<PopulationMetric> followed_metrics(
+    const SpecificationFile& specification);
+
+/// Adds the figures of a result to them.
+void add_figures(const ValidationResult& result,
+                 std::vector<PopulationMetric>& metrics);
 
 /// What a population is put through.
 struct PopulationTask {

@@ -124,6 +124,33 @@ Json figures_json(std::span<const double> values) {
   return numbers;
 }
 
+// The figures of every device, or with every seed.
+Json followed_json(const std::vector<PopulationMetric>& followed) {
+  Json json = Json::array();
+  for (const PopulationMetric& metric : followed)
+    json.push_back({{"name", metric.metric->name},
+                    {"unit", metric.metric->unit},
+                    {"before", figures_json(metric.before)},
+                    {"after", figures_json(metric.after)}});
+  return json;
+}
+
+Json seeds_json(const SeedVerdicts& seeds) {
+  Json json{{"first", seeds.seeds.front().seed},
+            {"count", seeds.seeds.size()},
+            {"passed", seeds.passed},
+            {"failed", seeds.failed},
+            {"undecided", seeds.undecided},
+            {"share", number_or_null(seeds.share())},
+            {"interval", interval_json(seeds.interval)},
+            {"shown_seed", seeds.shown}};
+  for (const auto& [seed, verdict, words] : seeds.seeds)
+    json["verdicts"].push_back(
+        {{"seed", seed}, {"verdict", verdict_name(verdict)}, {"words", words}});
+  json["metrics"] = followed_json(seeds.metrics);
+  return json;
+}
+
 Json yield_json(const PopulationYield& population) {
   Json json{{"campaign", population.campaign},
             {"devices", population.devices.size()},
@@ -141,12 +168,7 @@ Json yield_json(const PopulationYield& population) {
         {{"verdict", verdict_name(device.verdict)}, {"words", device.words}});
     if (!device.number.empty()) devices.back()["device"] = device.number;
   }
-  Json& metrics = json["metrics"] = Json::array();
-  for (const PopulationMetric& metric : population.metrics)
-    metrics.push_back({{"name", metric.metric->name},
-                       {"unit", metric.metric->unit},
-                       {"before", figures_json(metric.before)},
-                       {"after", figures_json(metric.after)}});
+  json["metrics"] = followed_json(population.metrics);
   return json;
 }
 
@@ -211,6 +233,7 @@ Json provenance_json(const ResultProvenance& provenance) {
             {"qualification", provenance.qualification},
             {"specification", provenance.specification},
             {"false_accept_risk", provenance.false_accept_risk}};
+  if (provenance.seed) json["seed"] = *provenance.seed;
   Json& files = json["files"] = Json::array();
   for (const ResultFile& file : provenance.files)
     files.push_back(
@@ -277,6 +300,7 @@ nlohmann::ordered_json to_json(const ValidationResult& result) {
   if (result.against) json["against"] = against_json(*result.against);
   if (result.earlier) json["baseline"] = baseline_json(*result.earlier);
   if (result.population) json["population"] = yield_json(*result.population);
+  if (result.seeds) json["seeds"] = seeds_json(*result.seeds);
   if (result.sigma) json["sigma"] = sigma_json(*result.sigma);
   json["warnings"] = result.warnings;
   json["provenance"] = provenance_json(result.provenance);

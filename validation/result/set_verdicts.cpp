@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -17,10 +16,6 @@
 namespace beamgyro::internal {
 namespace {
 
-bool is_more_severe(Verdict one, Verdict other) {
-  return one != other && worst_of(std::array{one, other}) == one;
-}
-
 class SetJudge {
  public:
   SetJudge(const RunSource& set, const RecordedAnswering& answering,
@@ -32,8 +27,7 @@ class SetJudge {
         threads_(threads),
         on_device_(on_device) {
     found_.devices.campaign = set_.name;
-    add_metric("residual_rms_deg_per_s");
-    for (const Limit& limit : specification.limits) add_metric(limit.metric);
+    found_.devices.metrics = followed_metrics(specification);
   }
 
   // Judges the device whose runs these are.
@@ -54,8 +48,8 @@ class SetJudge {
       sigma_.add_device(sigma_evidence(evidence.after),
                         found_.devices.devices.size());
     found_.devices.devices.push_back({result.verdict, result.words, device});
-    for (PopulationMetric& metric : found_.devices.metrics)
-      add_figures(result, metric);
+    verdicts_.push_back(result.verdict);
+    add_figures(result, found_.devices.metrics);
     if (found_.devices.devices.size() > 1 &&
         !is_more_severe(result.verdict, found_.shown.verdict))
       return;
@@ -66,7 +60,7 @@ class SetJudge {
 
   SetVerdicts finish() {
     PopulationYield& all = found_.devices;
-    count_verdicts(all);
+    static_cast<VerdictCount&>(all) = count_of(verdicts_);
     if (found_.shown.sigma) found_.shown.sigma = sigma_report(sigma_);
     found_.shown.words =
         fmt::format("{} of {} devices pass. Device {}: {}", all.passed,
@@ -75,26 +69,13 @@ class SetJudge {
   }
 
  private:
-  void add_metric(const std::string& name) {
-    const Metric* metric = find_metric(name);
-    if (std::ranges::none_of(found_.devices.metrics, [&](const auto& one) {
-          return one.metric == metric;
-        }))
-      found_.devices.metrics.push_back({metric, {}, {}});
-  }
-
-  static void add_figures(const ValidationResult& result,
-                          PopulationMetric& metric) {
-    for (const MetricResult& one : result.metrics)
-      if (one.metric == metric.metric) metric.add(one);
-  }
-
   const TrainingSet& set_;
   const RecordedAnswering& answering_;
   const SpecificationFile& specification_;
   std::size_t threads_;
   const EvidenceVisitor& on_device_;
   SetVerdicts found_;
+  std::vector<Verdict> verdicts_;
   SigmaEvidence sigma_;
 };
 

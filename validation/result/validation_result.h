@@ -88,8 +88,8 @@ struct JudgedCompensator {
   std::optional<WorkbenchDifference> workbench = {};
 };
 
-/// A figure of merit of each device of a population; NaN where a device has
-/// none.
+/// A figure of merit of each device of a population, or with each seed; NaN
+/// where there is none.
 struct PopulationMetric {
   const Metric* metric;
   std::vector<double> before, after;  // one for each device
@@ -105,21 +105,40 @@ struct DeviceVerdict {
   std::string number = {};  // of the device, if it is not its place in the list
 };
 
+/// How many of several verdicts are which.
+struct VerdictCount {
+  std::size_t passed = 0, failed = 0, undecided = 0;
+  Interval interval = {};  // 95 %, of the share that passes
+
+  double share() const {
+    return static_cast<double>(passed) /
+           static_cast<double>(passed + failed + undecided);
+  }
+};
+
 /// The share of a population, or of the devices of a set, that passes.
-struct PopulationYield {
+struct PopulationYield : VerdictCount {
   std::string campaign;                // or the name of the set
   std::string shown;                   // number of the device of a set whose
                                        // metrics, limits and checks these are
   bool trained_on_each = false;        // or one compensator for all
   std::vector<DeviceVerdict> devices;  // by number
-  std::size_t passed = 0, failed = 0, undecided = 0;
-  std::size_t not_simulated = 0;  // of the failed
-  Interval interval = {};         // 95 %, of the share that passes
+  std::size_t not_simulated = 0;       // of the failed
   std::vector<PopulationMetric> metrics;
+};
 
-  double share() const {
-    return static_cast<double>(passed) / static_cast<double>(devices.size());
-  }
+/// The answer with one seed of the qualification.
+struct SeedVerdict {
+  std::uint64_t seed = 0;
+  Verdict verdict = Verdict::kUndecided;
+  std::string words = {};
+};
+
+/// The share of the seeds of a qualification with which a compensator passes.
+struct SeedVerdicts : VerdictCount {
+  std::uint64_t shown = 0;  // whose metrics, limits and checks stand beside it
+  std::vector<SeedVerdict> seeds;
+  std::vector<PopulationMetric> metrics;  // a value for each seed
 };
 
 /// How a metric compares with another value of it.
@@ -170,8 +189,9 @@ struct SideBySide {
 struct ResultProvenance {
   std::string program_version, git_revision;
   std::string device, qualification, specification;  // names
-  double false_accept_risk = kFalseAcceptRisk;       // [-]
-  std::vector<ResultFile> files;                     // in the order of reading
+  std::optional<std::uint64_t> seed = {};       // that the runs are drawn with
+  double false_accept_risk = kFalseAcceptRisk;  // [-]
+  std::vector<ResultFile> files;                // in the order of reading
   std::vector<std::pair<std::string, std::uint64_t>> seeds;  // of the runs
 };
 
@@ -188,6 +208,7 @@ struct ValidationResult {
   std::vector<DecidedLimit> limits;   // in the order of the specification
   std::vector<CheckResult> checks;    // in the order of check_definitions()
   std::optional<PopulationYield> population = {};
+  std::optional<SeedVerdicts> seeds = {};
   // Sentences on runs that have their seed of noise from a training run.
   std::vector<std::string> shared_seeds = {};
   // Where the compensator states a sigma; over all devices of a set.

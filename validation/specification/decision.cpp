@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -170,6 +171,10 @@ Verdict worst_of(std::span<const Verdict> all) {
   if (std::ranges::count(all, Verdict::kFail) > 0) return Verdict::kFail;
   return std::ranges::count(all, Verdict::kUndecided) > 0 ? Verdict::kUndecided
                                                           : Verdict::kPass;
+}
+
+bool is_more_severe(Verdict one, Verdict other) {
+  return one != other && worst_of(std::array{one, other}) == one;
 }
 
 Decision decide(const Limit& limit, const std::optional<Estimate>& after,

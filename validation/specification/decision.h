@@ -33,6 +33,9 @@ std::string text_of(const Limit& limit);
 /// undecided, else kPass. Of none it is kPass.
 Verdict worst_of(std::span<const Verdict> all);
 
+/// Whether a verdict is worse than another one.
+bool is_more_severe(Verdict one, Verdict other);
+
 /// The largest probability with which a device beyond a limit passes, for a
 /// guard band of the whole 95 % interval.
 constexpr double kFalseAcceptRisk = 0.025;  // [-]
