@@ -30,6 +30,9 @@ using AnyOption = std::variant<
 enum Subject : unsigned { kOnDevice = 1, kOnRecordings = 2, kOnSet = 4 };
 constexpr unsigned kOnAny = kOnDevice | kOnRecordings | kOnSet;
 
+/// Heading of the options for libraries and commands alone.
+constexpr std::string_view kCodeHeading = "A library or a command";
+
 /// A row for each member of ValidationOptions. The command and Python read
 /// their options from it, bundles their keys.
 struct ValidationMember {
@@ -51,8 +54,8 @@ std::span<const ValidationMember> validation_members();
 /// Returns the row of a member.
 const ValidationMember& member_named(std::string_view name);
 
-/// Returns "file", "text", "texts", "whole", "wholes", "seed", "number" or
-/// "flag";
+/// Returns "file", "files", "text", "texts", "whole", "wholes", "seed",
+/// "number" or "flag";
 /// empty for a subject.
 std::string_view type_name(const ValidationMember& row);
 

@@ -14,10 +14,12 @@ namespace beamgyro::internal {
 /// name when it is no such library, asks for what is not measured, or states
 /// runs of training that cannot be read.
 std::unique_ptr<TestedCompensator> open_library(
-    const std::filesystem::path& library, const ProcessLimits& limits);
+    const std::filesystem::path& library, const ProcessLimits& limits,
+    const Isolation& isolation);
 
 /// Returns how a library is run in a process. Throws as open_library().
 AnsweringProcess library_process(const std::filesystem::path& library,
-                                 const ProcessLimits& limits);
+                                 const ProcessLimits& limits,
+                                 const Isolation& isolation);
 
 }  // namespace beamgyro::internal

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "validation/checks/checks.h"
+#include "validation/external/isolation.h"
 #include "validation/metrics/metric.h"
 #include "validation/metrics/paired_residual.h"
 #include "validation/metrics/sigma_report.h"
@@ -215,6 +216,8 @@ struct ValidationResult {
   std::optional<SigmaReport> sigma = {};
   std::optional<SideBySide> against = {};
   std::optional<EarlierComparison> earlier = {};
+  // Of code of others.
+  std::optional<Isolation> isolation = {};
   std::vector<std::string> warnings = {};
   ResultProvenance provenance = {};
 };
