@@ -37,9 +37,9 @@ ValidationOutcome judged(const Validator& validator) {
 
 std::vector<BundleOutput> outputs_of(const ValidationOutcome& found) {
   std::vector<BundleOutput> outputs{{kResultFile, found.json},
-                                    {kReportFile, found.all_metrics},
-                                    {kPageFile, found.page}};
+                                    {kReportFile, found.all_metrics}};
   if (!found.trained.empty()) outputs.push_back({kTrainedFile, found.trained});
+  outputs.push_back({kPageFile, found.page});
   return outputs;
 }
 

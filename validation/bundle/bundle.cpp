@@ -123,7 +123,8 @@ bool is_begun(const fs::path& directory,
         has_bytes(directory, copy.name, sha256(copy.text)))
       std::erase(files, copy.name);
   if (all - files.size() == copies.size())
-    for (const char* output : {kResultFile, kReportFile, kPageFile})
+    for (const char* output :
+         {kResultFile, kReportFile, kPageFile, kTrainedFile})
       std::erase(files, output);
   return files.empty();
 }
