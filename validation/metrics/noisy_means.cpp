@@ -2,6 +2,7 @@
 #include "validation/metrics/noisy_means.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -20,17 +21,25 @@ constexpr double kRounding = 1e-9;    // [-], of a figure, over kSmallNoise
 using Draws = std::vector<std::vector<double>>;
 
 /// Draws of the noise. The last ones are kept, since most metrics are of the
-/// same means as the one before.
+/// same means as the one before: those of each rate that is compared, whose
+/// noise may differ by chance.
 const Draws& draws_of(const NoisyMeans& means) {
-  thread_local std::vector<SegmentNoise> noise;
-  thread_local Draws draws;
-  if (means.noise == noise) return draws;
-  draws.clear();
+  struct Kept {
+    std::vector<SegmentNoise> noise;
+    Draws draws;
+  };
+  thread_local std::array<Kept, 6> kept;
+  thread_local std::size_t next = 0;
+  for (const Kept& one : kept)
+    if (one.noise == means.noise) return one.draws;
+  Kept& place = kept.at(next);
+  next = (next + 1) % kept.size();
+  place.draws.clear();
   const bool many = means.values.size() > kManySegments;
   for (std::uint32_t d = 0; d < (many ? kFewDraws : kDraws); ++d)
-    draws.push_back(means.drawn_noise(d));
-  noise = means.noise;
-  return draws;
+    place.draws.push_back(means.drawn_noise(d));
+  place.noise = means.noise;
+  return place.draws;
 }
 
 double mean_square(std::span<const double> values, double about) {
