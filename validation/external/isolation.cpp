@@ -69,11 +69,13 @@ bool is_code(const fs::path& path) {
 std::optional<fs::path> hidden_in(const fs::path& place,
                                   const IsolationOptions& options) {
   std::error_code error;
-  for (const fs::path& hidden : options.hidden)
+  for (const fs::path& hidden : options.hidden) {
+    if (hidden.empty()) continue;  // in memory
     if (is_within(place_of(hidden), place) ||
         is_within(place, place_of(hidden)) ||
         fs::equivalent(place, hidden, error))
       return hidden;
+  }
   return std::nullopt;
 }
 
@@ -136,9 +138,11 @@ AllowedFile allowed_plugin_file(const fs::path& path,
   return file;
 }
 
+// Adds what is not readable yet.
 void allow(const fs::path& path, AllowedFile file, Isolation& isolation) {
   const fs::path place = place_of(path);
-  if (std::ranges::count(isolation.readable, place) > 0) return;
+  for (const fs::path& other : isolation.readable)
+    if (is_within(place, other)) return;
   isolation.readable.push_back(place);
   isolation.files.push_back(std::move(file));
 }
@@ -150,11 +154,8 @@ void add_plugin_files(const IsolationOptions& options, Isolation& isolation) {
 
 void add_system(const IsolationOptions& options, Isolation& isolation) {
   for (const char* folder : kSystemFolders) {
-    const fs::path place = place_of(folder);
-    const auto covers = [&](const fs::path& other) {
-      return is_within(place, other);
-    };
-    if (fs::exists(place) && std::ranges::none_of(isolation.readable, covers))
+    const fs::path place = place_of(folder);  // /bin may be a link to /usr/bin
+    if (fs::exists(place) && std::ranges::count(isolation.readable, place) == 0)
       add_without_hidden(place, options, isolation.readable);
   }
 }
@@ -201,7 +202,6 @@ void try_isolation(const std::string& argument, const std::string& command,
 void isolate(const std::string& argument, const std::string& command,
              const ProcessLimits& limits, Isolation& isolation) {
   add_plugin_files(limits.isolation, isolation);
-  add_system(limits.isolation, isolation);
   if (limits.isolation.highest_landlock == 0)
     isolation.refusal = "it is not asked for";
   else if (limits.program.empty())
@@ -226,6 +226,7 @@ Isolation isolation_of_system(const ProcessLimits& limits) {
   any.isolation.plugin_files.clear();
   any.isolation.required = false;
   Isolation isolation;
+  add_system(limits.isolation, isolation);
   isolate("", "", any, isolation);
   return isolation;
 }
@@ -233,6 +234,7 @@ Isolation isolation_of_system(const ProcessLimits& limits) {
 Isolation isolation_of_command(const std::string& argument,
                                const ProcessLimits& limits) {
   Isolation isolation;
+  add_system(limits.isolation, isolation);
   const std::string command = command_of(argument);
   for (const CommandWord& word : command_words(command))
     if (is_named_code(word.text, limits.isolation))
@@ -247,6 +249,7 @@ Isolation isolation_of_command(const std::string& argument,
 Isolation isolation_of_library(const fs::path& library,
                                const ProcessLimits& limits) {
   Isolation isolation;
+  add_system(limits.isolation, isolation);
   isolation.readable.push_back(place_of(library));
   isolate(library.string(), "", limits, isolation);
   return isolation;
