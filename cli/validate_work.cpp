@@ -59,7 +59,7 @@ void require_places_of_their_own(const ValidateArguments& arguments) {
         std::pair("--report", arguments.report),
         std::pair("--figures", arguments.figures),
         std::pair("--bundle", arguments.bundle)})
-    if (!name.empty()) asked.push_back({option, name, place_of(name)});
+    if (!name.empty()) asked.push_back({option, name, canonical_place(name)});
   for (const AskedOutput& one : asked)
     for (const AskedOutput& other : asked)
       if (&one != &other && is_within(one.place, other.place))

@@ -8,7 +8,7 @@ namespace beamgyro::internal {
 
 namespace fs = std::filesystem;
 
-fs::path place_of(const fs::path& path) {
+fs::path canonical_place(const fs::path& path) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(fs::absolute(path), error);
   if (error) place = fs::absolute(path).lexically_normal();

@@ -7,7 +7,7 @@ namespace beamgyro::internal {
 
 /// Returns a path as an absolute one, with links followed as far as it is
 /// there, and without a slash at its end.
-std::filesystem::path place_of(const std::filesystem::path& path);
+std::filesystem::path canonical_place(const std::filesystem::path& path);
 
 /// Whether a place is the other one or below it.
 bool is_within(const std::filesystem::path& place,

@@ -69,11 +69,13 @@ bool is_code(const fs::path& path) {
 std::optional<fs::path> hidden_in(const fs::path& place,
                                   const IsolationOptions& options) {
   std::error_code error;
-  for (const fs::path& hidden : options.hidden)
-    if (is_within(place_of(hidden), place) ||
-        is_within(place, place_of(hidden)) ||
+  for (const fs::path& hidden : options.hidden) {
+    if (hidden.empty()) continue;  // in memory
+    if (is_within(canonical_place(hidden), place) ||
+        is_within(place, canonical_place(hidden)) ||
         fs::equivalent(place, hidden, error))
       return hidden;
+  }
   return std::nullopt;
 }
 
@@ -121,12 +123,12 @@ AllowedFile allowed_plugin_file(const fs::path& path,
   const bool is_folder = fs::is_directory(path, error);
   if (!is_folder && !fs::is_regular_file(path, error))
     throw option_error("{}: No such file or directory", named);
-  if (const auto hidden = hidden_in(place_of(path), options))
+  if (const auto hidden = hidden_in(canonical_place(path), options))
     throw option_error(
         "{}: is, holds or lies in {}, which the compensator is judged by; "
         "expected files and folders of programs",
         named, hidden->string());
-  AllowedFile file{place_of(path).filename().string(),
+  AllowedFile file{canonical_place(path).filename().string(),
                    is_folder ? sum_of_folder(path) : sha256_of_file(path)};
   if (!is_folder && is_hdf5(path))
     throw option_error(
@@ -136,9 +138,11 @@ AllowedFile allowed_plugin_file(const fs::path& path,
   return file;
 }
 
+// Adds what is not readable yet.
 void allow(const fs::path& path, AllowedFile file, Isolation& isolation) {
-  const fs::path place = place_of(path);
-  if (std::ranges::count(isolation.readable, place) > 0) return;
+  const fs::path place = canonical_place(path);
+  for (const fs::path& other : isolation.readable)
+    if (is_within(place, other)) return;
   isolation.readable.push_back(place);
   isolation.files.push_back(std::move(file));
 }
@@ -150,11 +154,9 @@ void add_plugin_files(const IsolationOptions& options, Isolation& isolation) {
 
 void add_system(const IsolationOptions& options, Isolation& isolation) {
   for (const char* folder : kSystemFolders) {
-    const fs::path place = place_of(folder);
-    const auto covers = [&](const fs::path& other) {
-      return is_within(place, other);
-    };
-    if (fs::exists(place) && std::ranges::none_of(isolation.readable, covers))
+    const fs::path place =
+        canonical_place(folder);  // /bin may be a link to /usr/bin
+    if (fs::exists(place) && std::ranges::count(isolation.readable, place) == 0)
       add_without_hidden(place, options, isolation.readable);
   }
 }
@@ -162,7 +164,7 @@ void add_system(const IsolationOptions& options, Isolation& isolation) {
 // Whether the words of a command may open a file: what is no code may be a
 // recording in some form.
 bool is_named_code(const fs::path& path, const IsolationOptions& options) {
-  return is_code(path) && !hidden_in(place_of(path), options);
+  return is_code(path) && !hidden_in(canonical_place(path), options);
 }
 
 // Throws for a program "FILE\nPLUGIN_FILES" that is out of reach.
@@ -201,7 +203,6 @@ void try_isolation(const std::string& argument, const std::string& command,
 void isolate(const std::string& argument, const std::string& command,
              const ProcessLimits& limits, Isolation& isolation) {
   add_plugin_files(limits.isolation, isolation);
-  add_system(limits.isolation, isolation);
   if (limits.isolation.highest_landlock == 0)
     isolation.refusal = "it is not asked for";
   else if (limits.program.empty())
@@ -226,6 +227,7 @@ Isolation isolation_of_system(const ProcessLimits& limits) {
   any.isolation.plugin_files.clear();
   any.isolation.required = false;
   Isolation isolation;
+  add_system(limits.isolation, isolation);
   isolate("", "", any, isolation);
   return isolation;
 }
@@ -233,13 +235,14 @@ Isolation isolation_of_system(const ProcessLimits& limits) {
 Isolation isolation_of_command(const std::string& argument,
                                const ProcessLimits& limits) {
   Isolation isolation;
+  add_system(limits.isolation, isolation);
   const std::string command = command_of(argument);
   for (const CommandWord& word : command_words(command))
     if (is_named_code(word.text, limits.isolation))
-      allow(
-          word.text,
-          {place_of(word.text).filename().string(), sha256_of_file(word.text)},
-          isolation);
+      allow(word.text,
+            {canonical_place(word.text).filename().string(),
+             sha256_of_file(word.text)},
+            isolation);
   isolate(argument, command, limits, isolation);
   return isolation;
 }
@@ -247,7 +250,8 @@ Isolation isolation_of_command(const std::string& argument,
 Isolation isolation_of_library(const fs::path& library,
                                const ProcessLimits& limits) {
   Isolation isolation;
-  isolation.readable.push_back(place_of(library));
+  add_system(limits.isolation, isolation);
+  isolation.readable.push_back(canonical_place(library));
   isolate(library.string(), "", limits, isolation);
   return isolation;
 }
