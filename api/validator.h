@@ -39,6 +39,11 @@ class Validator {
   /// Returns every file that the result depends on; one of two groups twice.
   const std::vector<ValidationInput>& inputs() const;
 
+  /// Returns a sentence for each limit that the runs cannot decide, whatever
+  /// the compensator, where a device goes through a qualification; made at the
+  /// first call. The warnings of the result begin with them.
+  const std::vector<std::string>& foreseen() const;
+
   /// Simulates the qualification for the device, or reads the recordings, and
   /// judges the compensator; does so with the devices of the campaign, if there
   /// is one. Of a set every device is judged; the verdict is the worst of them,

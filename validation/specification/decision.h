@@ -47,7 +47,10 @@ struct Decision {
   // limit. Nothing without a value.
   std::optional<double> margin = {};
   double guard_band = 0.0;  // at that limit, same unit
-  std::string words;        // one sentence for a user
+  // Undecided, and the interval is wider than what the limit leaves above 0, so
+  // that hardly any value would be decided.
+  bool too_noisy = false;
+  std::string words;  // one sentence for a user
 };
 
 /// Decides on a limit. `after` is the metric of the compensated rate,
