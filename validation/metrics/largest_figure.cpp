@@ -7,8 +7,8 @@
 namespace beamgyro::internal {
 namespace {
 
-constexpr int kHalvings = 40;       // of the bracket of the lower end
-constexpr double kRounding = 1e-9;  // [-], of a figure
+constexpr int kHalvings = 40;          // of the bracket of the lower end
+constexpr double kExactWithin = 1e-9;  // [-], of a figure
 
 /// Candidates with draws of their noise.
 struct NoisyCandidates {
@@ -81,7 +81,7 @@ double upper_end(const NoisyCandidates& all) {
 
 /// Whether the noise is no more than rounding.
 bool is_exact(const NoisyCandidates& all, double value) {
-  return std::ranges::max(all.deviations) <= kRounding * std::abs(value);
+  return std::ranges::max(all.deviations) <= kExactWithin * std::abs(value);
 }
 
 }  // namespace

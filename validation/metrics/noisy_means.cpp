@@ -175,7 +175,7 @@ std::vector<double> less_means(std::span<const double> values,
   return centred;
 }
 
-double rms_of(std::span<const double> values) {
+double root_mean_square(std::span<const double> values) {
   return std::sqrt(mean_square(values, 0.0));
 }
 
@@ -250,9 +250,10 @@ double least_rms_within(const NoisyMeans& means, double window) {
   centred.values = less_means(means.values, ends);
   Draws draws = draws_of(means);
   for (std::vector<double>& draw : draws) draw = less_means(draw, ends);
-  return std::max(0.0, beneath_draws({centred, draws, Shrinkage::kToZero},
-                                     rms_of, Growth::kSquare, kNormal995)
-                           .low);
+  return std::max(
+      0.0, beneath_draws({centred, draws, Shrinkage::kToZero}, root_mean_square,
+                         Growth::kSquare, kNormal995)
+               .low);
 }
 
 Estimate estimate_of_noise(const NoisyMeans& means,

@@ -74,7 +74,7 @@ ThirdDifferences third_differences(const Recording& recording,
   return found;
 }
 
-NoiseLevels scaled(NoiseLevels levels, double factor) {
+NoiseLevels scaled_noise(NoiseLevels levels, double factor) {
   if (!(factor > 0.0)) return {};
   for (double* size :
        {&levels.angle_random_walk, &levels.bias_instability,
@@ -167,7 +167,7 @@ NoiseLevels seen_noise(const Recording& recording,
     const double above = expected > 0.0 && ratio <= 1.0 + chance
                              ? 0.0
                              : std::max(0.0, seen.variance - expected) / white;
-    NoiseLevels levels = scaled(*stated, scale);
+    NoiseLevels levels = scaled_noise(*stated, scale);
     levels.angle_random_walk =
         std::hypot(levels.angle_random_walk, std::sqrt(above));
     return levels;

@@ -19,7 +19,7 @@
 namespace beamgyro::internal {
 namespace {
 
-constexpr std::uint64_t kDraws = 3;
+constexpr std::uint64_t kTriedDraws = 3;
 constexpr std::size_t kMostOfDraws = 2;
 constexpr std::array kTimesAsLong = {2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
 
@@ -93,8 +93,8 @@ class Foresight {
 
   /// Of runs that take `times` as long, with as many samples.
   Foreseen of(double times) const {
-    std::vector<std::optional<Estimate>> seen(kDraws);
-    for_each_task(kDraws, threads_, [&](std::size_t draw, std::size_t) {
+    std::vector<std::optional<Estimate>> seen(kTriedDraws);
+    for_each_task(kTriedDraws, threads_, [&](std::size_t draw, std::size_t) {
       std::vector<ReadRun> read = runs_.read;
       std::vector<Recording> recordings = runs_.recordings;
       for (ReadRun& run : read) run.from *= times;
