@@ -172,7 +172,9 @@ struct ResponsePeak {
 std::optional<ResponsePeak> peak_of(const Evidence& evidence) {
   const auto levels = levels_of(evidence);
   if (!levels) return std::nullopt;
-  const auto& [points, values, sigmas] = *levels;
+  const std::vector<ResponsePoint>& points = levels->points;
+  const std::vector<double>& values = levels->values;
+  const std::vector<double>& sigmas = levels->sigmas;
   const auto half_of = [&](std::size_t i, std::size_t count) {
     const double sigma = i == 0 ? 0.0 : std::hypot(sigmas[i], sigmas[0]);
     return sigma > 0.0 ? sigma * student_half_width(
