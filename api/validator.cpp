@@ -21,6 +21,7 @@
 #include "dataset/files/text_file.h"
 #include "dataset/set/manifest.h"
 #include "include/beamgyro/recording.h"
+#include "parallel/work_queue.h"
 #include "sim/scenario/run_warnings.h"
 #include "validation/external/answer_checks.h"
 #include "validation/external/compensator_source.h"
@@ -34,6 +35,7 @@
 #include "validation/result/recorded_evidence.h"
 #include "validation/result/seed_verdicts.h"
 #include "validation/result/set_verdicts.h"
+#include "validation/result/undecidable_limits.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -90,6 +92,7 @@ struct Validator::State {
   std::optional<RunSource> set;
   std::vector<ValidationInput> inputs;
   std::vector<FileState> recording_states;  // before they were read
+  std::optional<std::vector<std::string>> foreseen;
 
   void add_file(const std::string& group, const fs::path& path,
                 std::string text) {
@@ -324,9 +327,21 @@ const std::vector<ValidationInput>& Validator::inputs() const {
   return state_->inputs;
 }
 
+const std::vector<std::string>& Validator::foreseen() const {
+  State& s = *state_;
+  if (!s.foreseen)
+    s.foreseen =
+        s.options.device
+            ? undecidable_limits(s.qualification, s.device, s.specification,
+                                 thread_count(s.options.jobs))
+            : std::vector<std::string>();
+  return *s.foreseen;
+}
+
 CompletedValidation Validator::validate(std::size_t threads,
                                         const ProgressOfWork& progress) const {
   const State& s = *state_;
+  foreseen();  // once, before the seeds need it side by side
   CompletedValidation done =
       s.options.seeds ? seed_verdicts(
                             {s.options.seed.value_or(1), *s.options.seeds},
@@ -373,7 +388,10 @@ CompletedValidation Validator::State::validated(
                         threads, [&](double part) {
                           if (progress) progress(share * part);
                         });
-    result.warnings = warnings_about(judged, s.device.device, done.evidence);
+    result.warnings = s.foreseen.value();
+    for (std::string& text :
+         warnings_about(judged, s.device.device, done.evidence))
+      result.warnings.push_back(std::move(text));
   } else if (s.set) {
     SetVerdicts found =
         set_verdicts(*s.set, answering, s.specification, threads, progress,

@@ -36,6 +36,11 @@ class Validator {
   /// Returns every file that the result depends on; one of two groups twice.
   const std::vector<ValidationInput>& inputs() const;
 
+  /// Returns a sentence for each limit that the runs cannot decide, whatever
+  /// the compensator, where a device goes through a qualification; made at the
+  /// first call. The warnings of the result begin with them.
+  const std::vector<std::string>& foreseen() const;
+
   /// Simulates the qualification for the device, or reads the recordings, and
   /// judges the compensator, with every seed that is asked for; does so with
   /// the devices of the campaign, if there is one. Of a set every device is

@@ -29,9 +29,12 @@ namespace fs = std::filesystem;
 constexpr int kBundleDiffers = 1, kNotWritten = 1;
 
 ValidationOutcome judged(const Validator& validator) {
+  const std::vector<std::string>& foreseen = validator.foreseen();
+  for (const std::string& warning : foreseen) print_warning(warning);
   Progress progress("validating " + validator.source().argument);
   ValidationOutcome found = validated(validator, progress.shown_share());
-  for (const std::string& warning : found.warnings) keep_warning(warning);
+  for (const std::string& warning : found.warnings)
+    if (std::ranges::count(foreseen, warning) == 0) keep_warning(warning);
   return found;
 }
 

@@ -98,7 +98,14 @@ std::string why_without_value(const ValidationResult& result,
   if (metric != nullptr && metric->is_of_sigma && !result.sigma)
     return "the compensator states no sigma";
   if (found == result.metrics.end() || found->after) return "no number";
-  return "not shown by a run for " + purposes_of(*found->metric, ", ");
+  const bool has_run =
+      std::ranges::any_of(found->metric->reads, [&](RunPurpose purpose) {
+        return std::ranges::count(result.runs, purpose_name(purpose),
+                                  &RunResidual::purpose) > 0;
+      });
+  return (has_run ? "too small or too slow to be seen in the runs for "
+                  : "not shown by a run for ") +
+         purposes_of(*found->metric, ", ");
 }
 
 std::string limit_line(const ValidationResult& result,
@@ -115,10 +122,14 @@ std::string limit_line(const ValidationResult& result,
                     text_of(limit)),
         10);
   return wrapped(
-      fmt::format("{:<10}{}: {}, {}, margin {}{}",
+      fmt::format("{:<10}{}: {}, {}, margin {}{}{}",
                   verdict_name(decision.result), limit.metric, value,
                   text_of(limit), figure(decision.margin),
-                  decision.met_before ? "; met before compensation" : ""),
+                  decision.met_before ? "; met before compensation" : "",
+                  decision.too_noisy
+                      ? "; the noise of these runs hides a figure as small as "
+                        "the limit"
+                      : ""),
       10);
 }
 

@@ -14,9 +14,10 @@ Interval clopper_pearson(double successes, double trials) {
           Binomial::find_upper_bound_on_p(trials, successes, kIntervalTail)};
 }
 
-double student_half_width(double freedom) {
+double student_half_width(double freedom, std::size_t count) {
   const boost::math::students_t_distribution<double> student(freedom);
-  return quantile(complement(student, kIntervalTail));
+  return quantile(
+      complement(student, kIntervalTail / static_cast<double>(count)));
 }
 
 double percentile(const std::vector<double>& sorted, double share) {

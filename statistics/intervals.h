@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace beamgyro::internal {
@@ -19,8 +20,9 @@ constexpr double kNormal975 = 1.959963984540054;  // [-], normal quantile
 Interval clopper_pearson(double successes, double trials);
 
 /// Returns the half-width of a 95 % interval of a mean, in standard errors that
-/// were estimated with so many degrees of freedom: Student's t.
-double student_half_width(double freedom);
+/// were estimated with so many degrees of freedom: Student's t. Of `count`
+/// intervals each is so wide that all hold at once (Bonferroni).
+double student_half_width(double freedom, std::size_t count = 1);
 
 /// Returns the value below which a share [0, 1] of sorted values lies,
 /// interpolated between neighbours. There must be one.

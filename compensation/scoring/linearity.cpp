@@ -52,20 +52,21 @@ bool is_rate_table(std::span<const HeldRate> table) {
 
 Linearity linearity_of(std::span<const HeldRate> table) {
   const Line line = fit(table);
-  double deviation = 0.0;
   double full_scale = 0.0;
+  for (const HeldRate& held : table)
+    full_scale = std::max(full_scale, std::abs(held.rate));
+  Linearity found{.departures = {}, .rates = table.size(), .slope = line.slope};
   for (const HeldRate& held : table) {
     const double answer = line.offset + line.slope * held.rate;
-    deviation = std::max(deviation, std::abs(held.answer - answer));
-    full_scale = std::max(full_scale, std::abs(held.rate));
+    found.departures.push_back(1e6 * (held.answer - answer) /
+                               (line.slope * full_scale));
+    found.nonlinearity =
+        std::max(found.nonlinearity, std::abs(found.departures.back()));
   }
   const double positive = slope_of_side(table, 1.0);
   const double negative = slope_of_side(table, -1.0);
-  return {
-      .nonlinearity = 1e6 * deviation / (std::abs(line.slope) * full_scale),
-      .asymmetry = 1e6 * 2.0 * (positive - negative) / (positive + negative),
-      .rates = table.size(),
-      .slope = line.slope};
+  found.asymmetry = 1e6 * 2.0 * (positive - negative) / (positive + negative);
+  return found;
 }
 
 }  // namespace beamgyro::internal

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace beamgyro::internal {
 
@@ -18,11 +19,12 @@ struct HeldRate {
 /// one temperature plateau, compared with their least-squares line V_0 + K
 /// Omega.
 struct Linearity {
-  double nonlinearity = 0.0;  // [ppm], max |V_i - line| / (K max |Omega_i|)
-  double asymmetry = 0.0;     // [ppm], 2 (K+ - K-) / (K+ + K-), of the lines
-                              // through the rates >= 0 and <= 0
-  std::size_t rates = 0;      // different held rates of that plateau
-  double slope = 0.0;         // [-], K
+  std::vector<double> departures;  // [ppm], (V_i - line) / (K max |Omega_i|)
+  double nonlinearity = 0.0;       // [ppm], the largest of them in size
+  double asymmetry = 0.0;  // [ppm], 2 (K+ - K-) / (K+ + K-), of the lines
+                           // through the rates >= 0 and <= 0
+  std::size_t rates = 0;   // different held rates of that plateau
+  double slope = 0.0;      // [-], K
 };
 
 /// Returns the linearity of one table, without an order. It is meant for a

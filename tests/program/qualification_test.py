@@ -53,6 +53,21 @@ class Verdicts(Qualified):
         residual = by_name(said["metrics"])["residual_rms_deg_per_s"]
         self.assertEqual((residual["limit"], residual["result"]), (0.1, "fail"))
 
+    def test_limits_below_the_noise_are_named_first(self):
+        # The turn-on offset alone is 0.03 deg/s; no run is a rate table.
+        self.write("spec.toml", SPECIFICATION.replace("0.1", "1e-4") + (
+            'scale_factor_error_ppm = { max = 100, source = "a test" }\n'))
+        said, answer = self.validate("--spec", "spec.toml", status=3)
+        residual, scale = said["warnings"][:2]
+        self.assertIn("residual_rms_deg_per_s, at most 0.0001: cannot be "
+                      "decided, because a gyro without any error", residual)
+        self.assertIn("scale_factor_error_ppm, at most 100: cannot be "
+                      "decided, because no run shows it", scale)
+        first, second = answer.stderr.splitlines()[:2]
+        self.assertIn(residual, first)
+        self.assertIn(scale, second)
+        self.assertEqual(answer.stderr.count(residual), 1)
+
     def test_a_metric_reads_the_runs_that_are_named(self):
         rms = []
         for named in "", '\n[metrics]\nresidual_rms_deg_per_s = ["warm_up"]\n':

@@ -6,6 +6,7 @@
 #include "compensation/scoring/scale_factor.h"
 #include "config/units.h"
 #include "linear_algebra/least_squares.h"
+#include "validation/metrics/largest_figure.h"
 #include "validation/metrics/metric_tables.h"
 #include "validation/metrics/noisy_means.h"
 
@@ -212,18 +213,16 @@ std::optional<Estimate> cross_axis(const Evidence& evidence) {
     std::array<std::vector<double>, 2> weights = {weights_of(terms, 0),
                                                   weights_of(terms, 1)};
     if (weights[0].empty() && weights[1].empty()) continue;
-    const Estimate found = estimate_beneath_noise(
-        means,
-        [&](std::span<const double> b) {
-          double most = 0.0;
+    const Estimate found =
+        estimate_of_largest(means, [&](std::span<const double> b) {
+          std::vector<double> slopes;
           for (const auto& w : weights) {
             double sum = 0.0;
             for (std::size_t i = 0; i < w.size(); ++i) sum += w[i] * b[i];
-            most = std::max(most, kPercent * std::abs(sum));
+            slopes.push_back(kPercent * sum);
           }
-          return most;
-        },
-        Shrinkage::kNone, 0.0, Growth::kLargest);
+          return slopes;
+        });
     if (!largest || found.value > largest->value) largest = found;
   }
   return largest;

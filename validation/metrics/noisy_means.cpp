@@ -16,31 +16,10 @@ constexpr std::uint32_t kDraws = 300;
 constexpr double kFirstNoise = 1.0 + std::numbers::sqrt2;  // 1/(sqrt(2) - 1)
 constexpr std::uint32_t kFewDraws = 60;                    // with many segments
 constexpr double kSmallNoise = 1e-4;  // [-], too little to choose another one
-constexpr double kRounding = 1e-9;    // [-], of a figure, over kSmallNoise
+constexpr double kNormal995 = 2.5758293035489004;  // [-], normal quantile
+constexpr double kRounding = 1e-9;  // [-], of a figure, over kSmallNoise
 
 using Draws = std::vector<std::vector<double>>;
-
-/// Draws of the noise. The last ones are kept, since most metrics are of the
-/// same means as the one before: those of each rate that is compared, whose
-/// noise may differ by chance.
-const Draws& draws_of(const NoisyMeans& means) {
-  struct Kept {
-    std::vector<SegmentNoise> noise;
-    Draws draws;
-  };
-  thread_local std::array<Kept, 6> kept;
-  thread_local std::size_t next = 0;
-  for (const Kept& one : kept)
-    if (one.noise == means.noise) return one.draws;
-  Kept& place = kept.at(next);
-  next = (next + 1) % kept.size();
-  place.draws.clear();
-  const bool many = means.values.size() > kManySegments;
-  for (std::uint32_t d = 0; d < (many ? kFewDraws : kDraws); ++d)
-    place.draws.push_back(means.drawn_noise(d));
-  place.noise = means.noise;
-  return place.draws;
-}
 
 double mean_square(std::span<const double> values, double about) {
   double sum = 0.0;
@@ -138,18 +117,67 @@ double half_without_choice(const NoisyMeans& means, const Draws& draws,
 
 /// The interval about a figure by its errors, as the header says.
 Interval interval_by_errors(double figure, std::span<const double> errors,
-                            Growth growth) {
+                            Growth growth, double normal) {
   const double shift = mean_of(errors);
-  const double half = kNormal975 * std::sqrt(mean_square(errors, shift));
+  const double half = normal * std::sqrt(mean_square(errors, shift));
   const double first =
       growth == Growth::kExtreme ? std::max(shift, kFirstNoise * shift) : shift;
   return {figure - first - half, figure - shift + half};
 }
 
-// A largest value, for one, passes over what is not a number.
-bool lacks_answers(const NoisyMeans& means) {
-  return !std::ranges::all_of(means.values,
-                              [](double v) { return std::isfinite(v); });
+/// Means, draws of their noise, and how the noise is taken out of them.
+struct DrawnMeans {
+  const NoisyMeans& means;
+  const Draws& draws;
+  Shrinkage shrinkage;
+};
+
+/// The interval of a figure by draws, `normal` standard deviations wide.
+Interval beneath_draws(const DrawnMeans& drawn, const Statistic& statistic,
+                       Growth growth, double normal) {
+  const std::vector<double> base =
+      shrunken(drawn.means, drawn.draws, drawn.shrinkage);
+  const bool squared = growth == Growth::kSquare;
+  const Statistic measure = [&](std::span<const double> b) {
+    const double figure = statistic(b);
+    return squared ? figure * figure : figure;
+  };
+  const double exact = measure(base);
+  std::vector<double> errors = figures_with(drawn.draws, base, measure);
+  for (double& error : errors) error -= exact;
+  auto [low, high] =
+      interval_by_errors(measure(drawn.means.values), errors, growth, normal);
+  if (!squared) return {low, high};
+  return {std::sqrt(std::max(low, 0.0)), std::sqrt(std::max(high, 0.0))};
+}
+
+/// Ends of windows of one power-on of one run, none longer than `window` [s].
+std::vector<std::size_t> window_ends(const NoisyMeans& means, double window) {
+  std::vector<std::size_t> ends;
+  std::size_t begin = 0;
+  for (const std::size_t power_on : group_ends(means, Shrinkage::kToPowerOn)) {
+    for (std::size_t i = begin + 1; i < power_on; ++i)
+      if (means.segments[i].time - means.segments[begin].time >= window) {
+        ends.push_back(i);
+        begin = i;
+      }
+    ends.push_back(power_on);
+    begin = power_on;
+  }
+  return ends;
+}
+
+std::vector<double> less_means(std::span<const double> values,
+                               const std::vector<std::size_t>& ends) {
+  const std::vector<double> centres =
+      centres_of(values, ends, Shrinkage::kToMean);
+  std::vector<double> centred(values.size());
+  std::ranges::transform(values, centres, centred.begin(), std::minus<>());
+  return centred;
+}
+
+double root_mean_square(std::span<const double> values) {
+  return std::sqrt(mean_square(values, 0.0));
 }
 
 }  // namespace
@@ -183,6 +211,30 @@ bool NoisyMeans::without_noise() const {
   return std::ranges::all_of(noise, &SegmentNoise::none);
 }
 
+const Draws& draws_of(const NoisyMeans& means) {
+  struct Kept {
+    std::vector<SegmentNoise> noise;
+    Draws draws;
+  };
+  thread_local std::array<Kept, 6> kept;
+  thread_local std::size_t next = 0;
+  for (const Kept& one : kept)
+    if (one.noise == means.noise) return one.draws;
+  Kept& place = kept.at(next);
+  next = (next + 1) % kept.size();
+  place.draws.clear();
+  const bool many = means.values.size() > kManySegments;
+  for (std::uint32_t d = 0; d < (many ? kFewDraws : kDraws); ++d)
+    place.draws.push_back(means.drawn_noise(d));
+  place.noise = means.noise;
+  return place.draws;
+}
+
+bool lacks_answers(const NoisyMeans& means) {
+  return !std::ranges::all_of(means.values,
+                              [](double v) { return std::isfinite(v); });
+}
+
 Estimate estimate_beneath_noise(const NoisyMeans& means,
                                 const Statistic& statistic, Shrinkage shrinkage,
                                 double least, Growth growth) {
@@ -191,27 +243,24 @@ Estimate estimate_beneath_noise(const NoisyMeans& means,
   if (means.without_noise() || !std::isfinite(value))
     return {value, Interval{value, value}};
   const Draws& draws = draws_of(means);
-  const std::vector<double> base = shrunken(means, draws, shrinkage);
-  const bool squared = growth == Growth::kSquare;
-  const Statistic measure = [&](std::span<const double> b) {
-    const double figure = statistic(b);
-    return squared ? figure * figure : figure;
-  };
-  const double exact = measure(base);
-  std::vector<double> errors = figures_with(draws, base, measure);
-  for (double& error : errors) error -= exact;
-  auto [low, high] = interval_by_errors(measure(means.values), errors, growth);
-  if (squared) {
-    low = std::sqrt(std::max(low, 0.0));
-    high = std::sqrt(std::max(high, 0.0));
-  }
-  if (growth == Growth::kLargest || growth == Growth::kExtreme) {
-    const double half = half_without_choice(means, draws, statistic);
-    high = std::max(high, value + half);
-    if (growth == Growth::kLargest) low = std::min(low, value - half);
-  }
+  auto [low, high] =
+      beneath_draws({means, draws, shrinkage}, statistic, growth, kNormal975);
+  if (growth == Growth::kExtreme)
+    high = std::max(high, value + half_without_choice(means, draws, statistic));
   return {value, Interval{std::min(value, std::max(least, low)),
                           std::max(value, high)}};
+}
+
+double least_rms_within(const NoisyMeans& means, double window) {
+  const std::vector<std::size_t> ends = window_ends(means, window);
+  NoisyMeans centred = means;
+  centred.values = less_means(means.values, ends);
+  Draws draws = draws_of(means);
+  for (std::vector<double>& draw : draws) draw = less_means(draw, ends);
+  return std::max(
+      0.0, beneath_draws({centred, draws, Shrinkage::kToZero}, root_mean_square,
+                         Growth::kSquare, kNormal995)
+               .low);
 }
 
 Estimate estimate_of_noise(const NoisyMeans& means,

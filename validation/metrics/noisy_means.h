@@ -28,6 +28,14 @@ struct NoisyMeans {
   bool without_noise() const;
 };
 
+/// Returns draws of the noise of the means [deg/s], each of all of them: 300,
+/// or 60 for more than 500 means. Draws of the same noise are the same. They
+/// are valid until the thread asks for those of other noise.
+const std::vector<std::vector<double>>& draws_of(const NoisyMeans& means);
+
+/// Returns whether a mean is not a number, which a largest value passes over.
+bool lacks_answers(const NoisyMeans& means);
+
 /// A figure computed from the means.
 using Statistic = std::function<double(std::span<const double> means)>;
 
@@ -38,9 +46,8 @@ enum class Shrinkage { kNone, kToZero, kToMean, kToPowerOn };
 
 /// How noise enlarges a figure.
 enum class Growth {
-  kSmooth,   // its error is added to it
-  kSquare,   // a root of a mean square: the error is added to its square
-  kLargest,  // the largest of few
+  kSmooth,  // its error is added to it
+  kSquare,  // a root of a mean square: the error is added to its square
   // The largest of many: it grows most by the first noise, which chooses the
   // extreme, and less by what is added to that.
   kExtreme,
@@ -57,7 +64,7 @@ enum class Growth {
 /// - The largest of several is never less than the one that is largest without
 ///   noise, which may be larger than the value by its own noise alone: the
 ///   upper end is at least value + 1.96 sigma of that, with all others as they
-///   are. Of the largest of few so is the lower end.
+///   are.
 /// - For an extreme figure the lower end is value - 1/(sqrt(2) - 1) mean(e) -
 ///   1.96 sigma(e): as much as the first noise adds where all means are equal.
 /// The interval has no width if there is no noise.
@@ -66,8 +73,16 @@ Estimate estimate_beneath_noise(const NoisyMeans& means,
                                 double least = -HUGE_VAL,
                                 Growth growth = Growth::kSmooth);
 
-/// The same for a figure that measures the noise itself, so that its truth is
-/// the root of the mean square over many draws; e are logarithms of ratios.
+/// Returns what the rms of the means without noise is at least, by what is left
+/// of them when the mean over each window of `window` [s] of one power-on is
+/// taken off. That cannot enlarge an rms, about zero or about the mean, but
+/// takes off the turn-on offset and most of the slow noise. By a normal
+/// quantile of 0.995, so that several windows can be asked.
+double least_rms_within(const NoisyMeans& means, double window);
+
+/// As estimate_beneath_noise(), for a figure that measures the noise itself, so
+/// that its truth is the root of the mean square over many draws; e are
+/// logarithms of ratios.
 Estimate estimate_of_noise(const NoisyMeans& means, const Statistic& statistic);
 
 }  // namespace beamgyro::internal

@@ -8,6 +8,7 @@
 
 #include "dataset/recording/stated_values.h"
 #include "sim/signal/flicker.h"
+#include "sim/signal/noise.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -73,6 +74,30 @@ ThirdDifferences third_differences(const Recording& recording,
   return found;
 }
 
+NoiseLevels scaled_noise(NoiseLevels levels, double factor) {
+  if (!(factor > 0.0)) return {};
+  for (double* size :
+       {&levels.angle_random_walk, &levels.bias_instability,
+        &levels.rate_random_walk, &levels.turn_on, &levels.turn_on_transient})
+    *size *= factor;
+  return levels;
+}
+
+/// What is left of a transient from power-on, as a mean over a segment.
+double left_of_transient(const Segment& segment, double settling) {
+  const double half = 0.5 * segment.length / settling;
+  return std::exp(-segment.powered / settling) * std::sinh(half) / half;
+}
+
+/// Time [s] without power before a segment, the first since its power-on. The
+/// one before it may not have lasted until the power went off.
+double time_without_power(std::span<const Segment> segments, std::size_t i) {
+  if (i == 0) return HUGE_VAL;
+  const Segment& before = segments[i - 1];
+  return std::max(0.0, segments[i].time - segments[i].powered - before.time -
+                           0.5 * before.length);
+}
+
 std::size_t samples_in(double length, double step) {
   return step > 0.0
              ? std::max<std::size_t>(
@@ -102,10 +127,22 @@ std::optional<NoiseLevels> stated_noise(const Recording& recording) {
   if (!white) return std::nullopt;
   if (stated_scenario_flag(recording, "noise.enabled") == false)
     return NoiseLevels{};
-  return NoiseLevels{
+  NoiseLevels stated{
       *white, level("noise.bias_instability_deg_per_s").value_or(0.0),
       level("noise.rate_random_walk_deg_per_s_per_sqrt_s").value_or(0.0),
-      level("noise.turn_on_deg_per_s").value_or(0.0)};
+      level("noise.turn_on_deg_per_s").value_or(0.0),
+      level("noise.turn_on_transient_deg_per_s").value_or(0.0)};
+  if (stated.turn_on_transient > 0.0) {
+    const NoiseParameters usual;
+    stated.turn_on_settling =
+        level("noise.turn_on_settling_s").value_or(usual.turn_on_settling);
+    stated.turn_on_recovery =
+        level("noise.turn_on_recovery_s").value_or(usual.turn_on_recovery);
+    // Of a run that is read from later on this much is left.
+    stated.turn_on_transient *=
+        std::exp(-recording.time.front() / stated.turn_on_settling);
+  }
+  return stated;
 }
 
 NoiseLevels seen_noise(const Recording& recording,
@@ -130,9 +167,10 @@ NoiseLevels seen_noise(const Recording& recording,
     const double above = expected > 0.0 && ratio <= 1.0 + chance
                              ? 0.0
                              : std::max(0.0, seen.variance - expected) / white;
-    return {std::hypot(scale * stated->angle_random_walk, std::sqrt(above)),
-            scale * stated->bias_instability, scale * stated->rate_random_walk,
-            scale * stated->turn_on};
+    NoiseLevels levels = scaled_noise(*stated, scale);
+    levels.angle_random_walk =
+        std::hypot(levels.angle_random_walk, std::sqrt(above));
+    return levels;
   }
   NoiseLevels levels{.angle_random_walk = std::sqrt(seen.variance / white)};
   if (!is_still(recording)) return levels;
@@ -155,7 +193,9 @@ NoiseLevels seen_noise(const Recording& recording,
 
 SegmentNoise::SegmentNoise(const NoiseLevels& levels,
                            std::span<const Segment> segments)
-    : turn_on_(levels.turn_on), none_(levels == NoiseLevels{}) {
+    : turn_on_(levels.turn_on),
+      transient_(levels.turn_on_transient > 0.0),
+      none_(levels == NoiseLevels{}) {
   if (none_ || segments.empty()) {
     deviations_.assign(segments.size(), 0.0);
     return;
@@ -167,6 +207,7 @@ SegmentNoise::SegmentNoise(const NoiseLevels& levels,
     ++poles_;
   const double pole = 2.0 * flicker_pole_variance(levels.bias_instability);
   pole_sigma_ = std::sqrt(pole);
+  double transient = 0.0;  // 1-sigma at the power-on [deg/s]
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const Segment& segment = segments[i];
     const auto n = static_cast<double>(segment.samples.size());
@@ -177,6 +218,17 @@ SegmentNoise::SegmentNoise(const NoiseLevels& levels,
         std::pow(levels.rate_random_walk, 2) * std::max(0.0, segment.time);
     const double since =
         i == 0 ? segment.time : segment.time - segments[i - 1].time;
+    const bool powered_on =
+        i == 0 || segment.power_on != segments[i - 1].power_on;
+    double left = 0.0;  // of the transient
+    if (transient_) {
+      if (powered_on)
+        transient = levels.turn_on_transient *
+                    -std::expm1(-time_without_power(segments, i) /
+                                levels.turn_on_recovery);
+      left = transient * left_of_transient(segment, levels.turn_on_settling);
+      all += left * left;
+    }
     for (std::size_t k = 0; k < kDrawnPoles; ++k) {
       const double rate = flicker_decay_rate(2 * k);
       const double rho = std::exp(-rate * step);
@@ -199,7 +251,7 @@ SegmentNoise::SegmentNoise(const NoiseLevels& levels,
     }
     steps_.push_back({std::sqrt(white),
                       levels.rate_random_walk * std::sqrt(std::max(0.0, since)),
-                      i == 0 || segment.power_on != segments[i - 1].power_on});
+                      left, powered_on});
     deviations_.push_back(std::sqrt(all + white));
   }
 }
@@ -207,11 +259,12 @@ SegmentNoise::SegmentNoise(const NoiseLevels& levels,
 void SegmentNoise::draw(RandomStream& random, std::span<double> means) const {
   std::ranges::fill(means, 0.0);
   if (none_) return;
-  std::vector<double> normal(2 * poles_ + 3);
+  std::vector<double> normal(2 * poles_ + (transient_ ? 4 : 3));
   std::vector<double> state(poles_, 0.0);
   const std::size_t others = 2 * poles_;
   double walk = 0.0;
   double offset = 0.0;
+  double transient = 0.0;  // [-], of one sigma
   for (std::size_t i = 0; i < means.size(); ++i) {
     random.fill_normal(normal);
     const Step& step = steps_[i];
@@ -224,8 +277,12 @@ void SegmentNoise::draw(RandomStream& random, std::span<double> means) const {
     }
     flicker *= pole_sigma_;
     walk += step.walk * normal[others];
-    if (step.powered_on) offset = turn_on_ * normal[others + 2];
+    if (step.powered_on) {
+      offset = turn_on_ * normal[others + 2];
+      if (transient_) transient = normal[others + 3];
+    }
     means[i] = flicker + walk + offset + step.white * normal[others + 1];
+    if (transient_) means[i] += transient * step.transient;
   }
 }
 

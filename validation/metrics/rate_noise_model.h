@@ -11,12 +11,16 @@
 namespace beamgyro::internal {
 
 /// Noise of a rate, of the same law as that of the simulator: white noise,
-/// flicker, a random walk from time 0 on, an offset at each power-on.
+/// flicker, a random walk from time 0 on, an offset at each power-on and a
+/// transient A (1 - e^(-t_off/tau_off)) e^(-t/tau_t) from it on.
 struct NoiseLevels {
   double angle_random_walk = 0.0;  // N [deg/sqrt(s)]
   double bias_instability = 0.0;   // B [deg/s]
   double rate_random_walk = 0.0;   // K [deg/s/sqrt(s)]
   double turn_on = 0.0;            // 1-sigma [deg/s]
+  double turn_on_transient = 0.0;  // 1-sigma of A [deg/s]
+  double turn_on_settling = 0.0;   // tau_t [s], where there is a transient
+  double turn_on_recovery = 0.0;   // tau_off [s], likewise
 
   bool operator==(const NoiseLevels&) const = default;
 };
@@ -55,9 +59,10 @@ class SegmentNoise {
  private:
   struct Step {
     bool operator==(const Step&) const = default;
-    double white;     // [deg/s], 1-sigma of all that neighbours do not share
-    double walk;      // [deg/s], 1-sigma of the walk since the segment before
-    bool powered_on;  // since the segment before
+    double white;      // [deg/s], 1-sigma of all that neighbours do not share
+    double walk;       // [deg/s], 1-sigma of the walk since the segment before
+    double transient;  // [deg/s], of a transient of one sigma
+    bool powered_on;   // since the segment before
   };
   // One slow pole over one segment, of unit variance, after its value e at the
   // last sample of the segment before: its mean and its value at the last one.
@@ -67,6 +72,7 @@ class SegmentNoise {
     double carried, shared, rest;  // e' = carried e + shared n + rest n'
   };
   double turn_on_ = 0.0;  // [deg/s]
+  bool transient_ = false;
   bool none_ = true;
   std::size_t poles_ = 0;
   std::vector<Step> steps_;

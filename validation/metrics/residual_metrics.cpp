@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "compensation/scoring/residual_scores.h"
@@ -9,20 +10,38 @@
 namespace beamgyro::internal {
 namespace {
 
+// Over a power-on as a whole, and over times in which slow noise moves less.
+constexpr std::array kWindows = {HUGE_VAL, 14400.0, 3600.0, 1200.0};  // [s]
+
+/// A score of the residual, and the least that it is as a multiple of the rms
+/// within windows, which is at most the rms about the mean.
+struct ResidualFigure {
+  double ResidualScores::*score;
+  double least_of_rms;
+  Shrinkage shrinkage;
+  double least;
+  Growth growth;
+};
+
 std::optional<Estimate> residual_figure(const Evidence& evidence,
-                                        double ResidualScores::*figure,
-                                        Shrinkage shrinkage, double least,
-                                        Growth growth) {
+                                        ResidualFigure figure) {
   NoisyMeans means;
   for (const EvidenceRun* run : runs_for(evidence, quiet_purposes()))
     means.add(*run, score_blocks(*run->recording));
   if (means.values.empty()) return std::nullopt;
-  return estimate_beneath_noise(
+  Estimate found = estimate_beneath_noise(
       means,
-      [figure](std::span<const double> r) {
-        return residual_scores(r).*figure;
+      [&](std::span<const double> r) {
+        return residual_scores(r).*figure.score;
       },
-      shrinkage, least, growth);
+      figure.shrinkage, figure.least, figure.growth);
+  if (!(figure.least_of_rms > 0.0) || !std::isfinite(found.value)) return found;
+  for (const double window : kWindows)
+    found.interval->low =
+        std::max(found.interval->low,
+                 std::min(found.value, figure.least_of_rms *
+                                           least_rms_within(means, window)));
+  return found;
 }
 
 std::optional<Estimate> normalised_residual(const Evidence& evidence) {
@@ -57,25 +76,30 @@ std::vector<Metric> residual_metrics() {
        "Mean of the residual over blocks of 60 s: r_i is the mean of a "
        "block.",
        quiet_purposes(),
-       given(residual_figure, &ResidualScores::mean, Shrinkage::kNone,
-             -HUGE_VAL, Growth::kSmooth)},
+       given(residual_figure,
+             ResidualFigure{&ResidualScores::mean, 0.0, Shrinkage::kNone,
+                            -HUGE_VAL, Growth::kSmooth})},
       {"residual_sigma_deg_per_s", "deg/s", "",
        "sqrt(sum (r_i - mean)^2 / n) over the blocks of 60 s.",
        quiet_purposes(),
-       given(residual_figure, &ResidualScores::sigma, Shrinkage::kToMean, 0.0,
-             Growth::kSquare)},
+       given(residual_figure,
+             ResidualFigure{&ResidualScores::sigma, 1.0, Shrinkage::kToMean,
+                            0.0, Growth::kSquare})},
       {"residual_rms_deg_per_s", "deg/s", "",
        "sqrt(sum r_i^2 / n) over the blocks of 60 s.", quiet_purposes(),
-       given(residual_figure, &ResidualScores::rms, Shrinkage::kToZero, 0.0,
-             Growth::kSquare)},
+       given(residual_figure,
+             ResidualFigure{&ResidualScores::rms, 1.0, Shrinkage::kToZero, 0.0,
+                            Growth::kSquare})},
       {"residual_max_deg_per_s", "deg/s", "",
        "max |r_i| over the blocks of 60 s.", quiet_purposes(),
-       given(residual_figure, &ResidualScores::largest, Shrinkage::kToZero, 0.0,
-             Growth::kExtreme)},
+       given(residual_figure,
+             ResidualFigure{&ResidualScores::largest, 1.0, Shrinkage::kToZero,
+                            0.0, Growth::kExtreme})},
       {"residual_pp_deg_per_s", "deg/s", "",
        "max r_i - min r_i over the blocks of 60 s.", quiet_purposes(),
-       given(residual_figure, &ResidualScores::peak_to_peak, Shrinkage::kToMean,
-             0.0, Growth::kExtreme)},
+       given(residual_figure,
+             ResidualFigure{&ResidualScores::peak_to_peak, 2.0,
+                            Shrinkage::kToMean, 0.0, Growth::kExtreme})},
       {"normalised_residual", "1", "",
        "sqrt(mean r_i^2 / s_i^2) over the blocks of 60 s: s_i is the "
        "standard deviation of a block's mean under the noise that the "

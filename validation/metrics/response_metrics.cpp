@@ -11,9 +11,10 @@ namespace beamgyro::internal {
 namespace {
 
 constexpr double kHalfPower = 20.0 * 0.15051499783199057;  // [dB], 10 log10(2)
-constexpr double kQuarterTurn = 0.5 * std::numbers::pi;    // [rad]
-constexpr double kLongestDelay = 2.0;                      // [s], looked for
-constexpr double kLeastSpread = 1e-15;                     // [rad]
+constexpr double kDecibels = 20.0 / std::numbers::ln10;  // [dB] in a unit of ln
+constexpr double kQuarterTurn = 0.5 * std::numbers::pi;  // [rad]
+constexpr double kLongestDelay = 2.0;                    // [s], looked for
+constexpr double kLeastSpread = 1e-15;                   // [rad]
 
 Estimate with_t_interval(double value, double sigma, double freedom) {
   if (!(sigma > 0.0) || !(freedom >= 1.0))
@@ -132,18 +133,89 @@ std::optional<Estimate> correlated_delay(const EvidenceRun& run) {
   return with_t_interval(delay, std::sqrt(left / n / slopes), n - 2.0);
 }
 
-std::optional<Estimate> bandwidth(const Evidence& evidence) {
-  const std::vector<ResponsePoint> points = response_to_true_rate(evidence);
-  if (points.size() < 2) return std::nullopt;
-  const double lowest = std::abs(points[0].gain);
+/// Levels [dB] over that at the lowest frequency, and their 1-sigma without
+/// what all share, the noise at the lowest.
+struct ResponseLevels {
+  std::vector<ResponsePoint> points;
   std::vector<double> values, sigmas;
-  const double decibels = 20.0 / std::numbers::ln10;
-  for (const ResponsePoint& point : points) {
-    values.push_back(decibels * std::log(std::abs(point.gain) / lowest) +
-                     kHalfPower);
-    sigmas.push_back(decibels * point.sigma / std::abs(point.gain));
+};
+
+std::optional<ResponseLevels> levels_of(const Evidence& evidence) {
+  ResponseLevels levels{response_to_true_rate(evidence), {}, {}};
+  if (levels.points.size() < 2) return std::nullopt;
+  const double lowest = std::abs(levels.points[0].gain);
+  for (const ResponsePoint& point : levels.points) {
+    levels.values.push_back(kDecibels *
+                            std::log(std::abs(point.gain) / lowest));
+    levels.sigmas.push_back(kDecibels * point.sigma / std::abs(point.gain));
   }
-  return crossing_of(points, values, sigmas, sigmas[0]);
+  return levels;
+}
+
+std::optional<Estimate> bandwidth(const Evidence& evidence) {
+  auto levels = levels_of(evidence);
+  if (!levels) return std::nullopt;
+  for (double& value : levels->values) value += kHalfPower;
+  return crossing_of(levels->points, levels->values, levels->sigmas,
+                     levels->sigmas[0]);
+}
+
+/// The highest level of a response, and where it is.
+struct ResponsePeak {
+  Estimate level;      // [dB]
+  Estimate frequency;  // [Hz]
+};
+
+/// The upper end of a level is the highest of those of all points. The lower
+/// end is that of all points that may be the highest at once (Bonferroni). The
+/// frequencies are those of the points that reach it.
+std::optional<ResponsePeak> peak_of(const Evidence& evidence) {
+  const auto levels = levels_of(evidence);
+  if (!levels) return std::nullopt;
+  const std::vector<ResponsePoint>& points = levels->points;
+  const std::vector<double>& values = levels->values;
+  const std::vector<double>& sigmas = levels->sigmas;
+  const auto half_of = [&](std::size_t i, std::size_t count) {
+    const double sigma = i == 0 ? 0.0 : std::hypot(sigmas[i], sigmas[0]);
+    return sigma > 0.0 ? sigma * student_half_width(
+                                     std::max(1.0, points[i].freedom), count)
+                       : 0.0;
+  };
+  const auto peak = static_cast<std::size_t>(std::ranges::max_element(values) -
+                                             values.begin());
+  const auto lower_of = [&](std::size_t count) {
+    double low = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      low = std::max(low, values[i] - half_of(i, count));
+    return low;
+  };
+  const auto may_reach = [&](double level) {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (values[i] + half_of(i, 1) >= level) found.push_back(i);
+    return found;
+  };
+  const double low = lower_of(may_reach(lower_of(1)).size());
+  double high = values[peak];
+  for (std::size_t i = 0; i < points.size(); ++i)
+    high = std::max(high, values[i] + half_of(i, 1));
+  const std::vector<std::size_t> there = may_reach(low);
+  return ResponsePeak{
+      {values[peak], Interval{low, high}},
+      {points[peak].frequency, Interval{points[there.front()].frequency,
+                                        points[there.back()].frequency}}};
+}
+
+std::optional<Estimate> response_peak(const Evidence& evidence) {
+  const auto peak = peak_of(evidence);
+  if (!peak) return std::nullopt;
+  return peak->level;
+}
+
+std::optional<Estimate> response_peak_frequency(const Evidence& evidence) {
+  const auto peak = peak_of(evidence);
+  if (!peak || !(peak->level.value > 0.0)) return std::nullopt;
+  return peak->frequency;
 }
 
 std::optional<Estimate> phase_lag_90(const Evidence& evidence) {
@@ -177,6 +249,19 @@ std::vector<Metric> response_metrics() {
        "below its value at the lowest frequency.",
        {kSineRate, kRateStep, kRandomRate},
        bandwidth},
+      {"response_peak_dB",
+       "dB",
+       "12.15",
+       "Highest |H(f)| over its value at the lowest frequency, 20 log10 of the "
+       "quotient: 0 without a peak.",
+       {kSineRate, kRateStep},
+       response_peak},
+      {"response_peak_Hz",
+       "Hz",
+       "12.15",
+       "Frequency at which |H(f)| is highest, where that is not the lowest.",
+       {kSineRate, kRateStep},
+       response_peak_frequency},
       {"phase_lag_90_deg_Hz",
        "Hz",
        "12.15",

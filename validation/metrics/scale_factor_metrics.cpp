@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "compensation/scoring/linearity.h"
 #include "compensation/scoring/scale_factor.h"
+#include "validation/metrics/largest_figure.h"
 #include "validation/metrics/metric_tables.h"
 #include "validation/metrics/noisy_means.h"
 
@@ -103,21 +105,23 @@ RateTables rate_tables_of(const Evidence& evidence) {
   return all;
 }
 
-std::optional<Estimate> table_figure(
-    const Evidence& evidence,
-    const std::function<double(const std::vector<Linearity>&)>& figure,
-    double least, Growth growth) {
+using FiguresOfTable = std::vector<double> (*)(const Linearity& table);
+using EstimateOfLargest = Estimate (*)(const NoisyMeans& means,
+                                       const Candidates& candidates);
+
+/// The largest figure of all tables.
+std::optional<Estimate> largest_of_tables(const Evidence& evidence,
+                                          FiguresOfTable figures_of,
+                                          EstimateOfLargest estimate) {
   const RateTables all = rate_tables_of(evidence);
   if (all.tables.empty()) return std::nullopt;
-  return estimate_beneath_noise(
-      all.means,
-      [&](std::span<const double> means) {
-        std::vector<Linearity> found;
-        for (const RateTable& table : all.tables)
-          found.push_back(linearity_of(held_rates_of(table, means)));
-        return figure(found);
-      },
-      Shrinkage::kNone, least, growth);
+  return estimate(all.means, [&](std::span<const double> means) {
+    std::vector<double> figures;
+    for (const RateTable& table : all.tables)
+      std::ranges::copy(figures_of(linearity_of(held_rates_of(table, means))),
+                        std::back_inserter(figures));
+    return figures;
+  });
 }
 
 /// White noise of the difference of judged and recorded rate.
@@ -155,49 +159,29 @@ std::optional<Estimate> retained(const Evidence& evidence,
 }
 
 std::optional<Estimate> mean_scale_factor(const Evidence& evidence) {
-  return table_figure(
-      evidence,
-      [](const std::vector<Linearity>& tables) {
+  const RateTables all = rate_tables_of(evidence);
+  if (all.tables.empty()) return std::nullopt;
+  return estimate_beneath_noise(
+      all.means,
+      [&](std::span<const double> means) {
         double sum = 0.0;
-        for (const Linearity& table : tables) sum += table.slope;
-        return sum / static_cast<double>(tables.size());
+        for (const RateTable& table : all.tables)
+          sum += linearity_of(held_rates_of(table, means)).slope;
+        return sum / static_cast<double>(all.tables.size());
       },
-      -HUGE_VAL, Growth::kSmooth);
+      Shrinkage::kNone);
 }
 
-std::optional<Estimate> scale_factor_error(const Evidence& evidence) {
-  return table_figure(
-      evidence,
-      [](const std::vector<Linearity>& tables) {
-        double largest = 0.0;
-        for (const Linearity& table : tables)
-          largest = std::max(largest, kPpm * std::abs(table.slope - 1.0));
-        return largest;
-      },
-      0.0, Growth::kLargest);
+std::vector<double> error_of(const Linearity& table) {
+  return {kPpm * (table.slope - 1.0)};
 }
 
-std::optional<Estimate> scale_factor_nonlinearity(const Evidence& evidence) {
-  return table_figure(
-      evidence,
-      [](const std::vector<Linearity>& tables) {
-        return std::ranges::max(tables, {}, &Linearity::nonlinearity)
-            .nonlinearity;
-      },
-      0.0, Growth::kLargest);
+std::vector<double> departures_of(const Linearity& table) {
+  return table.departures;
 }
 
-std::optional<Estimate> scale_factor_asymmetry(const Evidence& evidence) {
-  return table_figure(
-      evidence,
-      [](const std::vector<Linearity>& tables) {
-        return std::ranges::max(tables, {},
-                                [](const Linearity& table) {
-                                  return std::abs(table.asymmetry);
-                                })
-            .asymmetry;
-      },
-      -HUGE_VAL, Growth::kLargest);
+std::vector<double> asymmetry_of(const Linearity& table) {
+  return {table.asymmetry};
 }
 
 std::optional<Estimate> scale_factor_temperature_sensitivity(
@@ -240,21 +224,21 @@ std::vector<Metric> scale_factor_metrics() {
        "12.9",
        "max |K_j - 1| over the rate tables.",
        {kRateTable},
-       scale_factor_error},
+       given(largest_of_tables, error_of, estimate_of_largest)},
       {"scale_factor_nonlinearity_ppm",
        "ppm",
        "12.9",
        "max |V_i - line| / (K max |Omega_i|): V_i is the mean answer to "
        "the held rate Omega_i; of the worst rate table.",
        {kRateTable},
-       scale_factor_nonlinearity},
+       given(largest_of_tables, departures_of, estimate_of_largest)},
       {"scale_factor_asymmetry_ppm",
        "ppm",
        "12.9",
        "2 (K+ - K-) / (K+ + K-) of the slopes over the rates >= 0 and "
        "<= 0; of the table where it is largest.",
        {kRateTable},
-       scale_factor_asymmetry},
+       given(largest_of_tables, asymmetry_of, estimate_of_largest_signed)},
       {"scale_factor_temperature_sensitivity_ppm_per_K",
        "ppm/K",
        "12.9",

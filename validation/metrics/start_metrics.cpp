@@ -5,6 +5,7 @@
 
 #include "compensation/scoring/residual_scores.h"
 #include "random/random_stream.h"
+#include "validation/metrics/largest_figure.h"
 #include "validation/metrics/metric_tables.h"
 #include "validation/metrics/noisy_means.h"
 
@@ -137,34 +138,32 @@ NoisyMeans power_on_means(const Evidence& evidence, double length,
   return means;
 }
 
-std::optional<Estimate> worst_power_on(
-    const Evidence& evidence, double length,
-    double (*figure)(std::span<const double> from_power_on)) {
+/// Figures of one power-on, appended to those of others.
+using AddFigures = void (*)(std::span<const double> from_power_on,
+                            std::vector<double>& figures);
+
+std::optional<Estimate> worst_power_on(const Evidence& evidence, double length,
+                                       AddFigures add) {
   std::size_t of_each = 0;
   const NoisyMeans means = power_on_means(evidence, length, of_each);
   if (means.values.empty()) return std::nullopt;
-  return estimate_beneath_noise(
-      means,
-      [&](std::span<const double> b) {
-        double worst = 0.0;
-        for (std::size_t i = 0; i < b.size(); i += of_each)
-          worst = std::max(worst, figure(b.subspan(i, of_each)));
-        return worst;
-      },
-      Shrinkage::kToPowerOn, 0.0, Growth::kLargest);
+  return estimate_of_largest(means, [&](std::span<const double> b) {
+    std::vector<double> figures;
+    for (std::size_t i = 0; i < b.size(); i += of_each)
+      add(b.subspan(i, of_each), figures);
+    return figures;
+  });
 }
 
-double largest_departure(std::span<const double> b) {
-  double largest = 0.0;
-  for (const double value : b)
-    largest = std::max(largest, std::abs(value - b[0]));
-  return largest;
+void add_departures(std::span<const double> b, std::vector<double>& figures) {
+  for (const double value : b.subspan(1)) figures.push_back(value - b[0]);
 }
 
-double heading_error(std::span<const double> b) {
+void add_heading_error(std::span<const double> b,
+                       std::vector<double>& figures) {
   double angle = 0.0;
   for (const double value : b.subspan(1)) angle += kZeroing * (value - b[0]);
-  return std::abs(angle);
+  figures.push_back(angle);
 }
 
 std::optional<Estimate> turn_on_time(const Evidence& evidence) {
@@ -312,17 +311,17 @@ std::vector<Metric> start_metrics() {
        "of 10 s, b(0) the first one, with which the user zeroes the "
        "gyro.",
        power_on_purposes(),
-       given(worst_power_on, 180.0 - kZeroing, &largest_departure)},
+       given(worst_power_on, 180.0 - kZeroing, &add_departures)},
       {"heading_error_1_min_deg", "deg", "",
        "Largest |integral of the residual over 1 min|, from 10 s after "
        "power-on, less the mean of those 10 s, with which the user "
        "zeroes the gyro.",
-       power_on_purposes(), given(worst_power_on, 60.0, &heading_error)},
+       power_on_purposes(), given(worst_power_on, 60.0, &add_heading_error)},
       {"heading_error_10_min_deg", "deg", "",
        "Largest |integral of the residual over 10 min|, from 10 s after "
        "power-on, less the mean of those 10 s, with which the user "
        "zeroes the gyro.",
-       power_on_purposes(), given(worst_power_on, 600.0, &heading_error)},
+       power_on_purposes(), given(worst_power_on, 600.0, &add_heading_error)},
   };
 }
 

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "compensation/scoring/residual_scores.h"
+#include "validation/metrics/largest_figure.h"
 #include "validation/metrics/metric_tables.h"
 #include "validation/metrics/noisy_means.h"
 #include "validation/metrics/soaks.h"
@@ -55,20 +56,31 @@ double difference(const Comparison& c, std::span<const double> b) {
   return b[c.here] - (1.0 - c.share) * b[c.left] - c.share * b[c.right];
 }
 
-double largest_difference(const std::vector<Comparison>& comparisons,
-                          std::span<const double> b) {
-  double largest = 0.0;
-  for (const Comparison& c : comparisons)
-    largest = std::max(largest, std::abs(difference(c, b)));
-  return largest;
+std::vector<double> differences(const std::vector<Comparison>& comparisons,
+                                std::span<const double> b) {
+  std::vector<double> all;
+  for (const Comparison& c : comparisons) all.push_back(difference(c, b));
+  return all;
 }
 
-double rms_difference(const std::vector<Comparison>& comparisons,
-                      std::span<const double> b) {
-  double squares = 0.0;
-  for (const Comparison& c : comparisons)
-    squares += std::pow(difference(c, b), 2);
-  return std::sqrt(squares / static_cast<double>(comparisons.size()));
+Estimate largest_difference(const NoisyMeans& means,
+                            const std::vector<Comparison>& comparisons) {
+  return estimate_of_largest(means, [&](std::span<const double> b) {
+    return differences(comparisons, b);
+  });
+}
+
+Estimate rms_difference(const NoisyMeans& means,
+                        const std::vector<Comparison>& comparisons) {
+  return estimate_beneath_noise(
+      means,
+      [&](std::span<const double> b) {
+        double squares = 0.0;
+        for (const Comparison& c : comparisons)
+          squares += std::pow(difference(c, b), 2);
+        return std::sqrt(squares / static_cast<double>(comparisons.size()));
+      },
+      Shrinkage::kToMean, 0.0, Growth::kSquare);
 }
 
 /// Part of a ramp run in one direction: indices of means, rising temperature.
@@ -133,8 +145,7 @@ void compare(const Leg& up, const Leg& down, std::span<const Segment> blocks,
 
 std::optional<Estimate> ramp_figure(
     const Evidence& evidence,
-    double (*figure)(const std::vector<Comparison>&, std::span<const double>),
-    Growth growth) {
+    Estimate (*figure)(const NoisyMeans&, const std::vector<Comparison>&)) {
   NoisyMeans means;
   std::vector<Leg> legs;
   for (const EvidenceRun* run : runs_for(evidence, {RunPurpose::kRamp})) {
@@ -150,9 +161,7 @@ std::optional<Estimate> ramp_figure(
           std::abs(up.slope + down.slope) <= kSameSlope * up.slope)
         compare(up, down, means.segments, comparisons);
   if (comparisons.empty()) return std::nullopt;
-  return estimate_beneath_noise(
-      means, [&](std::span<const double> b) { return figure(comparisons, b); },
-      Shrinkage::kToMean, 0.0, growth);
+  return figure(means, comparisons);
 }
 
 std::optional<Estimate> bias_sensitivity(const Evidence& evidence) {
@@ -199,23 +208,19 @@ std::optional<Estimate> bias_sensitivity_max(const Evidence& evidence) {
     for (const std::size_t j : groups[g]) sum += value(j);
     return sum / static_cast<double>(groups[g].size());
   };
-  return estimate_beneath_noise(
-      all.means,
-      [&](std::span<const double> b) {
-        const auto bias_at = [&](std::size_t j) { return b[j]; };
-        const auto temperature = [&](std::size_t j) {
-          return segments[j].temperature;
-        };
-        double largest = 0.0;
-        for (std::size_t g = 1; g + 1 < groups.size(); ++g)
-          largest =
-              std::max(largest, std::abs((mean_of_group(g + 1, bias_at) -
-                                          mean_of_group(g - 1, bias_at)) /
-                                         (mean_of_group(g + 1, temperature) -
-                                          mean_of_group(g - 1, temperature))));
-        return largest;
-      },
-      Shrinkage::kToMean, 0.0, Growth::kExtreme);
+  return estimate_of_largest(all.means, [&](std::span<const double> b) {
+    const auto bias_at = [&](std::size_t j) { return b[j]; };
+    const auto temperature = [&](std::size_t j) {
+      return segments[j].temperature;
+    };
+    std::vector<double> slopes;
+    for (std::size_t g = 1; g + 1 < groups.size(); ++g)
+      slopes.push_back(
+          (mean_of_group(g + 1, bias_at) - mean_of_group(g - 1, bias_at)) /
+          (mean_of_group(g + 1, temperature) -
+           mean_of_group(g - 1, temperature)));
+    return slopes;
+  });
 }
 
 std::optional<Estimate> soak_hysteresis_max(const Evidence& evidence) {
@@ -229,12 +234,7 @@ std::optional<Estimate> soak_hysteresis_max(const Evidence& evidence) {
               kSameSoakTemperature)
         comparisons.push_back({i, j, j, 0.0});
   if (comparisons.empty()) return std::nullopt;
-  return estimate_beneath_noise(
-      all.means,
-      [&](std::span<const double> b) {
-        return largest_difference(comparisons, b);
-      },
-      Shrinkage::kToMean, 0.0, Growth::kExtreme);
+  return largest_difference(all.means, comparisons);
 }
 
 std::optional<Estimate> bias(const Evidence& evidence) {
@@ -299,14 +299,14 @@ std::vector<Metric> hysteresis_metrics() {
        "max over T of |B_up(T) - B_down(T)| at the same measured "
        "temperature, between ramps of equal slope.",
        {kRamp},
-       given(ramp_figure, &largest_difference, Growth::kExtreme)},
+       given(ramp_figure, &largest_difference)},
       {"hysteresis_rms_deg_per_s",
        "deg/s",
        "",
        "rms over T of B_up(T) - B_down(T) at the same measured "
        "temperature, between ramps of equal slope.",
        {kRamp},
-       given(ramp_figure, &rms_difference, Growth::kSquare)},
+       given(ramp_figure, &rms_difference)},
       {"soak_hysteresis_max_deg_per_s",
        "deg/s",
        "",

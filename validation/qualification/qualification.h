@@ -9,8 +9,8 @@
 #include "config/document.h"
 #include "dataset/set/source_copies.h"
 #include "sim/campaign/draw_plan.h"
-#include "sim/scenario/profile_keys.h"
 #include "sim/scenario/scenario.h"
+#include "sim/scenario/scenario_file.h"
 #include "validation/evidence/evidence.h"
 
 namespace beamgyro::internal {

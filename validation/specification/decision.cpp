@@ -115,6 +115,14 @@ Side side_of(const Estimate& found, double limit, double sign,
           sign > 0.0 ? below : above};
 }
 
+/// Whether noise hides a size as small as the limit: the interval of one that
+/// is never below 0 is wider than the limit.
+bool hides(const Estimate& found, const Limit& limit) {
+  return limit.most && !limit.least && *limit.most > 0.0 && found.interval &&
+         found.interval->low >= 0.0 &&
+         found.interval->high - found.interval->low > *limit.most;
+}
+
 Verdict conformity_of(const Side& side) {
   if (side.margin >= side.towards) return Verdict::kPass;
   if (-side.margin > side.away) return Verdict::kFail;
@@ -141,8 +149,11 @@ std::string words_of(const Decision& decision, const Limit& limit) {
         "{:.4g} has an interval without an end towards the limit; must be {}",
         value, asked);
   return fmt::format(
-      "{:.4g} is within {:.3g} of the limit, its guard band; must be {}", value,
-      decision.guard_band, asked);
+      "{:.4g} is within {:.3g} of the limit, its guard band; must be {}{}",
+      value, decision.guard_band, asked,
+      decision.too_noisy
+          ? "; the noise of these runs hides a figure as small as the limit"
+          : "");
 }
 
 }  // namespace
@@ -200,6 +211,8 @@ Decision decide(const Limit& limit, const std::optional<Estimate>& after,
     decision.margin = nearer->margin;
     decision.guard_band =
         nearer->margin >= 0.0 ? nearer->towards : nearer->away;
+    decision.too_noisy = decision.result == Verdict::kUndecided &&
+                         hides(*decision.compared, limit);
   }
   decision.words = words_of(decision, limit);
   return decision;

@@ -51,7 +51,10 @@ struct Decision {
   std::optional<double> margin = {};
   double guard_band = 0.0;  // at that limit, same unit
   bool met_before = false;  // the recorded rate meets the limit, too
-  std::string words;        // one sentence for a user
+  // Undecided, and the interval is wider than what the limit leaves above 0, so
+  // that hardly any value would be decided.
+  bool too_noisy = false;
+  std::string words;  // one sentence for a user
 };
 
 /// Decides on a limit. `after` is the metric of the compensated rate,

@@ -18,24 +18,41 @@ std::vector<double>& rate_of(Recording& recording) {
 /// Noise of the simulator, in deg/s: its law is the same in every unit.
 void add_noise(const NoiseLevels& levels, std::uint64_t seed,
                std::uint32_t number, Recording& recording) {
-  const NoiseParameters parameters{levels.angle_random_walk,
-                                   levels.bias_instability,
-                                   levels.rate_random_walk, levels.turn_on};
+  NoiseParameters parameters{levels.angle_random_walk, levels.bias_instability,
+                             levels.rate_random_walk, levels.turn_on,
+                             levels.turn_on_transient};
+  if (levels.turn_on_transient > 0.0) {
+    parameters.turn_on_settling = levels.turn_on_settling;
+    parameters.turn_on_recovery = levels.turn_on_recovery;
+  }
   const double step = recording.time[1] - recording.time[0];
   std::vector<double>& rate = rate_of(recording);
   RateNoise(parameters, 1.0 / step, seed, 0, number).add_next(rate);
   const auto stretches = powered_stretches(recording);
   const std::vector<double> offsets =
       turn_on_offsets(parameters, stretches.size(), seed, 0, number);
-  for (std::size_t i = 0; i < stretches.size(); ++i)
+  std::vector<double> off_times(stretches.size(), HUGE_VAL);
+  for (std::size_t i = 1; i < stretches.size(); ++i)
+    off_times[i] = recording.time[stretches[i].begin] -
+                   recording.time[stretches[i - 1].end - 1];
+  const std::vector<double> transients =
+      turn_on_transients(parameters, off_times, seed, 0, number);
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    const double on = recording.time[stretches[i].begin];
     for (std::size_t k = stretches[i].begin; k < stretches[i].end; ++k)
-      rate[k] += offsets[i];
+      rate[k] +=
+          offsets[i] + transients[i] * std::exp((on - recording.time[k]) /
+                                                parameters.turn_on_settling);
+  }
   recording.device_text = fmt::format(
       "[noise]\nangle_random_walk_deg_per_sqrt_s = {}\n"
       "bias_instability_deg_per_s = {}\n"
-      "rate_random_walk_deg_per_s_per_sqrt_s = {}\nturn_on_deg_per_s = {}\n",
+      "rate_random_walk_deg_per_s_per_sqrt_s = {}\nturn_on_deg_per_s = {}\n"
+      "turn_on_transient_deg_per_s = {}\nturn_on_settling_s = {}\n"
+      "turn_on_recovery_s = {}\n",
       levels.angle_random_walk, levels.bias_instability,
-      levels.rate_random_walk, levels.turn_on);
+      levels.rate_random_walk, levels.turn_on, levels.turn_on_transient,
+      parameters.turn_on_settling, parameters.turn_on_recovery);
   recording.scenario_text = "[noise]\nenabled = true\n";
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 #include <set>
@@ -323,6 +324,46 @@ TEST(MetricValues, BandwidthOfTheSimulatedOutputFilter) {
   const double level = std::sqrt(2) * (1 + std::pow(2.0 / 60, 2));
   EXPECT_NEAR(found.value, 60 * std::sqrt(level - 1), 0.05);
   EXPECT_NEAR(evaluated("phase_lag_90_deg_Hz", scene.evidence).value, 60, 0.1);
+}
+
+/// The response of second order of a resonance at 20 Hz.
+std::complex<double> resonance(double f, double damping) {
+  const std::complex<double> s(0.0, f / 20);
+  return 1.0 / (1.0 + 2.0 * damping * s + s * s);
+}
+
+void add_resonant_sine(Scene& scene, double f, double damping) {
+  const std::complex<double> gain = resonance(f, damping);
+  const auto sine = [f](double t) { return 5 * std::sin(2 * pi * f * t); };
+  scene.add(
+      {kSineRate,
+       {.duration = 4, .step = 0.001, .true_rate = sine, .bias = [=](double t) {
+          return 5 * std::abs(gain) *
+                     std::sin(2 * pi * f * t + std::arg(gain)) -
+                 sine(t);
+        }}});
+}
+
+TEST(MetricValues, PeakOfAResonance) {
+  const double damping = 0.2;
+  const double f = 20 * std::sqrt(1 - 2 * damping * damping);
+  Scene scene;
+  for (const double at : {1.0, 5.0, 12.0, f, 24.0, 40.0})
+    add_resonant_sine(scene, at, damping);
+  // 1/(2 zeta sqrt(1 - zeta^2)) of the gain at rest. What a step of 1 ms leaves
+  // beside whole periods is below 1e-3.
+  const double peak = 1 / (2 * damping * std::sqrt(1 - damping * damping));
+  const double lowest = std::abs(resonance(1, damping));
+  expect_exact("response_peak_dB", scene, 20 * std::log10(peak / lowest), 1e-2);
+  expect_exact("response_peak_Hz", scene, f, 1e-3);
+}
+
+TEST(MetricValues, AResponseThatOnlyFallsHasNoPeak) {
+  Scene scene;
+  for (const double at : {1.0, 5.0, 12.0, 24.0})
+    add_resonant_sine(scene, at, 1);
+  expect_exact("response_peak_dB", scene, 0, 1e-12);
+  EXPECT_FALSE(find_metric("response_peak_Hz")->evaluate(scene.evidence));
 }
 
 TEST(MetricValues, DelayBeyondAPeriodIsUnwrapped) {
