@@ -3,8 +3,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,18 +56,5 @@ class Validator {
 /// Validates on the threads that the options ask for, and tells `progress`.
 ValidationOutcome validated(const Validator& validator,
                             const beamgyro::Progress& progress);
-
-/// What a bundle asks for.
-struct BundledRequest {
-  std::string compensator;
-  ValidationOptions options;
-};
-
-/// Returns it, with the paths of the copies. Throws std::invalid_argument for
-/// one that no call could make.
-BundledRequest request_of(const Bundle& bundle);
-
-/// Returns the bundle's content of a validation.
-BundleContent bundle_content(const Validator& validator);
 
 }  // namespace beamgyro::internal

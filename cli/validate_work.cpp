@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "api/bundled_request.h"
 #include "api/program_version.h"
 #include "api/validation_members.h"
 #include "api/validator.h"
