@@ -9,6 +9,7 @@
 #include "api/compensators.h"
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/compensator/settled_curve.h"
+#include "config/option_message.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/text_file.h"
 
@@ -112,8 +113,13 @@ std::vector<std::string> Compensator::warnings() const {
 std::shared_ptr<const RateCompensator> open_compensator(
     const std::string& argument, const ProcessOptions& options) {
   const internal::SourceKind kind = internal::source_kind(argument);
-  if (!internal::is_program(kind))
+  if (!internal::is_program(kind)) {
+    if (!options.plugin_files.empty())
+      throw internal::option_error(
+          "{} is for a library or a command; {} is neither",
+          internal::NamedOption{"plugin_files"}, argument);
     return std::make_shared<Compensator>(Compensator::read(argument));
+  }
   if (!(options.stall_s > 0))
     throw std::invalid_argument(
         fmt::format("stall_s {}: expected a time above 0", options.stall_s));
@@ -127,9 +133,13 @@ std::shared_ptr<const RateCompensator> open_compensator(
           "program beamgyro");
   }
   return std::make_shared<internal::OpenedCompensator>(internal::open_source(
-      argument, internal::ProcessLimits{.stall = options.stall_s,
-                                        .memory = options.memory,
-                                        .program = options.program}));
+      argument, internal::ProcessLimits{
+                    .stall = options.stall_s,
+                    .memory = options.memory,
+                    .program = options.program,
+                    .isolation = {.plugin_files = options.plugin_files,
+                                  .hidden = options.hidden_files,
+                                  .required = options.require_isolation}}));
 }
 
 }  // namespace beamgyro

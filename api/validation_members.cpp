@@ -60,7 +60,16 @@ constexpr std::array kMembers{
                      kDeviceHeading, "devices"},
     ValidationMember{"runs", &Options::runs, kOnSet, "", "set_runs", "run",
                      "NAME", "Run to judge; may be repeated", "all runs",
-                     kSetHeading, ""}};
+                     kSetHeading, ""},
+    ValidationMember{"plugin_files", &Options::plugin_files, kOnAny, "",
+                     "plugin_files", "plugin-files", "PATH",
+                     "File or folder that it may read; may be repeated",
+                     "the system and the scripts that it names", kCodeHeading,
+                     ""},
+    ValidationMember{"require_isolation", &Options::require_isolation, kOnAny,
+                     "", "require_isolation", "require-isolation", "",
+                     "Judges no code that is not isolated",
+                     "says so in the result", kCodeHeading, ""}};
 
 unsigned subjects_of(const ValidationOptions& options) {
   return (options.device ? kOnDevice : 0U) |
@@ -90,7 +99,7 @@ const ValidationMember& member_named(std::string_view name) {
 
 std::string_view type_name(const ValidationMember& row) {
   return std::visit(
-      [](auto member) -> std::string_view {
+      [&row](auto member) -> std::string_view {
         using Value = std::decay_t<decltype(ValidationOptions().*member)>;
         if constexpr (std::is_same_v<Value, std::optional<double>>)
           return "number";
@@ -103,6 +112,9 @@ std::string_view type_name(const ValidationMember& row) {
         if constexpr (std::is_same_v<Value,
                                      std::optional<std::filesystem::path>>)
           return "file";
+        if constexpr (std::is_same_v<Value, bool>) return "flag";
+        if constexpr (std::is_same_v<Value, std::vector<std::filesystem::path>>)
+          return row.option.empty() ? "" : "files";
         return "";
       },
       row.member);
@@ -120,7 +132,9 @@ bool is_given(const ValidationMember& row, const ValidationOptions& options) {
   return std::visit(
       [&options](auto member) {
         const auto& value = options.*member;
-        if constexpr (requires { value.has_value(); })
+        if constexpr (std::is_same_v<decltype(value), const bool&>)
+          return value;
+        else if constexpr (requires { value.has_value(); })
           return value.has_value();
         else
           return !value.empty();

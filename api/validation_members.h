@@ -18,16 +18,21 @@ namespace beamgyro::internal {
 /// A member of ValidationOptions by its type.
 template <class T>
 using OptionOf = T ValidationOptions::*;
-using AnyOption = std::variant<
-    OptionOf<std::optional<Device>>, OptionOf<std::optional<Set>>,
-    OptionOf<std::vector<std::filesystem::path>>,
-    OptionOf<std::optional<std::filesystem::path>>,
-    OptionOf<std::vector<std::string>>, OptionOf<std::vector<std::uint32_t>>,
-    OptionOf<std::optional<std::uint32_t>>, OptionOf<std::optional<double>>>;
+using AnyOption =
+    std::variant<OptionOf<std::optional<Device>>, OptionOf<std::optional<Set>>,
+                 OptionOf<std::vector<std::filesystem::path>>,
+                 OptionOf<std::optional<std::filesystem::path>>,
+                 OptionOf<std::vector<std::string>>,
+                 OptionOf<std::vector<std::uint32_t>>,
+                 OptionOf<std::optional<std::uint32_t>>,
+                 OptionOf<std::optional<double>>, OptionOf<bool>>;
 
 /// What a compensator may be judged on, as bits.
 enum Subject : unsigned { kOnDevice = 1, kOnRecordings = 2, kOnSet = 4 };
 constexpr unsigned kOnAny = kOnDevice | kOnRecordings | kOnSet;
+
+/// Heading of the options for libraries and commands alone.
+constexpr std::string_view kCodeHeading = "A library or a command";
 
 /// A row for each member of ValidationOptions. The command and Python read
 /// their options from it, bundles their keys.
@@ -50,8 +55,8 @@ std::span<const ValidationMember> validation_members();
 /// Returns the row of a member.
 const ValidationMember& member_named(std::string_view name);
 
-/// Returns "file", "text", "texts", "whole", "wholes" or "number"; empty for a
-/// subject.
+/// Returns "file", "files", "texts", "whole", "wholes", "number" or "flag";
+/// empty for a subject.
 std::string_view type_name(const ValidationMember& row);
 
 /// Returns which of "device", "recordings" and "set" it goes with.

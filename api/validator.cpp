@@ -161,6 +161,23 @@ struct Validator::State {
     return all;
   }
 
+  // Code of others must not read what it is judged by.
+  void isolate_code() {
+    std::vector<fs::path> hidden;
+    for (const ValidationInput& input : inputs)
+      if (input.group != "compensator") hidden.push_back(input.path);
+    if (options.set) hidden.push_back(options.set->directory());
+    isolate_code_of(source, {.plugin_files = options.plugin_files,
+                             .hidden = std::move(hidden),
+                             .required = options.require_isolation});
+  }
+
+  std::vector<std::string> warnings_about_isolation() const {
+    if (!is_program(source.kind) || source.isolation->holds()) return {};
+    return {fmt::format("{}: {}; it could read what it is judged by",
+                        source.name, isolation_words(*source.isolation))};
+  }
+
   void require_model_can_be_trained() const {
     if (!source.model) return;
     if (!options.device)
@@ -238,6 +255,7 @@ Validator::Validator(CompensatorSource source, ValidationOptions options,
   s.read_specification();
   if (s.options.campaign) s.read_campaign();
   s.require_baselines();
+  s.isolate_code();
 }
 
 Validator::~Validator() = default;
@@ -306,6 +324,9 @@ CompletedValidation Validator::validate(std::size_t threads,
     for (std::string& text : warnings_about(done.evidence.before))
       result.warnings.push_back(std::move(text));
   }
+  for (std::string& text : s.warnings_about_isolation())
+    result.warnings.push_back(std::move(text));
+  result.isolation = s.source.isolation;
   result.provenance = s.provenance();
   if (!s.set) {
     difference = s.difference_from_workbench(done.evidence);

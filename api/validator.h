@@ -29,7 +29,9 @@ class Validator {
   /// Throws std::invalid_argument as require_sound(), read_qualification(),
   /// read_specification_file(), Campaign::read(), and when
   /// - a model is to be trained and the qualification has no training runs;
-  /// - a limit is relative to a baseline, and there are none of them either.
+  /// - a limit is relative to a baseline, and there are none of them either;
+  /// - a library or a command cannot be isolated as the options ask, see
+  ///   isolation_of_command().
   Validator(CompensatorSource source, ValidationOptions options,
             bool keeps_inputs = false);
   ~Validator();

@@ -19,6 +19,7 @@
 
 #include "api/compensators.h"
 #include "cli/commands.h"
+#include "cli/hidden_process.h"
 #include "cli/inputs.h"
 #include "cli/process_limits.h"
 #include "cli/progress.h"
@@ -197,14 +198,20 @@ struct CompensateArguments {
   bool stream = false;
   std::optional<double> rate;  // [Hz]
   LimitArguments limits;
+  IsolationOptions isolation;
 };
 
 int compensate(const CompensateArguments& arguments) {
-  const ProcessLimits limits = process_limits(arguments.limits);
-  const auto compensator =
-      open_compensator(arguments.compensator, {.stall_s = limits.stall,
-                                               .memory = limits.memory,
-                                               .program = limits.program});
+  const ProcessLimits limits =
+      process_limits(arguments.limits, arguments.isolation);
+  hide_from_code(arguments.compensator, limits);
+  const auto compensator = open_compensator(
+      arguments.compensator, {.stall_s = limits.stall,
+                              .memory = limits.memory,
+                              .program = limits.program,
+                              .plugin_files = limits.isolation.plugin_files,
+                              .hidden_files = {arguments.run},
+                              .require_isolation = limits.isolation.required});
   std::optional<Progress> progress("compensating " + arguments.run);
   Recording recording = load_recording(arguments.run);
   std::vector<std::filesystem::path> inputs = {arguments.run};
@@ -226,7 +233,8 @@ int compensate(const CompensateArguments& arguments) {
 
 int stream_answers(const CompensateArguments& arguments) {
   const auto stream = open_compensator_stream(
-      arguments.compensator, process_limits(arguments.limits),
+      arguments.compensator,
+      process_limits(arguments.limits, arguments.isolation),
       arguments.rate ? std::optional(1.0 / *arguments.rate) : std::nullopt);
   return answer_stream(*stream, arguments.compensator);
 }
@@ -275,6 +283,12 @@ void add_compensate(CommandLine& program) {
                   "that of its first two samples"},
                  arguments.rate, positive());
   add_process_limits(command, arguments.limits);
+  command.texts({"--plugin-files", "PATH",
+                 "File or folder that it may read; may be repeated",
+                 "the system and the scripts that it names"},
+                arguments.isolation.plugin_files);
+  command.flag({"--require-isolation", "", "Runs no code that is not isolated"},
+               arguments.isolation.required);
   command.example("beamgyro compensate cubic.json flight.h5 -o compensated.h5",
                   "Adds the variable compensated_rate");
   command.example(

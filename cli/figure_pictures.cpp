@@ -70,7 +70,7 @@ void run_script(const std::vector<std::string>& words, double most_seconds,
   // -B: no compiled files in the place of an installation.
   std::vector<std::string> command = {kPython, "-B", script.string()};
   command.insert(command.end(), words.begin(), words.end());
-  ChildProcess process(command);
+  ChildProcess process({command});
   give(process, input);
   const auto end = process.wait(most_seconds);
   if (!end)

@@ -5,6 +5,7 @@
 #include <CLI/Version.hpp>
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <iterator>
 #include <new>
@@ -99,8 +100,11 @@ std::string on_command_line(std::string_view name, std::string_view value) {
 }
 
 int run_program(const std::vector<std::string>& words) {
-  if (!words.empty() && words[0] == kPluginHostWord)
-    return host_plugin({words.begin() + 1, words.end()});
+  if (!words.empty() && words[0] == kPluginHostWord) {
+    const char* search_path = std::getenv("PATH");
+    return host_plugin({words.begin() + 1, words.end()},
+                       search_path == nullptr ? "" : search_path);
+  }
   CommandLine program(
       "Simulates vibrating-beam piezo gyros with thermal drift, and trains and "
       "scores compensators on them.",

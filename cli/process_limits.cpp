@@ -5,6 +5,9 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
+
+#include "api/validation_members.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -16,7 +19,7 @@ constexpr double kLongestTimeout = 1e6;     // [s]
 }  // namespace
 
 void add_process_limits(Command& command, LimitArguments& arguments) {
-  command.group("A library or a command");
+  command.group(std::string(kCodeHeading));
   command.number({"--timeout-s", "S",
                   "Time without a sample taken or an answer given after which "
                   "it hangs",
@@ -35,8 +38,10 @@ void require_limits_for_code(const LimitArguments& arguments,
       arguments.timeout ? "--timeout-s" : "--memory-GiB", compensator));
 }
 
-ProcessLimits process_limits(const LimitArguments& arguments) {
+ProcessLimits process_limits(const LimitArguments& arguments,
+                             IsolationOptions isolation) {
   ProcessLimits limits;
+  limits.isolation = std::move(isolation);
   limits.program = "/proc/self/exe";
   if (arguments.timeout) limits.stall = *arguments.timeout;
   if (arguments.memory)

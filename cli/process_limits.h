@@ -24,6 +24,7 @@ void require_limits_for_code(const LimitArguments& arguments,
                              const std::string& compensator);
 
 /// Returns the limits for compensators of this program.
-ProcessLimits process_limits(const LimitArguments& arguments = {});
+ProcessLimits process_limits(const LimitArguments& arguments = {},
+                             IsolationOptions isolation = {});
 
 }  // namespace beamgyro::internal

@@ -77,6 +77,11 @@ void add_member(const ValidationMember& row, Command& command,
         else if constexpr (std::is_same_v<Value, std::vector<std::string>>)
           command.list(text, value);
         else if constexpr (std::is_same_v<Value,
+                                          std::vector<std::filesystem::path>>)
+          command.texts(text, value);
+        else if constexpr (std::is_same_v<Value, bool>)
+          command.flag(text, value);
+        else if constexpr (std::is_same_v<Value,
                                           std::optional<std::filesystem::path>>)
           command.text(text, value);
         else
@@ -91,7 +96,8 @@ bool asks_for_none(const ValidateArguments& arguments) {
   return arguments.compensator.empty() && arguments.device.empty() &&
          std::ranges::none_of(validation_members(),
                               [&](const ValidationMember& row) {
-                                return is_given(row, arguments.options);
+                                return row.heading != kCodeHeading &&
+                                       is_given(row, arguments.options);
                               }) &&
          arguments.json.empty() && arguments.report.empty() &&
          arguments.figures.empty() && arguments.bundle.empty() &&
@@ -101,7 +107,8 @@ bool asks_for_none(const ValidateArguments& arguments) {
 void require_list_alone(const ValidateArguments& arguments) {
   if (asks_for_none(arguments) && arguments.check.empty() &&
       arguments.options.jobs == 0 && !arguments.limits.timeout &&
-      !arguments.limits.memory && !arguments.runs_code)
+      !arguments.limits.memory && arguments.options.plugin_files.empty() &&
+      !arguments.options.require_isolation && !arguments.runs_code)
     return;
   throw std::invalid_argument(
       "--list-metrics: judges nothing; expected no other argument");
@@ -111,7 +118,8 @@ void require_check_alone(const ValidateArguments& arguments) {
   if (asks_for_none(arguments)) return;
   throw std::invalid_argument(fmt::format(
       "--check {}: the bundle says what is validated; expected no more than "
-      "--run-code, --jobs, --timeout-s and --memory-GiB beside it",
+      "--run-code, --jobs, --timeout-s, --memory-GiB, --plugin-files and "
+      "--require-isolation beside it",
       arguments.check));
 }
 

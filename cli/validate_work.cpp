@@ -5,18 +5,19 @@
 #include <exception>
 #include <filesystem>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
 #include "api/program_version.h"
 #include "api/validation_members.h"
 #include "api/validator.h"
 #include "cli/figure_pictures.h"
+#include "cli/hidden_process.h"
 #include "cli/inputs.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
 #include "cli/validate.h"
 #include "dataset/files/atomic_file.h"
+#include "dataset/files/file_place.h"
 #include "dataset/files/made_directories.h"
 #include "validation/bundle/bundle.h"
 
@@ -47,26 +48,13 @@ struct AskedOutput {
   fs::path place;  // absolute, with links followed as far as it is there
 };
 
-fs::path place_of(const fs::path& path) {
-  std::error_code error;
-  fs::path place = fs::weakly_canonical(fs::absolute(path), error);
-  if (error) place = fs::absolute(path).lexically_normal();
-  return place.has_filename() ? place : place.parent_path();
-}
-
-// Whether a path is the other one or below it.
-bool is_within(const fs::path& path, const fs::path& other) {
-  return std::mismatch(path.begin(), path.end(), other.begin(), other.end())
-             .second == other.end();
-}
-
 void require_places_of_their_own(const ValidateArguments& arguments) {
   std::vector<AskedOutput> asked;
   for (const auto& [option, name] : {std::pair("--json", arguments.json),
                                      std::pair("--report", arguments.report),
                                      std::pair("--figures", arguments.figures),
                                      std::pair("--bundle", arguments.bundle)})
-    if (!name.empty()) asked.push_back({option, name, place_of(name)});
+    if (!name.empty()) asked.push_back({option, name, canonical_place(name)});
   for (const AskedOutput& one : asked)
     for (const AskedOutput& other : asked)
       if (&one != &other && is_within(one.place, other.place))
@@ -136,6 +124,16 @@ void require_permission(const Bundle& bundle, const std::string& compensator,
       fmt::format("{}: runs {}", bundle.directory.string(), compensator));
 }
 
+CompensatorSource opened(const std::string& compensator,
+                         const LimitArguments& arguments,
+                         const ValidationOptions& options) {
+  const ProcessLimits limits =
+      process_limits(arguments, {.plugin_files = options.plugin_files,
+                                 .required = options.require_isolation});
+  hide_from_code(compensator, limits);
+  return open_source(compensator, limits);
+}
+
 std::vector<BundleDifference> differences_of(
     const Bundle& bundle, const ValidateArguments& arguments) {
   std::vector<BundleDifference> different = changed_files(bundle);
@@ -144,8 +142,10 @@ std::vector<BundleDifference> differences_of(
   require_limits_for_code(arguments.limits, request.compensator);
   require_permission(bundle, request.compensator, arguments.runs_code);
   request.options.jobs = arguments.options.jobs;
+  request.options.plugin_files = arguments.options.plugin_files;
+  request.options.require_isolation = arguments.options.require_isolation;
   const Validator validator(
-      open_source(request.compensator, process_limits(arguments.limits)),
+      opened(request.compensator, arguments.limits, request.options),
       std::move(request.options), true);
   const BundleContent content = bundle_content(validator);
   different = different_inputs(bundle, content);
@@ -163,7 +163,7 @@ int judge_compensator(const ValidateArguments& arguments) {
         arguments.runs[0].string()));
   require_sound(options);
   const Validator validator(
-      open_source(arguments.compensator, process_limits(arguments.limits)),
+      opened(arguments.compensator, arguments.limits, options),
       std::move(options), !arguments.bundle.empty());
   const BundleContent content = bundle_content(validator);
   // The directory of a set stands for everything below it.

@@ -244,6 +244,19 @@ std::string workbench_line(const JudgedCompensator& compensator) {
       2);
 }
 
+// "isolation: isolated; it could read mine.py beside the system".
+std::string isolation_line(const ValidationResult& result) {
+  if (!result.isolation) return "";
+  std::string text = "isolation: " + isolation_words(*result.isolation);
+  std::vector<std::string> names;
+  for (const AllowedFile& file : result.isolation->files)
+    names.push_back(file.name);
+  if (result.isolation->holds() && !names.empty())
+    text += fmt::format("; it could read {} beside the system",
+                        fmt::join(names, ", "));
+  return wrapped(text, 2);
+}
+
 std::string last_lines(const ValidationResult& result) {
   std::string verdict(verdict_name(result.verdict));
   std::ranges::transform(verdict, verdict.begin(), [](char c) {
@@ -261,8 +274,8 @@ std::string verdict_report(const ValidationResult& result, bool all) {
           fmt::format("{} on {}; specification {}", result.compensator.name,
                       evidence_words(result), result.provenance.specification),
           2) +
-      workbench_line(result.compensator) + '\n' + run_table(result) + '\n' +
-      metric_table(result, all);
+      workbench_line(result.compensator) + isolation_line(result) + '\n' +
+      run_table(result) + '\n' + metric_table(result, all);
   if (result.population) text += '\n' + device_table(*result.population);
   if (!result.limits.empty()) text += '\n';
   for (const DecidedLimit& limit : result.limits)

@@ -207,18 +207,6 @@ H5Id create_hdf5_file(OpenFile& file) {
           H5Fclose, "create the file"};
 }
 
-bool is_hdf5_file(OpenFile& file) {
-  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
-  constexpr std::uint64_t kFirst = 512;  // possible end of a block of the user
-  std::array<std::byte, kSignature.size()> bytes{};
-  for (std::uint64_t place = 0; file.read_at(place, bytes) == bytes.size();) {
-    if (std::memcmp(bytes.data(), kSignature.data(), bytes.size()) == 0)
-      return true;
-    place = place == 0 ? kFirst : 2 * place;
-  }
-  return false;
-}
-
 bool take_met_global_heap() { return std::exchange(met_global_heap, false); }
 
 int take_failed_system_call() {

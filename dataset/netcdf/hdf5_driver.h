@@ -16,10 +16,6 @@ H5Id open_hdf5_file(OpenFile& file);
 /// discards its content.
 H5Id create_hdf5_file(OpenFile& file);
 
-/// Returns whether the bytes begin like an HDF5 file, with or without a user
-/// block. Throws std::system_error.
-bool is_hdf5_file(OpenFile& file);
-
 /// Throws Hdf5Error when a system call has failed since QuietHdf5 began, even
 /// if the library ignored the failure.
 void check_system_calls();

@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "config/file_error.h"
+#include "dataset/files/hdf5_signature.h"
 #include "dataset/netcdf/hdf5_driver.h"
 #include "dataset/netcdf/hdf5_storage.h"
 

@@ -115,15 +115,24 @@ struct ProcessOptions {
   /// Longest time without taking a sample or giving an answer, above 0.
   double stall_s = 10.0;
   std::size_t memory = std::size_t{2} << 30;  ///< [bytes]; 0: no limit
-  /// The program `beamgyro`, which loads shared libraries in a process of its
-  /// own; commands do not need it.
+  /// The program `beamgyro`, which loads shared libraries and isolates commands
+  /// (docs/reference/plugins.md) in processes of their own. Without it commands
+  /// are not isolated.
   std::filesystem::path program = {};
+  /// Files and folders that it may read beside those of the system and the
+  /// scripts that a command names.
+  std::vector<std::filesystem::path> plugin_files = {};
+  /// Files and folders that it must not read, wherever they lie.
+  std::vector<std::filesystem::path> hidden_files = {};
+  bool require_isolation = false;  ///< refuses to run what is not isolated
 };
 
 /// Opens what `beamgyro compensate` takes: FILE.json, a shared library FILE.so
 /// with the functions of beamgyro/plugin.h, or "cmd:PROGRAM ARGS". Throws
-/// std::invalid_argument when it is none of them or cannot be read, and for a
-/// library without ProcessOptions::program.
+/// std::invalid_argument when it is none of them or cannot be read, for a
+/// library without ProcessOptions::program, for plugin files that are hidden,
+/// missing or HDF5 files, or hold one, and where isolation is required and the
+/// system has none.
 std::shared_ptr<const RateCompensator> open_compensator(
     const std::string& argument, const ProcessOptions& options = {});
 

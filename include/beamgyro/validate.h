@@ -39,7 +39,13 @@ struct ValidationOptions {
   std::optional<std::filesystem::path> campaign = {};
   std::optional<std::uint32_t> campaign_devices = {};
   std::optional<double> full_scale = {};  ///< [deg/s], above 0; not of a device
-  unsigned jobs = 0;                      ///< threads; 0: one per core
+  /// Files and folders that a library or a command may read beside those of
+  /// the system and the scripts that it names. What it is judged by is never
+  /// among them (docs/reference/plugins.md).
+  std::vector<std::filesystem::path> plugin_files = {};
+  /// Judges no code of others that is not isolated from what it is judged by.
+  bool require_isolation = false;
+  unsigned jobs = 0;  ///< threads; 0: one per core
   Progress progress = {};
 };
 
@@ -92,9 +98,10 @@ struct ValidationOutcome {
 /// Judges a compensator by every metric, check and limit. The result does not
 /// depend on the number of threads. A class of the user's own is called by
 /// several threads at once. Throws std::invalid_argument for what is wrong in a
-/// file or missing among the options, and for a recording that is there twice,
-/// std::runtime_error when a simulation or a process cannot go on, Cancelled,
-/// and what a class of the user's own throws.
+/// file or missing among the options, for a recording that is there twice, and
+/// as open_compensator() for the isolation, std::runtime_error when a
+/// simulation or a process cannot go on, Cancelled, and what a class of the
+/// user's own throws.
 ValidationOutcome validate(const RateCompensator& compensator,
                            const ValidationOptions& options);
 

@@ -180,6 +180,10 @@ class _Option(NamedTuple):
             if self.kind == "a specification":
                 return files.of_table(self.keyword, value, self.kind)
             return _checks.file(value, self.keyword, self.kind)
+        if self.type == "files":
+            return _checks.paths(value, self.keyword)
+        if self.type == "flag":
+            return bool(value)
         if self.type == "number":
             return _arguments.number(value, self.keyword, above=0)
         if self.type == "whole":
@@ -192,10 +196,12 @@ class _Option(NamedTuple):
         types = {"file": Union[Path, Mapping[str, Any], None]
                  if self.kind == "a specification" else Optional[Path],
                  "number": Optional[float], "whole": Optional[int],
-                 "texts": Iterable[str], "wholes": Iterable[int]}
+                 "texts": Iterable[str], "wholes": Iterable[int],
+                 "files": Iterable[Path], "flag": bool}
         return inspect.Parameter(
             self.keyword, inspect.Parameter.KEYWORD_ONLY,
-            default=() if self.type in ("texts", "wholes") else None,
+            default=False if self.type == "flag" else
+            () if self.type in ("texts", "wholes", "files") else None,
             annotation=types[self.type])
 
 
@@ -227,6 +233,10 @@ def _judged(compensator: Any, options: dict[str, Any],
         and _core.source_kind(os.fsdecode(compensator)) == "model")
     if is_model:
         return _core.validate_model(model_of(compensator), options, function)
+    if isinstance(compensator, (str, os.PathLike)):
+        compensator = Compensator(
+            compensator, plugin_files=options.get("plugin_files", ()),
+            require_isolation=options.get("require_isolation", False))
     return _core.validate(compensator_of(compensator)._native, options,
                           function)
 

@@ -112,6 +112,11 @@ def path(value: Any, name: str, right: str = "the name of a file") -> str:
     return found
 
 
+def paths(values: Any, name: str) -> list[str]:
+    """Return a list of names of files or directories."""
+    return several(values, name, path)
+
+
 def file(value: Any, name: str, kind: str, also: str = "",
          tables: tuple[str, ...] = ()) -> str:
     """Return the name of a file that is none of another kind.

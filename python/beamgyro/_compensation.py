@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from beamgyro import _adapters, _arguments, _checks, _core
@@ -50,6 +50,10 @@ class Compensator(Wrapper):
         arrays: whether a function takes arrays in place of a dataset.
         name: for reports.
         stall_s: how long a program may take to answer [s].
+        plugin_files: files and folders that a program may read beside those
+            of the system and the scripts that it names.
+        require_isolation: whether a program that cannot be isolated is
+            refused.
 
     Raises:
         ValueError: `source` is none of these, or cannot be read.
@@ -62,11 +66,14 @@ class Compensator(Wrapper):
     def __init__(self, source: Any, *,
                  inputs: Optional[Sequence[str]] = None,
                  arrays: bool = False, name: Optional[str] = None,
-                 stall_s: float = 10.0) -> None:
+                 stall_s: float = 10.0, plugin_files: Iterable[Path] = (),
+                 require_isolation: bool = False) -> None:
         stall_s = _arguments.number(stall_s, "stall_s", above=0)
+        files = _checks.paths(plugin_files, "plugin_files")
         self._source: dict[str, Any] = {
             "source": source, "inputs": inputs, "arrays": arrays,
-            "name": name, "stall_s": stall_s}
+            "name": name, "stall_s": stall_s, "plugin_files": files,
+            "require_isolation": require_isolation}
         if not isinstance(source, (Compensator, str, os.PathLike)):
             self._native = _of_python(source, inputs, arrays, name)
             return
@@ -76,7 +83,8 @@ class Compensator(Wrapper):
             self._native = source._native
             self._source = getattr(source, "_source", {})
         else:
-            self._native = _opened(source, stall_s)
+            self._native = _opened(source, stall_s, files,
+                                   bool(require_isolation))
 
     @classmethod
     def parse(cls, text: str,
@@ -145,12 +153,14 @@ class Compensator(Wrapper):
         return functools.partial(Compensator, **self._source), ()
 
 
-def _opened(source: Path, stall_s: float) -> _core.RateCompensator:
+def _opened(source: Path, stall_s: float, plugin_files: list[str],
+            require_isolation: bool) -> _core.RateCompensator:
     text = os.fspath(source)
     argument = (_checks.command(text, "compensator")
                 if isinstance(text, str) and text.startswith("cmd:")
                 else _checks.file(source, "compensator", "a compensator"))
-    return _core.open_compensator(argument, program(), stall_s)
+    return _core.open_compensator(argument, program(), stall_s, plugin_files,
+                                  require_isolation)
 
 
 def _of_python(source: Any, inputs: Optional[Sequence[str]], arrays: bool,

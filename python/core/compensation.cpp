@@ -97,9 +97,14 @@ SharedCompensator function_compensator(const std::string& name,
 }
 
 SharedCompensator open(const std::string& argument,
-                       const std::filesystem::path& program, double stall_s) {
+                       const std::filesystem::path& program, double stall_s,
+                       const std::vector<std::filesystem::path>& plugin_files,
+                       bool require_isolation) {
   return std::const_pointer_cast<RateCompensator>(
-      open_compensator(argument, {.stall_s = stall_s, .program = program}));
+      open_compensator(argument, {.stall_s = stall_s,
+                                  .program = program,
+                                  .plugin_files = plugin_files,
+                                  .require_isolation = require_isolation}));
 }
 
 py::tuple compensate_recording(const SharedCompensator& compensator,

@@ -7,7 +7,7 @@ import resource
 import signal
 import subprocess
 
-from program import IDENTITY, PATIENCE, PROGRAM, limit
+from program import IDENTITY, PATIENCE, PROGRAM, limit, without_landlock
 from qualified import DEVICE, Qualified
 
 
@@ -300,7 +300,8 @@ class Places(Qualified):
         for number in signal.SIGINT, signal.SIGTERM:
             self.interrupted(
                 "validate", "cmd:/usr/bin/python3 hang.py", *DEVICE, "--report",
-                "r", "--figures", "f", "--bundle", "b", until="begun", by=number)
+                "r", "--figures", "f", "--bundle", "b", until="begun", by=number,
+                preexec_fn=without_landlock)
             (self.dir / "begun").unlink()
             for name in "rfb":
                 self.assertFalse((self.dir / name).exists(), name)

@@ -5,7 +5,7 @@ import json
 import shutil
 
 from program import (CUBIC, IDENTITY, PROGRAM, ROOT, SCENARIO, ProgramTest, ended,
-                     failed, ramp)
+                     failed, ramp, without_landlock)
 from qualified import SHORT
 from sets import write_campaign
 
@@ -23,9 +23,10 @@ class Judged(ProgramTest):
             shutil.copy(self.dir / "x.json", self.dir / name)
         (self.dir / "link").symlink_to("x.json")
 
-    def judged(self, compensator, *arguments, status):
+    def judged(self, compensator, *arguments, status, **options):
         """What is said, without the name of the compensator."""
-        said, _ = self.validated(compensator, *arguments, allowed=(status,))
+        said, _ = self.validated(compensator, *arguments, allowed=(status,),
+                                 **options)
         del said["compensator"]["name"]
         for file in said["provenance"]["files"]:
             if file["group"] == "compensator":
@@ -105,13 +106,14 @@ class Doors(Judged):
     def test_code_of_a_bundle_runs_where_it_may(self):
         (self.dir / "ran").touch()
         self.write("same.py", "open('ran', 'a').write('x')\n" + IDENTITY)
+        writes = {"preexec_fn": without_landlock}
         self.judged("cmd:/usr/bin/python3 same.py", "test.h5", "--bundle", "b",
-                    status=3)
+                    status=3, **writes)
         ran = self.text("ran")
         self.rejected("validate", "--check", "b",
-                      says=["/usr/bin/python3 same.py", "--run-code"])
+                      says=["/usr/bin/python3 same.py", "--run-code"], **writes)
         self.assertEqual(self.text("ran"), ran)
-        self.ok("validate", "--check", "b", "--run-code")
+        self.ok("validate", "--check", "b", "--run-code", **writes)
         self.assertNotEqual(self.text("ran"), ran)
 
     def test_a_constant_is_not_good_enough_for_a_device(self):
@@ -137,7 +139,8 @@ class ChangedMeanwhile(Judged):
                    "while not pathlib.Path('go').exists():\n"
                    "    time.sleep(0.05)\n" + IDENTITY)
         with self.working("validate", "cmd:/usr/bin/python3 slow.py",
-                          *arguments, "--bundle", "b", until="asked") as asked:
+                          *arguments, "--bundle", "b", until="asked",
+                          preexec_fn=without_landlock) as asked:
             shutil.copy(self.dir / "other", self.dir / name)
             (self.dir / "go").touch()
             _, words = asked.communicate()
@@ -152,7 +155,8 @@ class ChangedMeanwhile(Judged):
         self.assertEqual(status, 3, words)
         copy = self.dir / "b/inputs/specification/spec.toml"
         self.assertEqual(copy.read_bytes(), before)
-        self.ok("validate", "--check", "b", "--run-code")
+        self.ok("validate", "--check", "b", "--run-code",
+                preexec_fn=without_landlock)
 
     def test_a_recording(self):
         shutil.copy(self.dir / "train.h5", self.dir / "other")
@@ -164,4 +168,5 @@ class ChangedMeanwhile(Judged):
         self.assertEqual(status, 3, words)
         self.assertEqual((self.dir / "b/inputs/runs/test.h5").read_bytes(),
                          before)
-        self.ok("validate", "--check", "b", "--run-code")
+        self.ok("validate", "--check", "b", "--run-code",
+                preexec_fn=without_landlock)

@@ -16,7 +16,7 @@ import pytest
 
 from export_firmware_test import CORE, EMULATOR, LINK, missing
 from exported import MODELS, ExportTest
-from program import PATIENCE, PROGRAM, ROOT, ProgramTest, ramp, said
+from program import PATIENCE, PROGRAM, ROOT, ProgramTest, ramp, said, without_landlock
 
 EXAMPLES = ROOT / "examples/plugins"
 PYTHON = f"'{sys.executable}'"
@@ -153,7 +153,8 @@ class Plugins(ProgramTest):
         for number in [signal.SIGINT, signal.SIGTERM]:
             (self.dir / "begun").unlink(missing_ok=True)
             with self.working("compensate", f"cmd:{word} | tee begun", "run.h5",
-                              "-o", "out.h5", until="begun") as program:
+                              "-o", "out.h5", until="begun",
+                              preexec_fn=without_landlock) as program:
                 while not processes(slept):
                     self.assertIsNone(program.poll())
                 program.send_signal(number)

@@ -2,6 +2,8 @@
 """What the tests of the shipped program share: the program and small inputs."""
 
 import contextlib
+import ctypes
+import errno
 import importlib.util
 import json
 import os
@@ -10,6 +12,7 @@ import re
 import resource
 import shutil
 import signal
+import struct
 import subprocess
 import tempfile
 import time
@@ -120,6 +123,26 @@ def by_octave(code, folder):
 def limit(kind, size):
     """What a process does first that must not exceed a limit of `resource`."""
     return lambda: resource.setrlimit(kind, (size, size))
+
+
+class _Filter(ctypes.Structure):
+    _fields_ = [("count", ctypes.c_ushort), ("code", ctypes.c_char_p)]
+
+
+_LIBC = ctypes.CDLL(None)
+# A filter of seccomp: calls 444 to 446, those of Landlock, fail with ENOSYS.
+_NO_LANDLOCK = b"".join(struct.pack("HBBI", *line) for line in [
+    (0x20, 0, 0, 0), (0x35, 0, 2, 444), (0x25, 1, 0, 446),
+    (0x06, 0, 0, 0x50000 | errno.ENOSYS), (0x06, 0, 0, 0x7fff0000)])
+_FILTER = _Filter(len(_NO_LANDLOCK) // 8, _NO_LANDLOCK)
+
+
+def without_landlock():
+    """What a process does first that finds a kernel without Landlock, so that
+    the commands of the program are not isolated."""
+    no_new_rights, filter_calls, by_filter = 38, 22, 2
+    _LIBC.prctl(no_new_rights, 1, 0, 0, 0)
+    _LIBC.prctl(filter_calls, by_filter, ctypes.byref(_FILTER))
 
 
 def script(path):
@@ -262,9 +285,9 @@ class ProgramTest(unittest.TestCase):
                 time.sleep(0.01)
             yield process
 
-    def interrupted(self, *arguments, until, by=signal.SIGTERM):
+    def interrupted(self, *arguments, until, by=signal.SIGTERM, **options):
         """What a command says that a signal ends while it works."""
-        with self.working(*arguments, until=until) as process:
+        with self.working(*arguments, until=until, **options) as process:
             process.send_signal(by)
             output, words = process.communicate(timeout=PATIENCE)
         self.assertEqual((process.returncode, output), (-by, ""), words)

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,6 +14,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <system_error>
@@ -35,6 +37,7 @@ constexpr pid_t kFreeSlot = 0, kTakenSlot = -1;
 // Leaders of process groups, where a signal handler may read them.
 static_assert(std::atomic<pid_t>::is_always_lock_free);
 std::array<std::atomic<pid_t>, 256> live_groups;
+std::array<std::array<char, 256>, 256> live_folders;  // cut off where longer
 
 // With more processes than slots it waits.
 std::size_t take_process_slot() {
@@ -43,6 +46,23 @@ std::size_t take_process_slot() {
       if (pid_t expected = kFreeSlot;
           live_groups[k].compare_exchange_strong(expected, kTakenSlot))
         return k;
+}
+
+// Makes a folder that the user alone may enter.
+std::string made_folder() {
+  const std::filesystem::path place = std::filesystem::temp_directory_path();
+  std::string name = (place / "beamgyro-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr)
+    throw std::runtime_error(fmt::format("{}: cannot make a folder there: {}",
+                                         place.string(), std::strerror(errno)));
+  return name;
+}
+
+void free_process_slot(std::size_t slot, const std::string& folder) {
+  std::error_code ignored;
+  if (!folder.empty()) std::filesystem::remove_all(folder, ignored);
+  live_folders[slot] = {};
+  live_groups[slot] = kFreeSlot;
 }
 
 struct Pipe {
@@ -104,6 +124,7 @@ class StandardFiles {
     for (const OpenFile* file : {&in, &out, &err})
       posix_spawn_file_actions_adddup2(&actions_, file->descriptor(),
                                        standard++);
+    posix_spawn_file_actions_addclosefrom_np(&actions_, standard);
   }
   ~StandardFiles() { posix_spawn_file_actions_destroy(&actions_); }
   StandardFiles(const StandardFiles&) = delete;
@@ -135,19 +156,27 @@ std::string last_words(const std::string& text) {
          text.substr(begin, std::min(end + 1 - begin, kLongestLine));
 }
 
-ChildProcess::ChildProcess(const std::vector<std::string>& words) try {
+ChildProcess::ChildProcess(const ProcessStart& start) try {
   Pipe in = make_pipe(), out = make_pipe(), error = make_pipe();
-  std::vector<char*> arguments;
-  for (const std::string& word : words)
-    arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
   const SpawnAttributes attributes;
   const StandardFiles files(in.reads, out.writes, error.writes);
+  std::vector<char*> arguments;
+  for (const std::string& word : start.words)
+    arguments.push_back(const_cast<char*>(word.c_str()));
+  if (start.has_folder) {
+    folder_ = made_folder();
+    arguments.push_back(folder_.data());
+  }
+  arguments.push_back(nullptr);
   slot_ = take_process_slot();
+  folder_.copy(live_folders[slot_].data(), live_folders[slot_].size() - 1);
   const int failed =
       ::posix_spawnp(&id_, arguments[0], files.get(), attributes.get(),
                      arguments.data(), environ);
-  live_groups[slot_] = failed == 0 ? id_ : kFreeSlot;
+  if (failed == 0)
+    live_groups[slot_] = id_;
+  else
+    free_process_slot(slot_, folder_);
   if (failed != 0)
     throw std::system_error(failed, std::generic_category(), "a process");
   input_.emplace(std::move(in.writes));
@@ -159,8 +188,8 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words) try {
   for (auto* file : {&input_, &output_})
     ::fcntl((*file)->descriptor(), F_SETPIPE_SZ, kPipeBytes);
 } catch (const std::system_error& failure) {
-  throw std::runtime_error(
-      fmt::format("cannot start {}: {}", words[0], failure.code().message()));
+  throw std::runtime_error(fmt::format("cannot start {}: {}", start.words[0],
+                                       failure.code().message()));
 }
 
 std::optional<ProcessEnd> ChildProcess::wait(double seconds) {
@@ -186,9 +215,10 @@ void ChildProcess::kill() {
 
 ChildProcess::~ChildProcess() {
   kill();
-  live_groups[slot_] = kFreeSlot;
+  live_groups[slot_] = kTakenSlot;
   while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {
   }
+  free_process_slot(slot_, folder_);
 }
 
 bool read_available(std::optional<OpenFile>& pipe, std::string& into) {
@@ -202,6 +232,22 @@ bool read_available(std::optional<OpenFile>& pipe, std::string& into) {
   return false;
 }
 
+std::string read_until_end(OpenFile& file, double seconds, bool& in_time) {
+  std::string text;
+  const Stopwatch watch;
+  for (;;) {
+    pollfd wait{file.descriptor(), POLLIN, 0};
+    const double left = seconds - watch.seconds();
+    in_time = left > 0.0;
+    if (!in_time) return text;
+    if (::poll(&wait, 1, static_cast<int>(1e3 * left) + 1) <= 0) continue;
+    std::array<char, 4096> bytes;
+    const ssize_t n = ::read(file.descriptor(), bytes.data(), bytes.size());
+    if (n <= 0) return text;
+    text.append(bytes.data(), static_cast<std::size_t>(n));
+  }
+}
+
 std::size_t write_available(std::optional<OpenFile>& pipe,
                             std::string_view bytes) {
   const ssize_t n = ::write(pipe->descriptor(), bytes.data(), bytes.size());
@@ -211,8 +257,11 @@ std::size_t write_available(std::optional<OpenFile>& pipe,
 }
 
 void kill_child_processes() noexcept {
-  for (const std::atomic<pid_t>& group : live_groups)
-    if (const pid_t id = group; id > 0) ::kill(-id, SIGKILL);
+  for (std::size_t k = 0; k < live_groups.size(); ++k)
+    if (const pid_t id = live_groups[k]; id > 0) {
+      ::kill(-id, SIGKILL);
+      ::rmdir(live_folders[k].data());
+    }
 }
 
 NoBrokenPipeSignal::NoBrokenPipeSignal() {

@@ -28,16 +28,24 @@ std::string end_words(const ProcessEnd& end);
 /// LINE", or nothing.
 std::string last_words(const std::string& text);
 
+/// How a process is started.
+struct ProcessStart {
+  std::vector<std::string> words;  // a path or a name to be found in PATH first
+  bool has_folder = false;         // of its own, whose path is the last word
+};
+
 /// A process with pipes to its standard input, output and error. It is the
 /// leader of a process group of its own, so that Ctrl-C on a terminal does not
-/// reach it; whoever handles signals calls kill_child_processes().
+/// reach it; whoever handles signals calls kill_child_processes(). No other
+/// descriptor is open in it.
 class ChildProcess {
  public:
-  /// Starts the program `words[0]`, a path or a name to be found in PATH.
-  /// Throws std::runtime_error when that fails.
-  explicit ChildProcess(const std::vector<std::string>& words);
+  /// Starts a process. With a folder it gets a new and empty one, below that
+  /// for temporary files. Throws std::runtime_error when that fails.
+  explicit ChildProcess(const ProcessStart& start);
 
-  /// Kills the process group if that was not done, and reaps the process.
+  /// Kills the process group if that was not done, reaps the process, and
+  /// removes its folder.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
@@ -57,6 +65,7 @@ class ChildProcess {
   std::optional<OpenFile> input_, output_, error_;
   pid_t id_ = 0;
   std::size_t slot_ = 0;  // in the table of processes
+  std::string folder_;    // or empty
   bool killed_ = false;
 };
 
@@ -64,13 +73,18 @@ class ChildProcess {
 /// Returns whether there was something.
 bool read_available(std::optional<OpenFile>& pipe, std::string& into);
 
+/// Returns what a pipe of a child gives until its end or for `seconds`, and
+/// whether it ended in that time.
+std::string read_until_end(OpenFile& file, double seconds, bool& in_time);
+
 /// Writes as much of `bytes` as the pipe to a child takes and closes it when
 /// the child no longer reads. Returns how many it took. Call within a
 /// NoBrokenPipeSignal.
 std::size_t write_available(std::optional<OpenFile>& pipe,
                             std::string_view bytes);
 
-/// Kills the process groups of all ChildProcess. May be called from a signal
+/// Kills the process groups of all ChildProcess and removes their folders as
+/// far as they are empty. May be called from a signal
 /// handler that ends this process.
 void kill_child_processes() noexcept;
 

@@ -14,6 +14,7 @@
 #include "validation/external/answering.h"
 #include "validation/external/conversation.h"
 #include "validation/external/measured_signals.h"
+#include "validation/external/plugin_host.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -64,8 +65,8 @@ class CsvLanguage : public AnswerLanguage {
 
 class CommandCompensator : public TestedCompensator {
  public:
-  CommandCompensator(std::vector<std::string> words, ProcessLimits limits)
-      : words_(std::move(words)), limits_(std::move(limits)) {}
+  CommandCompensator(ProcessStart start, ProcessLimits limits)
+      : start_(std::move(start)), limits_(std::move(limits)) {}
 
   std::vector<std::string> inputs() const override {
     std::vector<std::string> names;
@@ -98,7 +99,7 @@ class CommandCompensator : public TestedCompensator {
 
   bool ask(const AskedStretch& stretch) const {
     CsvLanguage language;
-    return converse(words_, language, {stretch}, limits_);
+    return converse(start_, language, {stretch}, limits_);
   }
 
   // Returns the seconds until a process has answered one sample: what its start
@@ -113,30 +114,40 @@ class CommandCompensator : public TestedCompensator {
     return watch.seconds();
   }
 
-  std::vector<std::string> words_;
+  ProcessStart start_;
   ProcessLimits limits_;
 };
 
 }  // namespace
 
-AnsweringProcess command_process(const std::string& argument,
-                                 const ProcessLimits& limits) {
-  const std::string command = argument.substr(argument.find(':') + 1);
+std::string command_of(const std::string& argument) {
+  std::string command = argument.substr(argument.find(':') + 1);
   if (trimmed(command).empty())
     throw std::invalid_argument(
         "cmd: no command; expected \"cmd:PROGRAM ARGS\"");
+  return command;
+}
+
+AnsweringProcess command_process(const std::string& argument,
+                                 const ProcessLimits& limits,
+                                 const Isolation& isolation) {
+  const std::string command = command_of(argument);
+  if (!limits.program.empty())
+    return {host_start(limits, isolation, HostTask::kCommand, command),
+            std::make_unique<CsvLanguage>(), false};
   std::string script = "ulimit -c 0\n";
   if (limits.memory > 0)
     script += fmt::format("ulimit -v {}\n", limits.memory / 1024);
-  return {{"/bin/sh", "-c", script + command},
+  return {{{"/bin/sh", "-c", script + command}},
           std::make_unique<CsvLanguage>(),
           false};
 }
 
 std::unique_ptr<TestedCompensator> open_command(const std::string& argument,
-                                                const ProcessLimits& limits) {
+                                                const ProcessLimits& limits,
+                                                const Isolation& isolation) {
   return std::make_unique<CommandCompensator>(
-      command_process(argument, limits).words, limits);
+      command_process(argument, limits, isolation).start, limits);
 }
 
 }  // namespace beamgyro::internal

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "compensation/compensator/compensator_file.h"
+#include "config/option_message.h"
 #include "dataset/files/text_file.h"
 #include "validation/external/answering.h"
 #include "validation/external/command_compensator.h"
@@ -50,6 +51,22 @@ bool has_kind(std::string_view text) {
 
 std::string without_folder(const std::string& argument) {
   return std::filesystem::path(argument).filename().string();
+}
+
+CompensatorSource source_of_code(SourceKind kind, const std::string& argument,
+                                 const ProcessLimits& limits) {
+  CompensatorSource source{kind, argument, argument};
+  source.limits = limits;
+  if (kind == SourceKind::kCommand) {
+    source.isolation = isolation_of_command(argument, limits);
+    source.tested = open_command(argument, limits, *source.isolation);
+    return source;
+  }
+  source.name = without_folder(argument);
+  source.isolation = isolation_of_library(argument, limits);
+  source.tested = open_library(argument, limits, *source.isolation);
+  source.files.push_back({argument, read_text_file(argument)});
+  return source;
 }
 
 class FileCompensator : public TestedCompensator {
@@ -127,13 +144,8 @@ CompensatorSource open_source(const std::string& argument,
                               const ProcessLimits& limits) {
   switch (const SourceKind kind = source_kind(argument)) {
     case SourceKind::kCommand:
-      return {kind, argument, argument, open_command(argument, limits)};
-    case SourceKind::kLibrary: {
-      CompensatorSource source{kind, argument, without_folder(argument),
-                               open_library(argument, limits)};
-      source.files.push_back({argument, read_text_file(argument)});
-      return source;
-    }
+    case SourceKind::kLibrary:
+      return source_of_code(kind, argument, limits);
     case SourceKind::kModel: {
       ModelSpec model = read_model(std::filesystem::path(argument));
       const std::string text = model.text;
@@ -168,6 +180,31 @@ CompensatorSource source_of(ModelSpec model, const std::string& name,
 CompensatorSource source_of(std::shared_ptr<const TestedCompensator> function,
                             const std::string& name) {
   return {SourceKind::kFunction, name, name, std::move(function)};
+}
+
+void isolate_code_of(CompensatorSource& source, const IsolationOptions& more) {
+  if (!is_program(source.kind)) {
+    if (!more.plugin_files.empty())
+      throw option_error("{} is for a library or a command; {} is neither",
+                         NamedOption{"plugin_files"}, source.argument);
+    if (source.kind != SourceKind::kFunction) return;
+    source.isolation = Isolation{"it runs in the process that judges it"};
+    if (more.required)
+      throw option_error("{}: {} is {}", NamedOption{"require_isolation"},
+                         source.name, isolation_words(*source.isolation));
+    return;
+  }
+  IsolationOptions& options = source.limits.isolation;
+  for (const auto list :
+       {&IsolationOptions::hidden, &IsolationOptions::plugin_files})
+    (options.*list)
+        .insert((options.*list).end(), (more.*list).begin(),
+                (more.*list).end());
+  options.required = options.required || more.required;
+  CompensatorSource again =
+      source_of_code(source.kind, source.argument, source.limits);
+  source.tested = std::move(again.tested);
+  source.isolation = std::move(again.isolation);
 }
 
 void require_unchanged(const CompensatorSource& source) {

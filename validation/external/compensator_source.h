@@ -49,7 +49,9 @@ struct CompensatorSource {
   std::shared_ptr<const TestedCompensator> tested = {};  // not of a model
   std::optional<FittedCompensator> trained = {};         // of a file
   std::optional<ModelSpec> model = {};
-  std::vector<SourceText> files = {};  // that it was read from
+  std::vector<SourceText> files = {};       // that it was read from
+  std::optional<Isolation> isolation = {};  // of code of others
+  ProcessLimits limits = {};                // of a library or a command
 
   const Provenance* provenance() const {
     return trained ? &trained->provenance : nullptr;
@@ -68,6 +70,12 @@ CompensatorSource source_of(ModelSpec model, const std::string& name,
                             const std::string& text);
 CompensatorSource source_of(std::shared_ptr<const TestedCompensator> function,
                             const std::string& name);
+
+/// Opens a library or a command anew, of which the same files were read, with
+/// `more` than it was opened with. Functions are not isolated, and of the
+/// others no code runs. Throws std::invalid_argument as isolation_of_command(),
+/// and for plugin files of what is no library and no command.
+void isolate_code_of(CompensatorSource& source, const IsolationOptions& more);
 
 /// Throws std::runtime_error when one of its files has other bytes by now.
 /// Libraries are loaded by the system while they are asked.

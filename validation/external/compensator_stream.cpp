@@ -124,7 +124,7 @@ void ProcessStream::take(const Recording& sample) {
 void ProcessStream::start(const Recording& sample, double period) {
   before_ = answered_;
   process_ = std::make_unique<Conversation>(
-      answering_.words, *answering_.language, stall_,
+      answering_.start, *answering_.language, stall_,
       [this](std::size_t n) { return fmt::format("sample {}", before_ + n); });
   row_ = sample;
   answering_.language->start(row_, period, process_->queue());
@@ -180,11 +180,15 @@ std::unique_ptr<CompensatorStream> open_compensator_stream(
     std::optional<double> period) {
   switch (source_kind(argument)) {
     case SourceKind::kCommand:
-      return std::make_unique<ProcessStream>(command_process(argument, limits),
-                                             limits, 1.0);
+      return std::make_unique<ProcessStream>(
+          command_process(argument, limits,
+                          isolation_of_command(argument, limits)),
+          limits, 1.0);
     case SourceKind::kLibrary:
-      return std::make_unique<ProcessStream>(library_process(argument, limits),
-                                             limits, period);
+      return std::make_unique<ProcessStream>(
+          library_process(argument, limits,
+                          isolation_of_library(argument, limits)),
+          limits, period);
     default:
       return std::make_unique<FileStream>(read_compensator(argument));
   }

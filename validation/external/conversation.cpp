@@ -190,13 +190,13 @@ std::vector<AskedStretch> asked_stretches(const Recording& run,
   return stretches;
 }
 
-bool converse(const std::vector<std::string>& words, AnswerLanguage& language,
+bool converse(const ProcessStart& start, AnswerLanguage& language,
               const std::vector<AskedStretch>& stretches,
               const ProcessLimits& limits) {
   if (stretches.empty()) return true;
   std::size_t all = 0;
   for (const AskedStretch& stretch : stretches) all += stretch.samples.size();
-  Conversation process(words, language, limits.stall, [&](std::size_t n) {
+  Conversation process(start, language, limits.stall, [&](std::size_t n) {
     const AskedStretch at = sample_of(stretches, n);
     return n == all ? "the end" : sample_words(*at.run, at.samples.begin);
   });

@@ -41,7 +41,7 @@ class AnswerLanguage {
 
 /// How a process is started and spoken to that answers samples.
 struct AnsweringProcess {
-  std::vector<std::string> words;
+  ProcessStart start;
   std::unique_ptr<AnswerLanguage> language;
   bool answers_at_once;  // before it reads the next sample
 };
@@ -52,9 +52,9 @@ class Conversation {
  public:
   /// `place` returns words for the sample of an answer, counted from 0. The
   /// process fails when it does nothing that is expected of it for `stall` [s].
-  Conversation(const std::vector<std::string>& words, AnswerLanguage& language,
+  Conversation(const ProcessStart& start, AnswerLanguage& language,
                double stall, std::function<std::string(std::size_t)> place)
-      : process_(words),
+      : process_(start),
         language_(language),
         stall_(stall),
         place_(std::move(place)) {}
@@ -121,7 +121,7 @@ std::vector<AskedStretch> asked_stretches(const Recording& run, Answer& answer);
 /// Starts a process and asks it for the answers to the stretches, one after the
 /// other. Returns false when it could not be asked for all; the fault is in the
 /// answer of the first stretch that is not answered.
-bool converse(const std::vector<std::string>& words, AnswerLanguage& language,
+bool converse(const ProcessStart& start, AnswerLanguage& language,
               const std::vector<AskedStretch>& stretches,
               const ProcessLimits& limits);
 

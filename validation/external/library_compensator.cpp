@@ -2,10 +2,7 @@
 #include "validation/external/library_compensator.h"
 
 #include <fmt/format.h>
-#include <poll.h>
-#include <unistd.h>
 
-#include <array>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -60,9 +57,9 @@ class HostLanguage : public AnswerLanguage {
 
 class LibraryCompensator : public TestedCompensator {
  public:
-  LibraryCompensator(std::filesystem::path library,
-                     std::vector<std::string> names, ProcessLimits limits)
-      : library_(std::move(library)),
+  LibraryCompensator(ProcessStart start, std::vector<std::string> names,
+                     ProcessLimits limits)
+      : start_(std::move(start)),
         names_(std::move(names)),
         limits_(std::move(limits)) {}
 
@@ -73,7 +70,7 @@ class LibraryCompensator : public TestedCompensator {
       const std::vector<const Recording*>& runs) const override;
 
  private:
-  std::filesystem::path library_;
+  ProcessStart start_;
   std::vector<std::string> names_;
   ProcessLimits limits_;
 };
@@ -107,9 +104,7 @@ std::vector<Answer> LibraryCompensator::answers(
     stretches.insert(stretches.end(), more.begin(), more.end());
   }
   HostLanguage language(names_);
-  if (!converse(plugin_host_words(limits_.program, library_, HostTask::kAnswer,
-                                  limits_.memory),
-                language, stretches, limits_)) {
+  if (!converse(start_, language, stretches, limits_)) {
     rename_exit(all);
     add_fault_before(all);
   }
@@ -122,22 +117,6 @@ std::vector<Answer> LibraryCompensator::answers(
   return all;
 }
 
-std::string read_until_end(OpenFile& file, double seconds, bool& in_time) {
-  std::string text;
-  const Stopwatch watch;
-  for (;;) {
-    pollfd wait{file.descriptor(), POLLIN, 0};
-    const double left = seconds - watch.seconds();
-    in_time = left > 0.0;
-    if (!in_time) return text;
-    if (::poll(&wait, 1, static_cast<int>(1e3 * left) + 1) <= 0) continue;
-    std::array<char, 4096> bytes;
-    const ssize_t n = ::read(file.descriptor(), bytes.data(), bytes.size());
-    if (n <= 0) return text;
-    text.append(bytes.data(), static_cast<std::size_t>(n));
-  }
-}
-
 std::vector<std::string> split_names(const std::string& text) {
   std::vector<std::string> names;
   for (std::size_t begin = 0; begin <= text.size();) {
@@ -148,11 +127,19 @@ std::vector<std::string> split_names(const std::string& text) {
   return names;
 }
 
+ProcessStart library_start(const std::filesystem::path& library,
+                           const ProcessLimits& limits,
+                           const Isolation& isolation, HostTask task) {
+  return host_start(limits, isolation, task,
+                    std::filesystem::absolute(library).string());
+}
+
 // Asks the library which signals it wants.
 std::vector<std::string> described(const std::filesystem::path& library,
-                                   const ProcessLimits& limits) {
-  ChildProcess process(plugin_host_words(limits.program, library,
-                                         HostTask::kDescribe, limits.memory));
+                                   const ProcessLimits& limits,
+                                   const Isolation& isolation) {
+  ChildProcess process(
+      library_start(library, limits, isolation, HostTask::kDescribe));
   process.input().reset();
   bool in_time = true;
   const std::string names =
@@ -174,10 +161,11 @@ std::vector<std::string> described(const std::filesystem::path& library,
 }
 
 std::vector<std::string> wanted_signals(const std::filesystem::path& library,
-                                        const ProcessLimits& limits) {
+                                        const ProcessLimits& limits,
+                                        const Isolation& isolation) {
   if (limits.program.empty())
     throw std::logic_error("ProcessLimits::program is not given");
-  std::vector<std::string> names = described(library, limits);
+  std::vector<std::string> names = described(library, limits, isolation);
   try {
     for (const std::string& name : names) require_measurable(name);
   } catch (const std::invalid_argument& error) {
@@ -190,16 +178,19 @@ std::vector<std::string> wanted_signals(const std::filesystem::path& library,
 }  // namespace
 
 std::unique_ptr<TestedCompensator> open_library(
-    const std::filesystem::path& library, const ProcessLimits& limits) {
+    const std::filesystem::path& library, const ProcessLimits& limits,
+    const Isolation& isolation) {
   return std::make_unique<LibraryCompensator>(
-      library, wanted_signals(library, limits), limits);
+      library_start(library, limits, isolation, HostTask::kAnswer),
+      wanted_signals(library, limits, isolation), limits);
 }
 
 AnsweringProcess library_process(const std::filesystem::path& library,
-                                 const ProcessLimits& limits) {
-  return {plugin_host_words(limits.program, library, HostTask::kAnswer,
-                            limits.memory),
-          std::make_unique<HostLanguage>(wanted_signals(library, limits)),
+                                 const ProcessLimits& limits,
+                                 const Isolation& isolation) {
+  return {library_start(library, limits, isolation, HostTask::kAnswer),
+          std::make_unique<HostLanguage>(
+              wanted_signals(library, limits, isolation)),
           true};
 }
 

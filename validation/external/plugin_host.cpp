@@ -13,15 +13,21 @@
 #include <cerrno>
 #include <charconv>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <new>
+#include <optional>
 #include <span>
 #include <stdexcept>
 
 #include "dataset/files/open_file.h"
 #include "include/beamgyro/plugin.h"
+#include "validation/external/landlock.h"
+#include "validation/external/program_search.h"
+#include "validation/external/refused_calls.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -129,20 +135,19 @@ std::string signals_of(const Plugin& plugin) {
   return names;
 }
 
-// Adds the memory that the program has anyway.
-void limit_memory(std::size_t memory) {
-  const rlimit no_core{0, 0};
-  ::setrlimit(RLIMIT_CORE, &no_core);
-  if (memory == 0) return;
+void limit_resource(decltype(RLIMIT_AS) kind, rlim_t most) {
+  const rlimit both{most, most};
+  ::setrlimit(kind, &both);
+}
+
+// The memory that this program has anyway [bytes].
+std::size_t memory_in_use() {
   std::array<std::byte, 64> text{};
   const std::size_t count = OpenFile("/proc/self/statm", O_RDONLY).read(text);
   std::size_t pages = 0;
   const auto* first = reinterpret_cast<const char*>(text.data());
   std::from_chars(first, first + count, pages);
-  const rlim_t bytes =
-      memory + pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-  const rlimit limit{bytes, bytes};
-  ::setrlimit(RLIMIT_AS, &limit);
+  return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
 void reset(const Plugin& plugin, void* instance, double period) {
@@ -219,23 +224,89 @@ void serve(const std::filesystem::path& file, bool describe) {
   output.write(std::as_bytes(std::span(names)));
 }
 
-}  // namespace
+// What the words of a host ask for.
+struct HostedWork {
+  HostTask task;
+  std::size_t memory;
+  int landlock;
+  std::string target;
+  std::vector<std::filesystem::path> readable;
+  std::filesystem::path folder;
+};
 
-std::vector<std::string> plugin_host_words(const std::filesystem::path& program,
-                                           const std::filesystem::path& library,
-                                           HostTask task, std::size_t memory) {
-  return {program.string(), std::string(kPluginHostWord),
-          task == HostTask::kDescribe ? "describe" : "answer",
-          std::to_string(memory), std::filesystem::absolute(library).string()};
+HostedWork parsed_work(const std::vector<std::string>& words) {
+  constexpr std::size_t kFirstReadable = 4;
+  const auto is_number = [](const std::string& word) {
+    return !word.empty() && std::ranges::all_of(word, [](char c) {
+      return c >= '0' && c <= '9';
+    });
+  };
+  if (words.size() <= kFirstReadable || !is_number(words[0]) ||
+      !is_number(words[1]) || !is_number(words[2]))
+    throw std::invalid_argument("is started by beamgyro itself only");
+  return {static_cast<HostTask>(std::stoi(words[0])),
+          std::stoull(words[1]),
+          std::stoi(words[2]),
+          words[3],
+          {words.begin() + kFirstReadable, words.end() - 1},
+          words.back()};
 }
 
-int host_plugin(const std::vector<std::string>& words) try {
-  if (words.size() != 3 || (words[0] != "describe" && words[0] != "answer"))
-    throw std::invalid_argument("is started by beamgyro itself only");
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  limit_memory(std::stoull(words[1]));
-  serve(words[2], words[0] == "describe");
+void isolate_process(const HostedWork& work) {
+  if (work.landlock == 0) return;
+  restrict_files(work.readable, work.folder, work.landlock);
+  refuse_calls();
+}
+
+int try_isolation_of(const HostedWork& work, const std::string& search_path) {
+  const ProgramSearch search(work.target, search_path);
+  isolate_process(work);
+  const std::optional<UnreachableProgram> lost = search.unreachable();
+  if (!lost) return 0;
+  write_error(lost->file.string() + '\n' + lost->plugin_files.string());
+  return kProgramOutOfReach;
+}
+
+void become_command(const HostedWork& work) {
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_DFL);
+  if (work.memory > 0) limit_resource(RLIMIT_AS, work.memory);
+  ::execl("/bin/sh", "/bin/sh", "-c", work.target.c_str(), nullptr);
+  throw std::runtime_error(std::string("/bin/sh: ") + std::strerror(errno));
+}
+
+int hosted(const HostedWork& work, const std::string& search_path) {
+  limit_resource(RLIMIT_CORE, 0);
+  if (work.task == HostTask::kTry) return try_isolation_of(work, search_path);
+  const std::size_t memory = memory_in_use();
+  isolate_process(work);
+  if (work.task == HostTask::kCommand) become_command(work);
+  if (work.memory > 0) limit_resource(RLIMIT_AS, work.memory + memory);
+  serve(work.target, work.task == HostTask::kDescribe);
   return 0;
+}
+
+}  // namespace
+
+ProcessStart host_start(const ProcessLimits& limits, const Isolation& isolation,
+                        HostTask task, const std::string& target) {
+  ProcessStart start{
+      {limits.program.string(), std::string(kPluginHostWord),
+       std::to_string(static_cast<int>(task)), std::to_string(limits.memory),
+       std::to_string(isolation.landlock), target},
+      true};
+  if (isolation.landlock > 0)
+    for (const std::filesystem::path& path : isolation.readable)
+      start.words.push_back(path.string());
+  return start;
+}
+
+int host_plugin(const std::vector<std::string>& words,
+                const std::string& search_path) try {
+  const HostedWork work = parsed_work(words);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::setenv("HOME", work.folder.c_str(), 1);
+  ::setenv("TMPDIR", work.folder.c_str(), 1);
+  return hosted(work, search_path);
 } catch (const std::bad_alloc&) {
   write_pending();
   write_error(kOutOfMemory);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstddef>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "validation/external/child_process.h"
+#include "validation/external/tested_compensator.h"
 
 namespace beamgyro::internal {
 
@@ -13,25 +14,40 @@ namespace beamgyro::internal {
 /// with the rest.
 constexpr std::string_view kPluginHostWord = "plugin-host";
 
-/// What is asked of a process that loads a library.
-enum class HostTask { kDescribe, kAnswer };
+/// What is asked of a process that hosts foreign code.
+enum class HostTask {
+  kTry,       // isolates itself and runs nothing of a command
+  kDescribe,  // a library
+  kAnswer,    // a library
+  kCommand
+};
 
-/// Returns the words of a process of `program` for a library. `memory`: as in
-/// ProcessLimits.
-std::vector<std::string> plugin_host_words(const std::filesystem::path& program,
-                                           const std::filesystem::path& library,
-                                           HostTask task, std::size_t memory);
+/// Returns how a process of limits.program is started for a library, or for the
+/// text of a command. It isolates itself first, unless isolation.landlock is 0.
+ProcessStart host_start(const ProcessLimits& limits, const Isolation& isolation,
+                        HostTask task, const std::string& target);
 
 /// One record that the process reads: an operation, a time or a period [s], and
 /// one value for each signal, all doubles of this machine.
 enum class HostRecord { kStep = 0, kReset = 1 };
 
-/// Serves a library of beamgyro/plugin.h in a process of its own. To describe,
-/// it writes the names of the signals on standard output. To answer, it reads
-/// records on standard input to its end, and writes one double for each kStep.
-/// On standard error it writes why it failed. `words` are those after
-/// kPluginHostWord. Returns the exit status: 0, 1 when the library failed, or
-/// 2 when it is no library of this kind.
-int host_plugin(const std::vector<std::string>& words);
+/// Status of kTry when a program that the command names is out of reach. On
+/// standard error stand its path, and in the next line what would have to be
+/// one of the plugin files.
+constexpr int kProgramOutOfReach = 4;
+
+/// Hosts foreign code in a process of its own, which is isolated for good, as
+/// restrict_files() and refuse_calls() say. Its folder becomes that of HOME and
+/// TMPDIR. `words` are those after kPluginHostWord, `search_path` the PATH of
+/// its environment.
+/// - A command takes the place of the process.
+/// - To describe a library of beamgyro/plugin.h, it writes the names of the
+///   signals on standard output. To answer, it reads records on standard input
+///   to its end, and writes one double for each kStep.
+/// On standard error it writes why it failed. Returns the exit status: 0, 1
+/// when the isolation or the library failed, 2 when it is no library of this
+/// kind, or kProgramOutOfReach.
+int host_plugin(const std::vector<std::string>& words,
+                const std::string& search_path);
 
 }  // namespace beamgyro::internal

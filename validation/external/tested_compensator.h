@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dataset/recording/recording.h"
+#include "validation/external/isolation.h"
 
 namespace beamgyro::internal {
 
@@ -51,9 +52,11 @@ struct ProcessLimits {
   double stall = 10.0;  // [s], without taking a sample or giving an answer
   std::size_t memory = std::size_t{2} << 30;  // [bytes]; 0: no limit
 
-  // The beamgyro program, which loads libraries in a process of its own.
-  // Inside the program itself: /proc/self/exe. Commands do not need it.
+  // The beamgyro program, which loads libraries and isolates commands in
+  // processes of their own. Inside the program itself: /proc/self/exe. Without
+  // it commands are not isolated.
   std::filesystem::path program = {};
+  IsolationOptions isolation = {};
 };
 
 /// A compensator of any kind that is to be validated. It is given time and the

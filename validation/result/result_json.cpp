@@ -172,6 +172,16 @@ Json fit_json(const SigmaFit& fit) {
   return json;
 }
 
+Json isolation_json(const std::optional<Isolation>& isolation) {
+  if (!isolation) return nullptr;
+  Json files = Json::array();
+  for (const AllowedFile& file : isolation->files)
+    files.push_back({{"name", file.name}, {"sha256", file.sha256}});
+  return {{"isolated", isolation->holds()},
+          {"words", isolation_words(*isolation)},
+          {"files", files}};
+}
+
 }  // namespace
 
 nlohmann::ordered_json sigma_json(const SigmaReport& report) {
@@ -205,6 +215,7 @@ nlohmann::ordered_json to_json(const ValidationResult& result) {
     compensator["workbench_difference_largest_deg_per_s"] = workbench->largest;
     compensator["workbench_difference_rms_deg_per_s"] = workbench->rms;
   }
+  json["isolation"] = isolation_json(result.isolation);
   Json& compared = json["compared_with"] = Json::array();
   for (const ResidualComparison& one : result.comparisons)
     compared.push_back(comparison_json(one));

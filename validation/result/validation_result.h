@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "validation/checks/checks.h"
+#include "validation/external/isolation.h"
 #include "validation/metrics/metric.h"
 #include "validation/metrics/paired_residual.h"
 #include "validation/metrics/sigma_report.h"
@@ -147,6 +148,8 @@ struct ValidationResult {
   std::vector<std::string> shared_seeds = {};
   // Where the compensator states a sigma; over all devices of a set.
   std::optional<SigmaReport> sigma = {};
+  // Of code of others.
+  std::optional<Isolation> isolation = {};
   std::vector<std::string> warnings = {};
   ResultProvenance provenance = {};
 };

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "dataset/files/file_checksum.h"
+#include "dataset/files/hdf5_signature.h"
 #include "dataset/files/json_node.h"
 #include "dataset/files/set_files.h"
 #include "dataset/netcdf/hdf5_driver.h"
