@@ -56,6 +56,8 @@ constexpr std::array kReadings{
     MetricReading{"bandwidth_Hz", "", kUnlimited},
     MetricReading{"phase_lag_90_deg_Hz", "Frequency of 90° phase lag",
                   kUnlimited},
+    MetricReading{"response_peak_Hz", "Frequency of the response peak",
+                  kUnlimited},
     MetricReading{"g_sensitivity_x_deg_per_s_per_g",
                   "Sensitivity to acceleration along x"},
     MetricReading{"g_sensitivity_y_deg_per_s_per_g",
