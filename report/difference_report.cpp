@@ -61,10 +61,8 @@ std::string counts_of(const std::vector<MetricChange>& changes) {
 }  // namespace
 
 std::string side_by_side_report(const SideBySide& other, bool all) {
-  return fmt::format("{}\n{}: {}: {}\nmetrics beside {}: {}\n{}",
-                     other.sentence, other.compensator.name,
-                     verdict_name(other.verdict), other.words,
-                     other.compensator.name, counts_of(other.metrics),
+  return fmt::format("metrics beside {}: {}\n{}", other.compensator.name,
+                     counts_of(other.metrics),
                      change_table(other.metrics, "this", "other", all));
 }
 

@@ -325,7 +325,13 @@ std::string verdict_report(const ValidationResult& result, bool all) {
   text += '\n' + check_lines(result, all);
   if (result.sigma) text += '\n' + sigma_lines(*result.sigma);
   if (result.population) text += '\n' + yield_lines(*result.population);
-  if (result.against) text += '\n' + side_by_side_report(*result.against, all);
+  if (result.against)
+    text += '\n' + wrapped(result.against->sentence, 2) +
+            wrapped(fmt::format("{}: {}: {}", result.against->compensator.name,
+                                verdict_name(result.against->verdict),
+                                result.against->words),
+                    2) +
+            side_by_side_report(*result.against, all);
   if (result.earlier) text += '\n' + earlier_report(*result.earlier, all);
   if (result.seeds) text += '\n' + seed_lines(*result.seeds);
   return text + '\n' + last_lines(result);
