@@ -178,10 +178,11 @@ not_tested = "does not decide"
 [limits]
 residual_rms_deg_per_s = { max = 0.2, source = "a test" }
 """)
-        public, _ = self.validate("--spec", "spec.toml", model=cheat)
+        known = ("--plugin-files", "ramp.csv", "--plugin-files", "warm_up.csv")
+        public, _ = self.validate("--spec", "spec.toml", *known, model=cheat)
         self.assertEqual(public["verdict"], "pass", public["words"])
-        drawn, _ = self.validate("--spec", "spec.toml", "--seed", "random",
-                                 "--seeds", 6, model=cheat)
+        drawn, _ = self.validate("--spec", "spec.toml", *known, "--seed",
+                                 "random", "--seeds", 6, model=cheat)
         self.assertEqual(drawn["seeds"]["passed"], 0, drawn["seeds"])
         self.assertEqual(drawn["seeds"]["failed"], 6)
 
