@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "compensation/inputs/sample_ranges.h"
@@ -19,8 +20,7 @@
 namespace beamgyro::internal {
 namespace {
 
-constexpr std::uint64_t kTriedDraws = 3;
-constexpr std::size_t kMostOfDraws = 2;
+constexpr std::size_t kMostOfDraws = 2;  // of three
 constexpr std::array kTimesAsLong = {2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
 
 /// A gyro without an error: the true rate, with noise of the device.
@@ -77,6 +77,7 @@ struct QuietRuns {
 struct Foreseen {
   std::size_t undecided = 0;
   std::optional<Estimate> seen;  // of the last that is undecided
+  std::size_t decided = 0;
   bool is_undecided() const { return undecided >= kMostOfDraws; }
 };
 
@@ -91,27 +92,17 @@ class Foresight {
         risk_(risk),
         threads_(threads) {}
 
-  /// Of runs that take `times` as long, with as many samples.
+  /// Of runs that take `times` as long, with as many samples. The third draw
+  /// decides where two differ.
   Foreseen of(double times) const {
-    std::vector<std::optional<Estimate>> seen(kTriedDraws);
-    for_each_task(kTriedDraws, threads_, [&](std::size_t draw, std::size_t) {
-      std::vector<ReadRun> read = runs_.read;
-      std::vector<Recording> recordings = runs_.recordings;
-      for (ReadRun& run : read) run.from *= times;
-      for (Recording& recording : recordings)
-        for (double& time : recording.time) time *= times;
-      const NoisyTruth gyro(device_.device.noise, draw);
-      const DeviceEvidence evidence = answered_evidence(
-          std::move(read), std::move(recordings),
-          {gyro, {}, device_.device.readout.full_scale / kDegree}, 1);
-      seen[draw] = metric_.evaluate(evidence.after);
-    });
     Foreseen found;
-    for (const auto& one : seen)
-      if (decide(limit_, one, {}, risk_).result == Verdict::kUndecided) {
-        ++found.undecided;
-        found.seen = one;
-      }
+    std::array<std::optional<Estimate>, kMostOfDraws> seen;
+    for_each_task(seen.size(), threads_, [&](std::size_t draw, std::size_t) {
+      seen.at(draw) = drawn(times, draw);
+    });
+    for (const std::optional<Estimate>& one : seen) add(one, found);
+    if (found.undecided < kMostOfDraws && found.decided < kMostOfDraws)
+      add(drawn(times, kMostOfDraws), found);
     return found;
   }
 
@@ -129,6 +120,28 @@ class Foresight {
   }
 
  private:
+  std::optional<Estimate> drawn(double times, std::size_t draw) const {
+    std::vector<ReadRun> read = runs_.read;
+    std::vector<Recording> recordings = runs_.recordings;
+    for (ReadRun& run : read) run.from *= times;
+    for (Recording& recording : recordings)
+      for (double& time : recording.time) time *= times;
+    const NoisyTruth gyro(device_.device.noise, draw);
+    const DeviceEvidence evidence = answered_evidence(
+        std::move(read), std::move(recordings),
+        {gyro, {}, device_.device.readout.full_scale / kDegree}, 1);
+    return metric_.evaluate(evidence.after);
+  }
+
+  void add(const std::optional<Estimate>& seen, Foreseen& found) const {
+    if (decide(limit_, seen, {}, risk_).result != Verdict::kUndecided) {
+      ++found.decided;
+      return;
+    }
+    ++found.undecided;
+    found.seen = seen;
+  }
+
   const Limit& limit_;
   const Metric& metric_;
   const QuietRuns& runs_;
@@ -164,16 +177,39 @@ std::vector<QualificationRun> runs_read(const Qualification& qualification,
   return runs;
 }
 
-QuietRuns without_noise(std::vector<QualificationRun> runs,
-                        const QualifiedDevice& device, std::size_t threads) {
-  QuietRuns quiet;
-  for (QualificationRun& run : runs) {
-    run.scenario.noise_enabled = false;
-    quiet.read.push_back({run.name, run.purpose, run.from});
+/// The runs of a qualification without noise, each simulated when it is first
+/// asked for.
+class RunsWithoutNoise {
+ public:
+  RunsWithoutNoise(const QualifiedDevice& device, std::size_t threads)
+      : device_(device), threads_(threads) {}
+
+  QuietRuns of(const std::vector<QualificationRun>& runs) {
+    simulate(runs);
+    QuietRuns quiet;
+    for (const QualificationRun& run : runs) {
+      quiet.read.push_back({run.name, run.purpose, run.from});
+      quiet.recordings.push_back(simulated_.at(run.name));
+    }
+    return quiet;
   }
-  quiet.recordings = qualified_runs(runs, device, threads);
-  return quiet;
-}
+
+ private:
+  void simulate(const std::vector<QualificationRun>& runs) {
+    std::vector<QualificationRun> lacking;
+    for (const QualificationRun& run : runs)
+      if (!simulated_.contains(run.name))
+        lacking.emplace_back(run).scenario.noise_enabled = false;
+    std::vector<Recording> recordings =
+        qualified_runs(lacking, device_, threads_);
+    for (std::size_t k = 0; k < lacking.size(); ++k)
+      simulated_.emplace(lacking[k].name, std::move(recordings[k]));
+  }
+
+  const QualifiedDevice& device_;
+  std::size_t threads_;
+  std::map<std::string, Recording> simulated_;  // by the name of the run
+};
 
 /// Length [s] of what is read of the longest run.
 double longest_read(const std::vector<QualificationRun>& runs) {
@@ -214,6 +250,7 @@ std::vector<std::string> undecidable_limits(
     const Qualification& qualification, const QualifiedDevice& device,
     const SpecificationFile& specification, std::size_t threads) {
   std::vector<std::string> sentences;
+  RunsWithoutNoise without_noise(device, threads);
   for (const Limit& limit : specification.limits) {
     const Metric& metric = *find_metric(limit.metric);
     if (metric.is_of_sigma) continue;
@@ -230,7 +267,7 @@ std::vector<std::string> undecidable_limits(
         [](const QualificationRun& run) { return run.scenario.noise_enabled; });
     if (!has_noise || !limit.relative_to.empty() || reads_moving_rates(metric))
       continue;
-    const QuietRuns quiet = without_noise(runs, device, threads);
+    const QuietRuns quiet = without_noise.of(runs);
     const Foresight foresight(limit, quiet, device,
                               specification.false_accept_risk, threads);
     const Foreseen found = foresight.of(1.0);
