@@ -7,8 +7,8 @@
 
 namespace beamgyro::internal {
 
-/// Returns the lines on the metrics of another compensator on the same runs that
-/// differ beyond their interval; with `all`, on every metric.
+/// Returns the lines on the metrics of another compensator on the same runs
+/// that differ beyond their interval; with `all`, on every metric.
 std::string side_by_side_report(const SideBySide& other, bool all);
 
 /// Returns the lines on an earlier result: what is worse, what is better and
