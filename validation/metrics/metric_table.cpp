@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "validation/metrics/metric_tables.h"
@@ -18,6 +19,10 @@ std::vector<Metric> all_tables() {
 }
 
 }  // namespace
+
+double shortfall_of(const Metric& metric, double value) {
+  return std::isinf(metric.best) ? -value : std::abs(value - metric.best);
+}
 
 std::span<const Metric> metrics() {
   static const std::vector<Metric> kMetrics = all_tables();

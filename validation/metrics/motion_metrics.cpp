@@ -248,6 +248,7 @@ std::vector<Metric> motion_metrics() {
   using enum RunPurpose;
   return {
       {"g_sensitivity_x_deg_per_s_per_g",
+       "Sensitivity to acceleration along x",
        "deg/s/g",
        "",
        "(B(+g) - B(-g)) / 2 along x: slope of the least-squares plane "
@@ -255,18 +256,21 @@ std::vector<Metric> motion_metrics() {
        {kTumble},
        given(acceleration_term, kTumble, 0)},
       {"g_sensitivity_y_deg_per_s_per_g",
+       "Sensitivity to acceleration along y",
        "deg/s/g",
        "",
        "g_sensitivity_x_deg_per_s_per_g, but along y.",
        {kTumble},
        given(acceleration_term, kTumble, 1)},
       {"g_sensitivity_z_deg_per_s_per_g",
+       "Sensitivity to acceleration along z",
        "deg/s/g",
        "",
        "g_sensitivity_x_deg_per_s_per_g, but along z.",
        {kTumble},
        given(acceleration_term, kTumble, 2)},
       {"vibration_rectification_deg_per_s_per_g2",
+       "Vibration rectification",
        "deg/s/g^2",
        "",
        "Slope of the residual over the mean square of the acceleration, "
@@ -274,6 +278,7 @@ std::vector<Metric> motion_metrics() {
        {kVibration},
        given(acceleration_term, kVibration, 3)},
       {"cross_axis_percent",
+       "Cross-axis sensitivity",
        "%",
        "12.12",
        "Largest slope of the residual over the true rate about a cross "
@@ -281,6 +286,7 @@ std::vector<Metric> motion_metrics() {
        {kVibration},
        cross_axis},
       {"extrapolated_share_percent",
+       "Samples outside the training range",
        "%",
        "",
        "Samples outside what training saw, of all powered samples.",

@@ -95,6 +95,7 @@ std::vector<Metric> noise_metrics() {
   using enum RunPurpose;
   return {
       {"angle_random_walk_deg_per_sqrt_h",
+       "Angle random walk",
        "deg/sqrt(h)",
        "12.11",
        "N, white noise, of the fit sigma^2(tau) = 3 Q^2/tau^2 + N^2/tau + "
@@ -104,12 +105,14 @@ std::vector<Metric> noise_metrics() {
        given(coefficient, &NoiseCoefficients::angle_random_walk,
              std::sqrt(kHour))},
       {"bias_instability_deg_per_h",
+       "Bias instability",
        "deg/h",
        "12.11",
        "B, flicker, of the fit of angle_random_walk_deg_per_sqrt_h.",
        {kRest},
        given(coefficient, &NoiseCoefficients::bias_instability, kHour)},
       {"rate_random_walk_deg_per_h_per_sqrt_h",
+       "Rate random walk",
        "deg/h/sqrt(h)",
        "12.11",
        "K, random walk of the rate, of the fit of "
@@ -118,6 +121,7 @@ std::vector<Metric> noise_metrics() {
        given(coefficient, &NoiseCoefficients::rate_random_walk,
              kHour * std::sqrt(kHour))},
       {"rate_ramp_deg_per_h_per_h",
+       "Rate ramp",
        "deg/h/h",
        "12.11",
        "R, steady change of the rate, of the fit of "
@@ -125,6 +129,7 @@ std::vector<Metric> noise_metrics() {
        {kRest},
        given(coefficient, &NoiseCoefficients::rate_ramp, kHour * kHour)},
       {"quantisation_deg",
+       "Quantisation",
        "deg",
        "12.11",
        "Q, rounding of the angle, of the fit of "
@@ -132,6 +137,7 @@ std::vector<Metric> noise_metrics() {
        {kRest},
        given(coefficient, &NoiseCoefficients::angle_quantisation, 1.0)},
       {"bias_instability_bound_deg_per_h",
+       "Upper bound of the bias instability",
        "deg/h",
        "12.11",
        "Lowest overlapping Allan deviation over sqrt(2 ln 2/pi) = "
@@ -139,12 +145,14 @@ std::vector<Metric> noise_metrics() {
        {kRest},
        lowest_allan_deviation},
       {"white_noise_ratio",
+       "White noise ratio",
        "1",
        "",
        "Allan deviation at 1 s of the judged residual over that of the "
        "recorded one. Below 1: noise was removed, and rate with it.",
        {kRest},
-       white_noise_ratio},
+       white_noise_ratio,
+       1.0},
   };
 }
 

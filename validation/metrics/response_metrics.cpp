@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "validation/metrics/frequency_response.h"
@@ -15,6 +16,7 @@ constexpr double kDecibels = 20.0 / std::numbers::ln10;  // [dB] in a unit of ln
 constexpr double kQuarterTurn = 0.5 * std::numbers::pi;  // [rad]
 constexpr double kLongestDelay = 2.0;                    // [s], looked for
 constexpr double kLeastSpread = 1e-15;                   // [rad]
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 Estimate with_t_interval(double value, double sigma, double freedom) {
   if (!(sigma > 0.0) || !(freedom >= 1.0))
@@ -243,13 +245,16 @@ std::vector<Metric> response_metrics() {
   using enum RunPurpose;
   return {
       {"bandwidth_Hz",
+       "Bandwidth",
        "Hz",
        "12.15",
        "Frequency at which |H(f)|, judged rate over true rate, falls 3 dB "
        "below its value at the lowest frequency.",
        {kSineRate, kRateStep, kRandomRate},
-       bandwidth},
+       bandwidth,
+       kUnlimited},
       {"response_peak_dB",
+       "Response peak",
        "dB",
        "12.15",
        "Highest |H(f)| over its value at the lowest frequency, 20 log10 of the "
@@ -257,18 +262,23 @@ std::vector<Metric> response_metrics() {
        {kSineRate, kRateStep},
        response_peak},
       {"response_peak_Hz",
+       "Frequency of the response peak",
        "Hz",
        "12.15",
        "Frequency at which |H(f)| is highest, where that is not the lowest.",
        {kSineRate, kRateStep},
-       response_peak_frequency},
+       response_peak_frequency,
+       kUnlimited},
       {"phase_lag_90_deg_Hz",
+       "Frequency of 90° phase lag",
        "Hz",
        "12.15",
        "Frequency at which the phase of H(f) lags by 90 degrees.",
        {kSineRate, kRateStep, kRandomRate},
-       phase_lag_90},
+       phase_lag_90,
+       kUnlimited},
       {"added_delay_s",
+       "Added delay",
        "s",
        "",
        "Delay of the judged rate after the recorded rate, from the "

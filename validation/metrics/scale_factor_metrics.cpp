@@ -213,19 +213,23 @@ std::vector<Metric> scale_factor_metrics() {
   using enum RunPurpose;
   return {
       {"scale_factor",
+       "Scale factor",
        "1",
        "12.9",
        "Slope K of the least-squares line of the judged rate over the "
        "held true rates, mean over the rate tables.",
        {kRateTable},
-       mean_scale_factor},
+       mean_scale_factor,
+       1.0},
       {"scale_factor_error_ppm",
+       "Scale factor error",
        "ppm",
        "12.9",
        "max |K_j - 1| over the rate tables.",
        {kRateTable},
        given(largest_of_tables, error_of, estimate_of_largest)},
       {"scale_factor_nonlinearity_ppm",
+       "Scale factor nonlinearity",
        "ppm",
        "12.9",
        "max |V_i - line| / (K max |Omega_i|): V_i is the mean answer to "
@@ -233,6 +237,7 @@ std::vector<Metric> scale_factor_metrics() {
        {kRateTable},
        given(largest_of_tables, departures_of, estimate_of_largest)},
       {"scale_factor_asymmetry_ppm",
+       "Scale factor asymmetry",
        "ppm",
        "12.9",
        "2 (K+ - K-) / (K+ + K-) of the slopes over the rates >= 0 and "
@@ -240,19 +245,21 @@ std::vector<Metric> scale_factor_metrics() {
        {kRateTable},
        given(largest_of_tables, asymmetry_of, estimate_of_largest_signed)},
       {"scale_factor_temperature_sensitivity_ppm_per_K",
+       "Scale factor sensitivity to temperature",
        "ppm/K",
        "12.9",
        "Slope of the least-squares line of K_j over the measured "
        "temperature T_j, divided by the line at 25 degC.",
        {kRateTable},
        scale_factor_temperature_sensitivity},
-      {"scale_factor_retained", "1", "",
+      {"scale_factor_retained", "Scale factor retained", "1", "",
        "Slope of the judged rate over the true rate divided by that of "
        "the recorded rate, on the same samples.",
-       turning_purposes(), given(retained, kEveryRate)},
-      {"scale_factor_retained_small_rates", "1", "",
+       turning_purposes(), given(retained, kEveryRate), 1.0},
+      {"scale_factor_retained_small_rates",
+       "Scale factor retained at small rates", "1", "",
        "scale_factor_retained over samples whose true rate is within 2 deg/s.",
-       turning_purposes(), given(retained, kSmallRate)},
+       turning_purposes(), given(retained, kSmallRate), 1.0},
   };
 }
 

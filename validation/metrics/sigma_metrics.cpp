@@ -36,45 +36,62 @@ std::optional<Estimate> bias_filter_nis(const Evidence& evidence) {
 std::vector<Metric> sigma_metrics() {
   using enum RunPurpose;
   const std::vector<RunPurpose> kTemperature = {kSoak, kRamp};
-  const auto share = [&](std::string_view name, std::string_view definition,
-                         Evaluation evaluate) {
-    return Metric{name, "%", "", definition, kTemperature, std::move(evaluate),
+  const auto share = [&](std::string_view name, std::string_view title,
+                         std::string_view definition, Errors errors,
+                         double percent) {
+    return Metric{name,
+                  title,
+                  "%",
+                  "",
+                  definition,
+                  kTemperature,
+                  given(covered, errors, percent / 100.0),
+                  percent,
                   true};
   };
   return {
       share("sigma_coverage_50_soaks_percent",
+            "Soaks within the stated 50 % interval",
             "Soaks whose mean residual over the last 300 s lies within 0.674 "
             "of the stated sigma, those of each 10 K counted as one: 50 for a "
             "sigma that is right.",
-            given(covered, &soak_errors, 0.5)),
+            &soak_errors, 50.0),
       share("sigma_coverage_90_soaks_percent",
+            "Soaks within the stated 90 % interval",
             "sigma_coverage_50_soaks_percent, but within 1.645 sigma: 90 for a "
             "sigma that is right.",
-            given(covered, &soak_errors, 0.9)),
+            &soak_errors, 90.0),
       share("sigma_coverage_95_soaks_percent",
+            "Soaks within the stated 95 % interval",
             "sigma_coverage_50_soaks_percent, but within 1.960 sigma: 95 for a "
             "sigma that is right.",
-            given(covered, &soak_errors, 0.95)),
+            &soak_errors, 95.0),
       share("sigma_coverage_50_ramps_percent",
+            "Ramps within the stated 50 % interval",
             "Blocks of 60 s at a moving temperature whose mean residual lies "
             "within 0.674 of the stated sigma, those of each 10 K counted as "
             "one.",
-            given(covered, &ramp_errors, 0.5)),
+            &ramp_errors, 50.0),
       share("sigma_coverage_90_ramps_percent",
+            "Ramps within the stated 90 % interval",
             "sigma_coverage_50_ramps_percent, but within 1.645 sigma.",
-            given(covered, &ramp_errors, 0.9)),
+            &ramp_errors, 90.0),
       share("sigma_coverage_95_ramps_percent",
+            "Ramps within the stated 95 % interval",
             "sigma_coverage_50_ramps_percent, but within 1.960 sigma.",
-            given(covered, &ramp_errors, 0.95)),
-      {"sigma_pit_distance_soaks", "1", "",
+            &ramp_errors, 95.0),
+      {"sigma_pit_distance_soaks",
+       "Distance of soaks from the stated distribution", "1", "",
        "max |F(u) - u|: F(u) is the share of the soaks with Phi(residual / "
        "sigma) <= u.",
-       kTemperature, given(distance, &soak_errors), true},
-      {"sigma_pit_distance_ramps", "1", "",
+       kTemperature, given(distance, &soak_errors), 0.0, true},
+      {"sigma_pit_distance_ramps",
+       "Distance of ramps from the stated distribution", "1", "",
        "max |F(u) - u| of the blocks at a moving temperature, those of each 10 "
        "K counted as one.",
-       kTemperature, given(distance, &ramp_errors), true},
+       kTemperature, given(distance, &ramp_errors), 0.0, true},
       {"bias_filter_nis",
+       "Normalised innovation squared of a bias filter",
        "1",
        "",
        "Mean normalised innovation squared of a Kalman filter for the bias "
@@ -82,6 +99,7 @@ std::vector<Metric> sigma_metrics() {
        "power-on and every 25 K: 1 for a sigma that is right.",
        {kSoak, kRamp, kWarmUp, kPowerCycle},
        bias_filter_nis,
+       1.0,
        true},
   };
 }

@@ -277,6 +277,7 @@ std::vector<Metric> start_metrics() {
   using enum RunPurpose;
   return {
       {"turn_on_time_s",
+       "Turn-on time",
        "s",
        "12.5",
        "Longest time from power-on until the loops stay locked. Not of "
@@ -284,6 +285,7 @@ std::vector<Metric> start_metrics() {
        {kWarmUp, kPowerCycle, kRateStep},
        turn_on_time},
       {"warm_up_time_s",
+       "Warm-up time",
        "s",
        "12.6",
        "Longest time from power-on after which |B(t) - B_end| stays "
@@ -292,6 +294,7 @@ std::vector<Metric> start_metrics() {
        {kWarmUp},
        warm_up_time},
       {"turn_on_repeatability_deg_per_s",
+       "Turn-on bias repeatability",
        "deg/s",
        "12.11",
        "sqrt(sum (B_i - mean)^2 / (n - 1)): B_i is the mean residual of "
@@ -300,24 +303,26 @@ std::vector<Metric> start_metrics() {
        {kPowerCycle},
        turn_on_repeatability},
       {"in_run_stability_deg_per_s",
+       "In-run bias stability",
        "deg/s",
        "12.11",
        "sqrt(sum (b_i - mean)^2 / (n - 1)) of the means b_i of 100 s "
        "over the last hour of a run at rest, pooled over runs.",
        {kRest},
        in_run_stability},
-      {"power_on_drift_3_min_deg_per_s", "deg/s", "",
+      {"power_on_drift_3_min_deg_per_s", "Drift within 3 min of power-on",
+       "deg/s", "",
        "Largest |b(t) - b(0)| within 3 min from power-on: b are means "
        "of 10 s, b(0) the first one, with which the user zeroes the "
        "gyro.",
        power_on_purposes(),
        given(worst_power_on, 180.0 - kZeroing, &add_departures)},
-      {"heading_error_1_min_deg", "deg", "",
+      {"heading_error_1_min_deg", "Heading error after 1 min", "deg", "",
        "Largest |integral of the residual over 1 min|, from 10 s after "
        "power-on, less the mean of those 10 s, with which the user "
        "zeroes the gyro.",
        power_on_purposes(), given(worst_power_on, 60.0, &add_heading_error)},
-      {"heading_error_10_min_deg", "deg", "",
+      {"heading_error_10_min_deg", "Heading error after 10 min", "deg", "",
        "Largest |integral of the residual over 10 min|, from 10 s after "
        "power-on, less the mean of those 10 s, with which the user "
        "zeroes the gyro.",

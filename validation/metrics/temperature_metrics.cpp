@@ -253,6 +253,7 @@ std::vector<Metric> temperature_metrics() {
   using enum RunPurpose;
   return {
       {"bias_deg_per_s",
+       "Bias",
        "deg/s",
        "12.11",
        "Mean of the residual (judged rate less true rate) over runs at "
@@ -260,6 +261,7 @@ std::vector<Metric> temperature_metrics() {
        {kRest},
        bias},
       {"bias_pp_deg_per_s",
+       "Peak-to-peak bias",
        "deg/s",
        "12.11",
        "max B(T_j) - min B(T_j): B(T_j) is the mean residual over the "
@@ -267,6 +269,7 @@ std::vector<Metric> temperature_metrics() {
        {kSoak},
        given(soak_figure, &ResidualScores::peak_to_peak, Growth::kExtreme)},
       {"bias_sigma_deg_per_s",
+       "Standard deviation of the bias",
        "deg/s",
        "12.11",
        "Standard deviation of the B(T_j) about their mean, divided by "
@@ -274,6 +277,7 @@ std::vector<Metric> temperature_metrics() {
        {kSoak},
        given(soak_figure, &ResidualScores::sigma, Growth::kSquare)},
       {"bias_sensitivity_deg_per_s_per_K",
+       "Bias sensitivity to temperature",
        "deg/s/K",
        "12.11",
        "Slope of the least-squares line of B(T_j) over the measured "
@@ -281,6 +285,7 @@ std::vector<Metric> temperature_metrics() {
        {kSoak},
        bias_sensitivity},
       {"bias_sensitivity_max_deg_per_s_per_K",
+       "Largest bias sensitivity to temperature",
        "deg/s/K",
        "12.11",
        "max |B(T_j+1) - B(T_j-1)| / |T_j+1 - T_j-1| over the soaks in "
@@ -294,6 +299,7 @@ std::vector<Metric> hysteresis_metrics() {
   using enum RunPurpose;
   return {
       {"hysteresis_max_deg_per_s",
+       "Largest hysteresis of ramps",
        "deg/s",
        "",
        "max over T of |B_up(T) - B_down(T)| at the same measured "
@@ -301,6 +307,7 @@ std::vector<Metric> hysteresis_metrics() {
        {kRamp},
        given(ramp_figure, &largest_difference)},
       {"hysteresis_rms_deg_per_s",
+       "Rms hysteresis of ramps",
        "deg/s",
        "",
        "rms over T of B_up(T) - B_down(T) at the same measured "
@@ -308,6 +315,7 @@ std::vector<Metric> hysteresis_metrics() {
        {kRamp},
        given(ramp_figure, &rms_difference)},
       {"soak_hysteresis_max_deg_per_s",
+       "Largest hysteresis of soaks",
        "deg/s",
        "",
        "max |B_up(T_j) - B_down(T_j)| between soaks at one ambient "

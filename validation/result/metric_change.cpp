@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "validation/metrics/metric_reading.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "validation/metrics/metric_reading.h"
 #include "validation/result/metric_change.h"
 
 namespace beamgyro::internal {
@@ -61,7 +60,7 @@ Json metric_json(const MetricResult& result,
                  const std::vector<DecidedLimit>& limits) {
   const Metric& metric = *result.metric;
   Json json{{"name", metric.name},
-            {"title", title_of(metric)},
+            {"title", metric.title},
             {"unit", metric.unit},
             {"clause", metric.clause},
             {"definition", metric.definition},
@@ -176,7 +175,7 @@ Json changes_json(const std::vector<MetricChange>& changes) {
   Json list = Json::array();
   for (const MetricChange& one : changes)
     list.push_back({{"name", one.metric->name},
-                    {"title", title_of(*one.metric)},
+                    {"title", one.metric->title},
                     {"unit", one.metric->unit},
                     {"own", estimate_json(one.own)},
                     {"other", estimate_json(one.other)},
