@@ -215,6 +215,7 @@ std::vector<std::string> undecidable_limits(
     const SpecificationFile& specification, std::size_t threads) {
   std::vector<std::string> sentences;
   for (const Limit& limit : specification.limits) {
+    if (limit.is_own) continue;
     const Metric& metric = *find_metric(limit.metric);
     if (metric.is_of_sigma) continue;
     const std::vector<QualificationRun> runs = runs_read(qualification, metric);
