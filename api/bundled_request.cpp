@@ -45,6 +45,8 @@ RequestValue stored_value(const ValidationMember& row,
             throw std::logic_error("a set is in no bundle");
           else
             return *value;
+        } else if constexpr (std::is_same_v<Value, std::vector<OwnMetric>>) {
+          throw std::logic_error("a function is in no bundle");
         } else {
           return value;
         }
@@ -117,8 +119,10 @@ BundledRequest request_of(const Bundle& bundle) {
   for (const ValidationMember& row : validation_members()) {
     if (row.bundle_key.empty()) continue;
     known.emplace_back(row.bundle_key);
-    // Bundles of older programs have no flags.
-    if (type_name(row) == "flag" && !node.has(known.back())) continue;
+    // Bundles of older programs have no flags and no metrics of the user's.
+    if ((type_name(row) == "flag" || row.bundle_key == "own_metrics") &&
+        !node.has(known.back()))
+      continue;
     read_value(row, bundle, node.at(known.back()), request.options);
   }
   for (const auto& [key, value] : bundle.request.items())

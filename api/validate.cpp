@@ -57,20 +57,26 @@ std::optional<IntervalEstimate> estimate_of(
   return IntervalEstimate{estimate->value, interval.low, interval.high};
 }
 
+std::vector<LimitResult> limits_on(const ValidationResult& result,
+                                   std::string_view metric) {
+  std::vector<LimitResult> rows;
+  for (const auto& [limit, decision] : result.limits)
+    if (limit.metric == metric)
+      rows.push_back({text_of(limit), limit.relative_to, decision.result,
+                      decision.margin, decision.words, decision.met_before});
+  return rows;
+}
+
 std::vector<MetricRow> metrics_of(const ValidationResult& result) {
   std::vector<MetricRow> rows;
-  for (const MetricResult& found : result.metrics) {
-    MetricRow row{
-        std::string(found.metric->name),   std::string(found.metric->unit),
-        std::string(found.metric->clause), estimate_of(found.before),
-        estimate_of(found.after),          {}};
-    for (const auto& [limit, decision] : result.limits)
-      if (limit.metric == found.metric->name)
-        row.limits.push_back({text_of(limit), limit.relative_to,
-                              decision.result, decision.margin, decision.words,
-                              decision.met_before});
-    rows.push_back(std::move(row));
-  }
+  for (const MetricResult& found : result.metrics)
+    rows.push_back(
+        {std::string(found.metric->name), std::string(found.metric->unit),
+         std::string(found.metric->clause), estimate_of(found.before),
+         estimate_of(found.after), limits_on(result, found.metric->name)});
+  for (const OwnMetricResult& found : result.own_metrics)
+    rows.push_back({found.name, found.unit, "", estimate_of(found.before),
+                    estimate_of(found.after), limits_on(result, found.name)});
   return rows;
 }
 

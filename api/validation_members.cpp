@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <tuple>
 
 #include "compensation/rows/run_source.h"
 #include "config/option_message.h"
@@ -39,6 +40,17 @@ constexpr std::array kMembers{
                      "spec", "spec", "SPEC.toml", "Limits that have to be met",
                      "better than a constant (specs/default.toml)",
                      kJudgedHeading, "specification", FileKind::kSpecification},
+    ValidationMember{"own_metrics", &Options::own_metrics,
+                     kOnDevice | kOnRecordings, "", "own_metrics",
+                     "own-metrics", "TABLE.csv",
+                     "Shows and limits metrics of your own, a row each: "
+                     "name,unit,before,after[,low,high]",
+                     "none", kJudgedHeading, "own_metrics"},
+    ValidationMember{"metrics", &Options::metrics, kOnDevice | kOnRecordings,
+                     "", "metrics", "", "",
+                     "Metrics of your own: a mapping of names to functions, or "
+                     "to pairs of a function and its unit",
+                     "none", kJudgedHeading, ""},
     ValidationMember{"workbench", &Options::workbench, kOnAny, "", "workbench",
                      "workbench", "COMPENSATOR.json",
                      "Also tells the difference from this compensator, that "
@@ -123,6 +135,21 @@ void require_seeds(const ValidationOptions& options) {
                        named("seeds", *options.seeds), NamedOption{"campaign"});
 }
 
+// Figures of a table are of one compensator on one set of runs.
+void require_own_metrics_alone(const ValidationOptions& options) {
+  for (const auto& [given, name, others] :
+       {std::tuple{options.own_metrics.has_value(), "own_metrics",
+                   std::vector{"against", "seeds", "campaign"}},
+        std::tuple{!options.metrics.empty(), "metrics",
+                   std::vector{"campaign"}}})
+    for (const char* other : others)
+      if (given && is_given(member_named(other), options))
+        throw option_error(
+            "{} is for one compensator on one set of runs; expected no {} "
+            "beside it",
+            NamedOption{name}, NamedOption{other});
+}
+
 std::string words_of(unsigned subjects) {
   std::vector<std::string_view> words;
   if ((subjects & kOnDevice) != 0) words.emplace_back("a simulated device");
@@ -161,6 +188,8 @@ std::string_view type_name(const ValidationMember& row) {
                                      std::optional<std::filesystem::path>>)
           return "file";
         if constexpr (std::is_same_v<Value, bool>) return "flag";
+        if constexpr (std::is_same_v<Value, std::vector<OwnMetric>>)
+          return "functions";
         if constexpr (std::is_same_v<Value, std::vector<std::filesystem::path>>)
           return row.option.empty() ? "" : "files";
         return "";
@@ -217,6 +246,7 @@ void require_sound(const ValidationOptions& options) {
         "qualification is missing; expected a qualification file, which says "
         "what the device goes through");
   require_seeds(options);
+  require_own_metrics_alone(options);
   std::vector<std::string> names;
   for (const std::filesystem::path& path : options.recordings)
     names.push_back(path.string());

@@ -24,7 +24,8 @@ using AnyOption = std::variant<
     OptionOf<std::optional<std::filesystem::path>>,
     OptionOf<std::vector<std::string>>, OptionOf<std::vector<std::uint32_t>>,
     OptionOf<std::optional<std::uint32_t>>, OptionOf<std::optional<double>>,
-    OptionOf<std::optional<std::uint64_t>>, OptionOf<bool>>;
+    OptionOf<std::optional<std::uint64_t>>, OptionOf<bool>,
+    OptionOf<std::vector<OwnMetric>>>;
 
 /// What a compensator may be judged on, as bits.
 enum Subject : unsigned { kOnDevice = 1, kOnRecordings = 2, kOnSet = 4 };
@@ -55,7 +56,7 @@ std::span<const ValidationMember> validation_members();
 const ValidationMember& member_named(std::string_view name);
 
 /// Returns "file", "files", "text", "texts", "whole", "wholes", "seed",
-/// "number" or "flag";
+/// "number", "flag" or "functions";
 /// empty for a subject.
 std::string_view type_name(const ValidationMember& row);
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -21,6 +23,24 @@ namespace beamgyro::internal {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+OwnMetricSource own_metric_source(const OwnMetric& metric) {
+  if (!metric.value)
+    throw std::invalid_argument(
+        fmt::format("metrics: {}: has no function; expected one", metric.name));
+  return {metric.name, metric.unit,
+          [value = metric.value](const Evidence& evidence, JudgedRate) {
+            std::vector<OwnMetricRun> runs;
+            for (const EvidenceRun& run : evidence.runs)
+              runs.push_back({run.name, std::string(purpose_name(run.purpose)),
+                              *run.recording, run.rate});
+            return value(runs);
+          }};
+}
+
+}  // namespace
+
 ValidationRequest::ValidationRequest(CompensatorSource asked,
                                      ValidationOptions with, bool keeps_inputs)
     : source(std::move(asked)), options(std::move(with)) {
@@ -37,6 +57,7 @@ ValidationRequest::ValidationRequest(CompensatorSource asked,
   if (options.set) open_set();
   hash_recordings(keeps_inputs);
   read_specification();
+  read_own_metrics();
   if (options.campaign) read_campaign();
   require_baselines();
   isolate_code();
@@ -64,6 +85,32 @@ void ValidationRequest::read_specification() {
                       : default_specification();
   if (options.specification)
     add_file("specification", *options.specification, specification.text);
+}
+
+void ValidationRequest::read_own_metrics() {
+  const auto require_new_name = [this](const std::string& name) {
+    if (std::ranges::count(own_metrics, name, &OwnMetricSource::name) > 0)
+      throw std::invalid_argument(fmt::format(
+          "{}: is the name of two metrics of your own; expected another one "
+          "for one of them",
+          name));
+  };
+  for (const OwnMetric& metric : options.metrics) {
+    require_own_name("metrics", metric.name, metric.unit);
+    require_new_name(metric.name);
+    own_metrics.push_back(own_metric_source(metric));
+  }
+  if (options.own_metrics) {
+    std::string text = read_text_file(*options.own_metrics);
+    OwnMetricTable table = parse_own_metrics(text, *options.own_metrics);
+    for (OwnMetricSource& metric : table.metrics) {
+      require_new_name(metric.name);
+      own_metrics.push_back(std::move(metric));
+    }
+    std::ranges::move(table.limits, std::back_inserter(specification.limits));
+    add_file("own_metrics", *options.own_metrics, std::move(text));
+  }
+  require_own_metrics(specification.limits, own_metrics);
 }
 
 void ValidationRequest::open_set() {

@@ -18,6 +18,7 @@
 #include "validation/result/device_evidence.h"
 #include "validation/result/earlier_result.h"
 #include "validation/result/validation_result.h"
+#include "validation/specification/own_metrics.h"
 #include "validation/specification/specification_file.h"
 
 namespace beamgyro::internal {
@@ -27,7 +28,8 @@ struct ValidationRequest {
   CompensatorSource source;
   ValidationOptions options;
   Qualification qualification;
-  SpecificationFile specification;
+  SpecificationFile specification;  // with the limits of own_metrics
+  std::vector<OwnMetricSource> own_metrics;
   QualifiedDevice device;
   std::optional<CampaignPlan> campaign;
   std::optional<FittedCompensator> workbench, against;
@@ -57,6 +59,7 @@ struct ValidationRequest {
                 std::string text);
   void read_device();
   void read_specification();
+  void read_own_metrics();
   void open_set();
   void hash_recordings(bool keeps_inputs);
   FittedCompensator read_compensator_of(const std::string& group,

@@ -85,7 +85,11 @@ struct Validator::State : ValidationRequest {
     const double ready_after = specification.declared.ready_after;
     const auto ready =
         ready_after > 0.0 ? ready_compensator(*other, ready_after) : nullptr;
-    return side_by_side({specification, judged.metric_runs, *other, &*against},
+    return side_by_side({.specification = specification,
+                         .metric_runs = judged.metric_runs,
+                         .compensator = *other,
+                         .trained = &*against,
+                         .own_metrics = own_metrics},
                         ready ? *ready : *other,
                         options.against->filename().string(), result, evidence,
                         threads);
@@ -233,7 +237,7 @@ CompletedValidation Validator::State::validated(
   if (!s.set) {
     difference = s.difference_from_workbench(done.evidence);
     judge({s.specification, judged.metric_runs, *compensator, known, nullptr,
-           s.options.require_provenance},
+           s.options.require_provenance, s.own_metrics},
           done.evidence, threads, result);
   }
   result.compensator = {s.source.name, std::string(kind_name(s.source.kind)),

@@ -36,9 +36,15 @@ std::vector<Case> cases_of_limits(const ValidationResult& result) {
   std::vector<Case> cases;
   for (const auto& [limit, decision] : result.limits) {
     const Metric* metric = find_metric(limit.metric);
-    const bool has_unit = metric != nullptr && limit.relative_to.empty();
+    const auto own = std::ranges::find(result.own_metrics, limit.metric,
+                                       &OwnMetricResult::name);
+    std::string_view unit = "1";
+    if (metric != nullptr)
+      unit = metric->unit;
+    else if (own != result.own_metrics.end())
+      unit = own->unit;
     cases.push_back({verdict_name(decision.result), limit.metric,
-                     decision.compared, has_unit ? metric->unit : "1",
+                     decision.compared, limit.relative_to.empty() ? unit : "1",
                      text_of(limit), decision.words});
   }
   return cases;

@@ -81,6 +81,20 @@ std::string metric_table(const ValidationResult& result, bool all) {
   return text;
 }
 
+// Metrics of the user's own, in full; without any it is empty.
+std::string own_metric_table(const ValidationResult& result) {
+  if (result.own_metrics.empty()) return "";
+  std::size_t width = 10;
+  for (const OwnMetricResult& metric : result.own_metrics)
+    width = std::max(width, metric.name.size());
+  std::string text = fmt::format("\n{:<{}}{:>10}{:>10}  unit\n", "own metric",
+                                 width, "before", "after");
+  for (const OwnMetricResult& metric : result.own_metrics)
+    text += fmt::format("{:<{}}{:>10.3g}{:>10.3g}  {}\n", metric.name, width,
+                        metric.before.value, metric.after.value, metric.unit);
+  return text;
+}
+
 std::string purposes_of(const Metric& metric, const char* separator) {
   std::vector<std::string_view> purposes;
   for (const RunPurpose purpose : metric.reads)
@@ -91,6 +105,7 @@ std::string purposes_of(const Metric& metric, const char* separator) {
 // Why a limit could not be decided on.
 std::string why_without_value(const ValidationResult& result,
                               const Limit& limit) {
+  if (limit.is_own) return "no finite value";
   const auto found = std::ranges::find_if(result.metrics, [&](const auto& one) {
     return one.metric->name == limit.metric;
   });
@@ -115,6 +130,7 @@ std::string limit_line(const ValidationResult& result,
   if (decision.compared && decision.compared->interval)
     value += fmt::format(" [{:.3g}, {:.3g}]", decision.compared->interval->low,
                          decision.compared->interval->high);
+  if (limit.is_own) value += " (no interval)";
   if (!decision.compared)
     return wrapped(
         fmt::format("{:<10}{}: {}, {}", verdict_name(decision.result),
@@ -309,7 +325,8 @@ std::string verdict_report(const ValidationResult& result, bool all) {
                       evidence_words(result), result.provenance.specification),
           2) +
       workbench_line(result.compensator) + isolation_line(result) + '\n' +
-      run_table(result) + '\n' + metric_table(result, all);
+      run_table(result) + '\n' + metric_table(result, all) +
+      own_metric_table(result);
   if (result.population)
     text +=
         '\n' + followed_table(

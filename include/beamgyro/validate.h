@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,26 @@ constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;
 /// below 2^52, so that seeds may follow it.
 std::uint64_t random_seed();
 
+/// A run as a metric of the user's own reads it. The recording and the rate
+/// stay as long as the metric is evaluated.
+struct OwnMetricRun {
+  std::string name;
+  std::string purpose;         ///< "soak", "ramp", ...
+  const Recording& recording;  ///< with its true_rate
+  /// [deg/s], one per time: the recorded or the compensated rate; NaN: none.
+  const std::vector<double>& rate;
+};
+
+/// A metric of the user's own, without an interval. What its function throws
+/// ends validate().
+struct OwnMetric {
+  std::string name;  ///< a letter, then letters, digits and _; none of ours
+  std::string unit;  ///< printable ASCII; 1: none
+  /// Returns its value; NaN: none. It is called with the recorded, then with
+  /// the compensated rate of all runs; by several threads with `seeds`.
+  std::function<double(const std::vector<OwnMetricRun>&)> value;
+};
+
 /// What a compensator is judged on and by: `device`, `recordings` or `set`.
 /// The command and Python take the same members under the names of
 /// docs/reference/commands.md and docs/guide/python.md.
@@ -39,6 +60,12 @@ struct ValidationOptions {
   /// Limits (docs/reference/specification_file.md); without them those of
   /// specs/default.toml count.
   std::optional<std::filesystem::path> specification = {};
+  /// A table of metrics of the user's own (docs/reference/own_metrics.md). Not
+  /// with `against`, `seeds` or a campaign: its figures are of one compensator
+  /// on one set of runs.
+  std::optional<std::filesystem::path> own_metrics = {};
+  /// Functions for such metrics. Not with a campaign.
+  std::vector<OwnMetric> metrics = {};
   /// A compensator file that the answers are compared with.
   std::optional<std::filesystem::path> workbench = {};
   /// A compensator file that is judged on the same runs, beside the first.
@@ -105,9 +132,9 @@ struct CheckRow {
 
 struct ValidationOutcome {
   Verdict verdict = Verdict::kUndecided;
-  std::string words;  ///< the reason, in a sentence or two
-  std::string next;   ///< what to do next
-  std::vector<MetricRow> metrics;
+  std::string words;               ///< the reason, in a sentence or two
+  std::string next;                ///< what to do next
+  std::vector<MetricRow> metrics;  ///< those of the user's own stand last
   std::vector<CheckRow> checks;
   std::vector<std::string> warnings;
   std::string text;         ///< what `beamgyro validate` prints

@@ -14,6 +14,7 @@ from beamgyro import _arguments, _checks, _core, _shipped, _toml
 from beamgyro._compensation import Compensator, compensator_of
 from beamgyro._dataset import Path, recording_of
 from beamgyro._device import DeviceLike, device_of
+from beamgyro._own_metrics import own_metrics
 from beamgyro._progress import ProgressArgument, watched
 from beamgyro._results import (AllanResult, PlanResult, SensitivityResult,
                                ValidationResult)
@@ -174,7 +175,11 @@ class _Option(NamedTuple):
         if self.type == "file":
             if self.kind == "a specification":
                 return files.of_table(self.keyword, value, self.kind)
+            if not self.kind:
+                return _checks.path(value, self.keyword)
             return _checks.file(value, self.keyword, self.kind)
+        if self.type == "functions":
+            return own_metrics(value, self.keyword)
         if self.type == "files":
             return _checks.paths(value, self.keyword)
         if self.type == "number":
@@ -200,7 +205,8 @@ class _Option(NamedTuple):
                  "number": Optional[float], "whole": Optional[int],
                  "seed": Union[int, str, None], "texts": Iterable[str],
                  "wholes": Iterable[int], "files": Iterable[Path],
-                 "flag": bool}
+                 "flag": bool,
+                 "functions": Optional[Mapping[str, Any]]}
         return inspect.Parameter(
             self.keyword, inspect.Parameter.KEYWORD_ONLY,
             default=False if self.type == "flag" else

@@ -98,8 +98,11 @@ class ValidationResult(Report):
 
     @property
     def metrics(self) -> dict[str, dict[str, Any]]:
-        """The metrics by name: unit, before, after, limit, result."""
-        return {one["name"]: one for one in self.data["metrics"]}
+        """The metrics by name, with your own: unit, before, after, result."""
+        return {one["name"]: one for one in self._metrics()}
+
+    def _metrics(self) -> list[dict[str, Any]]:
+        return [*self.data["metrics"], *self.data["own_metrics"]]
 
     @property
     def checks(self) -> dict[str, dict[str, Any]]:
@@ -122,7 +125,7 @@ class ValidationResult(Report):
     def _repr_html_(self) -> str:
         metrics = [(one["name"], one["unit"], figure(one.get("before")),
                     figure(one.get("after")), str(one.get("result") or ""))
-                   for one in self.data["metrics"]]
+                   for one in self._metrics()]
         checks = [(one["name"], str(one.get("words") or ""))
                   for one in self.data["checks"]]
         return (f"<p><b>{html.escape(self.verdict)}</b></p>"

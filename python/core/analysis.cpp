@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -82,12 +83,42 @@ py::tuple allan_file(const Path& file, const std::optional<std::string>& column,
   });
 }
 
+/// Returns a metric that calls a Python function with (name, purpose,
+/// recording, rate) of each run, by one thread at a time.
+OwnMetric own_metric(const py::tuple& row) {
+  const std::string name = row[0].cast<std::string>();
+  const auto function = gil_owned(row[2].cast<py::object>());
+  const auto one_at_a_time = std::make_shared<std::mutex>();
+  return {
+      name, row[1].cast<std::string>(),
+      [function, one_at_a_time](const std::vector<OwnMetricRun>& runs) {
+        const std::lock_guard lock(*one_at_a_time);  // before the GIL
+        const py::gil_scoped_acquire acquired;
+        py::list given;
+        for (const OwnMetricRun& run : runs)
+          given.append(py::make_tuple(
+              run.name, run.purpose, std::make_shared<Recording>(run.recording),
+              Doubles(static_cast<py::ssize_t>(run.rate.size()),
+                      run.rate.data())));
+        return (*function)(given).cast<double>();
+      }};
+}
+
 ValidationOptions validation_options(const py::dict& given) {
   ValidationOptions options;
   for (const internal::ValidationMember& row : internal::validation_members())
     std::visit(
         [&](auto member) {
-          take(given, std::string(row.name).c_str(), options.*member);
+          const std::string name(row.name);
+          auto& value = options.*member;
+          if constexpr (std::is_same_v<std::decay_t<decltype(value)>,
+                                       std::vector<OwnMetric>>) {
+            if (given.contains(name.c_str()))
+              for (const py::handle& one : given[name.c_str()])
+                value.push_back(own_metric(one.cast<py::tuple>()));
+          } else {
+            take(given, name.c_str(), value);
+          }
         },
         row.member);
   take(given, "jobs", options.jobs);

@@ -35,6 +35,34 @@ TEST(ValidationMembers, OneSubjectAndWhatGoesWithIt) {
   EXPECT_THROW(require_sound(options), OptionError);
 }
 
+TEST(ValidationMembers, OwnMetricsAreOfOneCompensatorOnOneSetOfRuns) {
+  ValidationOptions options;
+  options.device =
+      Device::read(std::string(BEAMGYRO_SCENARIOS) + "/devices/nominal.toml");
+  options.qualification = "qualification.toml";
+  ValidationOptions table = options, function = options;
+  table.own_metrics = "own.csv";
+  function.metrics = {{"mine", "1", [](const auto&) { return 1.0; }}};
+  EXPECT_NO_THROW(require_sound(table));
+  EXPECT_NO_THROW(require_sound(function));
+  table.seed = function.seed = 3;
+  EXPECT_NO_THROW(require_sound(table));
+  for (ValidationOptions* one : {&table, &function}) {
+    one->campaign = "campaign.toml";
+    EXPECT_THROW(require_sound(*one), OptionError);
+    one->campaign.reset();
+    one->seeds = 2;
+  }
+  EXPECT_THROW(require_sound(table), OptionError);
+  EXPECT_NO_THROW(require_sound(function));
+  for (ValidationOptions* one : {&table, &function}) {
+    one->seeds.reset();
+    one->against = "other.json";
+  }
+  EXPECT_THROW(require_sound(table), OptionError);
+  EXPECT_NO_THROW(require_sound(function));
+}
+
 TEST(ValidationMembers, AFlagIsGivenWhenItIsSet) {
   const ValidationMember& row = member_named("require_provenance");
   EXPECT_EQ(type_name(row), "flag");

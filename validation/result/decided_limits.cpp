@@ -25,7 +25,8 @@ bool reads_run(const Metric& metric, const MetricRuns& runs,
 
 std::vector<DecidedLimit> decided_limits(
     const SpecificationFile& specification,
-    const std::vector<MetricResult>& metrics) {
+    const std::vector<MetricResult>& metrics,
+    const std::vector<OwnMetricResult>& own_metrics) {
   std::vector<DecidedLimit> decided;
   for (const Limit& limit : specification.limits) {
     const auto result =
@@ -37,6 +38,13 @@ std::vector<DecidedLimit> decided_limits(
       before = result->before;
       after = result->after;
       reference = estimate_of(*result, limit.relative_to);
+    }
+    const auto own =
+        std::ranges::find(own_metrics, limit.metric, &OwnMetricResult::name);
+    if (limit.is_own && own != own_metrics.end()) {
+      before = own->before;
+      after = own->after;
+      if (limit.relative_to == "before") reference = before;
     }
     const double risk = specification.false_accept_risk;
     decided.push_back({limit, decide(limit, after, reference, risk)});

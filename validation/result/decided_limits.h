@@ -18,6 +18,7 @@ bool reads_run(const Metric& metric, const MetricRuns& runs,
 /// meets it, too. A limit relative to the recorded rate asks nothing of that.
 std::vector<DecidedLimit> decided_limits(
     const SpecificationFile& specification,
-    const std::vector<MetricResult>& metrics);
+    const std::vector<MetricResult>& metrics,
+    const std::vector<OwnMetricResult>& own_metrics = {});
 
 }  // namespace beamgyro::internal

@@ -357,7 +357,10 @@ void judge(const JudgedBy& by, const DeviceEvidence& found, std::size_t threads,
   result.metrics = metric_results(found, by.metric_runs, {}, threads);
   if (states_sigma(found.after))
     result.sigma = sigma_report(sigma_evidence(found.after));
-  result.limits = decided_limits(by.specification, result.metrics);
+  result.own_metrics =
+      own_metric_results(by.own_metrics, found.before, found.after);
+  result.limits =
+      decided_limits(by.specification, result.metrics, result.own_metrics);
   result.no_effect = words_of_no_effect(found.before, found.after);
   result.comparisons = comparisons_of(by.specification, found);
   result.runs = run_residuals(found);
@@ -368,7 +371,9 @@ void judge(const JudgedBy& by, const DeviceEvidence& found, std::size_t threads,
   for (CheckedRun& run : checked.runs)
     run.is_limited =
         std::ranges::any_of(by.specification.limits, [&](const Limit& limit) {
-          return reads_run(*find_metric(limit.metric), by.metric_runs, run.name,
+          // A metric of the user's own is given every run.
+          return limit.is_own ||
+                 reads_run(*find_metric(limit.metric), by.metric_runs, run.name,
                            run.purpose);
         });
   checked.set = by.set;

@@ -57,6 +57,7 @@ struct JudgedBy {
   const FittedCompensator* trained;  // the same, if it is one of a file
   const TrainingSet* set = nullptr;  // of the runs, where they are of one
   bool requires_provenance = false;  // the compensator states its training
+  std::span<const OwnMetricSource> own_metrics = {};
 };
 
 /// Evaluates every metric, decides on the limits, runs the checks and writes

@@ -178,7 +178,8 @@ std::vector<PopulationMetric> followed_metrics(
       followed.push_back({metric, {}, {}});
   };
   add("residual_rms_deg_per_s");
-  for (const Limit& limit : specification.limits) add(limit.metric);
+  for (const Limit& limit : specification.limits)
+    if (!limit.is_own) add(limit.metric);
   return followed;
 }
 

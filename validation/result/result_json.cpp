@@ -73,6 +73,16 @@ Json metric_json(const MetricResult& result,
   return json;
 }
 
+Json own_metric_json(const OwnMetricResult& metric,
+                     const std::vector<DecidedLimit>& limits) {
+  Json json{{"name", metric.name},
+            {"unit", metric.unit},
+            {"before", estimate_json(metric.before)},
+            {"after", estimate_json(metric.after)}};
+  add_limits_of(metric.name, limits, json);
+  return json;
+}
+
 Json decided_json(const DecidedLimit& decided) {
   const auto& [limit, decision] = decided;
   return {{"metric", limit.metric},
@@ -82,6 +92,7 @@ Json decided_json(const DecidedLimit& decided) {
           {"relative_to",
            limit.relative_to.empty() ? Json() : Json(limit.relative_to)},
           {"source", limit.source},
+          {"own", limit.is_own},
           {"compared", estimate_json(decision.compared)},
           {"margin", number_or_null(decision.margin)},
           {"guard_band", number_or_null(decision.guard_band)},
@@ -306,6 +317,9 @@ nlohmann::ordered_json to_json(const ValidationResult& result) {
                      {{"before", number_or_null(run.before)},
                       {"after", number_or_null(run.after)}}}});
   json["metrics"] = metrics_json(result.metrics, result.limits);
+  Json& own_metrics = json["own_metrics"] = Json::array();
+  for (const OwnMetricResult& metric : result.own_metrics)
+    own_metrics.push_back(own_metric_json(metric, result.limits));
   add_decisions(result.limits, result.checks, json);
   if (result.against) json["against"] = against_json(*result.against);
   if (result.earlier) json["baseline"] = baseline_json(*result.earlier);

@@ -252,6 +252,7 @@ std::vector<std::string> undecidable_limits(
   std::vector<std::string> sentences;
   RunsWithoutNoise without_noise(device, threads);
   for (const Limit& limit : specification.limits) {
+    if (limit.is_own) continue;
     const Metric& metric = *find_metric(limit.metric);
     if (metric.is_of_sigma) continue;
     const std::vector<QualificationRun> runs = runs_read(qualification, metric);

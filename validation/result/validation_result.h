@@ -16,6 +16,7 @@
 #include "validation/metrics/paired_residual.h"
 #include "validation/metrics/sigma_report.h"
 #include "validation/specification/decision.h"
+#include "validation/specification/own_metrics.h"
 
 namespace beamgyro::internal {
 
@@ -206,8 +207,9 @@ struct ValidationResult {
   std::vector<ResidualComparison> comparisons;
   std::vector<RunResidual> runs;      // of one device, in their order
   std::vector<MetricResult> metrics;  // in the order of metrics()
-  std::vector<DecidedLimit> limits;   // in the order of the specification
-  std::vector<CheckResult> checks;    // in the order of check_definitions()
+  std::vector<OwnMetricResult> own_metrics = {};  // of the user
+  std::vector<DecidedLimit> limits;  // in the order of the specification
+  std::vector<CheckResult> checks;   // in the order of check_definitions()
   std::optional<PopulationYield> population = {};
   std::optional<SeedVerdicts> seeds = {};
   // Sentences on runs that have their seed of noise from a training run.

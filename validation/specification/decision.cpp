@@ -132,15 +132,18 @@ Verdict conformity_of(const Side& side) {
 std::string words_of(const Decision& decision, const Limit& limit) {
   const std::string asked = text_of(limit);
   if (!decision.compared)
-    return fmt::format("could not be evaluated, must be {}", asked);
+    return fmt::format(
+        "{}, must be {}",
+        limit.is_own ? "has no finite value" : "could not be evaluated", asked);
   const double value = decision.compared->value;
+  const char* ending = limit.is_own ? "; it has no interval" : "";
   switch (decision.result) {
     case Verdict::kPass:
-      return fmt::format("{:.4g} is {} by {:.3g}", value, asked,
-                         *decision.margin);
+      return fmt::format("{:.4g} is {} by {:.3g}{}", value, asked,
+                         *decision.margin, ending);
     case Verdict::kFail:
-      return fmt::format("{:.4g}, must be {}: beyond by {:.3g}", value, asked,
-                         -*decision.margin);
+      return fmt::format("{:.4g}, must be {}: beyond by {:.3g}{}", value, asked,
+                         -*decision.margin, ending);
     case Verdict::kUndecided:
       break;
   }

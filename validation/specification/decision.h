@@ -12,7 +12,7 @@ namespace beamgyro::internal {
 
 /// What a metric may be, in its unit.
 struct Limit {
-  std::string metric;                // a name of metrics()
+  std::string metric;                // a name of metrics(), or of an own one
   std::optional<double> least = {};  // smallest value allowed
   std::optional<double> most = {};   // largest value allowed
   bool absolute = false;             // of the value without its sign
@@ -21,6 +21,7 @@ struct Limit {
   std::string relative_to = {};
   std::string source = {};  // where the number comes from
   std::string place = {};   // file:line:column
+  bool is_own = false;      // of a metric of the user's own
 
   /// Returns whether the limits contain a value [unit of the metric].
   bool contains(double value) const;

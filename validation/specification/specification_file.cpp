@@ -7,6 +7,7 @@
 
 #include "config/document.h"
 #include "config/suggestion.h"
+#include "validation/specification/own_metrics.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -43,9 +44,32 @@ Limit limit_of(const ConfigTable& limits, const std::string& metric,
   return limit;
 }
 
+constexpr const char* kOwn = "own";  // the table of the user's own metrics
+
+// Which metrics of their own there are is not known yet.
+void add_own_limits(const ConfigTable& limits, const std::string& relative_to,
+                    std::vector<Limit>& all) {
+  if (!relative_to.empty() && relative_to != "before")
+    limits.fail(kOwn,
+                fmt::format("metrics of your own have no value of the {}; "
+                            "expected limits.own or "
+                            "limits_relative_to.before.own",
+                            relative_to));
+  const ConfigTable own = limits.table(kOwn);
+  for (const std::string& metric : own.keys()) {
+    require_own_name(own.position(metric), metric, "1");
+    all.push_back(limit_of(own, metric, relative_to));
+    all.back().is_own = true;
+  }
+}
+
 void add_limits(const ConfigTable& limits, const std::string& relative_to,
                 std::vector<Limit>& all) {
   for (const std::string& metric : limits.keys()) {
+    if (metric == kOwn) {
+      add_own_limits(limits, relative_to, all);
+      continue;
+    }
     if (find_metric(metric) == nullptr) fail_unknown(limits, metric);
     all.push_back(limit_of(limits, metric, relative_to));
   }

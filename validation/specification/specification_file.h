@@ -27,7 +27,8 @@ struct SpecificationFile {
 /// Reads a file of limits. Throws std::invalid_argument with file, line and
 /// column for
 /// - text that is not TOML, and keys that are not known;
-/// - a metric that is not in metrics(), with the nearest name;
+/// - a metric that is not in metrics(), with the nearest name, but those of
+///   the user's own, below `limits.own` and `limits_relative_to.before.own`;
 /// - a limit without `max` and `min`, one with `min` above `max`, and one
 ///   without a source;
 /// - no limit and nothing that it has to be better than;
