@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from beamgyro._analysis import allan, plan, sensitivity, validate
+from beamgyro._analysis import allan, plan, sensitivity
 from beamgyro._compensation import Compensator, compensate
 from beamgyro._core import version as __version__
 from beamgyro._dataset import open_recording, save_recording
@@ -30,6 +30,7 @@ from beamgyro._results import (AllanResult, PlanResult, SensitivityResult,
 from beamgyro._scenario import Scenario, run, run_to_file
 from beamgyro._set import Campaign, Set, generate, open_set
 from beamgyro._training import features, train, training_rows
+from beamgyro._validation import validate
 from beamgyro._warnings import BeamgyroWarning
 
 __all__ = [

@@ -98,7 +98,7 @@ beamgyro\\._scenario\\.Fidelity
 beamgyro\\._core\\.[A-Z]\\w+\\.(curve|device|duration|files|highest_temperature|lowest_temperature|method|output_rate|profiles)
 beamgyro\\.(_\\w+\\.)?[A-Z]\\w+\\.(devices|directory|duration_s|failures|fidelity|inputs|name|output_rate_Hz|overrides|runs|samples|seed|text|title)
 # Its keywords come from the compiled part; the test below looks at them.
-beamgyro\\.(_analysis\\.)?validate
+beamgyro\\.(_validation\\.)?validate
 """
 
 
