@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -14,11 +15,13 @@
 #include "compensation/inputs/sample_ranges.h"
 #include "compensation/scoring/scale_factor.h"
 #include "dataset/recording/stated_values.h"
+#include "random/random_stream.h"
 
 namespace beamgyro::internal {
 namespace {
 
 constexpr double kDecades = 4.0;         // of the injected rates
+constexpr double kHiddenSpread = 0.016;  // [-], of a turn
 constexpr double kShortHold = 4.0;       // [s]
 constexpr double kLongHold = 600.0;      // [s]
 constexpr double kReplayBlock = 1.0;     // [s]
@@ -84,6 +87,7 @@ Injection injection_of(const Recording& recording, double hold, double largest,
                        std::size_t first_hold) {
   // Half a step keeps a sample in its hold however the time was rounded.
   const double origin = recording.time.front() - 0.5 * usual_step(recording);
+  const std::uint64_t hidden = hidden_number(recording);
   Injection injection;
   double number = -1.0;
   double rate = 0.0;
@@ -91,7 +95,8 @@ Injection injection_of(const Recording& recording, double hold, double largest,
     const double here = std::floor((time - origin) / hold);
     if (here != number) {
       number = here;
-      rate = held_rate(first_hold + static_cast<std::size_t>(number), largest);
+      rate = held_rate(first_hold + static_cast<std::size_t>(number), largest,
+                       hidden);
     }
     injection.rate.push_back(rate);
     injection.since.push_back(time - origin - number * hold);
@@ -145,8 +150,25 @@ std::optional<double> stated_full_scale(const Recording& recording) {
   return stated > 0.0 && std::isfinite(*stated) ? stated : std::nullopt;
 }
 
-double held_rate(std::size_t hold, double largest) {
-  const double turns = static_cast<double>(hold) * (std::numbers::phi - 1.0);
+std::uint64_t hidden_number(const Recording& recording) {
+  const auto& rate = column_values(recording, "rate");
+  std::uint64_t hidden = 0;
+  for (const SampleRange& stretch : powered_stretches(recording))
+    for (std::size_t k = stretch.begin; k < stretch.end; ++k)
+      hidden = (std::rotl(hidden, 7) ^ std::bit_cast<std::uint64_t>(rate[k])) *
+               0x9E3779B97F4A7C15;
+  return hidden ^ (hidden >> 32);
+}
+
+double held_rate(std::size_t hold, double largest, std::uint64_t hidden) {
+  if (hold == 0) return largest;
+  const auto number = [hidden](std::size_t k) {
+    return RandomStream(hidden, 0, static_cast<std::uint32_t>(k),
+                        kRateProfileStream)
+        .uniform();
+  };
+  const double turns = static_cast<double>(hold) * (std::numbers::phi - 1.0) +
+                       number(0) + kHiddenSpread * (number(hold) - 0.5);
   const double size =
       largest * std::pow(10.0, -kDecades * (turns - std::floor(turns)));
   return hold % 2 == 0 ? size : -size;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -22,14 +23,20 @@ constexpr double kFullScale = 150.0;  // [deg/s], of a gyro that tells none
 /// recording, or nothing without such a file.
 std::optional<double> stated_full_scale(const Recording& recording);
 
+/// Returns a number that depends on every rate of a recording, so that nobody
+/// can tell it who sees the recording with unknown rates added.
+std::uint64_t hidden_number(const Recording& recording);
+
 /// Returns the rate [deg/s] that is injected over hold j = 0, 1, ... of a
-/// replay,
+/// replay: `largest` over hold 0, then
 ///
-///   (-1)^j `largest` 10^(-4 frac(j (sqrt(5) - 1)/2)):
+///   (-1)^j `largest` 10^(-4 frac(a + b_j + j (sqrt(5) - 1)/2)):
 ///
 /// of both signs, from `largest` down to a ten-thousandth of it, evenly spread
-/// over the logarithm.
-double held_rate(std::size_t hold, double largest);
+/// over the logarithm. The hidden number decides a in (0, 1) and b_j, within
+/// 0.008 of 0. Who knew the rates could take them off a replay, eat what is
+/// left as in the recording itself, and put them back.
+double held_rate(std::size_t hold, double largest, std::uint64_t hidden);
 
 /// Returns what would have been measured with the rates `injected` [deg/s], one
 /// for each time: `rate` + Omega and `output` + S Omega. S [V/(deg/s)] and the

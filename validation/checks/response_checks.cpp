@@ -50,12 +50,13 @@ void add_jacobian(const CheckContext& context, const Recording& run,
   const double hold =
       std::max({kJacobianHold, 4.0 * step, 2.0 * pauses.settling});
   const std::size_t samples = run.time.size();
+  const std::uint64_t hidden = hidden_number(run);
   std::vector<double> rate(samples), moved(samples), since(samples);
   for (std::size_t k = 0; k < samples; ++k) {
     const double t = run.time[k] - run.time.front() + 0.5 * step;
     const double number = std::floor(t / hold);
     since[k] = t - number * hold;
-    rate[k] = held_rate(static_cast<std::size_t>(number), full_scale);
+    rate[k] = held_rate(static_cast<std::size_t>(number), full_scale, hidden);
     moved[k] = rate[k] - std::copysign(kJacobianStep * full_scale, rate[k]);
   }
   const auto at_rate = context.with_rate(run, rate);

@@ -27,7 +27,7 @@ Recording temperature_sweep(const Recording& recording,
                             double period = kSweepPeriod);
 
 /// Replays of a sweep, each starting one held_rate() later: at every
-/// temperature both signs of rates that lie a factor of 1.7 or less apart.
+/// temperature both signs of rates that lie a factor of 2 or less apart.
 constexpr std::size_t kSweepReplays = 64;
 
 /// The same for a program of the user: a process for each is slow.

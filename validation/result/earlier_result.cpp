@@ -111,6 +111,10 @@ EarlierResult parse_earlier_result(const std::string& text,
   for (const JsonNode& file : node.at("provenance").at("files").elements())
     earlier.files.push_back({file.at("group").text(), file.at("name").text(),
                              file.at("sha256").text()});
+  if (earlier.metrics.empty() && earlier.passed.empty())
+    node.fail(
+        "has no metric, limit or check, so that nothing could be worse; "
+        "expected the result of a validation");
   return earlier;
 }
 

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "tests/compensation/injected_scale_factor.h"
 #include "tests/compensation/recorded_run.h"
@@ -130,11 +132,12 @@ TEST(RateInjection, MovesOutputAndRateByTheSameRate) {
 }
 
 TEST(RateInjection, HoldsRatesOfEachSizeAndSignUpToTheLargest) {
-  EXPECT_EQ(held_rate(0, 150.0), 150.0);
+  constexpr std::uint64_t kHidden = 0x123456789abcdef;
+  EXPECT_EQ(held_rate(0, 150.0, kHidden), 150.0);
   // Rates by sign and tenth of the four decades: as many of each, within one.
   std::map<std::pair<bool, int>, int> count;
   for (std::size_t hold = 0; hold < 800; ++hold) {
-    const double rate = held_rate(hold, 150.0);
+    const double rate = held_rate(hold, 150.0, kHidden);
     ASSERT_LE(std::abs(rate), 150.0);
     ASSERT_GT(std::abs(rate), 0.015);
     ++count[{
@@ -143,6 +146,33 @@ TEST(RateInjection, HoldsRatesOfEachSizeAndSignUpToTheLargest) {
   }
   ASSERT_EQ(count.size(), 20U);
   for (const auto& [kind, holds] : count) EXPECT_NEAR(holds, 40, 3);
+}
+
+// Else a plug-in takes the rates off, and eats what is left in every recording.
+TEST(RateInjection, HoldsRatesThatOnlyTheUnalteredRecordingTells) {
+  const auto rates_of = [](const Recording& run) {
+    std::vector<double> rates;
+    for (std::size_t hold = 1; hold < 400; ++hold)
+      rates.push_back(
+          std::log10(std::abs(held_rate(hold, 150.0, hidden_number(run)))));
+    return rates;
+  };
+  Recording other = kDrifting.recording();
+  const std::vector<double> one = rates_of(other);
+  EXPECT_EQ(one, rates_of(other));
+  auto& rate = std::ranges::find(other.columns, "rate", &Column::name)->values;
+  rate.back() = std::nextafter(rate.back(), 1e3);
+  const std::vector<double> two = rates_of(other);
+  // What is left when they are shifted as well as can be.
+  std::vector<double> turned;
+  for (std::size_t k = 0; k < one.size(); ++k)
+    turned.push_back(std::remainder(one[k] - two[k], 4.0));
+  const auto [low, high] = std::ranges::minmax(turned);
+  EXPECT_GT(high - low, 0.06);
+  double apart = 0.0;
+  for (std::size_t k = 0; k < one.size(); ++k)
+    apart = std::max(apart, std::abs(one[k] - two[k]));
+  EXPECT_GT(apart, 0.1);
 }
 
 TEST(RateInjection, ReplaysEverySettledSecondWithPowerWithinFullScale) {

@@ -140,6 +140,15 @@ TEST(EarlierResult, AFileThatIsNoResultIsRefused) {
                           "old.json");
                     }),
                     "old.json: filetype: \"beamgyro-compensator\"; expected"));
+  // Nothing would be worse than an empty one.
+  EXPECT_TRUE(holds(rejection([] {
+                      (void)parse_earlier_result(
+                          R"({"filetype": "beamgyro-validation",
+                              "verdict": "pass", "metrics": [], "limits": [],
+                              "checks": [], "provenance": {"files": []}})",
+                          "old.json");
+                    }),
+                    "old.json: has no metric, limit or check"));
 }
 
 }  // namespace
