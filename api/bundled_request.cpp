@@ -119,11 +119,9 @@ BundledRequest request_of(const Bundle& bundle) {
   for (const ValidationMember& row : validation_members()) {
     if (row.bundle_key.empty()) continue;
     known.emplace_back(row.bundle_key);
-    // Bundles of older programs have no flags and no metrics of the user's.
-    if ((type_name(row) == "flag" || row.bundle_key == "own_metrics") &&
-        !node.has(known.back()))
-      continue;
-    read_value(row, bundle, node.at(known.back()), request.options);
+    // An older program did not have every member.
+    if (node.has(known.back()))
+      read_value(row, bundle, node.at(known.back()), request.options);
   }
   for (const auto& [key, value] : bundle.request.items())
     if (std::ranges::count(known, key) == 0)
