@@ -3,6 +3,7 @@
 
 #include <sys/prctl.h>
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -26,7 +27,7 @@ void empty_command_line() {
   for (int k = 3; k < kPlaceOfStart; ++k) values >> skipped;
   std::uintptr_t start = 0, end = 0;
   if (values >> start >> end && start != 0 && start < end)
-    std::memset(reinterpret_cast<void*>(start), 0, end - start);
+    std::memset(std::bit_cast<void*>(start), 0, end - start);
 }
 
 }  // namespace

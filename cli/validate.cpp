@@ -83,8 +83,6 @@ void add_member(const ValidationMember& row, Command& command,
         else if constexpr (std::is_same_v<Value,
                                           std::vector<std::filesystem::path>>)
           command.texts(text, value);
-        else if constexpr (std::is_same_v<Value, bool>)
-          command.flag(text, value);
         else if constexpr (std::is_same_v<Value,
                                           std::optional<std::filesystem::path>>)
           command.text(text, value);

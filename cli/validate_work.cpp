@@ -161,9 +161,10 @@ std::vector<BundleDifference> differences_of(
   request.options.jobs = arguments.options.jobs;
   request.options.plugin_files = arguments.options.plugin_files;
   request.options.require_isolation = arguments.options.require_isolation;
-  const Validator validator(
-      opened(request.compensator, arguments.limits, request.options),
-      std::move(request.options), true);
+  CompensatorSource source =
+      opened(request.compensator, arguments.limits, request.options);
+  const Validator validator(std::move(source), std::move(request.options),
+                            true);
   const BundleContent content = bundle_content(validator);
   different = different_inputs(bundle, content);
   if (!different.empty()) return different;
@@ -179,9 +180,10 @@ int judge_compensator(const ValidateArguments& arguments) {
         "--bundle: {} is a set, which no bundle takes; expected recordings",
         arguments.runs[0].string()));
   require_sound(options);
-  const Validator validator(
-      opened(arguments.compensator, arguments.limits, options),
-      std::move(options), !arguments.bundle.empty());
+  CompensatorSource source =
+      opened(arguments.compensator, arguments.limits, options);
+  const Validator validator(std::move(source), std::move(options),
+                            !arguments.bundle.empty());
   if (!arguments.trained.empty() && !validator.source().model)
     throw std::invalid_argument(fmt::format(
         "--save-trained: {} is no model, so nothing is trained; expected a "
