@@ -141,11 +141,18 @@ void require_permission(const Bundle& bundle, const std::string& compensator,
       fmt::format("{}: runs {}", bundle.directory.string(), compensator));
 }
 
+// A library is asked what it is before the validator has read everything that
+// it must not read.
 CompensatorSource opened(const std::string& compensator,
                          const LimitArguments& arguments,
                          const ValidationOptions& options) {
+  std::vector<fs::path> hidden = options.recordings;
+  if (options.device) hidden.emplace_back(options.device->name());
+  if (options.set) hidden.push_back(options.set->directory());
+  if (options.qualification) hidden.push_back(*options.qualification);
   const ProcessLimits limits =
       process_limits(arguments, {.plugin_files = options.plugin_files,
+                                 .hidden = std::move(hidden),
                                  .required = options.require_isolation});
   hide_from_code(compensator, limits);
   return open_source(compensator, limits);
