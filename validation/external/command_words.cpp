@@ -27,11 +27,9 @@ class WordReader {
   std::vector<CommandWord> read(std::string_view text) {
     for (std::size_t k = 0; k < text.size(); ++k) {
       const char c = text[k];
-      if (quote_ == '\'') {
-        take(c);
-      } else if (c == '\\' && k + 1 < text.size()) {
+      if (c == '\\' && quote_ != '\'' && k + 1 < text.size()) {
         if (text[++k] != '\n') add(text[k]);
-      } else if (quote_ == '"') {
+      } else if (quote_ == '\'' || quote_ == '"') {
         take(c);
       } else if (c == '\'' || c == '"') {
         quote_ = c;

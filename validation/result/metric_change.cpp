@@ -108,13 +108,15 @@ MetricChange change_of(const Metric& metric, const Estimate& own,
         difference - std::hypot(part_below(own), part_above(other)),
         difference + std::hypot(part_above(own), part_below(other))};
   const auto& interval = found.difference.interval;
-  if (std::abs(difference) <=
-      kEqualWithin * std::max(std::abs(own.value), std::abs(other.value)))
-    found.change = Change::kSame;
-  else if (!interval || std::isnan(difference) || std::isnan(interval->low) ||
-           std::isnan(interval->high))
+  const bool is_equal =
+      std::abs(difference) <=
+      kEqualWithin * std::max(std::abs(own.value), std::abs(other.value));
+  const bool is_known = interval && !std::isnan(difference) &&
+                        !std::isnan(interval->low) &&
+                        !std::isnan(interval->high);
+  if (!is_equal && !is_known)
     found.change = Change::kUnknown;
-  else if (interval->low <= 0.0 && interval->high >= 0.0)
+  else if (is_equal || (interval->low <= 0.0 && interval->high >= 0.0))
     found.change = Change::kSame;
   else
     found.change = direction_of(metric, own.value, other.value);

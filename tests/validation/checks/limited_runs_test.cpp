@@ -12,7 +12,7 @@ namespace {
 
 // A compensator that takes the mean of 100 s away from runs at 2 Hz, and does
 // nothing else.
-std::vector<double> high_passed_at_2_Hz(const Recording& run) {
+std::vector<double> high_passed_at_two_hertz(const Recording& run) {
   std::vector<double> rate = column_values(run, "rate");
   if (usual_step(run) != 0.5) return rate;
   double low = rate[0];
@@ -33,7 +33,7 @@ TEST(LimitedRuns, ARateIsAddedToEveryRunThatALimitReads) {
   made.step = 0.1;
   made.duration = 100.0;
   const Recording fast = made.recording();  // sines are added to this one
-  const FunctionCompensator compensator(high_passed_at_2_Hz);
+  const FunctionCompensator compensator(high_passed_at_two_hertz);
   CheckedCompensator all;
   all.compensator = &compensator;
   all.runs = {

@@ -64,7 +64,7 @@ TEST(SeedVerdicts, OneOfOneAndUndecidedIsWorseThanAPass) {
 }
 
 TEST(SeedVerdicts, TheFailureOfTheFirstSeedIsThrown) {
-  for (const std::size_t threads : {1, 4}) {
+  for (const std::size_t threads : {std::size_t{1}, std::size_t{4}}) {
     const auto fails = [](std::uint64_t seed, std::size_t) {
       if (seed > 2) throw std::runtime_error(std::to_string(seed));
       return judged(seed, 1);
