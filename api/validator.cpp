@@ -82,9 +82,8 @@ struct Validator::State : ValidationRequest {
   SideBySide beside(const Qualification& judged, const ValidationResult& result,
                     DeviceEvidence& evidence, std::size_t threads) const {
     const auto other = tested(*against);
-    const double ready_after = specification.declared.ready_after;
     const auto ready =
-        ready_after > 0.0 ? ready_compensator(*other, ready_after) : nullptr;
+        ready_compensator(*other, specification.declared.ready_after);
     return side_by_side({.specification = specification,
                          .metric_runs = judged.metric_runs,
                          .compensator = *other,
@@ -190,9 +189,7 @@ CompletedValidation Validator::State::validated(
   ValidationResult& result = done.result;
   std::optional<WorkbenchDifference> difference;
   const DeclaredResponse& declared = s.specification.declared;
-  const auto ready = declared.ready_after > 0.0
-                         ? ready_compensator(*compensator, declared.ready_after)
-                         : nullptr;
+  const auto ready = ready_compensator(*compensator, declared.ready_after);
   const TestedCompensator& answering_one = ready ? *ready : *compensator;
   const RecordedAnswering answering{answering_one, known, s.options.full_scale,
                                     s.options.require_provenance};

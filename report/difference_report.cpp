@@ -20,7 +20,7 @@ std::string interval_words(const std::optional<Interval>& interval) {
 }
 
 // One that has no interval is told, too: a reader has to judge it.
-bool is_told(const MetricChange& one, bool all) {
+bool is_listed(const MetricChange& one, bool all) {
   return all || one.change != Change::kSame;
 }
 
@@ -29,10 +29,10 @@ std::string change_table(const std::vector<MetricChange>& changes,
                          bool all) {
   std::size_t width = 6;
   for (const MetricChange& one : changes)
-    if (is_told(one, all)) width = std::max(width, one.metric->name.size());
+    if (is_listed(one, all)) width = std::max(width, one.metric->name.size());
   std::string text;
   for (const MetricChange& one : changes) {
-    if (!is_told(one, all)) continue;
+    if (!is_listed(one, all)) continue;
     if (text.empty())
       text = fmt::format("  {:<8}{:<{}}{:>11}{:>11}{:>11}  95 % interval\n", "",
                          "metric", width, own, other, "difference");

@@ -176,11 +176,8 @@ CheckContext::CheckContext(const CheckedCompensator& all, std::size_t count)
       threads(count),
       scale_factor(curve_of(all)),
       without_table(stripped(all, scale_factor)),
-      ready(all.declared.ready_after > 0.0
-                ? ready_compensator(
-                      without_table ? *without_table : *all.compensator,
-                      all.declared.ready_after)
-                : nullptr),
+      ready(ready_compensator(without_table ? *without_table : *all.compensator,
+                              all.declared.ready_after)),
       altered(ready           ? *ready
               : without_table ? *without_table
                               : *all.compensator,

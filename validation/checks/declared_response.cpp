@@ -133,6 +133,7 @@ void bridge_until_ready(const Recording& run, double ready_after,
 
 std::unique_ptr<const TestedCompensator> ready_compensator(
     const TestedCompensator& original, double ready_after) {
+  if (!(ready_after > 0.0)) return nullptr;
   return std::make_unique<ReadyCompensator>(original, ready_after);
 }
 

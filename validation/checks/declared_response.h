@@ -50,8 +50,8 @@ struct DeclaredResponse {
 void bridge_until_ready(const Recording& run, double ready_after,
                         Answer& answer);
 
-/// Returns the compensator with its answers bridged until it is ready. The
-/// original has to live as long.
+/// Returns the compensator with its answers bridged until it is ready, and
+/// nothing where `ready_after` [s] is 0. The original has to live as long.
 std::unique_ptr<const TestedCompensator> ready_compensator(
     const TestedCompensator& original, double ready_after);
 

@@ -110,9 +110,8 @@ std::string sum_of_folder(const fs::path& folder) {
           "{}: holds {}, which is an HDF5 file, as recordings are; expected "
           "files and folders of programs",
           NamedOption{"plugin_files", folder.string()}, name);
-    for (const std::string& part :
-         {name, std::string(1, '\0'), digits, std::string("\n")})
-      sum.add(std::as_bytes(std::span(part)));
+    const std::string line = name + '\0' + digits + '\n';
+    sum.add(std::as_bytes(std::span(line)));
   }
   return sum.digits();
 }

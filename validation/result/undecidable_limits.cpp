@@ -15,6 +15,7 @@
 #include "dataset/recording/stated_values.h"
 #include "parallel/work_queue.h"
 #include "sim/signal/noise.h"
+#include "validation/result/decided_limits.h"
 #include "validation/result/device_evidence.h"
 
 namespace beamgyro::internal {
@@ -167,12 +168,9 @@ bool reads_moving_rates(const Metric& metric) {
 
 std::vector<QualificationRun> runs_read(const Qualification& qualification,
                                         const Metric& metric) {
-  const auto named = qualification.metric_runs.find(metric.name);
   std::vector<QualificationRun> runs;
   for (const QualificationRun& run : qualification.runs)
-    if (named != qualification.metric_runs.end()
-            ? std::ranges::count(named->second, run.name) > 0
-            : std::ranges::count(metric.reads, run.purpose) > 0)
+    if (reads_run(metric, qualification.metric_runs, run.name, run.purpose))
       runs.push_back(run);
   return runs;
 }

@@ -409,6 +409,17 @@ TEST(ManyDrawsOfMetrics, CoverTheFiguresOfVibration) {
       });
 }
 
+/// A sine of 5 deg/s of true rate at `f` [Hz], which the gyro shows with that
+/// gain and lag [rad].
+SceneRun sine_run(double f, double gain, double lag) {
+  const auto sine = [f](double t) { return 5 * std::sin(2 * pi * f * t); };
+  return {
+      kSineRate,
+      {.duration = 4, .step = 0.005, .true_rate = sine, .bias = [=](double t) {
+         return gain * 5 * std::sin(2 * pi * f * t - lag) - sine(t);
+       }}};
+}
+
 TEST(ManyDrawsOfMetrics, CoverTheFrequencyResponse) {
   expect_coverage_beneath_noise(
       {{"bandwidth_Hz", "phase_lag_90_deg_Hz"}},
@@ -417,19 +428,7 @@ TEST(ManyDrawsOfMetrics, CoverTheFrequencyResponse) {
         for (const double f : {1.0, 8.0, 12.0, 14.0, 18.0, 22.0}) {
           const double lag = 2 * std::atan(f / 20);
           const double gain = 1 / (1 + f * f / 400);
-          const auto sine = [f](double t) {
-            return 5 * std::sin(2 * pi * f * t);
-          };
-          scene.add({kSineRate,
-                     {.duration = 4,
-                      .step = 0.005,
-                      .true_rate = sine,
-                      .bias =
-                          [=](double t) {
-                            return gain * 5 * std::sin(2 * pi * f * t - lag) -
-                                   sine(t);
-                          }}},
-                    noise, seed);
+          scene.add(sine_run(f, gain, lag), noise, seed);
         }
         return scene;
       });
@@ -443,19 +442,7 @@ TEST(ManyDrawsOfMetrics, CoverThePeakOfAResonance) {
           const double square = 1 - f * f / 400;
           const double lag = std::atan2(0.4 * f / 20, square);
           const double gain = 1 / std::hypot(square, 0.4 * f / 20);
-          const auto sine = [f](double t) {
-            return 5 * std::sin(2 * pi * f * t);
-          };
-          scene.add({kSineRate,
-                     {.duration = 4,
-                      .step = 0.005,
-                      .true_rate = sine,
-                      .bias =
-                          [=](double t) {
-                            return gain * 5 * std::sin(2 * pi * f * t - lag) -
-                                   sine(t);
-                          }}},
-                    noise, seed);
+          scene.add(sine_run(f, gain, lag), noise, seed);
         }
         return scene;
       });

@@ -31,7 +31,7 @@ CompletedValidation judged(std::uint64_t seed, std::size_t) {
 }
 
 TEST(SeedVerdicts, TheFirstOfTheWorstIsShownAndEverySeedIsCounted) {
-  for (const std::size_t threads : {1, 2, 5}) {
+  for (const std::size_t threads : {1U, 2U, 5U}) {
     const CompletedValidation all =
         seed_verdicts({6, 8}, judged, kNoLimits, threads);
     EXPECT_EQ(all.result.verdict, Verdict::kFail);
