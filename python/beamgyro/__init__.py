@@ -25,12 +25,12 @@ from beamgyro._core import version as __version__
 from beamgyro._dataset import open_recording, save_recording
 from beamgyro._device import Device, characterise
 from beamgyro._export import export
-from beamgyro._results import (AllanResult, PlanResult, SensitivityResult,
-                               ValidationResult)
+from beamgyro._results import AllanResult, PlanResult, SensitivityResult
 from beamgyro._scenario import Scenario, run, run_to_file
 from beamgyro._set import Campaign, Set, generate, open_set
 from beamgyro._training import features, train, training_rows
 from beamgyro._validation import validate
+from beamgyro._validation_result import ValidationResult
 from beamgyro._warnings import BeamgyroWarning
 
 __all__ = [

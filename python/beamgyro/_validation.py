@@ -16,9 +16,9 @@ from beamgyro._dataset import Path, recording_of
 from beamgyro._device import DeviceLike, device_of
 from beamgyro._own_metrics import own_metrics
 from beamgyro._progress import ProgressArgument, watched
-from beamgyro._results import ValidationResult
 from beamgyro._set import Set
 from beamgyro._training import Runs, model_of, named_runs
+from beamgyro._validation_result import ValidationResult
 from beamgyro._warnings import warn
 
 if TYPE_CHECKING:
