@@ -136,7 +136,8 @@ std::optional<Estimate> correlated_delay(const EvidenceRun& run) {
 }
 
 /// Levels [dB] over that at the lowest frequency, and their 1-sigma without
-/// what all share, the noise at the lowest.
+/// what all share, the noise at the lowest. None where the judged rate does not
+/// answer at each frequency.
 struct ResponseLevels {
   std::vector<ResponsePoint> points;
   std::vector<double> values, sigmas;
@@ -151,6 +152,9 @@ std::optional<ResponseLevels> levels_of(const Evidence& evidence) {
                             std::log(std::abs(point.gain) / lowest));
     levels.sigmas.push_back(kDecibels * point.sigma / std::abs(point.gain));
   }
+  if (!std::ranges::all_of(levels.values,
+                           [](double level) { return std::isfinite(level); }))
+    return std::nullopt;
   return levels;
 }
 

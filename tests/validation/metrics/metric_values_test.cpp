@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -364,6 +365,18 @@ TEST(MetricValues, AResponseThatOnlyFallsHasNoPeak) {
     add_resonant_sine(scene, at, 1);
   expect_exact("response_peak_dB", scene, 0, 1e-12);
   EXPECT_FALSE(find_metric("response_peak_Hz")->evaluate(scene.evidence));
+}
+
+TEST(MetricValues, WithoutAnAnswerThereIsNoResponse) {
+  for (const double answer : {0.0, std::nan("")}) {
+    Scene scene;
+    for (const double at : {1.0, 12.0}) add_resonant_sine(scene, at, 1);
+    for (EvidenceRun& run : scene.evidence.runs)
+      std::ranges::fill(run.rate, answer);
+    for (const char* name :
+         {"response_peak_dB", "response_peak_Hz", "bandwidth_Hz"})
+      EXPECT_FALSE(find_metric(name)->evaluate(scene.evidence)) << name;
+  }
 }
 
 TEST(MetricValues, DelayBeyondAPeriodIsUnwrapped) {
