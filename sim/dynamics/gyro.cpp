@@ -190,11 +190,17 @@ ModalParameters modal_at(const Gyro& gyro,
                          const MemoryState& memory) {
   ModalParameters modal = modal_parameters(
       gyro.device, gyro.beam, temperatures.beam, gyro.stiffness_trim, memory);
-  if (gyro.spurious_reference > 0)
-    modal.spurious =
-        spurious_resonances(gyro.device.spurious_modes, gyro.spurious_reference,
-                            gyro.beam.mass, temperatures, memory);
+  add_spurious_modes(gyro, temperatures, memory, modal);
   return modal;
+}
+
+void add_spurious_modes(const Gyro& gyro,
+                        const SpuriousTemperatures& temperatures,
+                        const MemoryState& memory, ModalParameters& modal) {
+  if (gyro.spurious_reference == 0) return;
+  modal.spurious =
+      spurious_resonances(gyro.device.spurious_modes, gyro.spurious_reference,
+                          gyro.beam.mass, temperatures, memory);
 }
 
 Complex rate_response(const Gyro& gyro, const ModalParameters& modal) {

@@ -38,6 +38,11 @@ ModalParameters modal_at(const Gyro& gyro,
                          const SpuriousTemperatures& temperatures,
                          const MemoryState& memory = {});
 
+/// Writes the spurious modes of a gyro at these temperatures to `modal`.
+void add_spurious_modes(const Gyro& gyro,
+                        const SpuriousTemperatures& temperatures,
+                        const MemoryState& memory, ModalParameters& modal);
+
 /// The frequency at which the drive loop of one gyro locks at rest, followed
 /// from T_0 to other beam temperatures. Where there are several stable locks it
 /// says which of them continues the lock at T_0. The path is computed on

@@ -54,7 +54,7 @@ TEST(SpuriousModeFile, WhatIsWrongIsRefusedWithItsKeyAndValue) {
       {"follows=\"board\"", "expected one of \"beam\", \"housing\""},
       {"detuning_per_decade=1e-4", "without [memory.ageing]"},
       {"detuning_slip=1e-4", "without [memory.hysteresis]"},
-      {"stiffness=1", "unknown key"}};
+      {"stiffness=1", "spurious_mode.wire.stiffness"}};
   for (const auto& [bad, says] : values)
     EXPECT_TRUE(holds(why({mode("wire"), "spurious_mode.wire." + bad}), says));
   EXPECT_TRUE(holds(why({"spurious_mode.wire.detuning=0"}),
