@@ -9,7 +9,7 @@ namespace beamgyro::internal {
 namespace {
 
 // The frequency of a mode stays above 0 at every beam temperature.
-constexpr double kMostDetuning = 0.3, kMostDetuningTc = 3e-3;  // [-] [1/K]
+constexpr double kMostDetuning = 0.1, kMostDetuningTc = 5e-3;  // [-] [1/K]
 constexpr double kMostCoupling = 0.01;
 constexpr Range kLossFactor{1e-5, 0.5};
 

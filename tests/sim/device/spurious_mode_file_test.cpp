@@ -39,8 +39,8 @@ TEST(SpuriousModeFile, ModesAreReadInTheOrderOfTheFile) {
 TEST(SpuriousModeFile, WithoutCouplingThereIsNoMode) {
   const std::string none = "spurious_mode.wire.coupling_drive=0";
   EXPECT_EQ(nominal_device({mode("wire"), none}).spurious_modes.size(), 1);
-  EXPECT_TRUE(nominal_device({mode("wire"), none,
-                              "spurious_mode.wire.coupling_sense=0"})
+  EXPECT_TRUE(nominal_device(
+                  {mode("wire"), none, "spurious_mode.wire.coupling_sense=0"})
                   .spurious_modes.empty());
 }
 
