@@ -23,6 +23,8 @@ constexpr RecordedSignal kSignals[] = {
     {"true_rate", "degree/s", "rate about the input axis", kTruth},
     {"true_bias", "degree/s", "zero-rate output of the noise-free twin",
      kTruth},
+    {"true_spurious_bias", "degree/s", "part of true_bias by spurious modes",
+     kTruth},
     // In single precision a frequency of 9 kHz has steps of 1e-3 Hz.
     {"true_drive_frequency",
      "Hz",

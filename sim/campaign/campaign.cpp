@@ -153,6 +153,7 @@ bool CampaignPlan::is_drawn(std::string_view key) const {
     const std::string drawn = key_of(draw);
     if (holds(key, drawn)) return true;
     if (!holds(drawn, key)) return false;
+    if (draw.modes) return true;
     const ConfigNode* in_file = device_document->value(key);
     return !std::ranges::all_of(draw.values, [&](const ConfigNode& choice) {
       return is_same(below(choice, key.substr(drawn.size() + 1)), in_file);

@@ -15,6 +15,7 @@
 #include "dataset/set/manifest.h"
 #include "sim/campaign/campaign.h"
 #include "sim/campaign/draw_plan_file.h"
+#include "sim/campaign/spurious_population_file.h"
 #include "sim/device/device_file.h"
 #include "sim/scenario/scenario_file.h"
 
@@ -141,6 +142,10 @@ class CampaignReader {
     for (const std::string& key : tolerances.keys()) {
       reject_untrimmed(tolerances, key);
       add_draw(read_draw(tolerances, key, key, file), "", plan, taken_);
+    }
+    if (root_.has("spurious_modes")) {
+      add_draw(read_spurious_population(root_, make_gyro(plan_.base_device)),
+               "", plan, taken_);
     }
     check_medians(plan, file);
     plan.groups = read_correlated(root_.tables("correlated"), plan);

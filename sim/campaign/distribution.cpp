@@ -62,6 +62,12 @@ Distribution discrete(const std::vector<double>& weights) {
   return d;
 }
 
+std::vector<double> poisson_weights(double mean, int most) {
+  std::vector<double> weights = {1};
+  for (int k = 1; k <= most; ++k) weights.push_back(weights.back() * mean / k);
+  return weights;
+}
+
 double normal_cumulative(double z) {
   return 0.5 * std::erfc(-z / std::numbers::sqrt2);
 }
@@ -97,6 +103,13 @@ Distribution halved(const Distribution& d) {
 }
 
 double quantile(const Distribution& d, double u) {
+  if (d.either_sign) {
+    Distribution magnitude = d;
+    magnitude.either_sign = false;
+    const double share = u < 0.5 ? 2 * u : 2 * u - 1;
+    const double value = quantile(magnitude, std::max(share, 0x1p-54));
+    return u < 0.5 ? -value : value;
+  }
   switch (d.kind) {
     case Distribution::Kind::kNormal:
       return std::clamp(

@@ -16,6 +16,8 @@ struct Distribution {
   // Ends of kUniform; limits at which the others are cut off.
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
+  // The value gets either sign with equal probability, after it was drawn.
+  bool either_sign = false;
   // kDiscrete: probability of this choice and of those before it. The last is
   // 1.
   std::vector<double> cumulative;
@@ -25,9 +27,14 @@ struct Distribution {
 /// 0 and none is below. A choice of weight 0 is never drawn.
 Distribution discrete(const std::vector<double>& weights);
 
+/// Returns the weights of the counts 0 .. `most` of a Poisson distribution, not
+/// normalised.
+std::vector<double> poisson_weights(double mean, int most);
+
 /// Returns the value at which the distribution function is `u` in (0, 1); of
 /// kDiscrete the index of the choice. A distribution that is cut off is the
-/// conditional one, given that the value lies inside.
+/// conditional one, given that the value lies inside. With either sign, u below
+/// 1/2 gives the negative values, and the magnitude grows with u on both sides.
 double quantile(const Distribution& distribution, double u);
 
 /// Returns the distribution of half the width: every value half as far from the

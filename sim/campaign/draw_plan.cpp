@@ -104,8 +104,19 @@ std::string key_of(const Draw& draw) {
   return fmt::format("{}", fmt::join(draw.path, "."));
 }
 
+std::string number_key(const Draw& draw, std::size_t element) {
+  if (!draw.modes)
+    return draw.elements == 0 ? key_of(draw)
+                              : fmt::format("{}[{}]", key_of(draw), element);
+  if (element == 0) return "spurious_modes.count";
+  const std::size_t k = element - 1;
+  return fmt::format("spurious_modes.{}.{}", k / kSpuriousNumbers + 1,
+                     kSpuriousNumberKeys[k % kSpuriousNumbers]);
+}
+
 ConfigNode drawn_value(const Draw& draw, const double* uniform,
                        std::vector<double>& parameters) {
+  if (draw.modes) return drawn_modes(*draw.modes, uniform, parameters);
   if (draw.elements == 0) return drawn_element(draw, *uniform, parameters);
   ConfigNode array;
   array.kind = ConfigNode::Kind::kArray;

@@ -15,6 +15,7 @@
 #include "dataset/set/shard/shard.h"
 #include "sim/campaign/distribution.h"
 #include "sim/campaign/scrambled_sobol.h"
+#include "sim/campaign/spurious_population.h"
 
 namespace beamgyro::internal {
 
@@ -57,6 +58,9 @@ struct Draw {
   std::vector<ConfigNode> values;  // choices of a discrete one
   bool numeric = true;             // the parameter is the value, else its index
   std::size_t elements = 0;  // of an array, each drawn by itself; 0: one value
+  // The key is the table of all spurious modes. `distribution` is that of their
+  // number, `elements` the numbers that they take.
+  std::optional<SpuriousPopulation> modes = {};
 
   std::size_t numbers() const { return elements == 0 ? 1 : elements; }
 };
@@ -79,6 +83,10 @@ struct DrawnValues {
   std::vector<double> parameters;  // one per DrawPlan::parameters
   std::vector<ConfigNode> values;  // one per DrawPlan::draws
 };
+
+/// Returns what one number of a draw is called: its key, that of an element of
+/// an array, or that of a spurious mode as "spurious_modes.1.detuning".
+std::string number_key(const Draw& draw, std::size_t element);
 
 /// Returns the value of one key for independent uniform numbers, one for each
 /// element, and appends its parameters.

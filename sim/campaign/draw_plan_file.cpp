@@ -12,111 +12,10 @@
 #include "config/config_node.h"
 #include "config/suggestion.h"
 #include "config/table.h"
-#include "sim/campaign/distribution.h"
+#include "sim/campaign/distribution_file.h"
 
 namespace beamgyro::internal {
 namespace {
-
-/// A distribution. A discrete one also has its choices as they stand in the
-/// file.
-struct FileDistribution {
-  Distribution distribution;
-  std::vector<ConfigNode> values;
-};
-
-using Kind = Distribution::Kind;
-
-constexpr std::array<std::string_view, 4> kForms = {"normal", "uniform",
-                                                    "lognormal", "discrete"};
-// Below this share the inverse of the distribution function has too few digits.
-constexpr double kSmallestShare = 1e-6;
-
-std::string form_of(const ConfigTable& table, std::string_view key,
-                    const ConfigTable& distribution) {
-  const std::vector<std::string> keys = distribution.keys();
-  const auto known = [](const std::string& name) {
-    return std::find(kForms.begin(), kForms.end(), name) != kForms.end();
-  };
-  if (keys.size() == 1 && known(keys[0])) return keys[0];
-  const bool nested =
-      !keys.empty() && std::none_of(keys.begin(), keys.end(), known);
-  table.fail(key, fmt::format("no distribution; expected one of {{ normal, "
-                              "uniform, lognormal, discrete = {{ .. }} }}{}",
-                              nested ? ", and a dotted key in quotes" : ""));
-}
-
-void read_ends(const ConfigTable& form, Distribution& d) {
-  if (const auto low = form.optional_number("low")) d.low = *low;
-  if (const auto high = form.optional_number("high")) d.high = *high;
-  if (!(d.low < d.high)) {
-    form.fail("high", fmt::format("{} is not above low = {}; expected low < "
-                                  "high",
-                                  d.high, d.low));
-  }
-}
-
-void require_share(const ConfigTable& form, const Distribution& d) {
-  if (share_inside(d) < kSmallestShare) {
-    form.fail(form.has("low") ? "low" : "high",
-              "less than a millionth of the values lie between low and high; "
-              "expected ends nearer to the centre");
-  }
-}
-
-Distribution read_continuous(const ConfigTable& form, Kind kind) {
-  Distribution d;
-  d.kind = kind;
-  if (kind == Kind::kNormal) {
-    d.centre = form.number("mean");
-    d.sigma = form.number("sigma", positive());
-  } else if (kind == Kind::kLognormal) {
-    d.centre = form.number("median", positive());
-    d.sigma = form.number("sigma", {0, 10, true, false});
-    d.low = 0;
-  } else {
-    d.low = form.number("low");
-    d.high = form.number("high");
-  }
-  read_ends(form, d);
-  if (kind != Kind::kUniform) require_share(form, d);
-  return d;
-}
-
-FileDistribution read_discrete(const ConfigTable& form) {
-  FileDistribution result;
-  const ConfigNode& values = form.value("values");
-  if (values.kind != ConfigNode::Kind::kArray || values.children.empty()) {
-    form.fail("values",
-              fmt::format("{} is wrong here; expected an array of at least one "
-                          "value",
-                          text_of(values)));
-  }
-  result.values = values.children;
-  std::vector<double> weights(result.values.size(), 1);
-  if (form.has("weights"))
-    weights = form.numbers("weights", weights.size(), non_negative());
-  if (std::all_of(weights.begin(), weights.end(),
-                  [](double weight) { return weight == 0; })) {
-    form.fail("weights", "all are 0; expected one above 0");
-  }
-  result.distribution = discrete(weights);
-  return result;
-}
-
-/// Reads `key = { normal = { mean, sigma } }` and the other forms
-/// (docs/reference/campaign_file.md). Throws std::invalid_argument naming file,
-/// line, key and value.
-FileDistribution read_distribution(const ConfigTable& table,
-                                   std::string_view key) {
-  const ConfigTable distribution = table.table(key);
-  const std::string form = form_of(table, key, distribution);
-  const ConfigTable keys = distribution.table(form);
-  if (form == "discrete") return read_discrete(keys);
-  const Kind kind = form == "normal"    ? Kind::kNormal
-                    : form == "uniform" ? Kind::kUniform
-                                        : Kind::kLognormal;
-  return {read_continuous(keys, kind), {}};
-}
 
 [[noreturn]] void reject(const std::string& place, const std::string& message) {
   throw std::invalid_argument(fmt::format("{}: {}", place, message));
@@ -185,12 +84,12 @@ void check_values(const Draw& draw, const DrawnFile& file) {
 
 DeviceVariable parameter(const Draw& draw, const std::string& run,
                          std::size_t element) {
-  const std::string key = key_of(draw);
+  const std::string key = draw.modes ? number_key(draw, element) : key_of(draw);
   DeviceVariable result{key, draw.numeric ? units_of(key) : units_of(""),
                         fmt::format("drawn {}", key)};
   std::replace(result.name.begin(), result.name.end(), '.', '_');
   std::replace(result.name.begin(), result.name.end(), '-', '_');
-  if (draw.elements > 0) {
+  if (draw.elements > 0 && !draw.modes) {
     result.name += fmt::format("_{}", element);
     result.long_name += fmt::format("[{}]", element);
   }
@@ -301,9 +200,8 @@ void add_draw(const Draw& draw, const std::string& run, DrawPlan& plan,
                                        key, next.name));
       }
     }
-    const std::uint32_t stream = stream_number(
-        draw.elements == 0 ? fmt::format("{}/{}", run, key)
-                           : fmt::format("{}/{}[{}]", run, key, i));
+    const std::uint32_t stream =
+        stream_number(fmt::format("{}/{}", run, number_key(draw, i)));
     if (!taken.insert(stream).second) {
       reject(draw.place,
              fmt::format("{}: shares the random stream of another name of this "

@@ -19,9 +19,11 @@ void fail(DeviceRow& row, const std::string& why, DeviceStatus status) {
   row.device_status = status;
 }
 
-// Motion about or along an axis that the run of one device does not have.
-bool is_motion(const std::string& name) {
-  return std::ranges::find(kCaseAxes.begin() + kRateX, kCaseAxes.end(), name,
+// A variable that is zero for a device that does not have it: motion about or
+// along an axis that its run does not move, and the bias of spurious modes.
+bool is_zero_where_absent(const std::string& name) {
+  return name == "true_spurious_bias" ||
+         std::ranges::find(kCaseAxes.begin() + kRateX, kCaseAxes.end(), name,
                            &AxisNames::column) != kCaseAxes.end();
 }
 
@@ -79,7 +81,8 @@ Recording ShardMaker::recorded(const PreparedDevice& device,
     }
   }
   for (const SetVariable& variable : head.variables) {
-    if (is_motion(variable.name) && !find_column(recording, variable.name)) {
+    if (is_zero_where_absent(variable.name) &&
+        !find_column(recording, variable.name)) {
       recording.columns.push_back(
           {variable.name, variable.units, variable.long_name, variable.role,
            std::vector<double>(recording.time.size(), 0.0)});

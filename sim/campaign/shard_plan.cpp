@@ -110,9 +110,20 @@ SetVariable set_variable(const CampaignPlan& campaign, const Column& column) {
   return variable;
 }
 
+// Stands for those that some device may have; as weak as to change nothing.
+SpuriousModeParameters any_spurious_mode() {
+  return {.name = "any",
+          .detuning = 0.1,
+          .detuning_tc = 0,
+          .loss_factor = 0.01,
+          .coupling_drive = 1e-9,
+          .coupling_sense = 0,
+          .follows_housing = false};
+}
+
 // Returns the columns of a run of two samples of the base device, with every
-// axis in motion that some device moves. So they do not depend on the values of
-// any device.
+// axis in motion that some device moves and with a spurious mode where some
+// device may have one. So they do not depend on the values of any device.
 std::vector<Column> columns_of(const CampaignPlan& campaign, std::size_t run) {
   ScenarioPlan scenario = campaign.runs[run].scenario;
   scenario.duration = 2 / scenario.output_rate;
@@ -122,6 +133,8 @@ std::vector<Column> columns_of(const CampaignPlan& campaign, std::size_t run) {
   DeviceParameters device = campaign.base_device;
   if (!device.loop_channels && campaign.is_drawn("loop_channels"))
     device.loop_channels.emplace();
+  if (device.spurious_modes.empty() && campaign.is_drawn("spurious_mode"))
+    device.spurious_modes.push_back(any_spurious_mode());
   return simulated(scenario, make_gyro(device)).columns;
 }
 

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "sim/memory/memory_parameters.h"
 #include "sim/signal/loop_channels.h"
@@ -112,6 +115,26 @@ struct ReadoutParameters {
   double quadrature_resolution;       // [rad/s]
 };
 
+inline constexpr std::size_t kMostSpuriousModes = 16;
+
+/// A resonance of another part, such as a lead wire, that is weakly coupled to
+/// both modes of the beam (13.1). Its frequency is
+///
+///   w_s = w_0 [1 + d_s + a_s (T_s - T_0)]                            (13.2)
+///
+/// with w_0 the drive frequency that the unit has at T_0 without such modes.
+struct SpuriousModeParameters {
+  std::string name;
+  double detuning;        // d_s at T_0
+  double detuning_tc;     // a_s [1/K]
+  double loss_factor;     // eta_s
+  double coupling_drive;  // e_x
+  double coupling_sense;  // e_y, signed
+  bool follows_housing;   // T_s is that of the housing, else of the beam
+  double drift = 0;       // of d_s per decade of age (12.5)
+  double slip = 0;        // of d_s where h = h_max (12.3)
+};
+
 /// One unit, complete: what a device file holds, in SI units.
 struct DeviceParameters {
   BeamParameters beam;
@@ -126,6 +149,7 @@ struct DeviceParameters {
   TemperatureSensorParameters temperature_sensor;
   std::optional<LoopChannelParameters> loop_channels;  // none: without errors
   MemoryParameters memory = {};
+  std::vector<SpuriousModeParameters> spurious_modes = {};
 };
 
 /// Calibration temperature T_0 of every expansion and trim [K].

@@ -8,6 +8,7 @@
 
 #include "config/table.h"
 #include "config/units.h"
+#include "sim/device/spurious_mode_file.h"
 #include "sim/memory/memory_parameters.h"
 #include "sim/thermal/thermal_parameters.h"
 
@@ -332,6 +333,7 @@ DeviceParameters read_device(const ConfigDocument& document) {
   const ConfigTable& root = document.root();
   const ConfigTable sensor = root.table("temperature_sensor");
   const BeamParameters beam = read_beam(root.table("beam"));
+  const MemoryParameters memory = read_memory(root.table_or_empty("memory"));
   return {
       .beam = beam,
       .patches = read_patches(root.table("patches"), beam),
@@ -350,7 +352,8 @@ DeviceParameters read_device(const ConfigDocument& document) {
               .offset = sensor.number("offset_K", between(-100, 100)),
           },
       .loop_channels = read_loop_channels(root.optional_table("loop_channels")),
-      .memory = read_memory(root.table_or_empty("memory")),
+      .memory = memory,
+      .spurious_modes = read_spurious_modes(root, memory),
   };
 }
 

@@ -7,11 +7,14 @@
 #include "sim/device/device.h"
 #include "sim/device/materials.h"
 #include "sim/device/projected_beam.h"
+#include "sim/device/spurious_mode.h"
 
 namespace beamgyro::internal {
 
 /// The two coupled modes at one temperature:
 ///   m q'' + C q' + K q = sum_p Theta_p V_p + Coriolis...   (2.1)
+/// with the spurious modes that act on them (13.1). K and C are those of the
+/// beam and its parts alone.
 struct ModalParameters {
   double temperature = kCalibrationTemperature;  // of the beam [K]
   double mass;                                   // m [kg]
@@ -19,6 +22,7 @@ struct ModalParameters {
   Eigen::Matrix2d stiffness;                     // K = Re K* [N/m]
   Eigen::Matrix2d damping;                       // C = Im K* / w [N s/m]
   PerPatch<Eigen::Vector2cd> coupling;           // Theta_p [N/V] = [C/m]
+  std::vector<SpuriousResonance> spurious;       // at this temperature
 };
 
 /// Centre of patch p in the cross section, r_p [m].
@@ -32,7 +36,8 @@ Eigen::Vector2cd patch_coupling(const DeviceParameters& device,
 /// C_p(T) [F], clamped capacitance of one patch (1.2).
 double patch_capacitance(const PatchParameters& patches, double T);
 
-/// All of (2.1) at beam temperature T [K]; `stiffness_trim` is k_trim of (1.3).
+/// All of (2.1) but spurious modes at beam temperature T [K]; `stiffness_trim`
+/// is k_trim of (1.3).
 /// `memory` acts on the materials by the effects that the device has: the glass
 /// of the bond (12.2), hysteresis of K*_xy and of the mount's axis (12.4), age
 /// (12.5). Without it the result is that of the unit at its trim.

@@ -32,13 +32,14 @@ CharacteristicRow row_at(const Gyro& gyro, double celsius) {
   const std::complex<double> terms = zero_rate_terms(gyro, modal);
   const double w = signal.drive_frequency;
   const double w_y = std::sqrt(modal.stiffness(1, 1) / modal.mass);
+  const Eigen::Matrix2d damping = damping_at(modal, w);
   return {electronics.output(signal.demodulated).rate / kDegree,
           terms.real() / kDegree,
           -terms.imag() / kDegree,
           w / (2 * std::numbers::pi),
           (w_y - w) / (2 * std::numbers::pi),
-          w * modal.mass / modal.damping(0, 0),
-          w * modal.mass / modal.damping(1, 1),
+          w * modal.mass / damping(0, 0),
+          w * modal.mass / damping(1, 1),
           signal.drive_voltage,
           rate_slope(gyro, modal, T)};
 }

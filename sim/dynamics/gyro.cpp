@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sim/numerics/simulation_failure.h"
 
@@ -47,7 +49,7 @@ Complex signal(const Gyro& gyro, const ModalParameters& modal,
   return static_solution(gyro, modal, motion).signal;
 }
 
-Gyro untrimmed_gyro(const DeviceParameters& device) {
+Gyro untrimmed_two_modes(const DeviceParameters& device) {
   Gyro gyro;
   gyro.device = device;
   gyro.beam = project_beam(device);
@@ -65,8 +67,7 @@ double trimmed_stiffness(Gyro gyro) {
   constexpr int kMaxIterations = 20;
   constexpr double kTolerance = 1e-9;  // [rad/s], 6e-8 deg/s
   const double target = gyro.device.readout.quadrature_trim;
-  ModalParameters modal =
-      modal_parameters(gyro.device, gyro.beam, kCalibrationTemperature, 0);
+  ModalParameters modal = modal_at(gyro, kCalibrationTemperature);
   const double omega = std::sqrt(modal.stiffness(0, 0) / modal.mass);
   const double slope = 1 / (2 * modal.coriolis_mass * omega);
   const double untrimmed = modal.stiffness(0, 1);
@@ -83,12 +84,60 @@ double trimmed_stiffness(Gyro gyro) {
                   target));
 }
 
+// Near the crossing a mode changes the loss of the drive mode by e_x^2 Q_x/eta
+// of itself, and the slope of its phase over frequency by (e_x/eta)^2. What
+// changes them by more bends the phase back, so that it has several zeros.
+void require_one_lock(const SpuriousModeParameters& mode, double Q_x) {
+  constexpr double kMostLoss = 0.3;
+  const double e = mode.coupling_drive, eta = mode.loss_factor;
+  const double loss = e * e * Q_x / eta;
+  if (loss < kMostLoss && std::abs(e) < eta) return;
+  throw SimulationFailure(fmt::format(
+      "spurious_mode.{}.coupling_drive: {} makes the phase lock ambiguous "
+      "where "
+      "the mode crosses the drive frequency: e_x^2 Q_x/eta_s = {:.3g} (Q_x = "
+      "{:.0f}), |e_x|/eta_s = {:.3g}; expected below {} and 1, so a magnitude "
+      "below {:.3g}",
+      mode.name, e, loss, Q_x, std::abs(e) / eta, kMostLoss,
+      std::min(std::sqrt(kMostLoss * eta / Q_x), eta)));
+}
+
+Gyro untrimmed_gyro(const DeviceParameters& device) {
+  Gyro gyro = untrimmed_two_modes(device);
+  if (device.spurious_modes.empty()) return gyro;
+  Gyro without = gyro;
+  without.device.spurious_modes.clear();
+  without.stiffness_trim = trimmed_stiffness(without);
+  const ModalParameters modal = modal_at(without, kCalibrationTemperature);
+  gyro.spurious_reference = static_solution(without, modal, {}).drive_frequency;
+  const double Q_x = gyro.spurious_reference * modal.mass / modal.damping(0, 0);
+  for (const SpuriousModeParameters& mode : device.spurious_modes)
+    require_one_lock(mode, Q_x);
+  return gyro;
+}
+
 // The modulator's reference is the drive mode's velocity: V_B per rate is
 // 2 i w_d m_g X / Theta_By (2.5). Taken there, and not from dV_B/dOmega, the
 // quadrature does not leak into the bias by the products of two misalignments.
 Complex rebalance_reference(const Gyro& gyro, const ModalParameters& modal) {
   const StaticSolution s = static_solution(gyro, modal, {});
   return Complex(0, 1) * s.amplitude(0) / modal.coupling[kDamping](1);
+}
+
+// Sets the trims and references of an untrimmed unit.
+Gyro trimmed(Gyro gyro) {
+  const ReadoutParameters& readout = gyro.device.readout;
+  gyro.stiffness_trim = trimmed_stiffness(gyro);
+  const ModalParameters modal = modal_at(gyro, kCalibrationTemperature);
+  gyro.rate_axis = rate_response(gyro, modal);
+  if (gyro.loop.mode == ReadoutMode::kForceRebalance) {
+    gyro.rate_axis = std::polar(std::abs(gyro.rate_axis),
+                                std::arg(rebalance_reference(gyro, modal)));
+  }
+  gyro.rate_axis /= 1 + readout.scale_factor_error;
+  gyro.offset =
+      readout.offset_trim - beam_signal(gyro, modal, {}).demodulated.real();
+  return gyro;
 }
 
 }  // namespace
@@ -133,8 +182,25 @@ StaticSolution static_solution(const Gyro& gyro, const ModalParameters& modal,
 
 ModalParameters modal_at(const Gyro& gyro, double T,
                          const MemoryState& memory) {
-  return modal_parameters(gyro.device, gyro.beam, T, gyro.stiffness_trim,
-                          memory);
+  return modal_at(gyro, SpuriousTemperatures{T, T}, memory);
+}
+
+ModalParameters modal_at(const Gyro& gyro,
+                         const SpuriousTemperatures& temperatures,
+                         const MemoryState& memory) {
+  ModalParameters modal = modal_parameters(
+      gyro.device, gyro.beam, temperatures.beam, gyro.stiffness_trim, memory);
+  add_spurious_modes(gyro, temperatures, memory, modal);
+  return modal;
+}
+
+void add_spurious_modes(const Gyro& gyro,
+                        const SpuriousTemperatures& temperatures,
+                        const MemoryState& memory, ModalParameters& modal) {
+  if (gyro.spurious_reference == 0) return;
+  modal.spurious =
+      spurious_resonances(gyro.device.spurious_modes, gyro.spurious_reference,
+                          gyro.beam.mass, temperatures, memory);
 }
 
 Complex rate_response(const Gyro& gyro, const ModalParameters& modal) {
@@ -154,25 +220,21 @@ Complex zero_rate_terms(const Gyro& gyro, const ModalParameters& modal) {
 Gyro make_gyro(const DeviceParameters& device) {
   Gyro gyro = untrimmed_gyro(device);
   require_passive_memory(device, gyro.beam);
-  gyro.stiffness_trim = trimmed_stiffness(gyro);
-  const ModalParameters modal = modal_at(gyro, kCalibrationTemperature);
-  gyro.rate_axis = rate_response(gyro, modal);
-  if (gyro.loop.mode == ReadoutMode::kForceRebalance) {
-    gyro.rate_axis = std::polar(std::abs(gyro.rate_axis),
-                                std::arg(rebalance_reference(gyro, modal)));
-  }
-  gyro.rate_axis /= 1 + device.readout.scale_factor_error;
-  gyro.offset = device.readout.offset_trim -
-                beam_signal(gyro, modal, {}).demodulated.real();
-  return gyro;
+  return trimmed(std::move(gyro));
+}
+
+Gyro without_spurious_modes(const Gyro& gyro) {
+  Gyro without = gyro;
+  without.device.spurious_modes.clear();
+  without.spurious_reference = 0;
+  without.stiffness_trim = 0;
+  return trimmed(std::move(without));
 }
 
 double built_quadrature(const DeviceParameters& device, double stiffness_trim) {
-  const Gyro gyro = untrimmed_gyro(device);
-  return -zero_rate_terms(
-              gyro, modal_parameters(device, gyro.beam, kCalibrationTemperature,
-                                     stiffness_trim))
-              .imag();
+  Gyro gyro = untrimmed_gyro(device);
+  gyro.stiffness_trim = stiffness_trim;
+  return -zero_rate_terms(gyro, modal_at(gyro, kCalibrationTemperature)).imag();
 }
 
 BeamSignal beam_signal(const Gyro& gyro, double T, const CaseMotion& motion) {

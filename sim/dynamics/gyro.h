@@ -22,11 +22,26 @@ struct Gyro {
   // by 1 + scale_factor_error, so that a measured rate has that error.
   std::complex<double> rate_axis{};
   double offset = 0;  // V_off/SF_0 at T_0 [rad/s]
+  // w_0 of (13.2), the drive frequency at T_0 without spurious modes [rad/s]; 0
+  // for a unit that has none.
+  double spurious_reference = 0;
 };
 
-/// Returns modal_parameters() of the trimmed unit.
+/// Returns modal_parameters() of the trimmed unit, with its spurious modes and
+/// the housing as warm as the beam.
 ModalParameters modal_at(const Gyro& gyro, double T,
                          const MemoryState& memory = {});
+
+/// The same with the housing at its own temperature [K], which matters to
+/// spurious modes that follow it.
+ModalParameters modal_at(const Gyro& gyro,
+                         const SpuriousTemperatures& temperatures,
+                         const MemoryState& memory = {});
+
+/// Writes the spurious modes of a gyro at these temperatures to `modal`.
+void add_spurious_modes(const Gyro& gyro,
+                        const SpuriousTemperatures& temperatures,
+                        const MemoryState& memory, ModalParameters& modal);
 
 /// The frequency at which the drive loop of one gyro locks at rest, followed
 /// from T_0 to other beam temperatures. Where there are several stable locks it
@@ -56,8 +71,15 @@ StaticSolution static_solution(const Gyro& gyro, const ModalParameters& modal,
 /// - k_trim, so that the input-referred quadrature is `quadrature_trim`;
 /// - the demodulation reference psi_d = arg dr/dOmega;
 /// - the output offset, so that the zero-rate output is `offset_trim`.
-/// Throws SimulationFailure when the drive loop cannot lock at T_0.
+/// All of them are set with the spurious modes there. Throws SimulationFailure
+/// when the drive loop cannot lock at T_0, and for a spurious mode that would
+/// give it a second lock: e_x^2 Q_x/eta_s from 0.3, or |e_x| from eta_s (with
+/// Q_x at T_0).
 Gyro make_gyro(const DeviceParameters& device);
+
+/// Returns the unit as the factory would have trimmed it without its spurious
+/// modes.
+Gyro without_spurious_modes(const Gyro& gyro);
 
 /// Returns the input-referred quadrature at T_0 [rad/s] when k_trim is
 /// `stiffness_trim` [N/m] in place of the value trimmed for this unit. Throws

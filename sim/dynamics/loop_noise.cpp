@@ -67,7 +67,8 @@ NoiseSystem loop_noise(const Gyro& gyro, EnvelopeOde& ode, double T_beam,
   const Index n = loops.rebalance ? kEnvelopeNodes : kRebalance;
   NoiseSystem system{slope.topLeftCorner(n, n), MatrixXd::Zero(n, 8)};
 
-  const ModalParameters modal = modal_at(gyro, T_beam);
+  ModalParameters modal = modal_at(gyro, T_beam);
+  modal.spurious.clear();  // they are no part of this system
   const double w = loops.nominal_frequency + y(kPllIntegral);
   const NoiseDensities density = noise_densities(gyro.device, modal, T_beam, w);
   const BrownianInput force =

@@ -81,9 +81,7 @@ class LoopedResponse {
         amplitude_locked_(s.amplitude_locked),
         compliance_(
             inverse_of(dynamic_stiffness(modal, s.drive_frequency, {}))) {
-    const Matrix2cd slope = kI * modal.damping - 2 * s.drive_frequency *
-                                                     modal.mass *
-                                                     Matrix2cd::Identity();
+    const Matrix2cd slope = dynamic_stiffness_slope(modal, s.drive_frequency);
     answer_[0] = held(modal.coupling[kDrive], 1.0);
     answer_[1] = held(-(slope * s.amplitude), 0.0);
     answer_[2] = held(modal.coupling[kDamping], 0.0);
@@ -149,7 +147,7 @@ NoiseDensities noise_densities(const DeviceParameters& device,
       readout.amplifier_noise *
       (C_p + readout.feedback_capacitance + readout.input_capacitance);
   return {
-      4 * kBoltzmann * T * modal.damping,
+      4 * kBoltzmann * T * damping_at(modal, drive_frequency),
       4 * kBoltzmann * T * device.patches.loss_tangent * C_p / drive_frequency,
       amplifier * amplifier};
 }

@@ -70,24 +70,24 @@ ModalTable::Cubic ModalTable::cubic(double left, double right) const {
           (-16 * a + 32 * b - 32 * c + 16 * d) / 3};
 }
 
-// Against the exact parameters where a cubic through those points is worst. A
-// stiffness or damping force of 1e-6 of k is worth 1.6 deg/s.
-bool ModalTable::accurate(const Cubic& cubic, double left, double right) const {
+bool are_equal(const ModalChannels& have, const ModalChannels& want) {
   constexpr double kForce = 1e-13, kCoupling = 1e-9;  // relative
+  const ModalChannels error = (have - want).abs();
+  const double stiffness = kForce * want(kStiffnessXx);
+  const double damping = stiffness / std::sqrt(want(kStiffnessXx));
+  return error.segment<3>(kStiffnessXx).maxCoeff() <= stiffness &&
+         error.segment<3>(kDampingXx).maxCoeff() <= damping &&
+         (error.tail(2 * kPatchCount) <=
+          kCoupling * want.tail(2 * kPatchCount).abs().maxCoeff())
+             .all();
+}
+
+// Against the exact parameters where a cubic through those points is worst.
+bool ModalTable::accurate(const Cubic& cubic, double left, double right) const {
   for (const double s : {0.1, 0.5, 0.9}) {
-    const ModalChannels want = modal_channels(gyro_, std::lerp(left, right, s));
-    const ModalChannels error =
-        (cubic[0] + s * (cubic[1] + s * (cubic[2] + s * cubic[3])) - want)
-            .abs();
-    const double stiffness = kForce * want(kStiffnessXx);
-    const double damping = stiffness / std::sqrt(want(kStiffnessXx));
-    if (error.segment<3>(kStiffnessXx).maxCoeff() > stiffness ||
-        error.segment<3>(kDampingXx).maxCoeff() > damping ||
-        (error.tail(2 * kPatchCount) >
-         kCoupling * want.tail(2 * kPatchCount).abs().maxCoeff())
-            .any()) {
+    if (!are_equal(cubic[0] + s * (cubic[1] + s * (cubic[2] + s * cubic[3])),
+                   modal_channels(gyro_, std::lerp(left, right, s))))
       return false;
-    }
   }
   return true;
 }

@@ -33,9 +33,15 @@ Eigen::Matrix2d damping_of(const ModalChannels& channels);    // C/m [1/s]
 /// Returns Theta_p/m [N/(V kg)] along the direction of the patch.
 std::complex<double> coupling_of(const ModalChannels& channels, Patch patch);
 
-/// Returns the exact coefficients at beam temperature T [K].
+/// Returns the exact coefficients at beam temperature T [K], which those of
+/// spurious modes are no part of.
 ModalChannels modal_channels(const Gyro& gyro, double T,
                              const MemoryState& memory = {});
+
+/// Returns whether two sets of coefficients differ by less than what is worth
+/// 2e-7 deg/s: a stiffness or damping force of 1e-13 of k (1e-6 of k is worth
+/// 1.6 deg/s), couplings of 1e-9 of themselves.
+bool are_equal(const ModalChannels& have, const ModalChannels& want);
 
 /// The modal parameters of one gyro over beam temperature, tabulated on demand
 /// by continuous cubics on cells of kModalGrid. A cell is cut where the glass

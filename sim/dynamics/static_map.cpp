@@ -119,8 +119,15 @@ StaticMap::Channels StaticMap::channels(
     chebyshev_basis(Samples(rate.data(), n) / rate_limit_, over_rate);
   const MemoryResponse remembered(*this, piece, over_T, memory);
 
-  Channels sum{Lanes<kChannels>(n, kChannels), Lanes<kChannels>(n, kChannels)};
+  Channels sum{Lanes<kChannels>(n, kChannels), Lanes<kChannels>(n, kChannels),
+               Lanes<2>(without_ ? n : 0, 2)};
   Lanes<1> value(n);
+  for (int c = 0; without_ && c < 2; ++c) {
+    value.setConstant(piece.without_spurious(c, 0));
+    for (int j = 1; j < kTemperatureNodes; ++j)
+      value += piece.without_spurious(c, j) * over_T.col(j);
+    sum.without_spurious.col(c) = value;
+  }
   for (int c = 0; c < kChannels * (rate_degree_ + 1); ++c) {
     const int channel = c % kChannels, k = c / kChannels;
     value.setConstant(piece.coefficients(c, 0));
@@ -149,6 +156,17 @@ BeamSignal StaticMap::limited(const Eigen::Vector4d& v) const {
   const bool locked = v(3) <= voltage_limit_;
   const double share = locked ? 1.0 : voltage_limit_ / v(3);
   return {share * Complex(v(0), v(1)), v(kFrequency), share * v(3), locked};
+}
+
+// Where the voltage of the unit with spurious modes stands at its limit.
+Complex StaticMap::without_spurious(const Piece& piece, double T) const {
+  Lanes<1> x(1);
+  x(0) = (2 * T - piece.low - piece.high) / (piece.high - piece.low);
+  Lanes<kTemperatureNodes> over_T(1, kTemperatureNodes);
+  chebyshev_basis(x, over_T);
+  const Eigen::Vector3d v =
+      piece.without_spurious * over_T.row(0).matrix().transpose();
+  return std::min(1.0, voltage_limit_ / v(2)) * Complex(v(0), v(1));
 }
 
 StaticMap::Signals StaticMap::at(double T, double rate,
@@ -183,7 +201,12 @@ void StaticMap::sample(std::span<const double> T, std::span<const double> rate,
       const BeamSignal at_rest = limited(c.at_rest.row(row));
       signals[first + i] = {
           rate[first + i] == 0 ? at_rest : limited(c.at_rate.row(row)),
-          at_rest.demodulated};
+          at_rest.demodulated, at_rest.demodulated};
+      if (!without_) continue;
+      signals[first + i].without_spurious =
+          at_rest.amplitude_locked
+              ? Complex(c.without_spurious(row, 0), c.without_spurious(row, 1))
+              : without_spurious(piece, T[first + i]);
     }
   }
 }

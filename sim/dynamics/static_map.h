@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/dynamics/gyro.h"
+#include "sim/dynamics/smooth_modes.h"
 #include "sim/memory/memory_trajectory.h"
 
 namespace beamgyro::internal {
@@ -25,6 +26,10 @@ namespace beamgyro::internal {
 /// Chebyshev polynomials as the tolerance allows; docs/model.md says how many
 /// that are. What two states do together takes few, and what three do together
 /// none, unless the exact solution disagrees.
+///
+/// For a unit with spurious modes the housing is as warm as the beam, and the
+/// table also holds the response at rest without them. It follows their bumps
+/// by smaller pieces.
 class StaticMap {
  public:
   /// Tabulates temperatures in [low, high] [K] and rates up to +-`rate_limit`
@@ -44,6 +49,8 @@ class StaticMap {
   struct Signals {
     BeamSignal at_rate;
     std::complex<double> at_rest;  // demodulated, twin at rate 0 [rad/s]
+    // The same without_spurious_modes().
+    std::complex<double> without_spurious;
   };
   /// Returns the response at T [K], which must lie in the tabulated range (to
   /// 1e-6 K), and at a rate [rad/s] below the limit.
@@ -88,10 +95,14 @@ class StaticMap {
     MemoryBox memory = {};
     std::vector<int> terms = {};         // of each row
     std::vector<int> memory_terms = {};  // polynomials that have terms, from 1
+    // Re, Im of the demodulated signal, voltage x temperature node; at rest
+    // without spurious modes.
+    Eigen::MatrixXd without_spurious = {};
   };
   class MemoryResponse;
   struct Channels {  // one row a sample
     Lanes<kChannels> at_rate, at_rest;
+    Lanes<2> without_spurious;
   };
 
   static double weighted(const Eigen::Vector4d& error);
@@ -114,9 +125,12 @@ class StaticMap {
                         const MemoryState& memory) const;
   Eigen::Vector4d exact(const ModalParameters& modal, double rate,
                         double guess = 0);
+  ModalParameters modal(double T, const MemoryState& memory) const;
+  void add_without_spurious(Piece& piece);
   std::optional<Piece> fitted(double low, double high);
   double error(const Piece& piece, double memory_share = 1);
   void refine(double low, double high);
+  std::vector<double> rate_temperatures(double low, double high);
   int needed_rate_degree(double low, double high);
   Channels channels(const Piece& piece, std::span<const double> T,
                     std::span<const double> rate,
@@ -124,12 +138,17 @@ class StaticMap {
   Lanes<Eigen::Dynamic> memory_basis(const MemoryBox& box, int axis,
                                      std::span<const MemoryState> memory) const;
   BeamSignal limited(const Eigen::Vector4d& channels) const;
+  std::complex<double> without_spurious(const Piece& piece, double T) const;
   const Piece& piece_at(double T) const;
 
   Gyro gyro_;
   MemoryBounds bounds_;
   std::array<int, kMemoryAxes> memory_nodes_ = {1, 1, 1};  // of all pieces
   LockPath path_;
+  // Of a unit with spurious modes, and the path of the one without.
+  std::optional<Gyro> without_;
+  LockPath without_path_;
+  std::optional<SmoothModes> smooth_;
   double rate_limit_, tolerance_;
   double voltage_limit_;
   int rate_degree_ = 0;

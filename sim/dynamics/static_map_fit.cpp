@@ -12,6 +12,7 @@
 
 #include "config/units.h"
 #include "sim/dynamics/chebyshev.h"
+#include "sim/dynamics/spurious_crossing.h"
 #include "sim/dynamics/static_map.h"
 #include "sim/numerics/simulation_failure.h"
 
@@ -31,6 +32,7 @@ int mirror_of(int index, const std::array<int, 3>& nodes) {
 
 constexpr double kNarrowGlass = 0.1;     // [K], where two polynomials do
 constexpr double kSmallestPiece = 1e-3;  // [K]
+constexpr double kMargin = 1e-3;         // beyond both ends [K]
 
 // The values at rate `i` and memory node `m` of a matrix of lacking().
 using RateBlock = Eigen::Matrix<double, 4, Eigen::Dynamic>;
@@ -54,6 +56,11 @@ StaticMap::StaticMap(const Gyro& gyro, double low, double high,
       voltage_limit_(gyro.loop.voltage_limit) {
   // The limit is a kink: the table holds the unlimited response, and at()
   // scales it, which is exact because the beam is linear.
+  if (gyro_.spurious_reference > 0) {
+    without_ = without_spurious_modes(gyro_);
+    without_->loop.voltage_limit = std::numeric_limits<double>::infinity();
+    if (!bounds_) smooth_.emplace(gyro_, low - kMargin, high + kMargin);
+  }
   gyro_.loop.voltage_limit = std::numeric_limits<double>::infinity();
   const MemoryBox whole = memory_box(low, high);
   const std::array<double, 3> places = {low, 0.5 * (low + high), high};
@@ -65,7 +72,6 @@ StaticMap::StaticMap(const Gyro& gyro, double low, double high,
 }
 
 void StaticMap::tabulate(double low, double high) {
-  constexpr double kMargin = 1e-3;  // [K]
   low -= kMargin;
   high += kMargin;
   rate_degree_ = needed_rate_degree(low, high);
@@ -96,7 +102,7 @@ int StaticMap::needed_memory_nodes(std::span<const double> temperatures,
       for (int k = 0; k < count; ++k) {
         MemoryPoint place{};
         place[i] = chebyshev_node(k, count);
-        values.col(k) = exact(modal_at(gyro_, T, box.state(place)), 0,
+        values.col(k) = exact(modal(T, box.state(place)), 0,
                               k > 0 ? values(kFrequency, k - 1) : 0);
       }
       const Eigen::MatrixXd coefficients = values * transform;
@@ -118,12 +124,34 @@ Eigen::Vector4d StaticMap::exact(const ModalParameters& modal, double rate,
           signal.drive_frequency, signal.drive_voltage};
 }
 
+ModalParameters StaticMap::modal(double T, const MemoryState& memory) const {
+  return smooth_ ? smooth_->at(gyro_, {T, T}) : modal_at(gyro_, T, memory);
+}
+
+// Where the response is fitted to rates: the ends, the middle, and the flank of
+// each bump.
+std::vector<double> StaticMap::rate_temperatures(double low, double high) {
+  std::vector<double> temperatures = {low, 0.5 * (low + high), high};
+  if (!smooth_) return temperatures;
+  const auto drive_frequency = [&](double T) {
+    return beam_signal(*without_, smooth_->at(*without_, {T, T}), {},
+                       without_path_)
+        .drive_frequency;
+  };
+  for (const SpuriousCrossing& crossing :
+       spurious_crossings(gyro_, low, high, drive_frequency)) {
+    const double flank = crossing.temperature + 0.3 * crossing.width;
+    if (flank < high) temperatures.push_back(flank);
+  }
+  return temperatures;
+}
+
 int StaticMap::needed_rate_degree(double low, double high) {
   if (rate_limit_ == 0) return 0;
   const Eigen::MatrixXd transform = chebyshev_transform(kMaxRates);
   int degree = 0;
-  for (const double T : {low, 0.5 * (low + high), high}) {
-    const ModalParameters at_T = modal_at(gyro_, T, memory_box(T, T).state({}));
+  for (const double T : rate_temperatures(low, high)) {
+    const ModalParameters at_T = modal(T, memory_box(T, T).state({}));
     Eigen::Matrix<double, kChannels, kMaxRates> values;
     for (int i = 0; i < kMaxRates; ++i) {
       values.col(i) = exact(at_T, rate_limit_ * chebyshev_node(i, kMaxRates),
@@ -157,7 +185,26 @@ std::optional<StaticMap::Piece> StaticMap::fitted(double low, double high) {
     if (!add_memory(piece)) return {};
     prune(piece);
   }
+  if (without_) add_without_spurious(piece);
   return piece;
+}
+
+// The response without spurious modes is smoother than that with them, which
+// the probes compare.
+void StaticMap::add_without_spurious(Piece& piece) {
+  Eigen::Matrix<double, 3, kTemperatureNodes> values;
+  for (int j = 0; j < kTemperatureNodes; ++j) {
+    const double T =
+        0.5 * (piece.low + piece.high) +
+        0.5 * (piece.high - piece.low) * chebyshev_node(j, kTemperatureNodes);
+    const BeamSignal signal = beam_signal(
+        *without_,
+        smooth_ ? smooth_->at(*without_, {T, T}) : modal_at(*without_, T), {},
+        without_path_);
+    values.col(j) << signal.demodulated.real(), signal.demodulated.imag(),
+        signal.drive_voltage;
+  }
+  piece.without_spurious = values * in_temperature_;
 }
 
 // Adds the expansion of what the piece lacks at `nodes` of the memory states
@@ -210,7 +257,7 @@ std::optional<Eigen::MatrixXd> StaticMap::lacking(
         const double T =
             0.5 * (piece.low + piece.high) +
             0.5 * (piece.high - piece.low) * chebyshev_node(j, count);
-        if (i == 0) at_T = modal_at(gyro_, T, state);
+        if (i == 0) at_T = modal(T, state);
         Eigen::Vector4d have = Eigen::Vector4d::Zero();
         double guess = i > 0 ? at_last_rate(j) : m > 0 ? at_first_state(j) : 0;
         if (!is_first) {
@@ -284,7 +331,7 @@ double StaticMap::error(const Piece& piece, double memory_share) {
     MemoryPoint place = kStates[i];
     for (double& x : place) x *= memory_share;
     const MemoryState memory = piece.memory.state(place);
-    const ModalParameters at_T = modal_at(gyro_, T, memory);
+    const ModalParameters at_T = modal(T, memory);
     double guess = 0;
     for (const double rate : {0.0, -0.97 * rate_limit_, rate_limit_}) {
       const Eigen::Vector4d want = exact(at_T, rate, guess);

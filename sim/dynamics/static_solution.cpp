@@ -79,22 +79,41 @@ void rebalance(const Problem& problem, const Matrix2cd& slope, Response& r) {
   r.gain_slope = charge_of(readout, db) * per_gain;
 }
 
-Response response(const Problem& problem, double omega) {
-  const ModalParameters& modal = problem.modal;
-  const Matrix2cd S = stiffness_at(omega, modal.mass, problem.forces);
-  Response r;
-  r.omega = omega;
-  r.inverse << S(1, 1), -S(0, 1), -S(1, 0), S(0, 0);
-  r.per_determinant = reciprocal(S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0));
-  r.inverse *= r.per_determinant;
+// dS/domega of the two modes alone.
+Matrix2cd two_mode_slope(const Problem& problem, double omega) {
+  const double mass = problem.modal.mass;
   Matrix2cd slope;
-  slope.real() = -2 * omega * modal.mass * Matrix2d::Identity();
-  slope.imag() = modal.mass * problem.forces.velocity;
+  slope.real() = -2 * omega * mass * Matrix2d::Identity();
+  slope.imag() = mass * problem.forces.velocity;
+  return slope;
+}
+
+// Fills in what follows from S^-1 and `slope`, dS/domega.
+void respond(const Problem& problem, const Matrix2cd& slope, Response& r) {
+  const ModalParameters& modal = problem.modal;
   r.u = r.inverse * modal.coupling[kDrive];
   r.du = -r.inverse * (slope * r.u);
   if (problem.rebalance) rebalance(problem, slope, r);
   r.lock = problem.turn * charge_of(modal.coupling[kFeedback], r.u);
   r.lock_slope = problem.turn * charge_of(modal.coupling[kFeedback], r.du);
+}
+
+Response response(const Problem& problem, double omega) {
+  const ModalParameters& modal = problem.modal;
+  Matrix2cd S = stiffness_at(omega, modal.mass, problem.forces);
+  Matrix2cd slope = two_mode_slope(problem, omega);
+  if (!modal.spurious.empty()) {
+    const SpuriousStiffness spurious =
+        spurious_stiffness(modal.spurious, omega);
+    S += spurious.value;
+    slope += spurious.slope;
+  }
+  Response r;
+  r.omega = omega;
+  r.inverse << S(1, 1), -S(0, 1), -S(1, 0), S(0, 0);
+  r.per_determinant = reciprocal(S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0));
+  r.inverse *= r.per_determinant;
+  respond(problem, slope, r);
   return r;
 }
 
@@ -171,9 +190,18 @@ struct LockCurve {
   }
 };
 
+// Spurious modes count with the stiffness that they have at the response's
+// frequency: they are coupled too weakly to make a lock of their own.
+LockCurve lock_curve(const Problem& problem, const Response& r) {
+  if (problem.modal.spurious.empty()) return {problem, r};
+  Response two_modes = r;
+  respond(problem, two_mode_slope(problem, r.omega), two_modes);
+  return {problem, two_modes};
+}
+
 // Returns whether there is another stable frequency.
 bool has_rival(const Problem& problem, const Lock& lock) {
-  const LockCurve curve(problem, lock.response);
+  const LockCurve curve = lock_curve(problem, lock.response);
   const auto& [c0, c1, c2, c3] = curve.cubic;  // c0 is zero but for roundoff
   const double discriminant = c2 * c2 - 4 * c1 * c3;
   if (!(discriminant >= 0)) return false;
@@ -188,7 +216,7 @@ bool has_rival(const Problem& problem, const Lock& lock) {
 // Returns all stable frequencies; `omega` is near the modes.
 std::vector<Lock> stable_locks(const Problem& problem, double omega,
                                double half_width) {
-  const LockCurve curve(problem, response(problem, omega));
+  const LockCurve curve = lock_curve(problem, response(problem, omega));
   // In half widths and divided by the highest power that is there.
   std::array<double, 4> c = curve.cubic;
   double scale = 1, largest = 0;
@@ -281,7 +309,24 @@ Eigen::Matrix2d euler_force(double gain, const CaseMotion& motion) {
 
 Matrix2cd dynamic_stiffness(const ModalParameters& modal, double omega,
                             const CaseMotion& motion) {
-  return stiffness_at(omega, modal.mass, forces_of(modal, motion));
+  Matrix2cd S = stiffness_at(omega, modal.mass, forces_of(modal, motion));
+  if (!modal.spurious.empty())
+    S += spurious_stiffness(modal.spurious, omega).value;
+  return S;
+}
+
+Matrix2cd dynamic_stiffness_slope(const ModalParameters& modal, double omega) {
+  Matrix2cd slope = Complex(0, 1) * modal.damping -
+                    2 * omega * modal.mass * Matrix2cd::Identity();
+  if (!modal.spurious.empty())
+    slope += spurious_stiffness(modal.spurious, omega).slope;
+  return slope;
+}
+
+Matrix2d damping_at(const ModalParameters& modal, double omega) {
+  if (modal.spurious.empty()) return modal.damping;
+  return modal.damping +
+         spurious_stiffness(modal.spurious, omega).value.imag() / omega;
 }
 
 StaticSolution static_solution(const ModalParameters& modal,

@@ -57,10 +57,18 @@ struct StaticSolution {
   bool only_lock;         // false when there is another stable lock
 };
 
-/// S(w) of (2.10): K + N - w^2 M + i w (C + G), with the
-/// forces of mode_forces() and euler_force().
+/// S(w) of (2.10): K + N - w^2 M + i w (C + G) + dK(w), with the forces of
+/// mode_forces() and euler_force() and the stiffness dK of spurious modes
+/// (13.3).
 Eigen::Matrix2cd dynamic_stiffness(const ModalParameters& modal, double omega,
                                    const CaseMotion& motion);
+
+/// Returns dS/dw at rest.
+Eigen::Matrix2cd dynamic_stiffness_slope(const ModalParameters& modal,
+                                         double omega);
+
+/// Returns C + Im dK(w)/w, what takes energy from the two modes [N s/m].
+Eigen::Matrix2d damping_at(const ModalParameters& modal, double omega);
 
 /// Returns the exact steady state with the drive loop closed: the frequency at
 /// which delta = arg(-Theta_F^T u) + 90 deg - phi_pll is zero, u = S^-1 Theta_D

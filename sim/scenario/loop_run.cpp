@@ -29,6 +29,7 @@ LoopRun::LoopRun(const ScenarioPlan& scenario, const Gyro& gyro,
       recorder_(scenario, gyro.device, key,
                 noise_ ? noise_->rms() : RunNoise{}) {
   if (memory_) added_.emplace(gyro, *memory_);
+  if (!gyro.device.spurious_modes.empty()) spurious_.emplace(gyro);
   if (motion_.has_other_axes())
     filtered_.emplace(gyro, motion_, scenario.output_rate);
 }
@@ -39,6 +40,7 @@ Recording LoopRun::block(RunSamples&& samples) {
     memory_->sample(samples.time, samples.temperature[kBeam], samples.memory);
   }
   fill_unpowered_bias(samples);
+  if (spurious_) spurious_->fill(samples);
   motion_.sample(samples);
   if (noise_) noise_->add_next(samples);
   return recorder_.block(std::move(samples));
@@ -50,7 +52,7 @@ void LoopRun::fill_unpowered_bias(RunSamples& samples) {
   for (std::size_t k = 0; k < samples.time.size(); ++k)
     if (!powered_at(scenario_.powered, samples.time[k])) unpowered.push_back(k);
   if (unpowered.empty()) return;
-  if (filtered_) {
+  if (filtered_ || needs_exact_solution(gyro_)) {
     fill_moving(unpowered, samples);
   } else {
     fill_still(unpowered, samples);
@@ -60,10 +62,12 @@ void LoopRun::fill_unpowered_bias(RunSamples& samples) {
 void LoopRun::fill_moving(const std::vector<std::size_t>& unpowered,
                           RunSamples& samples) {
   for (const std::size_t k : unpowered) {
-    CaseMotion motion = filtered_->at(k);
+    CaseMotion motion = filtered_ ? filtered_->at(k) : CaseMotion{};
     motion.z = 0;
     const ModalParameters modal =
-        modal_at(gyro_, samples.temperature[kBeam][k],
+        modal_at(gyro_,
+                 SpuriousTemperatures{samples.temperature[kBeam][k],
+                                      samples.temperature[kHousing][k]},
                  memory_ ? samples.memory[k] : MemoryState{});
     samples.bias[k] =
         electronics_at(gyro_, samples.temperature[kBoard][k])

@@ -9,6 +9,7 @@
 #include "sim/dynamics/modal_table.h"
 #include "sim/scenario/filtered_motion.h"
 #include "sim/scenario/sensing_noise.h"
+#include "sim/scenario/spurious_bias.h"
 
 namespace beamgyro::internal {
 
@@ -44,6 +45,7 @@ class LoopRun {
   std::optional<ModalMemory> added_;
   LockPath path_;
   std::optional<FilteredMotion> filtered_;  // with axes beside the input axis
+  std::optional<SpuriousBias> spurious_;
   std::optional<SensingNoise> noise_;
   RunRecorder recorder_;
 };

@@ -19,6 +19,7 @@
 #include "sim/scenario/run_temperatures.h"
 #include "sim/scenario/sensing_noise.h"
 #include "sim/scenario/simulation.h"
+#include "sim/scenario/spurious_bias.h"
 #include "sim/signal/readout.h"
 #include "sim/thermal/thermal_trajectory.h"
 
@@ -109,6 +110,11 @@ class FilteredRate {
   std::size_t taken_ = 0;
 };
 
+std::optional<SpuriousBias> spurious_bias_of(const Gyro& gyro) {
+  if (gyro.device.spurious_modes.empty()) return std::nullopt;
+  return std::optional<SpuriousBias>(std::in_place, gyro);
+}
+
 // Response to the rate alone, from a table over all temperatures and rates of
 // the run.
 class RateResponse {
@@ -120,7 +126,8 @@ class RateResponse {
       : board_(gyro),
         filter_(gyro.device.readout.corner_frequency),
         filtered_(motion, filter_, grid),
-        map_(map_of(gyro, beam, memory, filtered_.fastest())) {}
+        map_(map_of(gyro, beam, memory, filtered_.fastest())),
+        spurious_(spurious_bias_of(gyro)) {}
 
   void operator()(RunSamples& samples) {
     const Samples& beam = samples.temperature[kBeam];
@@ -133,8 +140,12 @@ class RateResponse {
           std::span(beam).subspan(k, count), std::span(rate_).subspan(k, count),
           part_of(samples.memory, k, count), std::span(signals).first(count));
       for (std::size_t i = 0; i < count; ++i) {
-        write_sample(board_.at(samples.temperature[kBoard][k + i]),
-                     signals[i].at_rate, signals[i].at_rest, k + i, samples);
+        const Electronics board = board_.at(samples.temperature[kBoard][k + i]);
+        write_sample(board, signals[i].at_rate, signals[i].at_rest, k + i,
+                     samples);
+        if (!spurious_) continue;
+        samples.spurious_bias[k + i] = spurious_->of(
+            signals[i].at_rest, signals[i].without_spurious, board);
       }
     }
   }
@@ -158,15 +169,20 @@ class RateResponse {
   OutputFilter filter_;
   FilteredRate filtered_;
   StaticMap map_;
+  std::optional<SpuriousBias> spurious_;
   Samples rate_;
 };
 
-// Response with cross rates and accelerations: the exact solution for every
-// sample, with the motion of the case behind the output filter.
+// Response with cross rates and accelerations, or to more than the beam's
+// temperature: the exact solution for every sample, with the motion of the case
+// behind the output filter.
 class MotionResponse {
  public:
   MotionResponse(const Gyro& gyro, const Motion& motion, double output_rate)
-      : gyro_(gyro), board_(gyro), motion_(gyro, motion, output_rate) {}
+      : gyro_(gyro),
+        board_(gyro),
+        motion_(gyro, motion, output_rate),
+        spurious_(spurious_bias_of(gyro)) {}
 
   void operator()(RunSamples& samples) {
     motion_.next(samples.time.size());
@@ -175,9 +191,11 @@ class MotionResponse {
 
  private:
   void write(std::size_t k, RunSamples& samples) {
-    const ModalParameters modal =
-        modal_at(gyro_, samples.temperature[kBeam][k],
-                 samples.memory.empty() ? MemoryState{} : samples.memory[k]);
+    const SpuriousTemperatures temperatures = {
+        samples.temperature[kBeam][k], samples.temperature[kHousing][k]};
+    const MemoryState memory =
+        samples.memory.empty() ? MemoryState{} : samples.memory[k];
+    const ModalParameters modal = modal_at(gyro_, temperatures, memory);
     CaseMotion motion = motion_.at(k);
     const BeamSignal at_rate = beam_signal(gyro_, modal, motion, path_);
     Complex at_rest = at_rate.demodulated;
@@ -187,14 +205,19 @@ class MotionResponse {
           beam_signal(gyro_, modal, motion, path_, at_rate.drive_frequency)
               .demodulated;
     }
-    write_sample(board_.at(samples.temperature[kBoard][k]), at_rate, at_rest, k,
-                 samples);
+    const Electronics board = board_.at(samples.temperature[kBoard][k]);
+    write_sample(board, at_rate, at_rest, k, samples);
+    if (!spurious_) return;
+    motion.z = 0;
+    samples.spurious_bias[k] =
+        spurious_->at(at_rest, temperatures, memory, motion, board);
   }
 
   const Gyro& gyro_;
   Board board_;
   LockPath path_;
   FilteredMotion motion_;
+  std::optional<SpuriousBias> spurious_;
 };
 
 using StaticResponse = std::function<void(RunSamples& samples)>;
@@ -203,7 +226,8 @@ StaticResponse static_response(const Gyro& gyro, const Motion& motion,
                                const TemperatureSpan& beam,
                                const MemoryTrajectory* memory,
                                const SampleGrid& grid) {
-  if (motion.has_other_axes()) return MotionResponse(gyro, motion, grid.rate);
+  if (motion.has_other_axes() || needs_exact_solution(gyro))
+    return MotionResponse(gyro, motion, grid.rate);
   return RateResponse(gyro, motion, beam, memory, grid);
 }
 
@@ -253,6 +277,8 @@ void simulate_quasistatic(const ScenarioPlan& given, const Gyro& gyro,
     for (Samples* column : {&samples.output, &samples.quadrature, &samples.bias,
                             &samples.drive_frequency, &samples.drive_voltage})
       column->resize(count);
+    if (!gyro.device.spurious_modes.empty())
+      samples.spurious_bias.resize(count);
     samples.locked.resize(count);
     for (std::size_t node = 0; node < kThermalNodeCount; ++node) {
       samples.temperature[node].resize(count);

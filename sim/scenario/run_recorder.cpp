@@ -215,6 +215,9 @@ void RunRecorder::add_truth(Recording& block, RunSamples& samples) const {
     samples.motion[i] = scaled(std::move(samples.motion[i]), 1 / kDegree);
   add(block, "true_rate", std::move(samples.motion[kRateZ]));
   add(block, "true_bias", scaled(std::move(samples.bias), 1 / kDegree));
+  if (!samples.spurious_bias.empty())
+    add(block, "true_spurious_bias",
+        scaled(std::move(samples.spurious_bias), 1 / kDegree));
   if (device_.loop_channels)
     add(block, "true_drive_frequency", std::move(samples.drive_frequency));
   for (std::size_t i = kRateX; i < kCaseAxisCount; ++i)

@@ -34,8 +34,10 @@ struct RunSamples {
   std::vector<double> time;                // [s]
   std::vector<double> output, quadrature;  // rate-equivalent [rad/s]
   std::vector<double> bias;                // output of the twin [rad/s]
-  std::vector<double> drive_frequency;     // [Hz]
-  std::vector<double> drive_voltage;       // [V]
+  // Its part by spurious modes [rad/s]; empty for a unit without.
+  std::vector<double> spurious_bias;
+  std::vector<double> drive_frequency;  // [Hz]
+  std::vector<double> drive_voltage;    // [V]
   // Noise of these two channels; empty without.
   std::vector<double> drive_frequency_noise;  // [Hz]
   std::vector<double> drive_voltage_noise;    // [V]

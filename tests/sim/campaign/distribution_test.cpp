@@ -54,6 +54,31 @@ TEST(Distribution, OneEndAloneCutsOneTail) {
   for (const double u : kShares) EXPECT_NEAR(phi(quantile(d, u)), u / 2, 1e-14);
 }
 
+TEST(Distribution, EitherSignHasBothWithHalfTheProbability) {
+  Distribution d;
+  d.kind = Distribution::Kind::kLognormal;
+  d.centre = 3e-4;
+  d.sigma = 0.6;
+  const Distribution magnitude = d;
+  d.either_sign = true;
+  for (const double u : {0.01, 0.3, 0.7, 0.99}) {
+    EXPECT_EQ(quantile(d, 0.5 * u), -quantile(magnitude, u));
+    EXPECT_NEAR(quantile(d, 0.5 + 0.5 * u), quantile(magnitude, u), 1e-17);
+  }
+  EXPECT_GT(quantile(d, 0.5), 0);
+}
+
+TEST(Distribution, PoissonWeightsAreThoseOfTheSeriesOfTheExponential) {
+  const std::vector<double> weights = poisson_weights(8, 60);
+  double sum = 0, mean = 0;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    sum += weights[k];
+    mean += static_cast<double>(k) * weights[k];
+  }
+  EXPECT_NEAR(sum, std::exp(8), 1e-11);
+  EXPECT_NEAR(mean / sum, 8, 1e-13);
+}
+
 // Beside 1 an upper tail of 1e-9 keeps seven digits, mirrored it keeps all.
 TEST(Distribution, TheUpperTailIsAsExactAsTheLower) {
   const Distribution upper = normal(0, 1, 6, 7), lower = normal(0, 1, -7, -6);

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+
+#include "sim/dynamics/gyro.h"
+#include "sim/scenario/run_recorder.h"
+
+namespace beamgyro::internal {
+
+/// Returns whether a static response depends on more than the temperature of
+/// the beam because of spurious modes: on that of the housing, which some of
+/// them follow, or on the memory of the unit, which moves their crossings. A
+/// StaticMap does not hold it then.
+bool needs_exact_solution(const Gyro& gyro);
+
+/// The part of the zero-rate output that comes from the spurious modes of a
+/// unit: its output less that of the same unit without them, both trimmed
+/// alike.
+class SpuriousBias {
+ public:
+  /// `gyro`, which has spurious modes, must outlive the object.
+  explicit SpuriousBias(const Gyro& gyro)
+      : gyro_(gyro), without_(without_spurious_modes(gyro)) {}
+
+  /// Returns it [rad/s] for the demodulated signals at rest [rad/s] with and
+  /// without spurious modes.
+  double of(Complex with, Complex without, const Electronics& board) const {
+    return ((with - without) * board.turn).real() + gyro_.offset -
+           without_.offset;
+  }
+
+  /// The same by the exact solution of the unit without. `motion` has no rate
+  /// about the input axis.
+  double at(Complex with, const SpuriousTemperatures& temperatures,
+            const MemoryState& memory, const CaseMotion& motion,
+            const Electronics& board);
+
+  /// Writes samples.spurious_bias for a unit at rest.
+  void fill(RunSamples& samples);
+
+ private:
+  void fill_exactly(RunSamples& samples);
+
+  const Gyro& gyro_;
+  Gyro without_;
+  LockPath path_, path_without_;
+};
+
+}  // namespace beamgyro::internal
