@@ -75,8 +75,8 @@ def test_curves_of_others_are_described():
 def test_devices_that_do_not_work_are_named(tmp_path):
     campaign = CAMPAIGN.read_text().replace(
         "../", f"{SCENARIOS}/").replace(
-        "[tolerances]", '[tolerances]\n"beam.length_m" = { normal = { mean = '
-        "0, sigma = 0.04 } }")
+        "[tolerances]", '[tolerances]\n"air.inverse_Q" = { normal = { mean = '
+        "1e-4, sigma = 2e-4 } }")
     (tmp_path / "c.toml").write_text(campaign)
     with pytest.warns(bg.BeamgyroWarning, match="of 8 devices do not work"):
         curves = bg.characterise(tmp_path / "c.toml", 25.0, devices=8)
