@@ -9,12 +9,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "api/beam_temperatures.h"
 #include "api/scenario_state.h"
-#include "config/option_message.h"
 #include "config/overrides.h"
 #include "sim/dynamics/characteristic.h"
 #include "sim/scenario/simulation_input.h"
-#include "sim/thermal/thermal_parameters.h"
 
 namespace beamgyro {
 namespace {
@@ -29,18 +28,6 @@ Device device_of(internal::LoadedDevice loaded, std::string name,
   state->overrides = std::move(overrides);
   state->device = loaded.device;
   return Device(std::move(state));
-}
-
-void require_material_temperatures(std::span<const double> temperatures) {
-  if (temperatures.empty())
-    throw std::invalid_argument("no temperatures; expected at least one");
-  for (const double celsius : temperatures)
-    if (!internal::kMaterialTemperatures.contains(celsius))
-      throw internal::option_error(
-          "{}: {} degC is beyond {:g} to {:g} degC, {}",
-          internal::NamedOption{"beam_temperature"}, celsius,
-          internal::kMaterialTemperatures.low,
-          internal::kMaterialTemperatures.high, internal::kMaterialReason);
 }
 
 }  // namespace
@@ -96,7 +83,7 @@ std::vector<double> even_temperatures(double start, double stop, double step) {
 
 Characteristic characterise(const Device& device,
                             std::span<const double> temperatures_degC) {
-  require_material_temperatures(temperatures_degC);
+  internal::require_material_temperatures(temperatures_degC);
   const internal::DeviceState& state = device.content();
   Characteristic found;
   found.temperature.assign(temperatures_degC.begin(), temperatures_degC.end());
@@ -110,16 +97,7 @@ Characteristic characterise(const Device& device,
     for (std::size_t i = 0; i < row.size(); ++i)
       found.columns[i].values.push_back(row[i]);
   found.csv = internal::characteristic_csv(temperatures_degC, rows);
-  const bool is_linear =
-      std::ranges::all_of(temperatures_degC, [](double celsius) {
-        return internal::kLinearCeramic.contains(celsius);
-      });
-  if (!is_linear)
-    found.warnings.push_back(fmt::format(
-        "{}: beyond {:g} to {:g} degC the ceramic's coefficients keep the "
-        "values of the nearest end",
-        state.name, internal::kLinearCeramic.low,
-        internal::kLinearCeramic.high));
+  found.warnings = internal::ceramic_warnings(temperatures_degC, state.name);
   return found;
 }
 

@@ -18,6 +18,7 @@
 #include "config/file_error.h"
 #include "dataset/files/open_file.h"
 #include "dataset/log/recording_csv.h"
+#include "dataset/netcdf/curves_file.h"
 #include "dataset/netcdf/recording_reader.h"
 #include "dataset/set/manifest.h"
 #include "dataset/set/shard/shard.h"
@@ -51,6 +52,7 @@ constexpr KnownKind kKnownKinds[] = {
      "beamgyro info, allan, train, compensate or validate"},
     {FileKind::kCharacteristic, "a table that characterise wrote",
      "beamgyro plot"},
+    {FileKind::kCurves, "the curves of a population", "beamgyro plot"},
     {FileKind::kResult, "a result that --json wrote", "beamgyro plot"},
     {FileKind::kProfile, "a profile over time",
      "the key \"file\" of a scenario"},
@@ -110,6 +112,7 @@ std::vector<FileKind> kinds_of_text(const fs::path& path,
   const std::string_view line = head.substr(0, head.find_first_of("\r\n"));
   if (line.starts_with("temperature_degC,bias_deg_per_s"))
     return {FileKind::kCharacteristic};
+  if (line.starts_with("temperature_degC,device_")) return {FileKind::kCurves};
   if (line.starts_with("time_s,")) return {FileKind::kProfile};
   if (is_recording_csv(line))
     return {FileKind::kRecordingTable, FileKind::kRecording};
@@ -131,6 +134,7 @@ std::vector<FileKind> found_kinds(const fs::path& path) {
   const std::string head = head_of(path);
   if (!head.starts_with("\x89HDF")) return kinds_of_text(path, head);
   if (head.find(kRecordingFiletype) != head.npos) return {FileKind::kRecording};
+  if (head.find(kCurvesFiletype) != head.npos) return {FileKind::kCurves};
   if (head.find(kSetFiletype) != head.npos) return {FileKind::kSetFile};
   return {};
 }

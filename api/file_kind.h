@@ -21,7 +21,8 @@ enum class FileKind {
   kSet,
   kCompensator,
   kRecordingTable,  // a recording as CSV
-  kCharacteristic,  // what characterise writes
+  kCharacteristic,  // what characterise writes of a device
+  kCurves,          // what it writes of a campaign
   kResult,          // what --json writes
   kProfile,         // a CSV that a scenario names
   kLog,             // any text: no file is recognised as one

@@ -82,11 +82,18 @@ constexpr int kWorkFailed = 1, kWrongInput = 2;
 
 /// Options whose names on the command line are not those of the library.
 constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
-    {"axes", "axis"},        {"chamber_degC", "chamber"},
-    {"column", "dataset"},   {"cross_validation", "cv"},
-    {"from_s", "from"},      {"hold_min", "hold"},
-    {"range_degC", "range"}, {"residual_deg_per_s", "residual"},
-    {"start_degC", "start"}, {"to_s", "to"}};
+    {"axes", "axis"},
+    {"chamber_degC", "chamber"},
+    {"column", "dataset"},
+    {"cross_validation", "cv"},
+    {"from_s", "from"},
+    {"hold_min", "hold"},
+    {"range_degC", "range"},
+    {"residual_deg_per_s", "residual"},
+    {"round_deg_per_s", "round"},
+    {"start_degC", "start"},
+    {"to_s", "to"},
+    {"zero_at_degC", "zero-at"}};
 
 /// Returns "--name value" for the option that the library calls `name`.
 std::string on_command_line(std::string_view name, std::string_view value) {

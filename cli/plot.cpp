@@ -57,14 +57,16 @@ void add_plot(CommandLine& program) {
       "plot", kFiles,
       "Draws a file that this program wrote; needs Python with matplotlib",
       plot);
-  command.list({"FILE", "",
-                "Recording, table of `characterise`, compensator, set, or "
-                "what --json of allan, validate, plan or sensitivity "
-                "wrote"},
-               arguments.files);
-  command.reads({{FileKind::kRecording, FileKind::kCharacteristic,
-                  FileKind::kCompensator, FileKind::kSet, FileKind::kResult},
-                 {FileKind::kSetFile}});
+  command.list(
+      {"FILE", "",
+       "Recording, table or curves of `characterise`, compensator, set, "
+       "or what --json of allan, validate, plan or sensitivity "
+       "wrote"},
+      arguments.files);
+  command.reads(
+      {{FileKind::kRecording, FileKind::kCharacteristic, FileKind::kCurves,
+        FileKind::kCompensator, FileKind::kSet, FileKind::kResult},
+       {FileKind::kSetFile}});
   command.text({"-o,--output", "PICTURE.png|svg", "Picture to write",
                 "a window for each file"},
                arguments.output);

@@ -40,6 +40,7 @@ enum RandomPurpose : std::uint32_t {
   kQualifiedRunSeedStream,
   kQualifiedRunOrderStream,
   kQualifiedCampaignStream,
+  kHalfSplitStream,
 };
 
 /// Returns the inverse of the normal distribution function. Throws

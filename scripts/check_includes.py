@@ -38,8 +38,8 @@ ALL = [*BASE, *DATASET, *SIM, *COMPENSATION]
 
 # What each room may include besides itself.
 MAY_INCLUDE = {
-    "config": {"include"}, "linear_algebra": set(), "statistics": set(),
-    "random": set(),
+    "config": {"include"}, "linear_algebra": set(), "random": set(),
+    "statistics": {"linear_algebra", "random"},
     "parallel": set(), "include": set(),
     **in_order(DATASET, ["config", "include"]),
     **in_order(SIM, [*BASE, *DATASET]),

@@ -28,6 +28,7 @@ train {0}/train.h5 --held-out {0}/held_out.h5 \
 --model scenarios/models/spline.toml -o {0}/spline.json
 compensate {0}/spline.json {0}/warm_up.h5 -o {0}/compensated.h5
 characterise scenarios/devices/nominal.toml -o {0}/nominal.csv
+characterise scenarios/campaigns/population.toml --devices 60 -o {0}/population.h5
 allan {0}/rest.h5 --json {0}/allan.json
 generate scenarios/campaigns/small.toml -o {0}/small
 sensitivity scenarios/campaigns/small.toml --samples 256 \
@@ -43,6 +44,7 @@ validate scenarios/models/cubic.toml --spec specs/uav.toml \
 DRAWN = {
     "recording": "compensated.h5",
     "table": "nominal.csv",
+    "curves": "population.h5",
     "compensator": "spline.json",
     "allan": "allan.json",
     "set": "small",

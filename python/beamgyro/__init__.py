@@ -22,10 +22,13 @@ from typing import Any
 from beamgyro._analysis import allan, plan, sensitivity
 from beamgyro._compensation import Compensator, compensate
 from beamgyro._core import version as __version__
+from beamgyro._curves import (HalfSplit, area_metric, characterise,
+                              curve_figures, half_split)
 from beamgyro._dataset import open_recording, save_recording
-from beamgyro._device import Device, characterise
+from beamgyro._device import Device
 from beamgyro._export import export
-from beamgyro._results import AllanResult, PlanResult, SensitivityResult
+from beamgyro._results import (AllanResult, CurveFiguresResult, PlanResult,
+                               SensitivityResult)
 from beamgyro._scenario import Scenario, run, run_to_file
 from beamgyro._set import Campaign, Set, generate, open_set
 from beamgyro._training import features, train, training_rows
@@ -34,12 +37,13 @@ from beamgyro._validation_result import ValidationResult
 from beamgyro._warnings import BeamgyroWarning
 
 __all__ = [
-    "AllanResult", "BeamgyroWarning", "Campaign", "Compensator", "Device",
-    "PlanResult", "Scenario", "SensitivityResult", "Set", "ValidationResult",
-    "__version__", "allan", "characterise", "compensate", "export",
-    "features", "generate", "open_recording", "open_set", "plan", "run",
-    "run_to_file", "save_recording", "sensitivity", "train", "training_rows",
-    "validate",
+    "AllanResult", "BeamgyroWarning", "Campaign", "Compensator",
+    "CurveFiguresResult", "Device", "HalfSplit", "PlanResult", "Scenario",
+    "SensitivityResult", "Set", "ValidationResult", "__version__", "allan",
+    "area_metric", "characterise", "compensate", "curve_figures", "export",
+    "features", "generate", "half_split", "open_recording", "open_set", "plan",
+    "run", "run_to_file", "save_recording", "sensitivity", "train",
+    "training_rows", "validate",
 ]
 
 

@@ -3,18 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Optional, Union
+from collections.abc import Mapping
+from typing import Any, Optional, Union
 
-import numpy as np
-
-from beamgyro import _arguments, _checks, _core, _lazy, _toml
+from beamgyro import _checks, _core, _toml
 from beamgyro._checks import Path as Path
 from beamgyro._native import Native, Wrapper
-from beamgyro._warnings import warn
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Keys = Mapping[str, Any]
 DeviceLike = Union["Device", Path, Keys]
@@ -88,66 +82,3 @@ class Device(Wrapper):
 def device_of(source: DeviceLike) -> Device:
     """Return a device of anything that tells one."""
     return source if isinstance(source, Device) else Device(source)
-
-
-_GRID = "START, STOP and STEP, or temperatures"
-
-
-def _temperatures(given: Union[slice, float, Iterable[float]]) -> list[float]:
-    name = "beam_temperature"
-    if isinstance(given, slice):
-        ends = (given.start, given.stop, given.step)
-        if None in ends:
-            raise ValueError(f"{name} {given}: expected {_GRID}")
-        numbers = [_arguments.number(one, name) for one in ends]
-        try:
-            return _core.even_temperatures(*numbers)
-        except ValueError as error:
-            raise ValueError(f"{name} {given}: {error}") from None
-    one_or_more: Any = list(given) if isinstance(given, Iterator) else given
-    if np.ndim(one_or_more) == 0:
-        one_or_more = np.atleast_1d(one_or_more)
-    found = _arguments.numbers(one_or_more, name)
-    _arguments.not_empty(found, name)
-    return list(found.tolist())
-
-
-def characterise(
-        device: DeviceLike,
-        beam_temperature: Union[slice, float, Iterable[float]] = slice(
-            -40.0, 60.0, 0.25),
-        *, set: Optional[Keys] = None) -> xr.Dataset:
-    """Tabulate the steady state of a device over its beam's temperature.
-
-    Args:
-        device: a device, its file, or a mapping.
-        beam_temperature: temperatures in degC: one, several, or
-            ``slice(start, stop, step)`` with both ends included, of at most
-            1,000,000.
-        set: keys of the device to replace.
-
-    Returns:
-        A dataset over ``temperature``: ``bias``, its parts ``in_phase`` and
-        ``quadrature`` (degree/s), ``drive_frequency`` and ``split`` (Hz),
-        ``q_drive``, ``q_sense``, ``drive_voltage`` (V), ``scale_factor``.
-        The table of ``beamgyro characterise`` is ``encoding["csv"]``.
-
-    Raises:
-        ValueError: something is wrong in the device, or a temperature is
-            beyond -100 to 150 degC.
-    """
-    found = _core.characterise(Device(device, set)._native,
-                               _temperatures(beam_temperature))
-    warn(found["warnings"])
-    xarray = _lazy.xarray()
-    columns = {name: xarray.Variable("temperature", values, {"units": units})
-               for name, (values, units) in found["columns"].items()}
-    temperature = xarray.Variable("temperature", found["temperature"],
-                              {"units": "degC",
-                               "long_name": "temperature of the beam"})
-    table: xr.Dataset = xarray.Dataset(
-        columns, {"temperature": temperature},
-        {"filetype": "beamgyro-characteristic",
-         "beamgyro_version": _core.version})
-    table.encoding["csv"] = found["csv"]
-    return table

@@ -119,6 +119,16 @@ class PlanResult(Report):
                               "schedule.toml")
 
 
+class CurveFiguresResult(Report):
+    """What describes the curves of many units."""
+
+    @property
+    def figures(self) -> dict[str, list[Optional[float]]]:
+        """The figures of each unit by name; None where there is none."""
+        return {name: list(one["values"])
+                for name, one in self.data["figures"].items()}
+
+
 class SensitivityResult(Report):
     """Which tolerance causes the spread of which figure."""
 

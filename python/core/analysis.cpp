@@ -18,6 +18,7 @@
 #include "api/validation_members.h"
 #include "include/beamgyro/allan.h"
 #include "include/beamgyro/campaign.h"
+#include "include/beamgyro/curves.h"
 #include "include/beamgyro/export.h"
 #include "include/beamgyro/option_error.h"
 #include "include/beamgyro/plan.h"
@@ -220,6 +221,40 @@ py::tuple study_sensitivity(const Campaign& campaign, const py::dict& given,
   return py::make_tuple(found.text, found.json, std::vector<std::string>{});
 }
 
+py::tuple describe_curves(const std::vector<double>& temperatures,
+                          const std::vector<double>& curves,
+                          const std::vector<std::uint32_t>& units,
+                          const py::dict& given, const std::string& name) {
+  CurveTreatment treatment;
+  take(given, "lowest_degC", treatment.lowest_degC);
+  take(given, "highest_degC", treatment.highest_degC);
+  take(given, "zero_at_degC", treatment.zero_at_degC);
+  take(given, "round_deg_per_s", treatment.round_deg_per_s);
+  const CurveFigureResult found = long_call(py::none(), [=](const Progress&) {
+    return curve_figures(temperatures, curves, units, treatment, name);
+  });
+  return py::make_tuple(found.text, found.json, std::vector<std::string>{});
+}
+
+double area_between(const std::vector<double>& one,
+                    const std::vector<double>& other) {
+  return area_metric(one, other);
+}
+
+double area_to_table(const std::vector<double>& sample,
+                     const std::vector<double>& shares,
+                     const std::vector<double>& values) {
+  return area_metric_of_table(sample, shares, values);
+}
+
+py::tuple split_in_halves(const std::vector<double>& sample, std::size_t draws,
+                          std::uint64_t seed) {
+  const HalfSplitDistance found = long_call(py::none(), [=](const Progress&) {
+    return half_split(sample, draws, seed);
+  });
+  return py::make_tuple(found.median, found.p95);
+}
+
 py::tuple export_compensators(const std::vector<Compensator>& compensators,
                               const std::string& format,
                               const py::dict& given) {
@@ -265,6 +300,10 @@ void bind_analysis(py::module_& core) {
   });
   core.def("validate_model", &validate_model);
   core.def("sensitivity", &study_sensitivity);
+  core.def("curve_figures", &describe_curves);
+  core.def("area_metric", &area_between);
+  core.def("area_metric_of_table", &area_to_table);
+  core.def("half_split", &split_in_halves);
   core.def("write_texts",
            [](const Path& directory,
               const std::vector<std::pair<std::string, std::string>>& texts) {

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "include/beamgyro/campaign.h"
+#include "include/beamgyro/curves.h"
 #include "include/beamgyro/device.h"
 #include "include/beamgyro/scenario.h"
 #include "include/beamgyro/set.h"
@@ -54,6 +56,29 @@ py::dict characterise_device(const Device& device,
   result["temperature"] =
       py::array_t<double>(static_cast<py::ssize_t>(found.temperature.size()),
                           found.temperature.data());
+  result["columns"] = columns;
+  result["warnings"] = found.warnings;
+  result["csv"] = found.csv;
+  return result;
+}
+
+py::dict characterise_campaign(const Campaign& campaign,
+                               const std::vector<double>& temperatures,
+                               unsigned jobs, const py::object& on_progress) {
+  const CampaignCurves found =
+      long_call(on_progress, [=](const Progress& progress) {
+        return characterise(campaign, temperatures,
+                            {.jobs = jobs, .progress = progress});
+      });
+  const std::array<py::ssize_t, 2> shape = {
+      static_cast<py::ssize_t>(found.devices.size()),
+      static_cast<py::ssize_t>(found.temperature.size())};
+  py::dict columns;
+  for (const CharacteristicColumn& column : found.columns)
+    columns[py::str(column.name)] = py::make_tuple(
+        py::array_t<double>(shape, column.values.data()), column.units);
+  py::dict result;
+  result["device"] = found.devices;
   result["columns"] = columns;
   result["warnings"] = found.warnings;
   result["csv"] = found.csv;
@@ -185,6 +210,7 @@ void bind_simulation(py::module_& core) {
       .def_property_readonly("seed", &Campaign::seed)
       .def_property_readonly("runs", &Campaign::runs)
       .def("device", &Campaign::device);
+  core.def("characterise_campaign", &characterise_campaign);
   core.def("generate", &generate_set);
   py::class_<Set>(core, "Set")
       .def_static("open", &Set::open)

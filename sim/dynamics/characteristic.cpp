@@ -14,15 +14,22 @@ namespace beamgyro::internal {
 namespace {
 
 constexpr std::array<CharacteristicQuantity, kCharacteristicQuantities>
-    kQuantities = {{{"bias", "degree/s", "bias_deg_per_s"},
-                    {"in_phase", "degree/s", "in_phase_deg_per_s"},
-                    {"quadrature", "degree/s", "quadrature_deg_per_s"},
-                    {"drive_frequency", "Hz", "drive_frequency_Hz"},
-                    {"split", "Hz", "split_Hz"},
-                    {"q_drive", "1", "q_drive"},
-                    {"q_sense", "1", "q_sense"},
-                    {"drive_voltage", "V", "drive_voltage_V"},
-                    {"scale_factor", "1", "scale_factor_rel"}}};
+    kQuantities = {
+        {{"bias", "degree/s", "bias_deg_per_s", "output at rate 0"},
+         {"in_phase", "degree/s", "in_phase_deg_per_s",
+          "input-referred in-phase term"},
+         {"quadrature", "degree/s", "quadrature_deg_per_s",
+          "input-referred quadrature term"},
+         {"drive_frequency", "Hz", "drive_frequency_Hz",
+          "frequency of the drive loop"},
+         {"split", "Hz", "split_Hz",
+          "frequency of the sense mode less the drive frequency"},
+         {"q_drive", "1", "q_drive", "quality factor of the drive mode"},
+         {"q_sense", "1", "q_sense", "quality factor of the sense mode"},
+         {"drive_voltage", "V", "drive_voltage_V",
+          "amplitude of the drive voltage"},
+         {"scale_factor", "1", "scale_factor_rel",
+          "scale factor relative to that at 25 degC"}}};
 
 CharacteristicRow row_at(const Gyro& gyro, double celsius) {
   const double T = celsius + kZeroCelsius;

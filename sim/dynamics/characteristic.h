@@ -17,6 +17,7 @@ inline constexpr std::size_t kCharacteristicQuantities = 9;
 struct CharacteristicQuantity {
   std::string_view name, units;
   std::string_view heading;  // of its column in CSV
+  std::string_view long_name;
 };
 
 /// Bias and its two parts, drive frequency, split of the modes, quality

@@ -172,11 +172,12 @@ KINDS = {"device.toml": ("a device file", "beamgyro characterise"),
          "set": ("the directory of a set", "beamgyro info"),
          "set/rest_00000.h5": ("a file of a set", "beamgyro info"),
          "c.json": ("a compensator", "beamgyro compensate"),
-         "table.csv": ("a table that characterise wrote", "")}
+         "table.csv": ("a table that characterise wrote", ""),
+         "curves.h5": ("the curves of a population", "beamgyro plot")}
 
 # With the files that each command takes.
 TAKES = [("run FILE -o o.h5", "scenario.toml"),
-         ("characterise FILE -o o.csv", "device.toml"),
+         ("characterise FILE -o o.csv", "device.toml campaign.toml"),
          ("generate FILE -o o", "campaign.toml"),
          ("train run.h5 --model FILE -o o.json", "model.toml"),
          ("train FILE --model model.toml -o o.json", "run.h5 run.csv set"),
@@ -204,5 +205,7 @@ class Kinds(Rejections, Set):
         self.ok("run", "scenario.toml", "-o", "run.csv")
         self.cubic_of_a_ramp("run")
         self.ok("generate", "campaign.toml", "-o", "set", "--devices", 2)
-        self.ok("characterise", "device.toml", "-o", "table.csv",
-                "--beam-temperature", "0:1:1")
+        for file, table in [("device.toml", "table.csv"),
+                            ("campaign.toml", "curves.h5")]:
+            self.ok("characterise", file, "-o", table, "--beam-temperature",
+                    "0:1:1")

@@ -43,6 +43,7 @@ class Outputs(Rejections):
         *guarded("run s.toml --set rate.file=\\\"profile.csv\\\" -o OUT", "profile.csv", ".csv"),
         row("run s.toml -o s.toml", "s.toml"),  # its ending is refused first
         *guarded("characterise device.toml -o OUT", "device.toml", ".toml"),
+        *guarded("characterise campaign.toml -o OUT", "campaign.toml device.toml"),
         *guarded("import log.csv --map map.toml -o OUT", "map.toml log.csv", ".csv"),
         *guarded("train a.h5 --held-out b.h5 --model model.toml -o OUT", "a.h5 b.h5 model.toml"),
         row("train a.h5 --model model.toml -o model.toml", READ),

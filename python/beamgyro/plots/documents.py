@@ -13,6 +13,11 @@ import re
 from dataclasses import dataclass
 from typing import Any, Callable, Mapping, Sequence
 
+import numpy as np
+import numpy.typing as npt
+
+Numbers = npt.NDArray[np.float64]
+
 # Where the squares and ratios of numbers are numbers, too.
 SMALLEST, LARGEST = 1e-100, 1e100
 LONGEST_INTEGER = 18  # [digits] that are read exactly
@@ -194,6 +199,22 @@ def text_of(path: pathlib.Path) -> str:
                         "text file as beamgyro wrote it") from None
     except OSError as error:
         raise PlotError(f"{path}: {error.strerror}") from None
+
+
+def table_of(path: pathlib.Path, lines: Sequence[str]) -> Numbers:
+    """The numbers below the first line of a CSV over temperature."""
+    count = lines[0].count(",") + 1
+    for number, line in enumerate(lines[1:], 2):
+        if line.count(",") + 1 != count:
+            raise PlotError(f"{path}:{number}: {line.count(',') + 1} values; "
+                            f"expected {count}, as the first line has")
+    try:
+        values: Numbers = np.loadtxt(lines[1:], delimiter=",", ndmin=2)
+    except ValueError as error:
+        raise PlotError(f"{path}: {error}; expected numbers") from None
+    if values.size == 0:
+        raise PlotError(f"{path}: no rows; expected one or more temperatures")
+    return values
 
 
 def read(path: pathlib.Path, name: str = "") -> dict[str, Any]:

@@ -11,7 +11,7 @@ from typing import Any, Callable, Iterator, Sequence
 
 from matplotlib.figure import Figure
 
-from . import (allan, compensator, device_set, documents, hdf5, plan,
+from . import (allan, compensator, curves, device_set, documents, hdf5, plan,
                recording, sensitivity, style, table, validation)
 from .documents import PlotError
 
@@ -43,6 +43,8 @@ KINDS = {
                       recording.height, True),
     "table": Kind("table of characterise", table.read, table.draw,
                   lambda _: table.HEIGHT, True),
+    "curves": Kind("curves of a population", curves.read, curves.draw,
+                   curves.height),
     "allan": Kind("Allan deviation", documents.read, allan.draw,
                   lambda _: allan.HEIGHT, True, allan.SHAPE),
     "compensator": Kind("compensator", documents.read, compensator.draw,
@@ -59,8 +61,8 @@ KINDS = {
                         sensitivity.each),
 }
 
-EXPECTED = ("a recording (.h5, .csv), a table of characterise, a compensator, "
-            "a set, or the --json of allan, validate, plan or sensitivity")
+EXPECTED = ("a recording (.h5, .csv), what characterise wrote, a compensator, a "
+            "set, or the --json of allan, validate, plan or sensitivity")
 
 
 def kind_of(path: str | os.PathLike[str]) -> str:
@@ -100,6 +102,9 @@ def _kind_of_head(path: pathlib.Path, head: bytes) -> str | None:
     names = _columns(head)
     if names[:2] == ["temperature_degC", "bias_deg_per_s"]:
         return "table"
+    if names[:1] == ["temperature_degC"] and names[1:] and \
+            curves.COLUMN.fullmatch(names[1]):
+        return "curves"
     return "recording" if {"time", "status"} <= set(names) else None
 
 
@@ -113,8 +118,8 @@ def _columns(head: bytes) -> list[str]:
 def _kind_of_hdf5(path: pathlib.Path) -> str | None:
     with hdf5.opened(path) as file:
         filetype = hdf5.text_of(file.attributes.get("filetype", ""))
-    return {"beamgyro-recording": "recording", "beamgyro-set": "set"}.get(
-        filetype)
+    return {"beamgyro-recording": "recording", "beamgyro-set": "set",
+            "beamgyro-curves": "curves"}.get(filetype)
 
 
 def _kind_of_json(data: dict[str, Any]) -> str | None:

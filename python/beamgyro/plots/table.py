@@ -32,18 +32,8 @@ LARGEST = 1e12  # as in a recording
 
 def read(path: pathlib.Path, name: str) -> dict[str, Any]:
     lines = documents.text_of(path).splitlines()
-    names = lines[0].split(",")
-    for number, line in enumerate(lines[1:], 2):
-        if line.count(",") + 1 != len(names):
-            raise PlotError(f"{path}:{number}: {line.count(',') + 1} values; "
-                            f"expected {len(names)}, as the first line has")
-    try:
-        values = np.loadtxt(lines[1:], delimiter=",", ndmin=2)
-    except ValueError as error:
-        raise PlotError(f"{path}: {error}; expected numbers") from None
-    if values.size == 0:
-        raise PlotError(f"{path}: no rows; expected one or more temperatures")
-    return {"name": name, **dict(zip(names, values.T))}
+    values = documents.table_of(path, lines)
+    return {"name": name, **dict(zip(lines[0].split(","), values.T))}
 
 
 def _column(table: Mapping[str, Any], name: str) -> Values:
