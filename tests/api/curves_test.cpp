@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -61,19 +62,18 @@ TEST(PublicCurves, OfNoAndOfTooManyTemperaturesAreRefused) {
 }
 
 TEST(PublicCurves, AreWrittenWholeTheSameAgainAndNowhereElse) {
-  const TestDirectory directory;
+  const TestDirectory folder;
   const beamgyro::Campaign campaign = small(3);
   const CampaignCurves curves = characterise(campaign, std::array{0.0, 25.0});
   for (const char* name : {"a.h5", "b.h5", "c.csv"})
-    write_curves(curves, campaign, directory.path() / name);
-  EXPECT_EQ(bytes_of(directory.path() / "c.csv"), curves.csv);
-  EXPECT_EQ(bytes_of(directory.path() / "a.h5"),
-            bytes_of(directory.path() / "b.h5"));
+    write_curves(curves, campaign, folder.directory / name);
+  EXPECT_EQ(bytes_of(folder.directory / "c.csv"), curves.csv);
+  EXPECT_EQ(bytes_of(folder.directory / "a.h5"),
+            bytes_of(folder.directory / "b.h5"));
   EXPECT_THROW(
-      write_curves(curves, campaign, directory.path() / "nowhere/a.h5"),
+      write_curves(curves, campaign, folder.directory / "nowhere/a.h5"),
       std::invalid_argument);
-  using Entries = std::filesystem::directory_iterator;
-  EXPECT_EQ(std::distance(Entries(directory.path()), Entries()), 3);
+  EXPECT_EQ(folder.names(), (std::set<std::string>{"a.h5", "b.h5", "c.csv"}));
 }
 
 TEST(PublicCurveFigures, OfValuesThatDoNotFitAreRefused) {
