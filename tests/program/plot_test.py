@@ -190,6 +190,47 @@ class Results(PlotTest):
         svg = self.picture("table.csv", "short.csv", "--compare")
         self.assertEqual(len(curves(svg)), 16)  # two in each of eight panels
 
+    def test_curves_of_a_campaign(self):
+        self.write("sweep.toml", SCENARIO)
+        self.write("few.toml", CAMPAIGN)
+        for name in ("few.csv", "few.h5"):
+            self.ok("characterise", "few.toml", "-o", name, "--devices", 30,
+                    "--beam-temperature", "-20:50:2", "--json", "f.json")
+            svg = self.picture(name)
+            self.says(svg, name, "30 devices at rest", "bias [°/s]",
+                      "principal component", "shape", "90 of 100 between")
+            self.assertEqual(curves(svg), [
+                "curve-1-median", "curve-1-90-of-100-between", "curve-3-1",
+                "curve-3-2", "curve-3-3"])
+            # The numbers above the bars are those that the command states.
+            self.says(svg, *(f"{100 * share:.0f}" for share in
+                             self.json("f.json")["component_shares"]))
+
+    def test_curves_of_few_devices_and_temperatures(self):
+        self.write("sweep.toml", SCENARIO)
+        self.write("few.toml", CAMPAIGN)
+        for devices, grid, names in [
+                (6, "0:10:1", ["curve-3-1", "curve-3-2", "curve-3-3"]),
+                (2, "0:10:10", ["curve-3-1", "curve-3-2"]),
+                (1, "0:10:1", []), (6, "25", []), (1, "25", [])]:
+            self.ok("characterise", "few.toml", "-o", "few.h5", "--devices",
+                    devices, "--beam-temperature", grid)
+            svg = self.picture("few.h5")
+            self.assertEqual(curves(svg), names)
+            self.says(svg, f"{devices} device")
+
+    def test_curves_that_are_none_are_refused(self):
+        head = "temperature_degC,device_0_bias_deg_per_s,"
+        for name, text, says in [
+                ("a.csv", head + "x\n1,2,3\n", '"x"; expected device_N'),
+                ("b.csv", head[:-1] + "\n1,2,3\n", "b.csv:2: 3 values"),
+                ("c.csv", head[:-1] + "\n", "no rows"),
+                ("d.csv", head[:-1] + "\n1,nan\n", "bias: nan"),
+                ("e.csv", head[:-1] + "\n1e300,2\n", "temperature: 1e+300"),
+                ("f.csv", head[:-1] + "\n1,x\n", "expected numbers")]:
+            self.write(name, text)
+            self.refused(name, "-o", "p.png", says=says)
+
     def test_one_row_of_a_table(self):
         self.ok("characterise", "device.toml", "-o", "table.csv",
                 "--beam-temperature", "25")
