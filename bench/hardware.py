@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Holds our populations against published figures of a real gyro.
 
-PYTHONPATH=BUILD/python bench/hardware.py [--devices 300]; prints two tables in
+PYTHONPATH=BUILD/python bench/hardware.py [--devices 300]; prints three tables in
 Markdown. Curves are treated as those of the drawing were: the same range, zero
 and step.
 """
@@ -16,9 +16,10 @@ import numpy as np
 import beamgyro as bg
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-CAMPAIGNS = ["population", "lifelike"]
+CAMPAIGNS = ["trimmed", "population", "lifelike", "lifelike_with_modes"]
 STEP = 0.5  # [K]
-FIGURES = {"pp_deg_per_s": "p-p [deg/s]", "left_by_line": "line",
+ENDS = (0.05, 0.95)
+FIGURES = {"pp_deg_per_s": "p-p, deg/s", "left_by_line": "line",
            "left_by_cubic": "cubic",
            "left_by_quintic": "quintic", "kink": "kink"}
 LOGARITHMS = {"pp_deg_per_s", "left_by_cubic"}  # what half_split is stated of
@@ -51,17 +52,9 @@ def quantile(published, name, share):
     return float(np.interp(share, table["shares"], table[name]))
 
 
-def cell(median, ends):
-    return f"{median:.3g} ({ends[0]:.2g}..{ends[1]:.2g})"
-
-
-def column_of(figures):
-    """A cell for each figure of ours."""
-    for name in FIGURES:
-        values = np.array(figures.figures[name], dtype=float)
-        yield (f"{values[0]:.3g}" if len(values) == 1 else
-               cell(np.median(values), np.quantile(values, [0.05, 0.95])))
-    yield from spread_of(figures.data) if len(values) > 1 else ["-"] * 3
+def sample_quantiles(figures, share):
+    return [np.quantile(np.array(figures.figures[name], dtype=float), share)
+            for name in FIGURES]
 
 
 def spread_of(data):
@@ -70,18 +63,16 @@ def spread_of(data):
             f"{100 * data['mean_curve_share']:.0f}")
 
 
-def published_column(published):
-    for name in FIGURES:
-        yield cell(quantile(published, name, 0.5),
-                   [quantile(published, name, share) for share in (.05, .95)])
-    yield from spread_of(published)
-
-
-def print_table(head, *columns):
+def print_table(head, rows):
     print("| " + " | ".join(head) + " |")
     print("|---" * len(head) + "|")
-    for row in zip(*columns):
+    for row in rows:
         print("| " + " | ".join(row) + " |")
+    print()
+
+
+def digits(values):
+    return [f"{value:.3g}" for value in values]
 
 
 def areas(found, published):
@@ -105,22 +96,30 @@ def main():
     published = hardware["curves"]
     found = {name: described(curves_of(name, arguments.devices, published),
                              published) for name in arguments.campaigns}
+    units = f"{published['units']} {hardware['name']}"
     print_table(
-        ["figure", f"{published['units']} {hardware['name']}", "nominal",
-         *(f"{arguments.devices} of {name}" for name in found)],
-        [*FIGURES.values(), "sigma of log10 p-p", "components [%]",
-         "mean curve [%]"],
-        published_column(published), column_of(nominal(published)),
-        *map(column_of, found.values()))
-    print()
+        ["median", *FIGURES.values(), "sigma of log10 p-p", "components, %",
+         "mean, %"],
+        [[units, *digits(quantile(published, name, 0.5) for name in FIGURES),
+          *spread_of(published)],
+         ["nominal", *digits(sample_quantiles(nominal(published), 0.5)),
+          "-", "-", "-"],
+         *([name, *digits(sample_quantiles(one, 0.5)), *spread_of(one.data)]
+           for name, one in found.items())])
+    print_table(
+        ["5 and 95 %", *FIGURES.values()],
+        [[units, *(" ".join(digits(quantile(published, name, share)
+                                   for share in ENDS)) for name in FIGURES)],
+         *([name, *(" ".join(digits(ends)) for ends in zip(
+             *(sample_quantiles(one, share) for share in ENDS)))]
+           for name, one in found.items())])
     halves = [published["half_split"][name] for name in METRICS.values()]
     print_table(
-        ["area metric", "two halves: median (95 %)",
-         *(f"{arguments.devices} of {name}" for name in found)],
-        METRICS.values(),
-        [f"{one['median']:.2f} ({one['p95']:.2f})" for one in halves],
-        *([f"{area:.2f}" for area in areas(one, published)]
-          for one in found.values()))
+        ["area metric", *METRICS.values()],
+        [["two halves: median (95 %)",
+          *(f"{one['median']:.2f} ({one['p95']:.2f})" for one in halves)],
+         *([name, *(f"{area:.2f}" for area in areas(one, published))]
+           for name, one in found.items())])
 
 
 if __name__ == "__main__":
