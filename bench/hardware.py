@@ -98,7 +98,7 @@ def main():
                              published) for name in arguments.campaigns}
     units = f"{published['units']} {hardware['name']}"
     print_table(
-        ["median", *FIGURES.values(), "sigma of log10 p-p", "components, %",
+        ["median", *FIGURES.values(), "sigma log10 p-p", "components, %",
          "mean, %"],
         [[units, *digits(quantile(published, name, 0.5) for name in FIGURES),
           *spread_of(published)],
