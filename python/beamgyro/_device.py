@@ -131,6 +131,9 @@ def characterise(
         ``quadrature`` (degree/s), ``drive_frequency`` and ``split`` (Hz),
         ``q_drive``, ``q_sense``, ``drive_voltage`` (V), ``scale_factor``.
         The table of ``beamgyro characterise`` is ``encoding["csv"]``.
+        ``encoding["crossings"]`` lists where spurious modes meet the drive
+        frequency: ``mode``, its name, ``temperature`` (degC), and ``height``
+        (degree/s, signed) and ``width`` (K) of the bump of the bias.
 
     Raises:
         ValueError: something is wrong in the device, or a temperature is
@@ -150,4 +153,5 @@ def characterise(
         {"filetype": "beamgyro-characteristic",
          "beamgyro_version": _core.version})
     table.encoding["csv"] = found["csv"]
+    table.encoding["crossings"] = found["crossings"]
     return table
