@@ -12,7 +12,9 @@
 #include "api/beam_temperatures.h"
 #include "api/scenario_state.h"
 #include "config/overrides.h"
+#include "config/units.h"
 #include "sim/dynamics/characteristic.h"
+#include "sim/dynamics/spurious_bump.h"
 #include "sim/scenario/simulation_input.h"
 
 namespace beamgyro {
@@ -28,6 +30,18 @@ Device device_of(internal::LoadedDevice loaded, std::string name,
   state->overrides = std::move(overrides);
   state->device = loaded.device;
   return Device(std::move(state));
+}
+
+std::vector<SpuriousCrossing> crossings_of(
+    const internal::Gyro& gyro, std::span<const double> temperatures_degC) {
+  const auto [low, high] = std::ranges::minmax(temperatures_degC);
+  std::vector<SpuriousCrossing> crossings;
+  for (const internal::SpuriousBump& bump : internal::spurious_bumps(
+           gyro, low + internal::kZeroCelsius, high + internal::kZeroCelsius))
+    crossings.push_back({bump.mode, bump.temperature - internal::kZeroCelsius,
+                         bump.height / internal::kDegree, bump.width});
+  std::ranges::stable_sort(crossings, {}, &SpuriousCrossing::temperature);
+  return crossings;
 }
 
 }  // namespace
@@ -91,12 +105,14 @@ Characteristic characterise(const Device& device,
        internal::characteristic_quantities())
     found.columns.push_back(
         {std::string(about.name), std::string(about.units), {}});
+  const auto& gyro = state.gyro.of(state.device);
   const std::vector<internal::CharacteristicRow> rows =
-      internal::characteristic(state.gyro.of(state.device), temperatures_degC);
+      internal::characteristic(gyro, temperatures_degC);
   for (const internal::CharacteristicRow& row : rows)
     for (std::size_t i = 0; i < row.size(); ++i)
       found.columns[i].values.push_back(row[i]);
   found.csv = internal::characteristic_csv(temperatures_degC, rows);
+  found.crossings = crossings_of(gyro, temperatures_degC);
   found.warnings = internal::ceramic_warnings(temperatures_degC, state.name);
   return found;
 }

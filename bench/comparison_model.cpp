@@ -171,7 +171,7 @@ json carrier(const Gyro& gyro) {
     options.absolute_tolerance = tolerance * weights;
     ExplicitRk rk(
         [&](double t, const auto& y, auto dydt) { ode.rate(t, {}, y, dydt); },
-        0, CarrierOde::at_rest(), options);
+        0, ode.at_rest(), options);
     std::vector<double> output;
     for (int k = 1; k * kStep < kEnd + 1e-9; ++k)
       output.push_back(rk.advance_to(k * kStep)(kOutput2) / kDegree);

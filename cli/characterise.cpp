@@ -60,6 +60,17 @@ std::vector<double> temperature_grid(const std::string& text) {
   }
 }
 
+// Empty for a device without crossings within the temperatures.
+std::string text_of(const std::vector<SpuriousCrossing>& crossings) {
+  if (crossings.empty()) return "";
+  std::string text =
+      "spurious mode         crosses at degC   bump deg/s   width K\n";
+  for (const SpuriousCrossing& one : crossings)
+    text += fmt::format("{:<20}  {:>15.2f}  {:>+11.4g}  {:>8.3g}\n", one.mode,
+                        one.temperature, one.height, one.width);
+  return text;
+}
+
 int characterise_device(const CharacteriseArguments& arguments,
                         const std::vector<double>& grid) {
   const auto device = Device::read(arguments.input, arguments.overrides);
@@ -69,6 +80,7 @@ int characterise_device(const CharacteriseArguments& arguments,
   const Progress progress("characterising " + arguments.input);
   const Characteristic found = beamgyro::characterise(device, grid);
   write_text_file(arguments.output, found.csv);
+  print_result(text_of(found.crossings));
   for (const std::string& warning : found.warnings) keep_warning(warning);
   return 0;
 }

@@ -55,6 +55,15 @@ struct CharacteristicColumn {
   std::vector<double> values;
 };
 
+/// Where a spurious mode meets the drive frequency, and the bump of the bias
+/// there, to first order.
+struct SpuriousCrossing {
+  std::string mode;    ///< its name in the device file
+  double temperature;  ///< [degC], of beam and housing
+  double height;       ///< of the bump, signed [degree/s]
+  double width;        ///< of the bump at half its height [K]
+};
+
 /// The steady state of a gyro at rest over the temperature of its beam, without
 /// noise.
 struct Characteristic {
@@ -63,6 +72,8 @@ struct Characteristic {
   /// and split of the modes [Hz], q_drive and q_sense [1], drive_voltage [V],
   /// scale_factor over that at the trim temperature [1].
   std::vector<CharacteristicColumn> columns;
+  /// Between the least and the largest of the temperatures, by temperature.
+  std::vector<SpuriousCrossing> crossings;
   std::vector<std::string> warnings;
   std::string csv;  ///< byte for byte what `beamgyro characterise` writes
 };

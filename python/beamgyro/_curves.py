@@ -68,8 +68,11 @@ def characterise(
         ``temperature``: ``bias``, its parts ``in_phase`` and ``quadrature``
         (degree/s), ``drive_frequency`` and ``split`` (Hz), ``q_drive``,
         ``q_sense``, ``drive_voltage`` (V), ``scale_factor``. The table of
-        ``beamgyro characterise`` is ``encoding["csv"]``. A device of a
-        campaign that does not work is left out, with a warning.
+        ``beamgyro characterise`` is ``encoding["csv"]``. Of a device
+        ``encoding["crossings"]`` lists where spurious modes meet the drive
+        frequency: ``mode``, its name, ``temperature`` (degC), and ``height``
+        (degree/s, signed) and ``width`` (K) of the bump of the bias. A device
+        of a campaign that does not work is left out, with a warning.
 
     Raises:
         ValueError: something is wrong in the device or campaign, or a
@@ -85,8 +88,10 @@ def characterise(
         Device(device, set)._native,  # type: ignore[arg-type]
         _temperatures(beam_temperature))
     warn(found["warnings"])
-    return _dataset(found, {"temperature": found["temperature"]},
-                    "beamgyro-characteristic")
+    table = _dataset(found, {"temperature": found["temperature"]},
+                     "beamgyro-characteristic")
+    table.encoding["crossings"] = found["crossings"]
+    return table
 
 
 def _is_campaign(source: Any, devices: Optional[int]) -> bool:

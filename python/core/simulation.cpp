@@ -57,6 +57,12 @@ py::dict characterise_device(const Device& device,
       py::array_t<double>(static_cast<py::ssize_t>(found.temperature.size()),
                           found.temperature.data());
   result["columns"] = columns;
+  py::list crossings;
+  for (const SpuriousCrossing& one : found.crossings)
+    crossings.append(py::dict(
+        py::arg("mode") = one.mode, py::arg("temperature") = one.temperature,
+        py::arg("height") = one.height, py::arg("width") = one.width));
+  result["crossings"] = crossings;
   result["warnings"] = found.warnings;
   result["csv"] = found.csv;
   return result;

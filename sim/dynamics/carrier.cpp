@@ -13,7 +13,7 @@ using Eigen::Vector2d;
 
 }  // namespace
 
-CarrierOde::CarrierOde(const Gyro& gyro) : LoopedBeam(gyro) {
+CarrierOde::CarrierOde(const Gyro& gyro) : LoopedBeam(gyro), spurious_(gyro) {
   set_temperatures(kCalibrationTemperature, kCalibrationTemperature);
 }
 
@@ -24,6 +24,12 @@ void CarrierOde::set_temperatures(double beam, double board,
   damping_ = damping_of(modal);
   couplings_ = couplings(modal);
   turn_ = turn(board);
+  set_spurious({beam, beam}, {});
+}
+
+void CarrierOde::set_spurious(const SpuriousTemperatures& temperatures,
+                              const MemoryState& memory) {
+  if (has_spurious_modes()) oscillators_ = spurious_.at(temperatures, memory);
 }
 
 void CarrierOde::begin_window(double elapsed) {
@@ -54,6 +60,15 @@ void CarrierOde::rate(double t, const CaseMotion& motion,
   const auto [position, velocity] =
       mode_forces(stiffness_, damping_, angular_gain_, motion);
   const Vector2d x = y.segment<2>(kPosition), v = y.segment<2>(kVelocity);
+  Eigen::Index state = kCarrierStates;
+  for (const SpuriousOscillator& mode : oscillators_) {
+    const double q = y(state), q_rate = y(state + 1);
+    force -= q * mode.coupling;
+    dydt(state) = w * q_rate;
+    dydt(state + 1) =
+        -(mode.square * q + mode.coupling.dot(x)) / w - mode.width * q_rate;
+    state += 2;
+  }
   dydt.segment<2>(kPosition) = w * v;
   dydt.segment<2>(kVelocity) =
       (force - (position + euler_force(angular_gain_, motion)) * x) / w -

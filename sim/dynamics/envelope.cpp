@@ -50,6 +50,22 @@ EnvelopePlant::Slope EnvelopePlant::by(const Matrix2d& stiffness,
   return slope(dP, stiffness.cast<std::complex<double>>() + kI * omega_ * dP);
 }
 
+Vector2cd EnvelopePlant::first_order_by_frequency(const Vector2cd& U,
+                                                  const Vector2cd& v) const {
+  const Vector2cd by_S =
+      kI * (velocity_.cast<std::complex<double>>() * U) - 2 * omega_ * U;
+  return -r_ * (2.0 * kI * v + by_S);
+}
+
+Vector2cd EnvelopePlant::first_order_by(const Matrix2d& stiffness,
+                                        const Matrix2d& velocity,
+                                        const Vector2cd& U,
+                                        const Vector2cd& v) const {
+  const Vector2cd by_S =
+      stiffness.cast<std::complex<double>>() * U + kI * omega_ * (velocity * U);
+  return -r_ * (velocity * v + by_S);
+}
+
 LoopedBeam::LoopedBeam(const Gyro& gyro)
     : loops_(loop_electronics(gyro)),
       table_(gyro),
@@ -97,6 +113,7 @@ void LoopedBeam::put_loop_rates(const DriveSignals& drive, Complex U_F,
 EnvelopeOde::EnvelopeOde(const Gyro& gyro, const DriveHeating& heating,
                          const ModalMemory* memory)
     : LoopedBeam(gyro),
+      spurious_(gyro),
       memory_(memory),
       thermal_(ThermalNetwork(gyro.device.thermal), heating.mechanical,
                heating.dielectric) {}
@@ -112,6 +129,19 @@ ModalTable::Point EnvelopeOde::modal_at(double time, double beam_temperature) {
   if (memory_ != nullptr)
     modal.value += memory_->at(time, beam_temperature, memory_interval_);
   return modal;
+}
+
+SpuriousEnvelope EnvelopeOde::spurious_envelope(double time, const State& y,
+                                                const EnvelopeMoment& m) {
+  const double beam = y(kEnvelopeNodes + Eigen::Index{kBeam});
+  const double housing = y(kEnvelopeNodes + Eigen::Index{kHousing});
+  MemoryState memory;
+  if (spurious_.have_memory() && memory_ != nullptr)
+    memory = memory_->state(time, beam);
+  SpuriousEnvelope::Amplitudes Z(spurious_.count());
+  for (Eigen::Index i = 0; i < Z.size(); ++i)
+    Z(i) = complex_at(y, first_spurious() + 2 * i);
+  return {spurious_.at({beam, housing}, memory), m.drive.frequency, m.U, Z};
 }
 
 EnvelopeCoefficients EnvelopeOde::coefficients(const ModalChannels& modal,
@@ -160,17 +190,27 @@ EnvelopeMoment EnvelopeOde::moment(const EnvelopeCoefficients& now,
 
 void EnvelopeOde::rate(const EnvelopeInputs& inputs, const State& y,
                        Eigen::Ref<Eigen::VectorXd> dydt) {
-  const auto nodes = y.tail(thermal_.size());
+  const auto nodes = y.segment(kEnvelopeNodes, thermal_.size());
   thermal_.rate(inputs.surroundings, inputs.powered, nodes,
-                dydt.tail(thermal_.size()));
+                dydt.segment(kEnvelopeNodes, thermal_.size()));
   if (!inputs.powered) {
     dydt.head<kEnvelopeNodes>().setZero();
+    dydt.tail(2 * spurious_.count()).setZero();
     return;
   }
   const EnvelopeCoefficients now = coefficients(
       modal_at(inputs.time, nodes(kBeam)).value, inputs.motion, nodes(kBoard));
-  const EnvelopeMoment m = moment(now, y);
+  EnvelopeMoment m = moment(now, y);
   const EnvelopePlant plant(now.stiffness, now.velocity, m.drive.frequency);
+  if (spurious_.count() > 0) {
+    const SpuriousEnvelope spurious = spurious_envelope(inputs.time, y, m);
+    m.force += spurious.force();
+    m.force_rate += spurious.force_rate();
+    const SpuriousEnvelope::Amplitudes rates =
+        spurious.rates(plant.first_order(m.U, m.force));
+    for (Eigen::Index i = 0; i < rates.size(); ++i)
+      put(dydt, first_spurious() + 2 * i, rates(i));
+  }
   const Vector2cd dU = plant.from_amplitude() * m.U +
                        plant.from_force() * m.force -
                        plant.from_force_rate() * m.force_rate;

@@ -5,6 +5,7 @@
 
 #include "sim/dynamics/loop_electronics.h"
 #include "sim/dynamics/modal_table.h"
+#include "sim/dynamics/spurious_envelope.h"
 #include "sim/thermal/thermal_ode.h"
 
 namespace beamgyro::internal {
@@ -25,6 +26,22 @@ class EnvelopePlant {
   const Eigen::Matrix2cd& from_amplitude() const { return a_; }
   const Eigen::Matrix2cd& from_force() const { return b_; }
   const Eigen::Matrix2cd& from_force_rate() const { return d_; }
+
+  /// Returns v = R (f - S_0 U), U' of first order (2.11), and its derivatives
+  /// by f, by U, by w, and by a parameter of which K and V have these
+  /// derivatives.
+  Eigen::Vector2cd first_order(const Eigen::Vector2cd& U,
+                               const Eigen::Vector2cd& f) const {
+    return r_ * (f - s_ * U);
+  }
+  const Eigen::Matrix2cd& first_order_from_force() const { return r_; }
+  Eigen::Matrix2cd first_order_from_amplitude() const { return -r_ * s_; }
+  Eigen::Vector2cd first_order_by_frequency(const Eigen::Vector2cd& U,
+                                            const Eigen::Vector2cd& v) const;
+  Eigen::Vector2cd first_order_by(const Eigen::Matrix2d& stiffness,
+                                  const Eigen::Matrix2d& velocity,
+                                  const Eigen::Vector2cd& U,
+                                  const Eigen::Vector2cd& v) const;
 
   /// Derivatives of A, B and D by one parameter.
   struct Slope {
@@ -58,7 +75,7 @@ enum EnvelopeState {
   kOutput1 = 14,       // z after one pole w_o
   kOutput2 = 16,       // z after both: rate and minus the quadrature
   kRebalance = 18,     // int r dt [rad], stays 0 in open loop
-  kEnvelopeNodes = 20  // the state of ThermalOde
+  kEnvelopeNodes = 20  // the state of ThermalOde, then Z of spurious modes
 };
 
 /// The beam in the loops of loop_electronics.h, as envelope and carrier have
@@ -131,16 +148,22 @@ struct EnvelopeInputs {
 /// The differential equation of the envelope run: the amplitudes of both modes
 /// on their slow manifold (2.13, see EnvelopePlant), the loops of
 /// loop_electronics.h and the thermal network (4.1) as one system. The force is
-/// f = (Theta_D V_D + Theta_B V_B)/(m A_ref). Without power the amplitudes and
-/// the states of the electronics stay as they are. Not safe for use by two
-/// threads at once.
+/// f = (Theta_D V_D + Theta_B V_B)/(m A_ref), to which spurious modes add
+/// theirs (SpuriousEnvelope). Without power the amplitudes and the states of
+/// the electronics stay as they are. Not safe for use by two threads at once.
 class EnvelopeOde : public LoopedBeam {
  public:
   /// `memory`, which must outlive the object, is null for a unit without.
   EnvelopeOde(const Gyro& gyro, const DriveHeating& heating,
               const ModalMemory* memory = nullptr);
 
-  Eigen::Index size() const { return kEnvelopeNodes + thermal_.size(); }
+  Eigen::Index size() const { return first_spurious() + 2 * spurious_.count(); }
+
+  /// Index of Z of the first spurious mode, complex; each takes two states.
+  Eigen::Index first_spurious() const {
+    return kEnvelopeNodes + thermal_.size();
+  }
+  Eigen::Index spurious_modes() const { return spurious_.count(); }
 
   /// Returns the state with every node at `temperature` [K] and everything else
   /// at rest.
@@ -156,7 +179,11 @@ class EnvelopeOde : public LoopedBeam {
                 Eigen::Ref<Eigen::MatrixXd> slope);
 
  private:
+  using State = Eigen::Ref<const Eigen::VectorXd>;
+
   ModalTable::Point modal_at(double time, double beam_temperature);
+  SpuriousEnvelope spurious_envelope(double time, const State& y,
+                                     const EnvelopeMoment& m);
   EnvelopeCoefficients coefficients(const ModalChannels& modal,
                                     const CaseMotion& motion,
                                     double board_temperature) const;
@@ -176,7 +203,13 @@ class EnvelopeOde : public LoopedBeam {
                               const EnvelopeMoment& m,
                               const EnvelopePlant& plant,
                               Eigen::Ref<Eigen::MatrixXd> slope) const;
+  void add_spurious_slopes(const SpuriousEnvelope& spurious,
+                           const ModalChannels& modal_slope,
+                           const EnvelopeCoefficients& now,
+                           const EnvelopeMoment& m, const EnvelopePlant& plant,
+                           Eigen::Ref<Eigen::MatrixXd> slope) const;
 
+  SpuriousOscillators spurious_;
   const ModalMemory* memory_;
   std::size_t memory_interval_ = 0;
   ThermalOde thermal_;

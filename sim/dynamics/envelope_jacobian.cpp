@@ -19,6 +19,14 @@ void put_block(Matrix& J, Index row, Index column, Complex factor) {
   J(row, column + 1) = -factor.imag();
 }
 
+// The same, added.
+void add_block(Matrix& J, Index row, Index column, Complex factor) {
+  J(row, column) += factor.real();
+  J(row + 1, column + 1) += factor.real();
+  J(row + 1, column) += factor.imag();
+  J(row, column + 1) -= factor.imag();
+}
+
 // d(complex at row)/d(real at column).
 void add_column(Matrix& J, Index row, Index column, Complex slope) {
   J(row, column) += slope.real();
@@ -76,15 +84,22 @@ std::array<DriveSlope, 6> drive_slopes(const LoopElectronics& loops,
 void EnvelopeOde::jacobian(const EnvelopeInputs& inputs, const State& y,
                            Matrix slope) {
   slope.setZero();
-  const auto nodes = y.tail(thermal_.size());
+  const auto nodes = y.segment(kEnvelopeNodes, thermal_.size());
   thermal_.jacobian(inputs.surroundings, inputs.powered, nodes,
-                    slope.bottomRightCorner(thermal_.size(), thermal_.size()));
+                    slope.block(kEnvelopeNodes, kEnvelopeNodes, thermal_.size(),
+                                thermal_.size()));
   if (!inputs.powered) return;
   const ModalTable::Point modal = modal_at(inputs.time, nodes(kBeam));
   const EnvelopeCoefficients now =
       coefficients(modal.value, inputs.motion, nodes(kBoard));
-  const EnvelopeMoment m = moment(now, y);
+  EnvelopeMoment m = moment(now, y);
   const EnvelopePlant plant(now.stiffness, now.velocity, m.drive.frequency);
+  if (spurious_.count() > 0) {
+    const SpuriousEnvelope spurious = spurious_envelope(inputs.time, y, m);
+    m.force += spurious.force();
+    m.force_rate += spurious.force_rate();
+    add_spurious_slopes(spurious, modal.slope, now, m, plant, slope);
+  }
   add_loop_slopes(now, m, plant, slope);
   add_readout_slopes(now, slope);
   if (loops_.rebalance) add_rebalance_slopes(now, plant, slope);
@@ -100,7 +115,7 @@ void EnvelopeOde::add_loop_slopes(const EnvelopeCoefficients& now,
   for (Index i = 0; i < 2; ++i) {
     const Index column = kAmplitude + 2 * i;
     for (Index j = 0; j < 2; ++j)
-      put_block(slope, kAmplitude + 2 * j, column,
+      add_block(slope, kAmplitude + 2 * j, column,
                 plant.from_amplitude()(j, i));
     const Complex h = now.couplings.feedback(i);
     slope(kFeedback1, column) = wf * h.real();
@@ -205,6 +220,85 @@ void EnvelopeOde::add_temperature_slopes(const ModalChannels& modal_slope,
       plant.from_force() * now.couplings.damping * (turning * m.V_B) -
           plant.from_force_rate() * now.couplings.damping *
               (turning * m.V_B_rate));
+}
+
+// What spurious modes add: their own rows and columns, and what they do to the
+// amplitudes through the rate of change of their force.
+void EnvelopeOde::add_spurious_slopes(const SpuriousEnvelope& spurious,
+                                      const ModalChannels& modal_slope,
+                                      const EnvelopeCoefficients& now,
+                                      const EnvelopeMoment& m,
+                                      const EnvelopePlant& plant,
+                                      Matrix slope) const {
+  using Amplitudes = SpuriousEnvelope::Amplitudes;
+  const Index n = spurious_.count(), first = first_spurious();
+  const SpuriousEnvelope::Couplings c = spurious.couplings();
+  const Vector2cd v = plant.first_order(m.U, m.force);
+  const Eigen::MatrixX2cd by_force =
+      c.rates_by_v * plant.first_order_from_force();
+  const auto add_modes = [&](Index column, const Amplitudes& rates) {
+    for (Index i = 0; i < n; ++i)
+      add_column(slope, first + 2 * i, column, rates(i));
+  };
+  const auto add_both = [&](Index column, const SpuriousEnvelope::Slope& by,
+                            const Vector2cd& v_slope, double factor) {
+    add_amplitude_column(slope, column,
+                         -factor * plant.from_force_rate() * by.force_rate);
+    add_modes(column, factor * (by.rates + c.rates_by_v * v_slope));
+  };
+
+  const Eigen::Matrix2cd amplitude_by_U =
+      -plant.from_force_rate() * c.force_rate_by_U;
+  const Eigen::Matrix2Xcd amplitude_by_Z =
+      plant.from_force() * c.force_by_Z -
+      plant.from_force_rate() * c.force_rate_by_Z;
+  const Eigen::MatrixX2cd rates_by_U =
+      c.rates_by_U + c.rates_by_v * plant.first_order_from_amplitude();
+  Eigen::MatrixXcd rates_by_Z = by_force * c.force_by_Z;
+  rates_by_Z.diagonal() += c.rates_by_own;
+  for (Index j = 0; j < 2; ++j) {
+    const Index row = kAmplitude + 2 * j;
+    for (Index i = 0; i < 2; ++i)
+      add_block(slope, row, kAmplitude + 2 * i, amplitude_by_U(j, i));
+    for (Index i = 0; i < n; ++i) {
+      add_block(slope, row, first + 2 * i, amplitude_by_Z(j, i));
+      add_block(slope, first + 2 * i, row, rates_by_U(i, j));
+    }
+  }
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j < n; ++j)
+      add_block(slope, first + 2 * i, first + 2 * j, rates_by_Z(i, j));
+
+  const SpuriousEnvelope::Slope by_w = spurious.by_frequency(v);
+  const Vector2cd v_by_w = plant.first_order_by_frequency(m.U, v);
+  const Amplitudes by_V = by_force * now.couplings.drive;
+  Index column = kFeedback1;
+  for (const DriveSlope& by : drive_slopes(loops_, m)) {
+    add_both(column, by_w, v_by_w, by.frequency);
+    add_modes(column++, by.voltage * by_V);
+  }
+
+  const Couplings per_K = couplings(modal_slope);
+  const Vector2cd v_by_T =
+      plant.first_order_by(stiffness_of(modal_slope), damping_of(modal_slope),
+                           m.U, v) +
+      plant.first_order_from_force() *
+          (per_K.drive * m.drive.voltage + per_K.damping * m.V_B);
+  add_both(kEnvelopeNodes + Index{kBeam}, spurious.by_temperature(v, false),
+           v_by_T, 1);
+  add_both(kEnvelopeNodes + Index{kHousing}, spurious.by_temperature(v, true),
+           Vector2cd::Zero(), 1);
+  if (!loops_.rebalance) return;
+  add_modes(kEnvelopeNodes + Index{kBoard},
+            by_force * now.couplings.damping * (-kI * now.turn_slope * m.V_B));
+  const Amplitudes by_z = by_force * now.couplings.damping *
+                          (loops_.voltage_axis * std::conj(now.turn));
+  for (Index i = 0; i < n; ++i) {
+    add_block(slope, first + 2 * i, kReadout2,
+              -by_z(i) * loops_.rebalance_proportional);
+    add_block(slope, first + 2 * i, kRebalance,
+              -by_z(i) * loops_.rebalance_integral);
+  }
 }
 
 }  // namespace beamgyro::internal

@@ -35,6 +35,16 @@ Eigen::VectorXd settled_state(const Gyro& gyro, const EnvelopeOde& ode,
   y(kEnvelopeNodes + Index{kBoard}) = T_board;
   put(y, kAmplitude, s.amplitude(0) / gyro.device.drive.amplitude);
   put(y, kAmplitude + 2, s.amplitude(1) / gyro.device.drive.amplitude);
+  for (Index i = 0; i < ode.spurious_modes(); ++i) {
+    // (13.1) in its steady state, with sqrt(m) q_s of the unit's own mass.
+    const SpuriousResonance& mode = modal.spurious[static_cast<std::size_t>(i)];
+    const double w = s.drive_frequency;
+    const Complex q = -(mode.coupling(0) * s.amplitude(0) +
+                        mode.coupling(1) * s.amplitude(1)) /
+                      Complex(mode.square - w * w, mode.width * w);
+    put(y, ode.first_spurious() + 2 * i,
+        q / (std::sqrt(modal.mass) * gyro.device.drive.amplitude));
+  }
   Complex feedback(std::sin(loops.pll_phase), std::cos(loops.pll_phase));
   if (!s.amplitude_locked) {
     feedback *= std::abs(charge_of(modal.coupling[kFeedback], s.amplitude)) /

@@ -93,6 +93,9 @@ class ModalMemory {
   /// `interval` is where the last call found its knots, and 0 at first.
   ModalChannels at(double t, double beam, std::size_t& interval) const;
 
+  /// The states at time `t` [s] with the beam at `beam` [K].
+  MemoryState state(double t, double beam) const { return memory_.at(t, beam); }
+
  private:
   const MemoryTrajectory& memory_;
   SmoothCourse<ModalChannels> without_hysteresis_, per_hysteresis_;

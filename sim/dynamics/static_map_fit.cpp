@@ -12,7 +12,7 @@
 
 #include "config/units.h"
 #include "sim/dynamics/chebyshev.h"
-#include "sim/dynamics/spurious_crossing.h"
+#include "sim/dynamics/spurious_bump.h"
 #include "sim/dynamics/static_map.h"
 #include "sim/numerics/simulation_failure.h"
 
@@ -138,9 +138,9 @@ std::vector<double> StaticMap::rate_temperatures(double low, double high) {
                        without_path_)
         .drive_frequency;
   };
-  for (const SpuriousCrossing& crossing :
-       spurious_crossings(gyro_, low, high, drive_frequency)) {
-    const double flank = crossing.temperature + 0.3 * crossing.width;
+  for (const SpuriousBump& bump :
+       spurious_bumps(gyro_, low, high, drive_frequency)) {
+    const double flank = bump.temperature + 0.3 * bump.width;
     if (flank < high) temperatures.push_back(flank);
   }
   return temperatures;

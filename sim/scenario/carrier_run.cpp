@@ -28,8 +28,8 @@ constexpr double kCostPerSecond = 0.45;  // [s], measured
 
 // Local error of each state that matters as much as one of 1 rad/s in the
 // output.
-VectorXd carrier_error_weights() {
-  VectorXd weights = VectorXd::Ones(kCarrierStates);
+VectorXd carrier_error_weights(const Gyro& gyro, const CarrierOde& ode) {
+  VectorXd weights = VectorXd::Ones(ode.size());
   for (const Eigen::Index i : {kPosition, kVelocity}) {
     weights(i) = 0.3;
     weights(i + 1) = 2e-3;
@@ -38,6 +38,8 @@ VectorXd carrier_error_weights() {
   weights(kPllIntegral) = 100;
   weights(kAgcIntegral) = 0.3;
   weights(kCarrierPhase) = 0.3;
+  const VectorXd spurious = spurious_error_weights(gyro);
+  weights.tail(spurious.size()) = spurious;
   return weights;
 }
 
@@ -55,12 +57,12 @@ class CarrierTrajectory {
         angular_gain_(gyro.beam.angular_gain),
         ode_(gyro) {
     ExplicitRkOptions options;
-    options.absolute_tolerance = kTolerance * carrier_error_weights();
+    options.absolute_tolerance = kTolerance * carrier_error_weights(gyro, ode_);
     rk_ = std::make_unique<ExplicitRk>(
         [this](double t, const auto& y, auto dydt) {
           ode_.rate(t, moving(t), y, dydt);
         },
-        0.0, CarrierOde::at_rest(), options);
+        0.0, ode_.at_rest(), options);
     std::vector<Border> borders = motion.borders();
     const std::vector<Border> power = power_borders(scenario);
     borders.insert(borders.end(), power.begin(), power.end());
@@ -92,7 +94,7 @@ class CarrierTrajectory {
     const bool powered = powered_at(scenario_.powered, p.start);
     if (powered != powered_) {
       powered_ = powered;
-      start_window(CarrierOde::at_rest());
+      start_window(ode_.at_rest());
     }
   }
 
@@ -134,6 +136,10 @@ class CarrierTrajectory {
     } else {
       ode_.set_temperatures(beam, board,
                             memory_->at(t, beam, memory_interval_));
+    }
+    if (ode_.has_spurious_modes()) {
+      ode_.set_spurious({beam, temperatures_.at(kHousing, t)},
+                        memory_ ? memory_->state(t, beam) : MemoryState{});
     }
   }
 

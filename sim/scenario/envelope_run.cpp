@@ -17,14 +17,16 @@ using Eigen::VectorXd;
 // Local error of each state that matters as much as one of 1 rad/s in the
 // output: 1e-6 of the drive amplitude moves the output of a unit with a
 // quadrature of some 100 deg/s by 2e-6 rad/s, and so on.
-VectorXd error_weights(Index size) {
-  VectorXd weights = VectorXd::Ones(size);
+VectorXd error_weights(const Gyro& gyro, const EnvelopeOde& ode) {
+  VectorXd weights = VectorXd::Ones(ode.size());
   weights.segment<2>(kAmplitude).setConstant(0.3);
   weights.segment<2>(kAmplitude + 2).setConstant(2e-3);
   weights.segment<4>(kFeedback1).setConstant(0.3);
   weights(kPllIntegral) = 100;
   weights(kAgcIntegral) = 0.3;
-  weights.tail(size - kEnvelopeNodes).setConstant(50);
+  weights.tail(ode.size() - kEnvelopeNodes).setConstant(50);
+  const VectorXd spurious = spurious_error_weights(gyro);
+  weights.tail(spurious.size()) = spurious;
   return weights;
 }
 
@@ -98,7 +100,7 @@ EnvelopeTrajectory::EnvelopeTrajectory(const ScenarioPlan& scenario,
     ode_.rate(inputs(t), y, dydt);
   };
   const VectorXd start = ode_.at_rest(scenario.ambient.value(0));
-  const VectorXd absolute = tolerance * error_weights(ode_.size());
+  const VectorXd absolute = tolerance * error_weights(gyro, ode_);
   if (needs_explicit_method(scenario, motion)) {
     ExplicitRkOptions options;
     options.table = RkTable::kDormandPrince;
@@ -137,8 +139,8 @@ void EnvelopeTrajectory::begin(std::size_t piece) {
   if (!p.jump && piece > 0) return;
   VectorXd y = integrator_->state();
   if (powered_ != was_powered) {
-    // Vibration decays within a second after power-off, and the loops and an
-    // oven start from zero.
+    // Vibration, that of spurious modes too, decays within a second after
+    // power-off, and the loops and an oven start from zero.
     y.head<kEnvelopeNodes>().setZero();
     y.tail(y.size() - kEnvelopeNodes - kThermalNodeCount).setZero();
   }

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "sim/dynamics/gyro.h"
 #include "sim/scenario/simulation.h"
 #include "tests/sim/device/nominal_device.h"
+#include "tests/sim/dynamics/spurious_units.h"
 #include "tests/sim/scenario/scenario_text.h"
 
 namespace beamgyro::internal::fidelities_test {
@@ -76,6 +78,54 @@ TEST(Agreement, QuasistaticAndEnvelopeOverARampOfAKelvinAMinute) {
   }
 }
 
+// Start-up at rest, then a step of 10 deg/s.
+ScenarioPlan step_at(double celsius) {
+  ScenarioPlan scenario =
+      scenario_from("[rate]\nsteps = [[0, 0], [0.40025, 10]]\n",
+                    constant_ambient(celsius), "0.7", "200");
+  scenario.output_rate = 2000;
+  return scenario;
+}
+
+DeviceParameters fine_device_with(const SpuriousUnit& unit) {
+  std::vector<std::string> overrides = unit.overrides();
+  overrides.emplace_back("beam.angular_gain=1.0");
+  return fine_device(overrides);
+}
+
+// Unit C has a bump of 16 deg/s that is 1 K wide. On its flanks the bias
+// changes by 0.34 deg/s each second, and the amplitudes follow some 0.04 s
+// later.
+TEST(Agreement, V65QuasistaticAndEnvelopeOverARampThroughACrossing) {
+  const ScenarioPlan scenario = scenario_from(
+      "[chamber]\nstirred = true\n",
+      "[ambient]\npoints = [[0, -15], [300, -15], [3300, 35]]\n", "3300", "2");
+  for (const auto& [unit, height, most] :
+       {std::tuple{kUnitA, 0.637, 2e-3}, std::tuple{kUnitC, 15.945, 0.03}}) {
+    const DeviceParameters device = fine_device_with(unit);
+    const Recording slow = simulated(scenario, Fidelity::kQuasistatic, device);
+    const Recording fast = simulated(scenario, Fidelity::kEnvelope, device);
+    EXPECT_LT(difference(slow, fast, "true_bias", 1, 3300), most);
+    EXPECT_LT(difference(slow, fast, "true_spurious_bias", 1, 3300), 1e-5);
+    for (const Recording* run : {&slow, &fast}) {
+      const auto& bias = column_values(*run, "true_spurious_bias");
+      EXPECT_NEAR(*std::ranges::max_element(bias), height, 1e-3 * height);
+    }
+  }
+}
+
+// Start-up at the top of the bump, then a step of the rate.
+TEST(Agreement, V65CarrierAndEnvelopeAtTheTopOfACrossing) {
+  const DeviceParameters device = fine_device_with(kUnitA);
+  const ScenarioPlan scenario = step_at(kUnitA.crossing);
+  const Recording envelope = simulated(scenario, Fidelity::kEnvelope, device);
+  const Recording carrier = simulated(scenario, Fidelity::kCarrier, device);
+  EXPECT_LT(difference(envelope, carrier, "rate", 0.05, 0.7), 0.03);
+  EXPECT_LT(difference(envelope, carrier, "rate", 0.5, 0.7), 1e-3);
+  EXPECT_LT(difference(envelope, carrier, "rate", 0.65, 0.7), 1e-4);
+  EXPECT_LT(difference(envelope, carrier, "true_bias", 0.65, 0.7), 1e-4);
+}
+
 // V57: two stable locks at -40 degC, none where the solver looked for it at
 // -30; of the second device the lock of 25 degC needs more voltage than the
 // other.
@@ -120,15 +170,6 @@ TEST(Agreement, QuasistaticAndEnvelopeUnderRateCrossRatesAndAcceleration) {
   EXPECT_NEAR(column_values(fast, "true_bias")[500] -
                   column_values(still, "true_bias")[500],
               0.153, 0.01);
-}
-
-// Start-up at rest, then a step of 10 deg/s.
-ScenarioPlan step_at(double celsius) {
-  ScenarioPlan scenario =
-      scenario_from("[rate]\nsteps = [[0, 0], [0.40025, 10]]\n",
-                    constant_ambient(celsius), "0.7", "200");
-  scenario.output_rate = 2000;
-  return scenario;
 }
 
 class AtTemperature : public testing::TestWithParam<double> {};

@@ -109,6 +109,21 @@ TEST_P(CarrierAtRest, IsTheStaticSolutionWithForceRebalance) {
   EXPECT_NEAR(found.real() / kDegree, exact.real() / kDegree, 1e-4);
 }
 
+// 240 K is beside the crossing, 320 K at it.
+TEST_P(CarrierAtRest, IsTheStaticSolutionWithASpuriousMode) {
+  const double T = GetParam();
+  CarrierUnit unit(
+      nominal_device({"spurious_mode.wire={detuning=5.5e-3, "
+                      "detuning_tc_per_K=-2.5e-4, loss_factor=1e-3, "
+                      "coupling_drive=1e-4, coupling_sense=-5e-5}"}),
+      T, T, kEveryMotion);
+  const Complex found = complex_at(rest(unit), kOutput2);
+  const Complex exact =
+      beam_signal(unit.gyro, unit.modal, unit.motion).demodulated *
+      electronics_at(unit.gyro, T).turn;
+  EXPECT_NEAR(found.real() / kDegree, exact.real() / kDegree, 1e-4);
+}
+
 INSTANTIATE_TEST_SUITE_P(Temperatures, CarrierAtRest,
                          testing::Values(240.0, 320.0));
 
@@ -130,7 +145,7 @@ TEST(Carrier, DemodulatedFeedbackRipplesAtTwiceTheCarrier) {
 
 TEST(Carrier, AmplitudeOfTheStartUp) {
   CarrierUnit unit(verification_device());
-  ExplicitRk rk = unit.from(CarrierOde::at_rest());
+  ExplicitRk rk = unit.from(unit.ode.at_rest());
   const auto amplitude = [&](double t) {
     const VectorXd& y = rk.advance_to(t);
     return std::hypot(y(kPosition), y(kVelocity));

@@ -132,7 +132,7 @@ TEST(Verification, V19CarrierAtAFixedFrequencyIsTheAlgebraicSolution) {
   constexpr double kVoltage = 0.7, kOffset = -15;  // of V_0; [rad/s]
   CarrierUnit unit(nominal_device(), 285.0, 290.0, {0.4, -0.3, 2.0, 900, 0.01});
   const LoopElectronics& loops = unit.ode.loops();
-  VectorXd start = CarrierOde::at_rest();
+  VectorXd start = unit.ode.at_rest();
   start(kFeedback2) = std::sin(loops.pll_phase);
   start(kFeedback2 + 1) = std::cos(loops.pll_phase);
   start(kPllIntegral) = kOffset;
@@ -183,7 +183,7 @@ TEST(Verification, V29EulerForceShowsAsQuadratureOfTheCarrier) {
 
 TEST(Carrier, PhaseIsAsFineAfterADayOfWindowsAsAtFirst) {
   CarrierUnit unit(nominal_device());
-  VectorXd y = CarrierOde::at_rest(), dydt(kCarrierStates);
+  VectorXd y = unit.ode.at_rest(), dydt(kCarrierStates);
   y(kPosition) = 1;
   const auto demodulated = [&](double t) {
     unit.ode.rate(t, {}, y, dydt);

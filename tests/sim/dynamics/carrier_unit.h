@@ -66,11 +66,18 @@ struct CarrierUnit {
     const EnvelopeOde envelope(gyro, {0, 0});
     const Eigen::VectorXd known =
         settled_state(gyro, envelope, motion, T_beam, T_board);
-    Eigen::VectorXd y = CarrierOde::at_rest();
+    Eigen::VectorXd y = ode.at_rest();
     y.segment(kFeedback1, kEnvelopeNodes - kFeedback1) =
         known.segment(kFeedback1, kEnvelopeNodes - kFeedback1);
     put_vibration(complex_at(known, 0), complex_at(known, 2),
                   solution().drive_frequency, y);
+    for (Eigen::Index i = kCarrierStates; i < y.size(); i += 2) {
+      const Complex Z =
+          complex_at(known, envelope.first_spurious() + i - kCarrierStates);
+      const double w = solution().drive_frequency;
+      y(i) = Z.real();
+      y(i + 1) = -Z.imag() * w / ode.loops().nominal_frequency;
+    }
     return y;
   }
 

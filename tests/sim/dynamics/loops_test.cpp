@@ -194,7 +194,7 @@ TEST(Verification, V46ErrorsShrinkWithTheTolerance) {
     options.absolute_tolerance.setConstant(tolerance);
     ExplicitRk rk(
         [&](double t, const auto& y, auto dydt) { ode.rate(t, {}, y, dydt); },
-        0, CarrierOde::at_rest(), options);
+        0, ode.at_rest(), options);
     return rk.advance_to(0.03)(kOutput2);
   };
   for (const auto& end :

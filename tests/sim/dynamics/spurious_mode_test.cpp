@@ -7,10 +7,16 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "config/units.h"
 #include "random/random_stream.h"
 #include "sim/dynamics/static_solution.h"
+#include "sim/numerics/simulation_failure.h"
+#include "tests/config/rejection.h"
+#include "tests/linear_algebra/reference_algebra.h"
 #include "tests/sim/dynamics/spurious_units.h"
 
 namespace beamgyro::internal {
@@ -123,6 +129,102 @@ INSTANTIATE_TEST_SUITE_P(Verification, V63Crossing,
                                                   -4.01e-3, 4.16e-3, 5e-6},
                                          Crossing{kUnitC, 15.945, 7.573e-3,
                                                   -22.0e-3, 22.8e-3, 5e-5}));
+
+double uniform(RandomStream& stream, double low, double high) {
+  return low + (high - low) * stream.uniform();
+}
+
+TEST(Verification, V64LossesArePositiveForEverySetOfModes) {
+  const Gyro gyro = make_gyro(nominal_device());
+  RandomStream stream(64, 0, 0, kDeviceDrawStream);
+  for (int set = 0; set < 10000; ++set) {
+    std::vector<SpuriousModeParameters> modes(
+        static_cast<std::size_t>(uniform(stream, 1, 17)));
+    for (SpuriousModeParameters& mode : modes) {
+      mode.detuning = uniform(stream, -0.1, 0.1);
+      mode.detuning_tc = uniform(stream, -5e-3, 5e-3);
+      mode.loss_factor = std::pow(10, uniform(stream, -5, -0.3));
+      mode.coupling_drive = uniform(stream, -0.01, 0.01);
+      mode.coupling_sense = uniform(stream, -0.01, 0.01);
+      mode.follows_housing = uniform(stream, 0, 1) < 0.5;
+    }
+    const double T = uniform(stream, 175, 470);
+    ModalParameters modal = modal_at(gyro, std::clamp(T, 230.0, 350.0));
+    const double w_0 = std::sqrt(modal.stiffness(0, 0) / modal.mass);
+    modal.spurious = spurious_resonances(modes, w_0, modal.mass,
+                                         {T, T + uniform(stream, -20, 20)});
+    const double omega = w_0 * uniform(stream, 0.9, 1.1);
+    const Eigen::Matrix2d loss = omega * damping_at(modal, omega);
+    EXPECT_GT(loss(0, 0), 0);
+    EXPECT_GT(loss.determinant(), 0);
+    // That of the modes alone, but for roundoff of its sum.
+    const Eigen::Matrix2d added =
+        spurious_stiffness(modal.spurious, omega).value.imag();
+    EXPECT_GE(added(0, 0), 0);
+    EXPECT_GE(added.determinant(), -1e-14 * added(0, 0) * added(1, 1));
+  }
+}
+
+// Also the derivative that Newton's method and the noise use.
+TEST(SpuriousMode, SlopeOfItsStiffnessIsThatOfDifferences) {
+  const std::vector<SpuriousResonance> modes = spurious_resonances(
+      kUnitB.gyro().device.spurious_modes, 57000, 7e-4, {252.15, 252.15});
+  const double omega = std::sqrt(modes[0].square) - 20, h = 0.5;
+  const auto at = [&](double w) { return spurious_stiffness(modes, w).value; };
+  const Eigen::Matrix2cd slope = (8 * (at(omega + h) - at(omega - h)) -
+                                  (at(omega + 2 * h) - at(omega - 2 * h))) /
+                                 (12 * h);
+  EXPECT_LT((spurious_stiffness(modes, omega).slope - slope).norm(),
+            1e-6 * slope.norm());
+}
+
+std::string refusal(double loss_factor, double coupling) {
+  SpuriousUnit unit = kUnitA;
+  unit.loss_factor = loss_factor;
+  unit.coupling_drive = coupling;
+  return rejection<SimulationFailure>([&] { unit.gyro(); });
+}
+
+// With Q_x = 763: 0.3 is reached at e_x = 6.27e-4, e_x = eta_s at 1e-4.
+TEST(SpuriousMode, CouplingsThatMakeTheLockAmbiguousAreRefused) {
+  EXPECT_TRUE(
+      holds(refusal(1e-3, 6.4e-4), "spurious_mode.wire.coupling_drive"));
+  EXPECT_TRUE(holds(refusal(1e-3, 6.4e-4), "e_x^2 Q_x/eta_s = 0.312"));
+  EXPECT_TRUE(holds(refusal(1e-4, -1.1e-4), "|e_x|/eta_s = 1.1"));
+  EXPECT_NO_THROW(SpuriousUnit(kUnitA).gyro());
+  SpuriousUnit near = kUnitA;
+  near.coupling_drive = 6.2e-4;
+  EXPECT_NO_THROW(near.gyro());
+}
+
+// At the limit the phase has one zero at every temperature near the crossing.
+TEST(SpuriousMode, TheStrongestModeThatIsAllowedHasOneLock) {
+  for (const auto& [eta, e] : {std::pair{1e-3, 6.2e-4}, {1e-4, 0.99e-4}}) {
+    SpuriousUnit unit = kUnitA;
+    unit.loss_factor = eta;
+    unit.coupling_drive = e;
+    const Gyro gyro = unit.gyro();
+    for (double T = 270; T < 286; T += 0.1) {
+      const ModalParameters modal = modal_at(gyro, T);
+      const StaticSolution s = static_solution(gyro, modal, {});
+      int zeros = 0;
+      double before = 0;
+      for (double w = s.drive_frequency - 200; w < s.drive_frequency + 200;
+           w += 0.05) {
+        const Eigen::Vector2cd u =
+            reference::inverse(dynamic_stiffness(modal, w, {})) *
+            modal.coupling[kDrive];
+        const Complex lock =
+            -std::polar(1.0, std::numbers::pi / 2 - gyro.loop.pll_phase) *
+            Complex(modal.coupling[kFeedback].transpose() * u);
+        const double delta = std::arg(lock);
+        zeros += before * delta < 0 && std::abs(delta) < 1;
+        before = delta;
+      }
+      EXPECT_EQ(zeros, 1) << T << ' ' << eta;
+    }
+  }
+}
 
 }  // namespace
 }  // namespace beamgyro::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sim/dynamics/spurious_crossing.h"
+#include "sim/dynamics/spurious_bump.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,17 +19,12 @@ double detuning_at(const SpuriousModeParameters& mode, double reference,
          drive_frequency / reference;
 }
 
-SpuriousCrossing crossing_at(const Gyro& gyro,
-                             const SpuriousModeParameters& mode, double T,
-                             const Frequency& drive_frequency) {
-  constexpr double kNear = 0.5;  // [K]
-  const double w_0 = gyro.spurious_reference;
-  const double a_d = (drive_frequency(T + kNear) - drive_frequency(T - kNear)) /
-                     (2 * kNear * w_0);
+SpuriousBump bump_at(const Gyro& gyro, const SpuriousModeParameters& mode,
+                     double T, double drive_tc) {
   return {mode.name, T,
-          mode.coupling_drive * mode.coupling_sense * w_0 /
+          mode.coupling_drive * mode.coupling_sense * gyro.spurious_reference /
               (2 * mode.loss_factor * gyro.beam.angular_gain),
-          mode.loss_factor / std::abs(mode.detuning_tc - a_d)};
+          mode.loss_factor / std::abs(mode.detuning_tc - drive_tc)};
 }
 
 // The zero between two temperatures where the detuning has both signs.
@@ -46,11 +41,11 @@ double zero_between(double low, double high,
 
 }  // namespace
 
-std::vector<SpuriousCrossing> spurious_crossings(
-    const Gyro& gyro, double low, double high,
-    const Frequency& drive_frequency) {
-  std::vector<SpuriousCrossing> crossings;
-  if (gyro.spurious_reference == 0) return crossings;
+std::vector<SpuriousBump> spurious_bumps(const Gyro& gyro, double low,
+                                         double high,
+                                         const Frequency& drive_frequency) {
+  std::vector<SpuriousBump> bumps;
+  if (gyro.spurious_reference == 0) return bumps;
   const auto steps =
       std::max(std::size_t{1},
                static_cast<std::size_t>(std::ceil((high - low) / kStep)));
@@ -72,18 +67,20 @@ std::vector<SpuriousCrossing> spurious_crossings(
       const double T = zero_between(left, right, [&](double at) {
         return detuning(at, drive_frequency(at));
       });
-      crossings.push_back(crossing_at(gyro, mode, T, drive_frequency));
+      const double a_d = (frequencies[i + 1] - frequencies[i]) /
+                         ((right - left) * gyro.spurious_reference);
+      bumps.push_back(bump_at(gyro, mode, T, a_d));
     }
   }
-  return crossings;
+  return bumps;
 }
 
-std::vector<SpuriousCrossing> spurious_crossings(const Gyro& gyro, double low,
-                                                 double high) {
+std::vector<SpuriousBump> spurious_bumps(const Gyro& gyro, double low,
+                                         double high) {
   if (gyro.spurious_reference == 0) return {};
   const Gyro without = without_spurious_modes(gyro);
   LockPath path;
-  return spurious_crossings(gyro, low, high, [&](double T) {
+  return spurious_bumps(gyro, low, high, [&](double T) {
     return static_solution(without, modal_at(without, T), {}, path)
         .drive_frequency;
   });
