@@ -66,6 +66,10 @@ TEST(AreaMetric, OfATableIsTheShiftFromIt) {
   EXPECT_NEAR(area_metric(Values{0.5, 1.5, 2.5, 3.5, 4.5}, table), 0.5, 1e-15);
   // Straight lines that cross in the middle: mean |2 - 4 p| = 1.
   EXPECT_NEAR(area_metric(Values{2}, table), 1, 1e-15);
+  // They cross within a step: triangles of 1/4 by 1 and of 3/4 by 3.
+  constexpr std::array kEnds = {0.0, 1.0}, kLowAndHigh = {0.0, 4.0};
+  EXPECT_NEAR(area_metric(Values{1}, TabulatedQuantiles{kEnds, kLowAndHigh}),
+              0.5 * (0.25 + 2.25), 1e-15);
   // A straight line of the table between 0.5 and 1, bent in the sample: 2 to 4
   // against 2, 2, 4 is a triangle of height 1 over half of the shares.
   EXPECT_NEAR(area_metric(Values{0, 1, 2, 2, 4}, table), 0.25, 1e-15);
