@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "api/checked_number.h"
 #include "api/curve_treatment.h"
@@ -68,7 +69,8 @@ void check_treatment(std::span<const double> temperatures,
                      const CurveTreatment& treatment) {
   require_finite_values(temperatures, "temperatures");
   require_rising_temperatures(temperatures);
-  const auto [low, high] = counted_range(treatment);
+  const std::pair<double, double> ends = counted_range(treatment);
+  const double low = ends.first, high = ends.second;
   const auto text = fmt::format("{:g}:{:g}", low, high);
   if (!(low < high))
     throw option_error("{}: not a range; expected LOW below HIGH",
