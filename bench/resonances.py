@@ -53,6 +53,10 @@ stirred = true
 """
 
 
+# 100 deg/s from the end of the warm-up on.
+TURNING = "rate.steps = [[0, 0], [3500, 100]]\n"
+
+
 def trims(rng):
     drawn = {key: sigma * rng.normal() for key, sigma in TRIMS.items()}
     offsets = ", ".join(f"{PATCH_OFFSET * rng.normal():.6g}" for _ in range(4))
@@ -101,8 +105,8 @@ class Study:
         if answer.returncode:
             raise SystemExit(answer.stderr)
 
-    def simulate(self, name, points, keys, seed, rate=0.1):
-        text = SCENARIO.format(
+    def simulate(self, name, points, keys, seed, rate=0.1, more=""):
+        text = more + SCENARIO.format(
             name=name, device=ROOT / "scenarios/devices/nominal.toml",
             duration=points[-1][0], rate=rate, seed=seed,
             points=", ".join(f"[{t:.1f}, {T:.4f}]" for t, T in points))
@@ -163,6 +167,10 @@ def main():
                            10 * unit + 3)
             study.simulate("ramp", soaks([-24, 44, -24], 3600, 1.0), device,
                            10 * unit + 4, rate=1)
+            study.simulate("turning", soaks([-24, 44], 3600, 1.0), silent,
+                           10 * unit + 5, more=TURNING)
+            study.simulate("at_rest", soaks([-24, 44], 3600, 1.0), silent,
+                           10 * unit + 5)
             line = {}
             for name, text in texts(networks).items():
                 study.train(name, text, name.startswith("recommended"))
@@ -172,6 +180,9 @@ def main():
                     # re-zeroing takes away; it is the same for all.
                     line[f"{name} {test}"] = float(
                         np.sqrt(np.mean((error - error.mean())**2)))
+                line[f"{name} of 100 deg/s"] = float(np.abs(
+                    study.errors(name, "turning", 3600)
+                    - study.errors(name, "at_rest", 3600)).max())
             print(unit, json.dumps({k: round(v, 5) for k, v in line.items()}),
                   flush=True)
             for key, value in line.items():

@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kUnsure = 0.01;  // of a soak's bias, of the spread of all
+constexpr double kUnsure = 0.03;  // of a soak's bias, of the spread of all
 constexpr double kNoBump = 0.2;   // probability that a bump has no bias
 constexpr Index kSizes = 8;       // of the smooth rest
 
@@ -31,7 +31,7 @@ VectorXd signs_of(Index code, Index count) {
 class SignEvidence {
  public:
   SignEvidence(const VectorXd& t, const VectorXd& bias, const MatrixXd& bumps,
-               double spread, double size) {
+               double spread, double size, double noise) {
     const Index n = t.size();
     MatrixXd V = MatrixXd::Constant(n, n, 1e4 * spread * spread);
     for (int power = 1; power <= 3; ++power) {
@@ -39,7 +39,7 @@ class SignEvidence {
       const double sigma = size / (power * power);
       V += sigma * sigma * (shape.matrix() * shape.matrix().transpose());
     }
-    V.diagonal().array() += kUnsure * kUnsure * spread * spread;
+    V.diagonal().array() += kUnsure * kUnsure * spread * spread + noise * noise;
     const Cholesky factor(V);
     constant_ = -0.5 * bias.dot(factor.solve(bias)) -
                 factor.lower().diagonal().array().log().sum();
@@ -64,7 +64,7 @@ class SignEvidence {
 }  // namespace
 
 VectorXd bump_shares(const VectorXd& t, const VectorXd& bias,
-                     const MatrixXd& bumps) {
+                     const MatrixXd& bumps, double noise) {
   const Index count = bumps.cols();
   const double spread = std::sqrt((bias.array() - bias.mean()).square().mean());
   if (count == 0 || spread == 0.0) return VectorXd::Zero(count);
@@ -76,7 +76,8 @@ VectorXd bump_shares(const VectorXd& t, const VectorXd& bias,
     const SignEvidence evidence(
         t, level, bumps, spread,
         spread * 0.03 *
-            std::pow(10.0 / 0.03, static_cast<double>(size) / (kSizes - 1)));
+            std::pow(10.0 / 0.03, static_cast<double>(size) / (kSizes - 1)),
+        noise);
     for (Index code = 0; code < codes; ++code)
       logs(code, size) = evidence.of(signs_of(code, count));
   }

@@ -19,7 +19,9 @@ using Eigen::VectorXd;
 constexpr double kBeyond = 1.0;  // scaled, of places beyond the range
 constexpr Index kGridPlaces = 100, kGridWidths = 9;
 constexpr int kIterations = 25, kTrials = 6, kPatience = 2;
-constexpr double kRidge = 1e-10;  // of the linear part, relative
+constexpr double kLargestShare = 1.5;
+constexpr double kUsualHeight = 2.0;  // scaled
+constexpr double kRidge = 1e-10;      // of the linear part, relative
 
 // -u / (1 + u^2) and its slope in u.
 ArrayXd twin(const ArrayXd& u) { return -u / (1.0 + u.square()); }
@@ -74,6 +76,8 @@ class Problem {
       s.columns.col(at++) = twin(2.0 * std::exp(-log_width) * (s.t - place));
     MatrixXd normal = s.columns.transpose() * s.columns;
     normal.diagonal() *= 1.0 + kRidge;
+    normal.diagonal().tail(normal.cols() - powers).array() +=
+        variance() / (kUsualHeight * kUsualHeight);
     s.inverse = Cholesky(normal).inverse();
     s.factors = s.inverse * (s.columns.transpose() * q_);
     s.residual = q_ - s.columns * s.factors;
@@ -92,14 +96,19 @@ class Problem {
 
   double evidence(const Solved& s) const {
     const auto n = static_cast<double>(q_.size());
-    const double floor = n * kQuadratureFloor * kQuadratureFloor;
     const double parameters =
         3.0 * static_cast<double>(s.search.resonances.size());
-    return n * std::log(std::max(s.squares, floor) / n) +
-           parameters * std::log(n);
+    return n * std::log(std::max(s.squares / n, variance())) +
+           parameters * std::log(n) + unlikely_heights(s);
   }
 
  private:
+  double variance() const { return options_.noise * options_.noise; }
+  double unlikely_heights(const Solved& s) const {
+    const Index powers = options_.degree + 1;
+    return s.factors.tail(s.factors.size() - powers).squaredNorm() /
+           (kUsualHeight * kUsualHeight);
+  }
   MatrixXd jacobian(const Solved& s) const;
   Search stepped(const Search& from, const VectorXd& step) const;
 
@@ -163,7 +172,9 @@ MatrixXd Problem::jacobian(const Solved& s) const {
 Search Problem::stepped(const Search& from, const VectorXd& step) const {
   Search to = from;
   const Index shares = from.shares.size();
-  to.shares += step.head(shares);
+  to.shares = (from.shares + step.head(shares))
+                  .cwiseMax(-kLargestShare)
+                  .cwiseMin(kLargestShare);
   Index at = shares;
   for (auto& [place, log_width] : to.resonances) {
     place = std::clamp(place + std::clamp(step(at), -0.1, 0.1), -1.0 - kBeyond,
@@ -176,24 +187,22 @@ Search Problem::stepped(const Search& from, const VectorXd& step) const {
   return to;
 }
 
-// Shares have a prior of mean 0 and sigma 1, whose squares count with the
-// variance of the residual.
+// Shares have a prior of mean 0 and sigma 1, heights one of sigma kUsualHeight,
+// whose squares count with the variance of the noise.
 Problem::Solved Problem::refined(Solved s) const {
   const Index shares = s.search.shares.size();
   if (s.search.packed().size() == 0) return s;
-  const double floor = kQuadratureFloor * kQuadratureFloor;
-  const double variance =
-      std::max(s.squares / static_cast<double>(q_.size()), floor);
   const auto cost = [&](const Solved& any) {
-    return any.squares + variance * any.search.shares.squaredNorm();
+    return any.squares + variance() * (any.search.shares.squaredNorm() +
+                                       unlikely_heights(any));
   };
   double damping = 1e-2;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const MatrixXd J = without(s, jacobian(s));
     MatrixXd H = J.transpose() * J;
     VectorXd gradient = J.transpose() * s.residual;
-    H.diagonal().head(shares).array() += variance;
-    gradient.head(shares) -= variance * s.search.shares;
+    H.diagonal().head(shares).array() += variance();
+    gradient.head(shares) -= variance() * s.search.shares;
     bool is_better = false;
     double gain = 0.0;
     for (int trial = 0; trial < kTrials && !is_better; ++trial) {

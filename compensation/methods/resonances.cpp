@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -21,9 +22,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kSoakWidth = 5.0;  // [K], see fit_table_at_soaks()
-constexpr double kNarrowest = 1.0;  // [K], width of a resonance
-constexpr double kWidest = 0.6;     // of the range
+constexpr double kSoakWidth = 5.0;   // [K], see fit_table_at_soaks()
+constexpr double kNarrowest = 1.0;   // [K], width of a resonance
+constexpr double kWarmUp = 3.0;      // [K], as the electronics heat the beam
+constexpr double kWidest = 0.6;      // of the range
+constexpr double kRowsNoise = 2e-4;  // [deg/s], of the quadrature of a row
 
 bool is_quadrature(const Input& input) { return input.column == "quadrature"; }
 
@@ -64,23 +67,30 @@ std::vector<Scale> scales_of_all(const std::vector<Input>& inputs,
 }
 
 // What the inputs between temperature and quadrature add to the temperature,
-// each times its share: how far a low-pass is behind.
-MatrixXd parts_of(const std::vector<Input>& inputs, const ArrayXXd& x) {
+// each times its share: how far a low-pass is behind, and what of `warm_up`
+// [scaled] is left.
+MatrixXd parts_of(const std::vector<Input>& inputs, const ArrayXXd& x,
+                  double warm_up) {
   MatrixXd z = x.middleCols(1, x.cols() - 2).matrix();
   for (Index j = 0; j < z.cols(); ++j)
     if (is_temperature_lowpass(inputs[static_cast<std::size_t>(j) + 1]))
       z.col(j) -= x.col(0).matrix();
+    else
+      z.col(j) *= warm_up;
   return z;
 }
 
 // The same as factors of the inputs.
-VectorXd position_of(const std::vector<Input>& inputs, const VectorXd& shares) {
+VectorXd position_of(const std::vector<Input>& inputs, const VectorXd& shares,
+                     double warm_up) {
   VectorXd position(shares.size() + 1);
   position(0) = 1.0;
   position.tail(shares.size()) = shares;
   for (Index j = 0; j < shares.size(); ++j)
     if (is_temperature_lowpass(inputs[static_cast<std::size_t>(j) + 1]))
       position(0) -= shares(j);
+    else
+      position(j + 1) *= warm_up;
   return position;
 }
 
@@ -137,11 +147,14 @@ Fit ResonancesSpec::fit(const FitTask& task) const {
   const Scale& temperature = scales.front();
   const Scale& quadrature = scales.back();
   const ArrayXXd x = scaled(all, scales);
-  const QuadratureFit found = fit_quadrature(
-      x.col(0).matrix(), parts_of(task.inputs, x), x.col(x.cols() - 1).matrix(),
-      {degree, most, kNarrowest / temperature.half_width, 2.0 * kWidest});
+  const double warm_up = kWarmUp / temperature.half_width;
+  const QuadratureFit found =
+      fit_quadrature(x.col(0).matrix(), parts_of(task.inputs, x, warm_up),
+                     x.col(x.cols() - 1).matrix(),
+                     {degree, most, kNarrowest / temperature.half_width,
+                      2.0 * kWidest, kRowsNoise / quadrature.half_width});
   ResonanceCurve curve;
-  curve.position = position_of(task.inputs, found.shares);
+  curve.position = position_of(task.inputs, found.shares, warm_up);
   curve.smooth = found.smooth;
   curve.places = found.places;
   curve.widths = found.widths;
@@ -154,10 +167,12 @@ Fit ResonancesSpec::fit(const FitTask& task) const {
       (x.topLeftCorner(rows.size(), x.cols() - 1).matrix() * curve.position)
           .array();
   const LookupTable soaks = at_soaks(beam, rows.bias, temperature);
+  const double scatter =
+      std::sqrt((rows.bias - soaks.predict(beam)).square().mean());
   // Shares are of the twin in units of the bias.
-  const VectorXd shares =
-      bump_shares(soaks.temperatures.matrix(), soaks.values.matrix(),
-                  quadrature.half_width * bumps_of(curve, soaks.temperatures));
+  const VectorXd shares = bump_shares(
+      soaks.temperatures.matrix(), soaks.values.matrix(),
+      quadrature.half_width * bumps_of(curve, soaks.temperatures), scatter);
   curve.bias_heights =
       (shares.array() * found.heights.array() * quadrature.half_width).matrix();
   const ArrayXd left =

@@ -178,11 +178,11 @@ TEST(BumpShares, TellHillsFromDipsAndFromNothing) {
         Resonance{0.7, 0.5, 0.1}.bias(t(k));
   const VectorXd bias =
       (0.3 + 0.01 * t.array()).matrix() + bumps.col(0) - bumps.col(1);
-  const VectorXd shares = bump_shares(t, bias, bumps);
+  const VectorXd shares = bump_shares(t, bias, bumps, 1e-4);
   EXPECT_NEAR(shares(0), 1.0, 0.05);
   EXPECT_NEAR(shares(1), -1.0, 0.05);
   EXPECT_NEAR(shares(2), 0.0, 0.05);
-  EXPECT_EQ(bump_shares(t, VectorXd::Ones(7), bumps), VectorXd::Zero(3));
+  EXPECT_EQ(bump_shares(t, VectorXd::Ones(7), bumps, 1e-4), VectorXd::Zero(3));
 }
 
 TEST(Resonances, SoaksAndQuadratureBetweenThemTellTheBiasBetween) {
