@@ -48,9 +48,7 @@ constexpr double kShareBeyond = 0.08;  // of the range, at both ends
 constexpr double kLeastBeyond = 1.0;   // [K], of a range without width
 constexpr Eigen::Index kPoints = 300;
 
-bool follows_temperature(const Input& input) {
-  return input.kind != InputKind::kColumn || input.column == "temperature";
-}
+bool follows_temperature(const Input& input) { return !reads_a_signal(input); }
 
 // The values of an input at steady temperatures [degC], long after power-on.
 Eigen::ArrayXd settled(const Input& input, const Eigen::ArrayXd& temperature) {

@@ -48,6 +48,14 @@ FirmwareCode code_of(const FittedCompensator& c) {
       c.bias.function);
 }
 
+// Where a sample has what an input reads.
+std::string source_of(const Input& input) {
+  for (std::size_t k = 0; k < kFirmwareSignalCount; ++k)
+    if (reads_a_signal(input) && input.column == kFirmwareSignals[k])
+      return fmt::format("sample->{}", kFirmwareFields[k]);
+  return "T";
+}
+
 // Text of one compensator, written part by part.
 class Writer {
  public:
@@ -150,20 +158,19 @@ std::string Writer::input_lines() const {
   int filter = 0, play = 0;
   for (std::size_t i = 0; i < c_.inputs.size(); ++i) {
     const Input& input = c_.inputs[i];
-    std::string value = "T";
+    const std::string source = source_of(input);
+    std::string value;
     switch (input.kind) {
       case InputKind::kColumn:
-        for (std::size_t k = 0; k < kFirmwareSignalCount; ++k)
-          if (input.column == kFirmwareSignals[k] && k != 1)
-            value = fmt::format("sample->{}", kFirmwareFields[k]);
+        value = source;
         break;
       case InputKind::kSincePowerOn:
         value =
             fmt::format("exp_minus(since_power_on / time_constants[{}])", i);
         break;
-      case InputKind::kTemperatureLowpass:
-        value = fmt::format("T - lowpass_lag(state->filter[{}], first, T)",
-                            filter++);
+      case InputKind::kLowpass:
+        value = fmt::format("{1} - lowpass_lag(state->filter[{0}], first, {1})",
+                            filter++, source);
         break;
       case InputKind::kTemperatureRate:
         value = fmt::format(
@@ -251,6 +258,10 @@ std::string Writer::step_function() const {
       "    if (T > FLT_MAX) return T - T;\n"
       "    T = range[1];\n"
       "  }\n";
+  for (const Input& input : c_.inputs)
+    if (parts_.uses_inputs && filters_a_signal(input))
+      text += fmt::format("  if (!is_finite({0})) return {0} - {0};\n",
+                          source_of(input));
   if (parts_.follows_temperature()) text += "  state->started = 1;\n";
   if (parts_.uses_inputs)
     text += input_lines() + finite_lines() + "  y = bias_of(x);\n";

@@ -94,9 +94,8 @@ std::string structures(const std::string& name, const FirmwareModel& model,
         "  float period;     /* [s] */\n"
         "  uint32_t samples; /* since power-on */\n";
   if (parts.filters > 0)
-    text += fmt::format(
-        "  float filter[{}][5]; /* low-passes of the temperature */\n",
-        parts.filters);
+    text +=
+        fmt::format("  float filter[{}][5]; /* low-passes */\n", parts.filters);
   if (parts.plays > 0)
     text += fmt::format(
         "  float play[{}];      /* play operators of the temperature */\n",
@@ -142,16 +141,12 @@ std::string functions(const std::string& name) {
 }  // namespace
 
 bool has_filter(const Input& input) {
-  return input.kind == InputKind::kTemperatureLowpass ||
+  return input.kind == InputKind::kLowpass ||
          input.kind == InputKind::kTemperatureRate;
 }
 
 bool has_play(const Input& input) {
   return input.kind == InputKind::kTemperaturePlay;
-}
-
-bool reads_a_signal(const Input& input) {
-  return input.kind == InputKind::kColumn && input.column != "temperature";
 }
 
 FirmwareParts::FirmwareParts(const FittedCompensator& c) {

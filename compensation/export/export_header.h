@@ -10,22 +10,19 @@
 
 namespace beamgyro::internal {
 
-/// Returns whether the input needs a low-pass of the temperature.
+/// Returns whether the input needs a low-pass.
 bool has_filter(const Input& input);
 
 /// Returns whether the input is a play operator of the temperature.
 bool has_play(const Input& input);
-
-/// Returns whether the input is a signal other than the temperature.
-bool reads_a_signal(const Input& input);
 
 /// The parts of the exported code of a compensator.
 struct FirmwareParts {
   explicit FirmwareParts(const FittedCompensator& compensator);
 
   bool uses_inputs;         // the bias is not a constant
-  int filters = 0;          // of the temperature
-  int plays = 0;            // likewise
+  int filters = 0;          // low-passes
+  int plays = 0;            // play operators
   bool clock = false;       // since power-on
   bool reads_more = false;  // than the rate and the temperature
 

@@ -169,8 +169,9 @@ float FirmwareModel::next_sigma(float temperature) {
   const float* terms = arrays_.data("sigma_terms");
   const float since = static_cast<float>(state_.samples) * state_.period;
   const float on = terms[0] * runtime::exp_minus(since / terms[1]);
-  const float lag = runtime::lowpass_lag(state_.sigma_filter.data(),
-                                         state_.started ? 0 : 1, temperature);
+  const float lag = runtime::lowpass_lag(
+      state_.sigma_filter.data(), state_.sigma_started ? 0 : 1, temperature);
+  state_.sigma_started = true;
   const float sigma = runtime::sigma_at(
       arrays_.data("sigma_temperatures"), arrays_.data("sigmas"),
       arrays_.count("sigmas"), arrays_.data("sigma_growth"), temperature, on,
@@ -193,19 +194,23 @@ float FirmwareModel::step(const FirmwareSample& sample) {
   if (runtime::is_finite(T) == 0) return T - T;
   if (T < range[0]) T = range[0];
   if (T > range[1]) T = range[1];
+  for (const Input& input : inputs_)
+    if (uses_inputs_ && filters_a_signal(input))
+      if (const float value = sample.value[signal_of(input)];
+          runtime::is_finite(value) == 0)
+        return value - value;
   const int first = state_.started ? 0 : 1;
   state_.started = true;
   std::vector<float> x(inputs_.size());
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const Input& input = inputs_[i];
-    float value = T;
-    if (input.kind == InputKind::kColumn && input.column != "temperature")
-      value = sample.value[signal_of(input)];
+    float value = reads_a_signal(input) ? sample.value[signal_of(input)] : T;
     if (input.kind == InputKind::kSincePowerOn)
       value = runtime::exp_minus(static_cast<float>(samples) * state_.period /
                                  constants[i]);
-    if (input.kind == InputKind::kTemperatureLowpass)
-      value = T - runtime::lowpass_lag(state_.filters[i].data(), first, T);
+    if (input.kind == InputKind::kLowpass)
+      value =
+          value - runtime::lowpass_lag(state_.filters[i].data(), first, value);
     if (input.kind == InputKind::kTemperatureRate)
       value = runtime::lowpass_lag(state_.filters[i].data(), first, T) /
               constants[i];

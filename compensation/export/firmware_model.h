@@ -69,6 +69,7 @@ class FirmwareModel {
     std::vector<std::array<float, 5>> filters;  // one per input
     std::vector<float> plays;                   // likewise
     std::array<float, 5> sigma_filter{};
+    bool sigma_started = false;
     float sigma = 0.0f;  // [deg/s]
   };
 

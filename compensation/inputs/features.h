@@ -61,7 +61,7 @@ class Play {
 /// Computes the inputs of a compensator sample by sample, as firmware would, in
 /// training and at run time alike. Filters and the time since power-on start at
 /// the first powered sample after an unpowered one: a low-pass and a play start
-/// at the temperature there, the rate of change (x - y) / tau at 0.
+/// at the value there, the rate of change (x - y) / tau at 0.
 class FeatureStream {
  public:
   explicit FeatureStream(std::vector<Input> inputs,

@@ -25,10 +25,14 @@ struct ParametricInput {
 };
 
 constexpr ParametricInput kParametric[] = {
-    {InputKind::kTemperatureLowpass, "temperature_lowpass", "temperature"},
+    {InputKind::kLowpass, "temperature_lowpass", "temperature"},
     {InputKind::kTemperatureRate, "temperature_rate", "temperature"},
     {InputKind::kTemperaturePlay, "temperature_play", "temperature",
      "half-width in K", 2},
+    {InputKind::kLowpass, "quadrature_lowpass", "quadrature",
+     "time constant in s", 10},
+    {InputKind::kLowpass, "drive_voltage_lowpass", "drive_voltage",
+     "time constant in s", 10},
     {InputKind::kSincePowerOn, "since_power_on", ""}};
 
 /// The one of that name, with or without its bracket, or null.
@@ -59,11 +63,12 @@ const std::vector<std::string>& plain_inputs() {
                        input->parameter, input->stem, input->usual);
   else if (!near.empty())
     hint = fmt::format("did you mean \"{}\"? ", near);
-  throw std::invalid_argument(
-      fmt::format("input \"{}\": {}inputs are {}, temperature_lowpass(TAU), "
-                  "temperature_rate(TAU), since_power_on(TAU), TAU in s, and "
-                  "temperature_play(R), R in K",
-                  name, hint, fmt::join(plain_inputs(), ", ")));
+  throw std::invalid_argument(fmt::format(
+      "input \"{}\": {}inputs are {}, temperature_lowpass(TAU), "
+      "temperature_rate(TAU), quadrature_lowpass(TAU), "
+      "drive_voltage_lowpass(TAU), since_power_on(TAU), TAU in s, and "
+      "temperature_play(R), R in K",
+      name, hint, fmt::join(plain_inputs(), ", ")));
 }
 
 // The number of "stem(NUMBER)".
@@ -96,12 +101,26 @@ Input parse_input(std::string_view name) {
 std::string input_name(const Input& input) {
   if (input.kind == InputKind::kColumn) return input.column;
   const auto* const found =
-      std::ranges::find(kParametric, input.kind, &ParametricInput::kind);
+      std::ranges::find_if(kParametric, [&](const ParametricInput& one) {
+        return one.kind == input.kind && one.column == input.column;
+      });
   return fmt::format("{}({})", found->stem, input.parameter);
 }
 
 bool sees_the_rate(const Input& input) {
   return input.column == "output" || input.column == "rate";
+}
+
+bool is_temperature_lowpass(const Input& input) {
+  return input.kind == InputKind::kLowpass && input.column == "temperature";
+}
+
+bool reads_a_signal(const Input& input) {
+  return !input.column.empty() && input.column != "temperature";
+}
+
+bool filters_a_signal(const Input& input) {
+  return reads_a_signal(input) && input.kind == InputKind::kLowpass;
 }
 
 std::vector<std::string> input_names(const std::vector<Input>& inputs) {

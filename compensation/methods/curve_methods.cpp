@@ -90,17 +90,20 @@ Fit SplineSpec::fit(const FitTask& task) const {
 }
 
 TableSpec TableSpec::read(MethodSource& source) {
-  return {source.table(kName).number_or("bin_width_K", 5.0, positive())};
+  const ConfigTable table = source.table(kName);
+  return {table.number_or("bin_width_K", 5.0, positive()),
+          table.choice_or("entries", "bins", {"bins", "soaks"}) == "soaks"};
 }
 
 std::string TableSpec::method_name() const {
-  return fmt::format("table of {:g} K bins", bin_width_K);
+  return at_soaks ? "straight lines between soaks"
+                  : fmt::format("table of {:g} K bins", bin_width_K);
 }
 
 Fit TableSpec::fit(const FitTask& task) const {
-  return model_of(
-      unscaled(task),
-      fit_lookup_table(first_input(task), task.rows.bias, bin_width_K));
+  const auto fit_table = at_soaks ? fit_table_at_soaks : fit_lookup_table;
+  return model_of(unscaled(task),
+                  fit_table(first_input(task), task.rows.bias, bin_width_K));
 }
 
 ThermistorSpec ThermistorSpec::read(MethodSource& source) {

@@ -90,6 +90,7 @@ struct SplineSpec {
 /// Table [table].
 struct TableSpec {
   double bin_width_K = 5.0;  // [K], > 0
+  bool at_soaks = false;     // an entry for each soak, not for each bin
 
   static constexpr const char* kName = "table";
   static constexpr InputRule kInputRule = InputRule::kOneTemperature;

@@ -15,10 +15,9 @@ namespace {
 void require_one_temperature(const ConfigTable& root,
                              const std::vector<Input>& inputs,
                              const std::string& kind, bool of_samples) {
-  const bool one =
-      inputs.size() == 1 &&
-      (inputs[0] == parse_input("temperature") ||
-       (inputs[0].kind == InputKind::kTemperatureLowpass && !of_samples));
+  const bool one = inputs.size() == 1 &&
+                   (inputs[0] == parse_input("temperature") ||
+                    (is_temperature_lowpass(inputs[0]) && !of_samples));
   if (!one)
     root.fail(
         "inputs",

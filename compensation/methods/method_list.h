@@ -8,15 +8,16 @@
 #include "compensation/methods/curve_methods.h"
 #include "compensation/methods/population_method.h"
 #include "compensation/methods/radial_basis.h"
+#include "compensation/methods/resonances.h"
 
 namespace beamgyro::internal {
 
 /// Every method of training (method.h). A new one is a unit of this room and a
 /// line here.
-using FitSpec =
-    std::variant<NoneSpec, ConstantSpec, PolynomialSpec, TableSpec, SplineSpec,
-                 Px4Spec, ArduPilotSpec, ThermistorSpec, FuzzySpec,
-                 RadialBasisSpec, BpSpec, PopulationSpec, AdaptedSpec>;
+using FitSpec = std::variant<NoneSpec, ConstantSpec, PolynomialSpec, TableSpec,
+                             SplineSpec, Px4Spec, ArduPilotSpec, ThermistorSpec,
+                             FuzzySpec, RadialBasisSpec, ResonancesSpec, BpSpec,
+                             PopulationSpec, AdaptedSpec>;
 
 namespace method_list {
 

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <stdexcept>
+#include <vector>
 
 #include "compensation/firmware/runtime.h"
 #include "compensation/models/parameter_json.h"
@@ -14,6 +16,40 @@
 namespace beamgyro::internal {
 
 using Eigen::Index;
+
+namespace {
+
+// Points whose mean becomes an entry.
+struct Group {
+  double count = 0.0, x = 0.0, y = 0.0;
+
+  void add(double at, double value) {
+    count += 1.0;
+    x += at;
+    y += value;
+  }
+};
+
+void check_points(Index points, double width) {
+  if (!(width > 0.0) || points == 0)
+    throw std::invalid_argument(
+        fmt::format("table: {} points in bins of {} K, must be points in bins "
+                    "wider than 0",
+                    points, width));
+}
+
+LookupTable table_of(const std::vector<Group>& groups) {
+  const auto size = static_cast<Index>(groups.size());
+  LookupTable table{Eigen::ArrayXd(size), Eigen::ArrayXd(size)};
+  Index k = 0;
+  for (const Group& group : groups) {
+    table.temperatures(k) = group.x / group.count;
+    table.values(k++) = group.y / group.count;
+  }
+  return table;
+}
+
+}  // namespace
 
 double LookupTable::at(double temperature) const {
   const Index last = temperatures.size() - 1;
@@ -35,29 +71,39 @@ Eigen::ArrayXd LookupTable::predict(
 LookupTable fit_lookup_table(const Eigen::Ref<const Eigen::ArrayXd>& x,
                              const Eigen::Ref<const Eigen::ArrayXd>& y,
                              double width) {
-  if (!(width > 0.0) || x.size() == 0)
-    throw std::invalid_argument(
-        fmt::format("table: {} points in bins of {} K, must be points in bins "
-                    "wider than 0",
-                    x.size(), width));
-  struct Bin {
-    double count = 0.0, x = 0.0, y = 0.0;
-  };
-  std::map<double, Bin> bins;
-  for (Index k = 0; k < x.size(); ++k) {
-    Bin& bin = bins[std::floor(x(k) / width)];
-    bin.count += 1.0;
-    bin.x += x(k);
-    bin.y += y(k);
+  check_points(x.size(), width);
+  std::map<double, Group> bins;
+  for (Index k = 0; k < x.size(); ++k)
+    bins[std::floor(x(k) / width)].add(x(k), y(k));
+  std::vector<Group> groups;
+  for (const auto& [number, bin] : bins) groups.push_back(bin);
+  return table_of(groups);
+}
+
+LookupTable fit_table_at_soaks(const Eigen::Ref<const Eigen::ArrayXd>& x,
+                               const Eigen::Ref<const Eigen::ArrayXd>& y,
+                               double width) {
+  check_points(x.size(), width);
+  std::vector<Index> order(static_cast<std::size_t>(x.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::ranges::stable_sort(order, {}, [&](Index k) { return x(k); });
+  std::vector<Group> soaks;
+  double first = 0.0, last = 0.0;
+  for (const Index k : order) {
+    if (soaks.empty() || x(k) - last > width / 4.0) {
+      soaks.emplace_back();
+      first = x(k);
+    }
+    last = x(k);
+    soaks.back().add(x(k), y(k));
+    if (last - first > width)
+      throw UndeterminedFit(fmt::format(
+          "temperatures from {:.2f} to {:.2f} degC are a ramp, a table at "
+          "soaks needs soaks within {} K; set rows.steady_K_per_min in the "
+          "model file to leave out the rows of ramps",
+          first, last, width));
   }
-  const auto size = static_cast<Index>(bins.size());
-  LookupTable table{Eigen::ArrayXd(size), Eigen::ArrayXd(size)};
-  Index k = 0;
-  for (const auto& [number, bin] : bins) {
-    table.temperatures(k) = bin.x / bin.count;
-    table.values(k++) = bin.y / bin.count;
-  }
-  return table;
+  return table_of(soaks);
 }
 
 nlohmann::ordered_json LookupTable::parameters() const {
@@ -86,8 +132,9 @@ FirmwareCode LookupTable::firmware_code(std::size_t) const {
                       values.size())};
 }
 
-LookupTable read_lookup_table(const JsonNode& node, const std::string& values) {
-  LookupTable table{read_array(node.at("temperatures_degC")),
+LookupTable read_lookup_table(const JsonNode& node, const std::string& values,
+                              const std::string& temperatures) {
+  LookupTable table{read_array(node.at(temperatures)),
                     read_array(node.at(values))};
   const Eigen::Index n = table.temperatures.size();
   if (n < 1 || table.values.size() != n)
@@ -96,7 +143,7 @@ LookupTable read_lookup_table(const JsonNode& node, const std::string& values) {
                     "least 1",
                     table.values.size(), n));
   if (!(table.temperatures.tail(n - 1) > table.temperatures.head(n - 1)).all())
-    node.at("temperatures_degC").fail("must increase");
+    node.at(temperatures).fail("must increase");
   return table;
 }
 

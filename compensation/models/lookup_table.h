@@ -27,9 +27,11 @@ struct LookupTable {
   FirmwareCode firmware_code(std::size_t inputs) const;
 };
 
-/// Reads temperatures that increase, and as many numbers under the key
-/// `values`.
-LookupTable read_lookup_table(const JsonNode& node, const std::string& values);
+/// Reads temperatures that increase under their key, and as many numbers under
+/// the key `values`.
+LookupTable read_lookup_table(
+    const JsonNode& node, const std::string& values,
+    const std::string& temperatures = "temperatures_degC");
 
 /// Returns the means of temperature and value over the points of each bin [k
 /// width, (k + 1) width) that has points. Throws std::invalid_argument without
@@ -37,5 +39,13 @@ LookupTable read_lookup_table(const JsonNode& node, const std::string& values);
 LookupTable fit_lookup_table(const Eigen::Ref<const Eigen::ArrayXd>& x,
                              const Eigen::Ref<const Eigen::ArrayXd>& y,
                              double width);
+
+/// Returns a table with one entry for each soak, the mean of its points. Points
+/// are of one soak if, sorted by x, no two neighbours are more than width / 4
+/// apart. Throws std::invalid_argument as above, and when such points are
+/// spread over more than `width`, as those of a ramp are.
+LookupTable fit_table_at_soaks(const Eigen::Ref<const Eigen::ArrayXd>& x,
+                               const Eigen::Ref<const Eigen::ArrayXd>& y,
+                               double width);
 
 }  // namespace beamgyro::internal

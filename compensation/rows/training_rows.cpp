@@ -192,9 +192,13 @@ class RowCollector {
       const ArrayXd measured = temperature(block.samples);
       check_finite(measured, "temperature", block, time);
       const ArrayXd T = measured.max(clamp_.lowest).min(clamp_.highest);
+      if (options_.steady_K_per_min && !changes[k].steady) {
+        for (Index i = 0; i < inputs_; ++i)
+          moving_.push_back(features.col(i)(block.samples).mean());
+        continue;
+      }
       const ArrayXd b = bias(block.samples);
       check_finite(b, "rate - true_rate", block, time);
-      if (options_.steady_K_per_min && !changes[k].steady) continue;
       const double lag = options_.lag_min > 0.0
                              ? options_.lag_min * rate_about(changes, k)
                              : 0.0;  // [K]
@@ -229,18 +233,22 @@ class RowCollector {
     const Index width = inputs_ + 3;
     const Index count = static_cast<Index>(values_.size()) / width;
     const Eigen::Map<const ArrayXXd> all(values_.data(), width, count);
-    return {all.topRows(inputs_).transpose(),
-            all.row(inputs_ + 1).transpose(),
-            all.row(inputs_ + 2).transpose(),
-            range_,
-            all.row(inputs_).transpose(),
-            array_view(runs_),
-            array_view(cycles_),
-            array_view(legs_.legs()),
-            output_per_rate_,
-            count > 0 ? fastest_ - slowest_ : 0.0,
-            array_view(outside_).cast<bool>(),
-            array_view(devices_)};
+    return {
+        all.topRows(inputs_).transpose(),
+        all.row(inputs_ + 1).transpose(),
+        all.row(inputs_ + 2).transpose(),
+        range_,
+        all.row(inputs_).transpose(),
+        array_view(runs_),
+        array_view(cycles_),
+        array_view(legs_.legs()),
+        output_per_rate_,
+        count > 0 ? fastest_ - slowest_ : 0.0,
+        array_view(outside_).cast<bool>(),
+        array_view(devices_),
+        Eigen::Map<const ArrayXXd>(moving_.data(), inputs_,
+                                   static_cast<Index>(moving_.size()) / inputs_)
+            .transpose()};
   }
 
  private:
@@ -302,7 +310,7 @@ class RowCollector {
   const TemperatureRange& clamp_;
   const LookupTable* scale_factor_;
   Index inputs_;
-  std::vector<double> values_;
+  std::vector<double> values_, moving_;
   std::vector<int> runs_, cycles_, outside_, devices_;  // one per row
   std::map<std::string, int> device_numbers_;
   LegCounter legs_;
@@ -366,7 +374,8 @@ TrainingRows selected(const TrainingRows& rows,
           rows.output_per_rate,
           rows.true_rate_span,
           rows.beyond_range(which),
-          rows.device(which)};
+          rows.device(which),
+          rows.moving};
 }
 
 TrainingRows with_columns(const TrainingRows& rows,
@@ -378,6 +387,7 @@ TrainingRows with_columns(const TrainingRows& rows,
     columns.push_back(std::find(all.begin(), all.end(), input) - all.begin());
   TrainingRows result = rows;
   result.inputs = rows.inputs(Eigen::all, columns);
+  if (rows.moving.rows() > 0) result.moving = rows.moving(Eigen::all, columns);
   return result;
 }
 

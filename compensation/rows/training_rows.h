@@ -42,6 +42,9 @@ struct TrainingRows {
   // clamped to.
   Eigen::Array<bool, Eigen::Dynamic, 1> beyond_range;
   Eigen::ArrayXi device;  // whose run it was
+  // Inputs of the blocks that steady_K_per_min left out, whose bias is not
+  // used: methods that learn from quadrature take them.
+  Eigen::ArrayXXd moving = {};
 
   Eigen::Index size() const { return bias.size(); }
 };
@@ -56,7 +59,8 @@ constexpr double kLegReversal = 2.0;  // [K]
 /// - Samples without power, saturated or with a loop not locked are left out.
 /// - Blocks with less than half the samples of the fullest block of their run
 ///   are left out, and with steady_K_per_min also blocks over which the
-///   measured temperature changes faster (slope of a straight line).
+///   measured temperature changes faster (slope of a straight line). Of those
+///   the inputs are kept, `moving`; they need no true rate.
 /// - With lag_min, the temperature of a block and the input "temperature" are
 ///   less by lag_min times its rate, within `range`. The rate is that between
 ///   blocks up to two before and after it that are steady all the way.
@@ -81,7 +85,7 @@ struct RowStretch {
 /// TrainingRows::cycle.
 std::vector<RowStretch> stretches_of(const Eigen::ArrayXi& labels);
 
-/// Returns the rows for which `keep` is true. The range stays.
+/// Returns the rows for which `keep` is true. Range and `moving` stay.
 TrainingRows selected(const TrainingRows& rows,
                       const Eigen::Array<bool, Eigen::Dynamic, 1>& keep);
 

@@ -190,7 +190,7 @@ ArrayXXd places(const FittedCompensator& c) {
             range.lowest + (range.highest - range.lowest) *
                                std::floor(static_cast<double>(k) / kPlaces) /
                                (kTemperatures - 1);
-      else if (input.kind == InputKind::kColumn)
+      else if (reads_a_signal(input))
         value = scale.centre;
     }
   }

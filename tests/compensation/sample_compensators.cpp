@@ -52,7 +52,8 @@ FittedCompensator every_input() {
   FittedCompensator c = with_inputs(
       {"temperature", "temperature_lowpass(100)", "temperature_rate(60)",
        "temperature_play(2)", "since_power_on(300)", "drive_frequency",
-       "drive_voltage", "quadrature", "rate"},
+       "drive_voltage", "quadrature", "quadrature_lowpass(20)",
+       "drive_voltage_lowpass(20)", "rate"},
       {{5.0, 45.0},
        {5.0, 45.0},
        {0.0, 0.05},
@@ -61,8 +62,10 @@ FittedCompensator every_input() {
        {9156.0, 12.0},
        {1.5, 0.7},
        {40.0, 25.0},
+       {40.0, 25.0},
+       {1.5, 0.7},
        {0.0, 150.0}});
-  c.bias.function = random_network({9, 5, 1});
+  c.bias.function = random_network({11, 5, 1});
   c.scale_factor = LookupTable{Eigen::ArrayXd::LinSpaced(7, -35.0, 45.0),
                                Eigen::ArrayXd::LinSpaced(7, 0.98, 1.03)};
   return c;
@@ -133,6 +136,21 @@ std::vector<NamedCompensator> one_of_each_kind() {
                     Eigen::Vector3d(1.5, -0.7, 0.3)};
   basis.centres << -0.8, 0.1, 0.0, 0.9, 0.7, -0.5;
   bells.bias.function = basis;
+  FittedCompensator resonances = with_inputs(
+      {"temperature", "temperature_lowpass(100)", "quadrature_lowpass(10)"},
+      {{5, 45}, {5, 45}, {40, 25}});
+  resonances.bias.bias_scale = {};
+  resonances.bias.function =
+      ResonanceCurve{Eigen::Vector2d(0.25, 0.75),
+                     Eigen::Vector4d(0.1, -0.4, 0.2, 0.1),
+                     Eigen::Vector2d(-0.3, 0.5),
+                     Eigen::Vector2d(0.2, 0.4),
+                     Eigen::Vector2d(0.07, -0.03),
+                     Eigen::Vector2d(0.5, 0.3),
+                     {Eigen::ArrayXd::LinSpaced(4, -1.0, 1.0),
+                      Eigen::ArrayXd{{0.1, 1.0 / 3.0, -0.2, 0.4}}},
+                     0.1,
+                     0.05};
   return {
       {"none", of_temperature({{Scale{}}, {}, NoBias{}})},
       {"constant", of_temperature({{Scale{}}, {}, ConstantBias{1.0 / 3.0}})},
@@ -146,6 +164,7 @@ std::vector<NamedCompensator> one_of_each_kind() {
        of_temperature({{Scale{}}, {}, fit_thermistor_network(T, b, 3950.0)})},
       {"fuzzy", fuzzy},
       {"radial_basis", bells},
+      {"resonances", resonances},
       {"bp", network_compensator()},
       {"spline_with_sigma", with_sigma(spline_compensator())},
       {"bp_with_sigma", with_sigma(network_compensator())},

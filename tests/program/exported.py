@@ -38,6 +38,9 @@ MODELS = {
     "radial_basis": 'kind = "radial_basis"\n'
                     'inputs = ["temperature", "drive_voltage"]\n'
                     "[radial_basis]\ncentres = 4\n",
+    "resonances": 'kind = "resonances"\ninputs = ["temperature",'
+                  ' "temperature_lowpass(100)", "quadrature_lowpass(10)"]\n'
+                  "rows = { steady_K_per_min = 0.1 }\n",
     "network": f'kind = "bp"\n{INPUTS}[bp]\nhidden = [5, 3]\n{TRAINING}',
     "wide": 'kind = "bp"\ninputs = ["temperature"]\n'
             f"[bp]\nhidden = [12, 2]\n{TRAINING}",
@@ -61,17 +64,25 @@ sine.frequency_Hz = 0.002
 """
 
 
+# Three soaks and the ramps between them.
+SOAKS = ramp(seconds=12000, seed=5).replace(
+    "points = [[0, -30], [12000, 40]]",
+    "points = [[0, -30], [3000, -30], [4500, 5], [7500, 5], [9000, 40]]")
+
+
 class ExportTest(ProgramTest):
     def prepare(self):
         super().prepare()
+        self.run_scenario("soaks", text=SOAKS)
         self.run_scenario("train", text=EVENTFUL)
         self.run_scenario("held_out", "--seed", 4, text=EVENTFUL)
 
     def train(self, kind):
         """File of a compensator of the kind."""
         model = self.write(f"{kind}.toml", MODELS[kind])
-        self.ok("train", "train.h5", "--held-out", "held_out.h5", "--model",
-                model, "-o", f"{kind}.json", "--quiet")
+        run = "soaks.h5" if kind == "resonances" else "train.h5"
+        self.ok("train", run, "--held-out", "held_out.h5", "--model", model,
+                "-o", f"{kind}.json", "--quiet")
         if kind == "scaled":
             stored = self.json("scaled.json")
             self.write("scaled.json", json.dumps(

@@ -231,6 +231,23 @@ TEST(FirmwareModel, TemperatureThatIsNotFiniteGivesNoneAndHarmsNoFilter) {
   }
 }
 
+// Temperature and quadrature wait for a sample that has both.
+TEST(FirmwareModel, AFilteredSignalThatIsNotFiniteHarmsNoFilter) {
+  FirmwareModel model(of_input("quadrature_lowpass(100)"));
+  const auto with = [](float quadrature) {
+    FirmwareSample sample = at(20.0f);
+    sample.value[3] = quadrature;
+    return sample;
+  };
+  model.start(1.0f);
+  EXPECT_TRUE(std::isnan(model.step(with(kNan))));
+  EXPECT_EQ(model.step(with(40.0f)), -40.0f);
+  const float before = model.step(with(50.0f));
+  EXPECT_TRUE(std::isnan(model.step(with(kNan))));
+  EXPECT_NEAR(model.step(with(50.0f)), before, 0.2);
+  EXPECT_LT(model.step(with(50.0f)), -40.0f);
+}
+
 TEST(FirmwareModel, SigmaForgetsAGlitchOfTheTemperature) {
   const FittedCompensator c = with_sigma(spline_compensator());
   FirmwareModel model(c);

@@ -15,6 +15,7 @@ TEST(Input, NameReadsBackToTheSameInput) {
        {"output", "rate", "temperature", "drive_frequency", "drive_voltage",
         "quadrature", "temperature_lowpass(100)", "temperature_lowpass(0.3)",
         "temperature_rate(60)", "temperature_play(1.5)",
+        "quadrature_lowpass(10)", "drive_voltage_lowpass(2.5)",
         "since_power_on(412.5)"}) {
     const Input input = parse_input(name);
     EXPECT_EQ(input_name(input), name);
@@ -27,6 +28,8 @@ TEST(Input, FilterKnowsItsColumnAndTimeConstant) {
   EXPECT_EQ(low_passed.column, "temperature");
   EXPECT_EQ(low_passed.parameter, 100.0);
   EXPECT_EQ(parse_input("temperature_rate(60)").column, "temperature");
+  EXPECT_EQ(parse_input("quadrature_lowpass(10)").column, "quadrature");
+  EXPECT_EQ(parse_input("drive_voltage_lowpass(10)").column, "drive_voltage");
   EXPECT_EQ(parse_input("since_power_on(300)").column, "");
 }
 

@@ -84,5 +84,26 @@ TEST(LookupTable, NeedsPointsAndAWidth) {
                std::invalid_argument);
 }
 
+// The soak at 0 lies on both sides of a border of bins.
+TEST(LookupTable, AtSoaksHasOneEntryForEachSoakWhereverItLies) {
+  const ArrayXd x = numbers({-0.1, 20.0, 0.1, -20.2, 20.2, -19.8});
+  const ArrayXd y = numbers({1.0, 5.0, 3.0, -1.0, 7.0, -3.0});
+  const LookupTable table = fit_table_at_soaks(x, y, 5.0);
+  EXPECT_TRUE(table.temperatures.isApprox(numbers({-20.0, 0.0, 20.1}), 1e-14))
+      << table.temperatures.transpose();
+  EXPECT_TRUE((table.values == numbers({-2.0, 2.0, 6.0})).all())
+      << table.values.transpose();
+  EXPECT_EQ(fit_lookup_table(x, y, 5.0).values.size(), 5);
+}
+
+TEST(LookupTable, AtSoaksRefusesARamp) {
+  const ArrayXd T = grid(-40.0, 40.0, 1.0);
+  EXPECT_TRUE(
+      holds(rejection([&] { fit_table_at_soaks(T, T, 5.0); }),
+            "temperatures from -40.00 to -34.00 degC are a ramp, a table at "
+            "soaks needs soaks within 5 K; set rows.steady_K_per_min"));
+  EXPECT_THROW(fit_table_at_soaks(T, T, 0.0), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace beamgyro::internal::lookup_table_test

@@ -79,6 +79,24 @@ TEST(TrainingRows, SteadyRowsOnlyWhenAsked) {
   EXPECT_EQ(rows.range.highest, 20.0);
 }
 
+// 10 min at rest, 10 min of a ramp whose true rate nobody knows.
+TEST(TrainingRows, InputsOfRampsAreKeptWithoutTheirBias) {
+  RecordedRun run{.duration = 1200.0, .step = 10.0};
+  run.temperature = [](double t) {
+    return t < 600.0 ? 20.0 : 20.0 + (t - 600.0) / 60.0;
+  };
+  run.true_rate = [](double t) { return t < 600.0 ? 0.0 : NAN; };
+  RowOptions options;
+  options.steady_K_per_min = 0.5;
+  const TrainingRows rows = rows_from(run.recording(), options);
+  EXPECT_EQ(rows.size(), 10);
+  ASSERT_EQ(rows.moving.rows(), 10);
+  ASSERT_EQ(rows.moving.cols(), 1);
+  // Six samples of a minute begin at its start.
+  for (int k = 0; k < 10; ++k)
+    EXPECT_NEAR(rows.moving(k, 0), 20.0 + k + 25.0 / 60.0, 1e-12);
+}
+
 TEST(TrainingRows, HaveTheTemperatureThatTheSensorWouldSettleTo) {
   // The sensor settles with 8 min at 20 degC, and the beam lags by as much.
   RecordedRun run{.duration = 1800.0, .step = 10.0};

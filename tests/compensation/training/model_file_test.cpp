@@ -112,6 +112,17 @@ const Wrong kWrong[] = {
     {"kind = \"radial_basis\"\n[radial_basis]\nridge = 0\n", "ridge"},
     {"kind = \"radial_basis\"\ninputs = [\"temperature\", \"output\"]\n",
      "feels the rate"},
+    {"kind = \"resonances\"\ninputs = [\"temperature\"]\n",
+     "\"temperature\"; resonances take"},
+    {"kind = \"resonances\"\ninputs = [\"quadrature\"]\n",
+     "the first is another"},
+    {"kind = \"resonances\"\ninputs = [\"temperature\", \"rate\", "
+     "\"quadrature\"]\n",
+     "it tells nothing of the beam's temperature"},
+    {"kind = \"resonances\"\ninputs = [\"temperature\", \"quadrature\"]\n"
+     "[resonances]\nmost = 9\n",
+     "most"},
+    {"kind = \"table\"\n[table]\nentries = \"knots\"\n", "entries"},
     {"kind = \"table\"\n[table]\nbin_width_K = 0\n", "bin_width_K"},
     {"kind = \"thermistor\"\n[thermistor]\nb_K = -1\n", "b_K"},
     {"kind = \"ardupilot\"\n[ardupilot]\nleast_samples = 0\n", "least_samples"},
