@@ -11,13 +11,11 @@
 namespace beamgyro::internal {
 namespace {
 
-constexpr std::size_t kManySegments = 500;
 constexpr std::uint32_t kDraws = 300;
 constexpr double kFirstNoise = 1.0 + std::numbers::sqrt2;  // 1/(sqrt(2) - 1)
-constexpr std::uint32_t kFewDraws = 60;                    // with many segments
 constexpr double kSmallNoise = 1e-4;  // [-], too little to choose another one
 constexpr double kNormal995 = 2.5758293035489004;  // [-], normal quantile
-constexpr double kRounding = 1e-9;  // [-], of a figure, over kSmallNoise
+constexpr double kRounding = 1e-9;                 // [-], of a figure
 
 using Draws = std::vector<std::vector<double>>;
 
@@ -125,30 +123,73 @@ Interval interval_by_errors(double figure, std::span<const double> errors,
   return {figure - first - half, figure - shift + half};
 }
 
-/// Means, draws of their noise, and how the noise is taken out of them.
-struct DrawnMeans {
-  const NoisyMeans& means;
-  const Draws& draws;
-  Shrinkage shrinkage;
-};
-
-/// The interval of a figure by draws, `normal` standard deviations wide.
-Interval beneath_draws(const DrawnMeans& drawn, const Statistic& statistic,
-                       Growth growth, double normal) {
-  const std::vector<double> base =
-      shrunken(drawn.means, drawn.draws, drawn.shrinkage);
-  const bool squared = growth == Growth::kSquare;
-  const Statistic measure = [&](std::span<const double> b) {
-    const double figure = statistic(b);
-    return squared ? figure * figure : figure;
-  };
-  const double exact = measure(base);
-  std::vector<double> errors = figures_with(drawn.draws, base, measure);
+/// What draws of the noise change a figure of `base` by.
+std::vector<double> errors_about(const std::vector<double>& base,
+                                 const Draws& draws,
+                                 const Statistic& statistic) {
+  std::vector<double> errors = figures_with(draws, base, statistic);
+  const double exact = statistic(base);
   for (double& error : errors) error -= exact;
-  auto [low, high] =
-      interval_by_errors(measure(drawn.means.values), errors, growth, normal);
-  if (!squared) return {low, high};
-  return {std::sqrt(std::max(low, 0.0)), std::sqrt(std::max(high, 0.0))};
+  return errors;
+}
+
+/// The lower end of the root of a mean square by its figure and errors of it.
+double low_root(double square, std::span<const double> errors, double normal) {
+  return std::sqrt(std::max(
+      0.0, interval_by_errors(square, errors, Growth::kSquare, normal).low));
+}
+
+/// The quantile of a distribution that is skewed a little.
+double lower_quantile(std::span<const double> values, double normal) {
+  const double mean = mean_of(values);
+  const double sigma = std::sqrt(mean_square(values, mean));
+  if (!(sigma > 0.0)) return mean;
+  double cubes = 0.0;
+  for (const double value : values) cubes += std::pow(value - mean, 3);
+  const double skewness =
+      cubes / (static_cast<double>(values.size()) * sigma * sigma * sigma);
+  return mean + sigma * (-normal + (normal * normal - 1.0) * skewness / 6.0);
+}
+
+/// `base` and `normal` standard deviations of the noise that enlarges a mean
+/// square of it most, as the header says.
+std::vector<double> lessened_by_noise(std::vector<double> base,
+                                      const Draws& draws,
+                                      const Statistic& square, double normal) {
+  std::vector<double> opposite(base.size());
+  std::vector<double> shares = figures_with(draws, base, square);
+  double squares = 0.0;
+  for (std::size_t d = 0; d < draws.size(); ++d) {
+    std::ranges::transform(base, draws[d], opposite.begin(), std::minus<>());
+    shares[d] -= square(opposite);
+    squares += shares[d] * shares[d];
+  }
+  if (!(squares > 0.0)) return base;
+  const auto count = static_cast<double>(draws.size());
+  const double factor = normal / std::sqrt(squares * count);
+  for (std::size_t d = 0; d < draws.size(); ++d)
+    for (std::size_t i = 0; i < base.size(); ++i)
+      base[i] += factor * shares[d] * draws[d][i];
+  return base;
+}
+
+/// The interval of the root of a mean square.
+Interval root_interval(const NoisyMeans& means, const Draws& draws,
+                       const Statistic& statistic, Shrinkage shrinkage) {
+  const Statistic square = [&](std::span<const double> b) {
+    const double figure = statistic(b);
+    return figure * figure;
+  };
+  const double found = square(means.values);
+  std::vector<double> base = shrunken(means, draws, shrinkage);
+  const double low =
+      low_root(found, errors_about(base, draws, square), kNormal975);
+  if (!(square(base) > kRounding * found)) base = means.values;
+  const std::vector<double> least =
+      lessened_by_noise(std::move(base), draws, square, kNormal975);
+  const double high =
+      found - lower_quantile(errors_about(least, draws, square), kNormal975);
+  return {low, std::sqrt(std::max(high, 0.0))};
 }
 
 /// Ends of windows of one power-on of one run, none longer than `window` [s].
@@ -174,10 +215,6 @@ std::vector<double> less_means(std::span<const double> values,
   std::vector<double> centred(values.size());
   std::ranges::transform(values, centres, centred.begin(), std::minus<>());
   return centred;
-}
-
-double root_mean_square(std::span<const double> values) {
-  return std::sqrt(mean_square(values, 0.0));
 }
 
 }  // namespace
@@ -223,8 +260,7 @@ const Draws& draws_of(const NoisyMeans& means) {
   Kept& place = kept.at(next);
   next = (next + 1) % kept.size();
   place.draws.clear();
-  const bool many = means.values.size() > kManySegments;
-  for (std::uint32_t d = 0; d < (many ? kFewDraws : kDraws); ++d)
+  for (std::uint32_t d = 0; d < kDraws; ++d)
     place.draws.push_back(means.drawn_noise(d));
   place.noise = means.noise;
   return place.draws;
@@ -244,7 +280,12 @@ Estimate estimate_beneath_noise(const NoisyMeans& means,
     return {value, Interval{value, value}};
   const Draws& draws = draws_of(means);
   auto [low, high] =
-      beneath_draws({means, draws, shrinkage}, statistic, growth, kNormal975);
+      growth == Growth::kSquare
+          ? root_interval(means, draws, statistic, shrinkage)
+          : interval_by_errors(value,
+                               errors_about(shrunken(means, draws, shrinkage),
+                                            draws, statistic),
+                               growth, kNormal975);
   if (growth == Growth::kExtreme)
     high = std::max(high, value + half_without_choice(means, draws, statistic));
   return {value, Interval{std::min(value, std::max(least, low)),
@@ -257,10 +298,13 @@ double least_rms_within(const NoisyMeans& means, double window) {
   centred.values = less_means(means.values, ends);
   Draws draws = draws_of(means);
   for (std::vector<double>& draw : draws) draw = less_means(draw, ends);
-  return std::max(
-      0.0, beneath_draws({centred, draws, Shrinkage::kToZero}, root_mean_square,
-                         Growth::kSquare, kNormal995)
-               .low);
+  const Statistic square = [](std::span<const double> b) {
+    return mean_square(b, 0.0);
+  };
+  return low_root(
+      square(centred.values),
+      errors_about(shrunken(centred, draws, Shrinkage::kToZero), draws, square),
+      kNormal995);
 }
 
 Estimate estimate_of_noise(const NoisyMeans& means,

@@ -28,9 +28,9 @@ struct NoisyMeans {
   bool without_noise() const;
 };
 
-/// Returns draws of the noise of the means [deg/s], each of all of them: 300,
-/// or 60 for more than 500 means. Draws of the same noise are the same. They
-/// are valid until the thread asks for those of other noise.
+/// Returns 300 draws of the noise of the means [deg/s], each of all of them.
+/// Draws of the same noise are the same. They are valid until the thread asks
+/// for those of other noise.
 const std::vector<std::vector<double>>& draws_of(const NoisyMeans& means);
 
 /// Returns whether a mean is not a number, which a largest value passes over.
@@ -65,6 +65,13 @@ enum class Growth {
 ///   noise, which may be larger than the value by its own noise alone: the
 ///   upper end is at least value + 1.96 sigma of that, with all others as they
 ///   are.
+/// - For a mean square S the upper end is S - q, where q is the quantile of e
+/// of
+///   0.025, by its mean, sigma and skewness, about means that the noise has
+///   lessened: the shrunken means (the means themselves where those are all
+///   noise) and 1.96 standard deviations of the noise that enlarges their S
+///   most. Noise that took away from the drift also took away from the sigma
+///   of e, which would end the interval too low.
 /// - For an extreme figure the lower end is value - 1/(sqrt(2) - 1) mean(e) -
 ///   1.96 sigma(e): as much as the first noise adds where all means are equal.
 /// The interval has no width if there is no noise.
