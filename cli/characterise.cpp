@@ -61,7 +61,7 @@ std::vector<double> temperature_grid(const std::string& text) {
 }
 
 // Empty for a device without crossings within the temperatures.
-std::string text_of(const std::vector<SpuriousCrossing>& crossings) {
+std::string crossing_table(const std::vector<SpuriousCrossing>& crossings) {
   if (crossings.empty()) return "";
   std::string text =
       "spurious mode         crosses at degC   bump deg/s   width K\n";
@@ -80,7 +80,7 @@ int characterise_device(const CharacteriseArguments& arguments,
   const Progress progress("characterising " + arguments.input);
   const Characteristic found = beamgyro::characterise(device, grid);
   write_text_file(arguments.output, found.csv);
-  print_result(text_of(found.crossings));
+  print_result(crossing_table(found.crossings));
   for (const std::string& warning : found.warnings) keep_warning(warning);
   return 0;
 }

@@ -35,7 +35,7 @@ void read_count(const ConfigTable& table, SpuriousPopulation& population) {
   population.count = std::move(read.distribution);
 }
 
-Distribution read_number(const ConfigTable& table, std::string_view key) {
+Distribution read_of_mode(const ConfigTable& table, std::string_view key) {
   FileDistribution read = read_distribution(table, key);
   if (!read.values.empty())
     table.fail(key, "expected normal, uniform or lognormal = { .. }");
@@ -49,7 +49,7 @@ Draw read_spurious_population(const ConfigTable& root, const Gyro& base) {
   SpuriousPopulation population;
   read_count(table, population);
   for (std::size_t k = 0; k < kSpuriousNumbers; ++k)
-    population.of_mode[k] = read_number(table, kSpuriousNumberKeys[k]);
+    population.of_mode[k] = read_of_mode(table, kSpuriousNumberKeys[k]);
   const Distribution& ratio = population.of_mode[kCouplingRatio];
   if (ratio.either_sign || !(ratio.low >= 0) ||
       (ratio.low == 0 && ratio.kind != Distribution::Kind::kLognormal)) {

@@ -29,12 +29,13 @@ void SpuriousBias::fill(RunSamples& samples) {
   if (needs_exact_solution(gyro_)) return fill_exactly(samples);
   const std::vector<double>& beam = samples.temperature[kBeam];
   const auto [low, high] = std::ranges::minmax_element(beam);
-  const StaticMap map(gyro_, *low, *high, 0);
+  const std::vector<double> rate(beam.size(), 0.0);
+  std::vector<StaticMap::Signals> signals(beam.size());
+  StaticMap(gyro_, *low, *high, 0).sample(beam, rate, {}, signals);
   samples.spurious_bias.resize(beam.size());
   for (std::size_t k = 0; k < beam.size(); ++k) {
-    const StaticMap::Signals signals = map.at(beam[k], 0);
     samples.spurious_bias[k] =
-        of(signals.at_rest, signals.without_spurious,
+        of(signals[k].at_rest, signals[k].without_spurious,
            electronics_at(gyro_, samples.temperature[kBoard][k]));
   }
 }
