@@ -17,6 +17,7 @@ namespace beamgyro::internal {
 namespace {
 
 constexpr std::uint8_t kLeftOut = kUnpowered | kOutputSaturated;
+constexpr double kMostWeight = 100.0;  // [-], of a run by its power
 
 /// Samples of one plateau, one row each.
 struct Plateau {
@@ -138,9 +139,20 @@ SlopeSums& SlopeSums::operator+=(const SlopeSums& other) {
   compensated += other.compensated;
   raw += other.raw;
   truth += other.truth;
+  power += other.power;
   largest_departure = std::max(largest_departure, other.largest_departure);
   samples += other.samples;
   return *this;
+}
+
+SlopeSums SlopeSums::by_power() const {
+  if (!(truth > 0.0)) return *this;
+  const double weight = std::min(power / truth, kMostWeight);
+  SlopeSums weighed = *this;
+  weighed.compensated *= weight;
+  weighed.raw *= weight;
+  weighed.truth *= weight;
+  return weighed;
 }
 
 SlopeSums slope_sums(const Recording& recording,
@@ -150,9 +162,13 @@ SlopeSums slope_sums(const Recording& recording,
         "compensated rate: {} values for {} times, must be one each",
         compensated.size(), recording.time.size()));
   SlopeSums sums;
+  std::vector<double> truth;
   for (const Plateau& plateau :
-       plateaus_after_steps(recording, compensated, largest_rate, kEveryRate))
+       plateaus_after_steps(recording, compensated, largest_rate, kEveryRate)) {
     sums += sums_of(plateau);
+    truth.insert(truth.end(), plateau.truth.begin(), plateau.truth.end());
+  }
+  if (!truth.empty()) sums.power = centred(truth).squaredNorm();
   return sums;
 }
 

@@ -29,11 +29,18 @@ struct SlopeSums {
   double compensated = 0.0;  // [(deg/s)^2], Σ v compensated_rate
   double raw = 0.0;          // [(deg/s)^2], Σ v rate
   double truth = 0.0;        // [(deg/s)^2], Σ v Omega
+  double power = 0.0;        // [(deg/s)^2], Σ (Omega - its mean over a run)^2
   // [deg/s], largest magnitude of the true rate without_temperature()
   double largest_departure = 0.0;
   std::size_t samples = 0;
 
   SlopeSums& operator+=(const SlopeSums& other);
+
+  /// Returns the sums of one run times min(power / truth, 100), so that the run
+  /// counts among others by the power of its true rate. What is left in v
+  /// depends on where the measured temperature divides the plateaus, and so on
+  /// its noise.
+  SlopeSums by_power() const;
 };
 
 /// Sums over powered, unsaturated samples with |true_rate| <= `largest_rate`

@@ -31,6 +31,9 @@ struct CheckRow {
 constexpr const char* kWithoutRate =
     "train without inputs that hold the rate (rate, output), or with "
     "rate_penalty";
+constexpr const char* kWithoutNoise =
+    "train without inputs that hold the rate (rate, output); where noise "
+    "rises, with bp.weight_decay = 1e-6 or the input temperature_play(2)";
 constexpr const char* kTurningRun =
     "a run whose rate changes, such as a rate table";
 
@@ -51,7 +54,7 @@ constexpr std::array kChecks{
     CheckRow{{"allan_fingerprint",
               "departure from 1 of the Allan deviation at 1 s, after over "
               "before [-]",
-              kWithoutRate, "a run of some minutes at rest, with its noise"},
+              kWithoutNoise, "a run of some minutes at rest, with its noise"},
              check_allan_fingerprint},
     CheckRow{{"shuffled_output",
               "change of the correction over change of the output when the "

@@ -146,11 +146,13 @@ std::optional<Estimate> retained(const Evidence& evidence,
   SlopeSums sums;
   double variance = 0.0;  // of sums.compensated
   for (const EvidenceRun* run : runs_for(evidence, turning_purposes())) {
-    const SlopeSums more = slope_sums(*run->recording, run->rate, largest_rate);
+    const SlopeSums own = slope_sums(*run->recording, run->rate, largest_rate);
+    const SlopeSums more = own.by_power();
     const double step = usual_step(*run->recording);
     sums += more;
-    variance +=
-        std::pow(white_noise_of_correction(*run), 2) / step * more.truth;
+    if (own.truth > 0.0)
+      variance += std::pow(white_noise_of_correction(*run) * more.truth, 2) /
+                  (step * own.truth);
   }
   const auto share = share_retained(sums);
   if (!share) return std::nullopt;
@@ -254,7 +256,8 @@ std::vector<Metric> scale_factor_metrics() {
        scale_factor_temperature_sensitivity},
       {"scale_factor_retained", "Scale factor retained", "1", "",
        "Slope of the judged rate over the true rate divided by that of "
-       "the recorded rate, on the same samples.",
+       "the recorded rate, on the same samples; each run counts by the power "
+       "of its true rate.",
        turning_purposes(), given(retained, kEveryRate), 1.0},
       {"scale_factor_retained_small_rates",
        "Scale factor retained at small rates", "1", "",
