@@ -13,7 +13,8 @@ def keys(table, prefix=""):
     """Dotted keys of a TOML table."""
     for key, value in table.items():
         if isinstance(value, dict):
-            yield from keys(value, f"{prefix}{key}.")
+            name = "NAME" if prefix == "spurious_mode." else key
+            yield from keys(value, f"{prefix}{name}.")
         else:
             yield prefix + key
 
@@ -299,7 +300,8 @@ class Formats(ProgramTest):
                 else "polynomial"
             if key == "population":  # a file, of the kind that asks for it
                 kind = "adapted"
-            text = {"kind": f'"{kind}"', "inputs": '["temperature"]'}
+            inputs = ["temperature", "quadrature"][:1 + (kind == "resonances")]
+            text = {"kind": f'"{kind}"', "inputs": str(inputs)}
             if kind == "bp":
                 text["bp.hidden"] = "[2]"
             if key in ("bp.learning_rate", "bp.momentum"):
