@@ -49,7 +49,7 @@ FirmwareCode code_of(const FittedCompensator& c) {
 }
 
 // Where a sample has what an input reads.
-std::string source_of(const Input& input) {
+std::string field_of(const Input& input) {
   for (std::size_t k = 0; k < kFirmwareSignalCount; ++k)
     if (reads_a_signal(input) && input.column == kFirmwareSignals[k])
       return fmt::format("sample->{}", kFirmwareFields[k]);
@@ -158,7 +158,7 @@ std::string Writer::input_lines() const {
   int filter = 0, play = 0;
   for (std::size_t i = 0; i < c_.inputs.size(); ++i) {
     const Input& input = c_.inputs[i];
-    const std::string source = source_of(input);
+    const std::string source = field_of(input);
     std::string value;
     switch (input.kind) {
       case InputKind::kColumn:
@@ -261,7 +261,7 @@ std::string Writer::step_function() const {
   for (const Input& input : c_.inputs)
     if (parts_.uses_inputs && filters_a_signal(input))
       text += fmt::format("  if (!is_finite({0})) return {0} - {0};\n",
-                          source_of(input));
+                          field_of(input));
   if (parts_.follows_temperature()) text += "  state->started = 1;\n";
   if (parts_.uses_inputs)
     text += input_lines() + finite_lines() + "  y = bias_of(x);\n";

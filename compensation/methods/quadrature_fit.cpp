@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kBeyond = 1.0;  // scaled, of places beyond the range
+constexpr double kPlacesBeyond = 1.0;  // scaled, of places beyond the range
 constexpr Index kGridPlaces = 100, kGridWidths = 9;
 constexpr int kIterations = 25, kTrials = 6, kPatience = 2;
 constexpr double kLargestShare = 1.5;
@@ -127,8 +127,8 @@ Search Problem::with_another(const Solved& s) const {
   for (Index w = 0; w < kGridWidths; ++w) {
     const double log_width = low + (high - low) * static_cast<double>(w) /
                                        static_cast<double>(kGridWidths - 1);
-    const VectorXd places =
-        VectorXd::LinSpaced(kGridPlaces, -1.0 - kBeyond, 1.0 + kBeyond);
+    const VectorXd places = VectorXd::LinSpaced(
+        kGridPlaces, -1.0 - kPlacesBeyond, 1.0 + kPlacesBeyond);
     MatrixXd twins(T_.size(), kGridPlaces);
     for (Index k = 0; k < kGridPlaces; ++k)
       twins.col(k) = twin(2.0 * std::exp(-log_width) * (s.t - places(k)));
@@ -177,8 +177,8 @@ Search Problem::stepped(const Search& from, const VectorXd& step) const {
                   .cwiseMin(kLargestShare);
   Index at = shares;
   for (auto& [place, log_width] : to.resonances) {
-    place = std::clamp(place + std::clamp(step(at), -0.1, 0.1), -1.0 - kBeyond,
-                       1.0 + kBeyond);
+    place = std::clamp(place + std::clamp(step(at), -0.1, 0.1),
+                       -1.0 - kPlacesBeyond, 1.0 + kPlacesBeyond);
     log_width =
         std::clamp(log_width + std::clamp(step(at + 1), -1.0, 1.0),
                    std::log(options_.narrowest), std::log(options_.widest));
