@@ -131,8 +131,9 @@ class Methods(ProgramTest):
                     f"{name}.h5")
         for name, model, table in self.models():
             asks = table.get("inputs", [])
-            if "scale_factor" in table or "drive_frequency" in asks:
-                continue  # asks for a rate table, or for the drive loop
+            if "scale_factor" in table or "drive_frequency" in asks \
+                    or "quadrature" in asks:
+                continue  # asks for a rate table, or for the loops
             if takes_soaks(table):
                 continue
             self.train(name, model)
