@@ -130,11 +130,12 @@ void ResonanceCurve::put_arrays(FirmwareArrays& arrays) const {
     priors.push_back(std::exp(-0.5 * z * z));
   }
   arrays.add({"position", "of the beam, from inputs", singles(position)});
-  arrays.add({"smooth", "powers of the quadrature", singles(smooth)});
-  arrays.add({"pairs",
+  arrays.add(
+      {"quadrature_powers", "powers of the quadrature", singles(smooth)});
+  arrays.add({"resonances",
               "place, 2 / width, height of bias and quadrature of each",
               pair_rows(*this)});
-  arrays.add({"shifts", "of the beam", singles(shifts)});
+  arrays.add({"beam_shifts", "of the beam", singles(shifts)});
   arrays.add({"shift_priors", "of each", singles(priors)});
   arrays.add({"quadrature_gain",
               "1 / (sqrt(3) sigma)",
@@ -148,14 +149,15 @@ float ResonanceCurve::firmware_value(const FirmwareArrays& arrays,
   float t = 0.0f;
   for (std::size_t j = 0; j + 1 < x.size(); ++j)
     t = t + arrays.data("position")[j] * x[j];
-  const int pairs = arrays.count("pairs") / 4;
+  const int pairs = arrays.count("resonances") / 4;
   t = runtime::beam_place(
-      arrays.data("smooth"), arrays.count("smooth"), arrays.data("pairs"),
-      pairs, arrays.data("shifts"), arrays.data("shift_priors"), kBeamShifts,
+      arrays.data("quadrature_powers"), arrays.count("quadrature_powers"),
+      arrays.data("resonances"), pairs, arrays.data("beam_shifts"),
+      arrays.data("shift_priors"), kBeamShifts,
       arrays.data("quadrature_gain")[0], t, x[x.size() - 1]);
   return runtime::table_at(arrays.data("rest_places"), arrays.data("rest"),
                            arrays.count("rest"), t) +
-         runtime::bumps_at(arrays.data("pairs"), pairs, t);
+         runtime::bumps_at(arrays.data("resonances"), pairs, t);
 }
 
 FirmwareCode ResonanceCurve::firmware_code(std::size_t inputs) const {
@@ -166,10 +168,11 @@ FirmwareCode ResonanceCurve::firmware_code(std::size_t inputs) const {
           "  float t = 0.0f;\n"
           "  int j;\n"
           "  for (j = 0; j < {0}; ++j) t = t + position[j] * x[j];\n"
-          "  t = beam_place(smooth, {1}, pairs, {2}, shifts, shift_priors, "
-          "{3},\n"
-          "                 quadrature_gain[0], t, x[{0}]);\n"
-          "  return table_at(rest_places, rest, {4}, t) + bumps_at(pairs, "
+          "  t = beam_place(quadrature_powers, {1}, resonances, {2}, "
+          "beam_shifts,\n"
+          "                 shift_priors, {3}, quadrature_gain[0], t, "
+          "x[{0}]);\n"
+          "  return table_at(rest_places, rest, {4}, t) + bumps_at(resonances, "
           "{2}, t);\n",
           inputs - 1, smooth.size(), pairs, kBeamShifts, rest.values.size())};
 }
