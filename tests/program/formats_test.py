@@ -304,8 +304,6 @@ class Formats(ProgramTest):
             text = {"kind": f'"{kind}"', "inputs": str(inputs)}
             if kind == "bp":
                 text["bp.hidden"] = "[2]"
-            if kind == "resonances":
-                text["inputs"] = '["temperature", "quadrature"]'
             if key in ("bp.learning_rate", "bp.momentum"):
                 text["bp.trainer"] = '"incremental"'
             text[key] = "{}"
