@@ -160,7 +160,8 @@ def offences(path, text):
             yield f'"{target}" must be named from the project root'
             continue
         other = room_of(target)
-        if path.startswith("tests/") and target.startswith("tests/"):
+        # Benchmarks run on what tests run on.
+        if path.startswith(("tests/", "bench/")) and target.startswith("tests/"):
             continue
         if target.startswith("tests/") or other not in allowed:
             yield f'must not include "{target}"'
