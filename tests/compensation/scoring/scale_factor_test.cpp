@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "compensation/scoring/rate_departure.h"
 #include "tests/compensation/recorded_run.h"
@@ -106,6 +108,30 @@ TEST(ScaleFactor, OfRunsTogetherDoesNotSeeTheirDifferentBias) {
   }
   EXPECT_NEAR(raw_slope(sums), 1.0, 1e-13);
   EXPECT_EQ(sums.samples, 480U);
+}
+
+TEST(ScaleFactor, OfRunsTogetherCountsEachByThePowerOfItsRate) {
+  // Most of a table of long steps is left out of v, next to nothing of a fast
+  // swing: by v the table would count for less than a third of this.
+  RecordedRun table = kTable;
+  table.duration = 2640.0;
+  table.true_rate = rate_table(100.0, 11, 240.0);
+  RecordedRun swing{
+      .true_rate = [](double t) { return 60.0 * std::sin(0.3 * t); }};
+  SlopeSums sums;
+  double power = 0.0, kept = 0.0;
+  for (const auto& [each, share] : {std::pair{table, 0.9}, {swing, 1.0}}) {
+    const Recording run = each.recording();
+    const auto& truth = column_values(run, "true_rate");
+    sums += slope_sums(run, scaled(truth, share)).by_power();
+    const double mean = std::accumulate(truth.begin(), truth.end(), 0.0) /
+                        static_cast<double>(truth.size());
+    for (const double rate : truth) {
+      power += std::pow(rate - mean, 2);
+      kept += share * std::pow(rate - mean, 2);
+    }
+  }
+  EXPECT_NEAR(*share_retained(sums), kept / power, 1e-12);
 }
 
 TEST(ScaleFactor, IsMissingWhereTheRateDoesNotVary) {
