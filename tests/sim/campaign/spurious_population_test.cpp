@@ -51,11 +51,11 @@ TEST(SpuriousPopulation, HasThePoissonNumberOfModes) {
     sum += count;
     squares += count * count;
   }
-  // Cut at 16 the mean is 7.964 and the variance 7.70; three sigma of each.
+  // Cut at 16 the mean is 7.964 and the variance 7.673; three sigma of each.
   const double mean = sum / kUnits;
-  EXPECT_NEAR(mean, 7.964, 3 * std::sqrt(7.7 / kUnits));
-  EXPECT_NEAR(squares / kUnits - mean * mean, 7.7,
-              3 * 7.7 * std::sqrt(2.2 / kUnits));
+  EXPECT_NEAR(mean, 7.964, 3 * std::sqrt(7.673 / kUnits));
+  EXPECT_NEAR(squares / kUnits - mean * mean, 7.673,
+              3 * 7.673 * std::sqrt(1.813 / kUnits));
 }
 
 TEST(SpuriousPopulation, CouplingsHaveTheDrawnHeightAndRatio) {
