@@ -24,6 +24,8 @@ def keys_of_runs(table):
     for key, value in table.items():
         if key == "tolerances":
             yield 'tolerances."KEY"'
+        elif key == "spurious_modes":  # of distributions
+            yield from (f"{key}.{part}" for part in value)
         elif isinstance(value, list):
             for entry in value:
                 yield from (f'{key}.vary."KEY"' if part == "vary"

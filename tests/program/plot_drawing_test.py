@@ -190,7 +190,7 @@ class Compensators(ProgramTest):
                 "must be one of ")[2].split(", "))
         self.assertIn("polynomial", kinds)
         quick = {"polynomial": CUBIC, "bp": NETWORK}
-        for kind in sorted(kinds):
+        for kind in sorted(kinds - {"resonances"}):  # reads quadrature, too
             text = quick.get(kind) or (MODELS / f"{kind}.toml").read_text()
             self.write("model.toml", text.replace(
                 '["temperature", "since_power_on(300)"]', '["temperature"]'))
