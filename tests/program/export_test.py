@@ -10,7 +10,7 @@ import unittest
 import numpy as np
 import pytest
 
-from exported import EVENTFUL, MODELS, WARNINGS, ExportTest
+from exported import EVENTFUL, MODELS, WARNINGS, ExportTest, run_of
 from pages import page, rows, section
 from program import ended
 from rejections import Rejections, row
@@ -128,7 +128,7 @@ class ExportC(ExportTest):
         other samples than these."""
         for kind in MODELS:
             folder = self.export(kind)
-            self.ok("compensate", f"{kind}.json", "train.h5", "-o", "out.h5",
+            self.ok("compensate", f"{kind}.json", run_of(kind), "-o", "out.h5",
                     "--quiet")
             out = self.signals("out.h5")
             expected = out["compensated_rate"]

@@ -70,6 +70,11 @@ SOAKS = ramp(seconds=12000, seed=5).replace(
     "points = [[0, -30], [3000, -30], [4500, 5], [7500, 5], [9000, 40]]")
 
 
+def run_of(kind):
+    """The run that a compensator of the kind is trained on."""
+    return "soaks.h5" if kind == "resonances" else "train.h5"
+
+
 class ExportTest(ProgramTest):
     def prepare(self):
         super().prepare()
@@ -80,8 +85,7 @@ class ExportTest(ProgramTest):
     def train(self, kind):
         """File of a compensator of the kind."""
         model = self.write(f"{kind}.toml", MODELS[kind])
-        run = "soaks.h5" if kind == "resonances" else "train.h5"
-        self.ok("train", run, "--held-out", "held_out.h5", "--model", model,
+        self.ok("train", run_of(kind), "--held-out", "held_out.h5", "--model", model,
                 "-o", f"{kind}.json", "--quiet")
         if kind == "scaled":
             stored = self.json("scaled.json")
