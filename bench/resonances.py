@@ -2,7 +2,7 @@
 """Seven soaks and the ramps between them, of virtual gyros with spurious
 modes: what each method leaves on the steady curve and on unseen ramps.
 
-    /usr/bin/python3 bench/resonances.py 60 [--networks] [--quiet-noise]
+    /usr/bin/python3 bench/resonances.py 60 [--networks]
 
 BEAMGYRO names the program. One line a unit, then medians and 95 %."""
 

@@ -63,7 +63,7 @@ Gyro untrimmed_two_modes(const DeviceParameters& device) {
 
 // The quadrature is linear in k_trim up to the shift of w_d: a secant from the
 // closed-form slope 1/(2 m g w_d) of (2.22) converges in two or three steps.
-double trimmed_stiffness(Gyro gyro) {
+double trimmed_stiffness(const Gyro& gyro) {
   constexpr int kMaxIterations = 20;
   constexpr double kTolerance = 1e-9;  // [rad/s], 6e-8 deg/s
   const double target = gyro.device.readout.quadrature_trim;

@@ -110,7 +110,7 @@ std::string sum_of_folder(const fs::path& folder) {
           "{}: holds {}, which is an HDF5 file, as recordings are; expected "
           "files and folders of programs",
           NamedOption{"plugin_files", folder.string()}, name);
-    const std::string line = name + '\0' + digits + '\n';
+    const std::string line = fmt::format("{}{}{}\n", name, '\0', digits);
     sum.add(std::as_bytes(std::span(line)));
   }
   return sum.digits();
