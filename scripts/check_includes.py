@@ -161,7 +161,8 @@ def offences(path, text):
             continue
         other = room_of(target)
         # Benchmarks run on what tests run on.
-        if path.startswith(("tests/", "bench/")) and target.startswith("tests/"):
+        if (path.startswith(("tests/", "bench/"))
+                and target.startswith("tests/")):
             continue
         if target.startswith("tests/") or other not in allowed:
             yield f'must not include "{target}"'
