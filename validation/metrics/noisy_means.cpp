@@ -296,8 +296,9 @@ double least_rms_within(const NoisyMeans& means, double window) {
   const std::vector<std::size_t> ends = window_ends(means, window);
   NoisyMeans centred = means;
   centred.values = less_means(means.values, ends);
-  Draws draws = draws_of(means);
-  for (std::vector<double>& draw : draws) draw = less_means(draw, ends);
+  Draws draws;
+  for (const std::vector<double>& draw : draws_of(means))
+    draws.push_back(less_means(draw, ends));
   const Statistic square = [](std::span<const double> b) {
     return mean_square(b, 0.0);
   };
