@@ -22,7 +22,8 @@ NoisyCandidates noisy(const NoisyMeans& means, const Candidates& candidates) {
   const std::size_t count = found.values.size();
   found.deviations.assign(count, 0.0);
   std::vector<double> moved(means.values.size());
-  for (const std::vector<double>& draw : draws_of(means)) {
+  const auto draws = draws_of(means);
+  for (const std::vector<double>& draw : *draws) {
     std::ranges::transform(means.values, draw, moved.begin(), std::plus<>());
     std::vector<double>& errors = found.noise.emplace_back(candidates(moved));
     for (std::size_t j = 0; j < count; ++j) {

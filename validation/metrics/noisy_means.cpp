@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <mutex>
 #include <numbers>
+#include <utility>
 
 #include "random/random_stream.h"
 
@@ -16,8 +19,8 @@ constexpr double kFirstNoise = 1.0 + std::numbers::sqrt2;  // 1/(sqrt(2) - 1)
 constexpr double kSmallNoise = 1e-4;  // [-], too little to choose another one
 constexpr double kNormal995 = 2.5758293035489004;  // [-], normal quantile
 constexpr double kRounding = 1e-9;                 // [-], of a figure
-
-using Draws = std::vector<std::vector<double>>;
+constexpr int kRootHalvings = 40;                  // of a bracket
+constexpr std::size_t kKeptDraws = 8;
 
 double mean_square(std::span<const double> values, double about) {
   double sum = 0.0;
@@ -44,26 +47,28 @@ std::vector<std::size_t> group_ends(const NoisyMeans& means,
   return ends;
 }
 
-std::vector<double> centres_of(std::span<const double> values,
-                               const std::vector<std::size_t>& ends,
-                               Shrinkage shrinkage) {
-  std::vector<double> centres(values.size(), 0.0);
-  if (shrinkage == Shrinkage::kToZero) return centres;
-  std::size_t begin = 0;
+/// Calls `each(index, centre)` for every value with what it is drawn towards.
+template <typename Each>
+void for_each_about_centre(std::span<const double> values,
+                           const std::vector<std::size_t>& ends,
+                           Shrinkage shrinkage, const Each& each) {
+  std::size_t i = 0;
   for (const std::size_t end : ends) {
-    const double centre = mean_of(values.subspan(begin, end - begin));
-    std::fill(centres.begin() + static_cast<std::ptrdiff_t>(begin),
-              centres.begin() + static_cast<std::ptrdiff_t>(end), centre);
-    begin = end;
+    const double centre = shrinkage == Shrinkage::kToZero
+                              ? 0.0
+                              : mean_of(values.subspan(i, end - i));
+    for (; i < end; ++i) each(i, centre);
   }
-  return centres;
 }
 
 double sum_of_squares(std::span<const double> values,
-                      std::span<const double> centres) {
+                      const std::vector<std::size_t>& ends,
+                      Shrinkage shrinkage) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    sum += (values[i] - centres[i]) * (values[i] - centres[i]);
+  for_each_about_centre(values, ends, shrinkage,
+                        [&](std::size_t i, double centre) {
+                          sum += (values[i] - centre) * (values[i] - centre);
+                        });
   return sum;
 }
 
@@ -74,25 +79,30 @@ std::vector<double> shrunken(const NoisyMeans& means, const Draws& draws,
   const std::vector<std::size_t> ends = group_ends(means, shrinkage);
   std::vector<double> noise;  // sums of squares
   for (const std::vector<double>& draw : draws)
-    noise.push_back(sum_of_squares(draw, centres_of(draw, ends, shrinkage)));
+    noise.push_back(sum_of_squares(draw, ends, shrinkage));
   const double usual = mean_of(noise);
   const double most = usual + kNormal975 * std::sqrt(mean_square(noise, usual));
-  const std::vector<double> centres = centres_of(base, ends, shrinkage);
-  const double all = sum_of_squares(base, centres);
+  const double all = sum_of_squares(base, ends, shrinkage);
   // As small a sum may well be noise alone.
   const double kept = all > most ? std::sqrt(1.0 - usual / all) : 0.0;
-  for (std::size_t i = 0; i < base.size(); ++i)
-    base[i] = centres[i] + kept * (base[i] - centres[i]);
+  for_each_about_centre(means.values, ends, shrinkage,
+                        [&](std::size_t i, double centre) {
+                          base[i] = centre + kept * (base[i] - centre);
+                        });
   return base;
 }
 
+/// The figure of `base` with each draw, `factor` times as large.
 std::vector<double> figures_with(const Draws& draws,
                                  const std::vector<double>& base,
-                                 const Statistic& statistic) {
+                                 const Statistic& statistic,
+                                 double factor = 1.0) {
   std::vector<double> figures;
   std::vector<double> noisy(base.size());
   for (const std::vector<double>& draw : draws) {
-    std::ranges::transform(base, draw, noisy.begin(), std::plus<>());
+    std::ranges::transform(
+        base, draw, noisy.begin(),
+        [factor](double mean, double noise) { return mean + factor * noise; });
     figures.push_back(statistic(noisy));
   }
   return figures;
@@ -102,11 +112,8 @@ std::vector<double> figures_with(const Draws& draws,
 /// it is.
 double half_without_choice(const NoisyMeans& means, const Draws& draws,
                            const Statistic& statistic) {
-  Draws small = draws;
-  for (std::vector<double>& draw : small)
-    for (double& noise : draw) noise *= kSmallNoise;
   const std::vector<double> figures =
-      figures_with(small, means.values, statistic);
+      figures_with(draws, means.values, statistic, kSmallNoise);
   const double mean = mean_of(figures);
   const double half =
       kNormal975 / kSmallNoise * std::sqrt(mean_square(figures, mean));
@@ -115,9 +122,9 @@ double half_without_choice(const NoisyMeans& means, const Draws& draws,
 
 /// The interval about a figure by its errors, as the header says.
 Interval interval_by_errors(double figure, std::span<const double> errors,
-                            Growth growth, double normal) {
+                            Growth growth) {
   const double shift = mean_of(errors);
-  const double half = normal * std::sqrt(mean_square(errors, shift));
+  const double half = kNormal975 * std::sqrt(mean_square(errors, shift));
   const double first =
       growth == Growth::kExtreme ? std::max(shift, kFirstNoise * shift) : shift;
   return {figure - first - half, figure - shift + half};
@@ -133,14 +140,31 @@ std::vector<double> errors_about(const std::vector<double>& base,
   return errors;
 }
 
-/// The lower end of the root of a mean square by its figure and errors of it.
-double low_root(double square, std::span<const double> errors, double normal) {
-  return std::sqrt(std::max(
-      0.0, interval_by_errors(square, errors, Growth::kSquare, normal).low));
+/// The square of a figure of t times a drift and a draw of noise: drift t^2 +
+/// product t + noise.
+struct NoisySquare {
+  double drift;
+  std::vector<double> products, noise;  // of each draw
+};
+
+NoisySquare noisy_square(const std::vector<double>& drift, const Draws& draws,
+                         const Statistic& root) {
+  const std::vector<double> nothing(drift.size(), 0.0);
+  NoisySquare found{std::pow(root(drift), 2), figures_with(draws, drift, root),
+                    figures_with(draws, nothing, root)};
+  for (std::size_t d = 0; d < draws.size(); ++d) {
+    found.noise[d] *= found.noise[d];
+    found.products[d] =
+        std::pow(found.products[d], 2) - found.drift - found.noise[d];
+  }
+  return found;
 }
 
-/// The quantile of a distribution that is skewed a little.
-double lower_quantile(std::span<const double> values, double normal) {
+/// A quantile of the square, which is skewed a little.
+double quantile_of(const NoisySquare& square, double t, double normal) {
+  std::vector<double> values(square.noise.size());
+  for (std::size_t d = 0; d < values.size(); ++d)
+    values[d] = square.drift * t * t + square.products[d] * t + square.noise[d];
   const double mean = mean_of(values);
   const double sigma = std::sqrt(mean_square(values, mean));
   if (!(sigma > 0.0)) return mean;
@@ -148,48 +172,44 @@ double lower_quantile(std::span<const double> values, double normal) {
   for (const double value : values) cubes += std::pow(value - mean, 3);
   const double skewness =
       cubes / (static_cast<double>(values.size()) * sigma * sigma * sigma);
-  return mean + sigma * (-normal + (normal * normal - 1.0) * skewness / 6.0);
+  return mean + sigma * (normal + (normal * normal - 1.0) * skewness / 6.0);
 }
 
-/// `base` and `normal` standard deviations of the noise that enlarges a mean
-/// square of it most, as the header says.
-std::vector<double> lessened_by_noise(std::vector<double> base,
-                                      const Draws& draws,
-                                      const Statistic& square, double normal) {
-  std::vector<double> opposite(base.size());
-  std::vector<double> shares = figures_with(draws, base, square);
-  double squares = 0.0;
-  for (std::size_t d = 0; d < draws.size(); ++d) {
-    std::ranges::transform(base, draws[d], opposite.begin(), std::minus<>());
-    shares[d] -= square(opposite);
-    squares += shares[d] * shares[d];
+/// The figure of the drift for which a quantile is the square that was seen;
+/// zero if the noise alone has so large a quantile.
+double root_by_quantile(const NoisySquare& square, double seen, double normal) {
+  if (!(square.drift > 0.0) || quantile_of(square, 0.0, normal) >= seen)
+    return 0.0;
+  double low = 0.0, high = 1.0;
+  while (quantile_of(square, high, normal) < seen) high *= 2.0;
+  for (int i = 0; i < kRootHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (quantile_of(square, middle, normal) < seen ? low : high) = middle;
   }
-  if (!(squares > 0.0)) return base;
-  const auto count = static_cast<double>(draws.size());
-  const double factor = normal / std::sqrt(squares * count);
-  for (std::size_t d = 0; d < draws.size(); ++d)
-    for (std::size_t i = 0; i < base.size(); ++i)
-      base[i] += factor * shares[d] * draws[d][i];
-  return base;
+  return high * std::sqrt(square.drift);
 }
 
-/// The interval of the root of a mean square.
+/// The means and one standard deviation of the noise that has most in common
+/// with them.
+std::vector<double> nearer_to_noise(std::vector<double> means,
+                                    const NoisySquare& square,
+                                    const Draws& draws) {
+  const double all = std::sqrt(mean_square(square.products, 0.0));
+  if (!(all > 0.0)) return means;
+  const double factor = 1.0 / (all * static_cast<double>(draws.size()));
+  for (std::size_t d = 0; d < draws.size(); ++d)
+    for (std::size_t i = 0; i < means.size(); ++i)
+      means[i] += factor * square.products[d] * draws[d][i];
+  return means;
+}
+
 Interval root_interval(const NoisyMeans& means, const Draws& draws,
-                       const Statistic& statistic, Shrinkage shrinkage) {
-  const Statistic square = [&](std::span<const double> b) {
-    const double figure = statistic(b);
-    return figure * figure;
-  };
-  const double found = square(means.values);
-  std::vector<double> base = shrunken(means, draws, shrinkage);
-  const double low =
-      low_root(found, errors_about(base, draws, square), kNormal975);
-  if (!(square(base) > kRounding * found)) base = means.values;
-  const std::vector<double> least =
-      lessened_by_noise(std::move(base), draws, square, kNormal975);
-  const double high =
-      found - lower_quantile(errors_about(least, draws, square), kNormal975);
-  return {low, std::sqrt(std::max(high, 0.0))};
+                       const Statistic& root) {
+  const NoisySquare square = noisy_square(means.values, draws, root);
+  const NoisySquare nearer =
+      noisy_square(nearer_to_noise(means.values, square, draws), draws, root);
+  return {root_by_quantile(square, square.drift, kNormal975),
+          root_by_quantile(nearer, square.drift, -kNormal975)};
 }
 
 /// Ends of windows of one power-on of one run, none longer than `window` [s].
@@ -208,14 +228,42 @@ std::vector<std::size_t> window_ends(const NoisyMeans& means, double window) {
   return ends;
 }
 
-std::vector<double> less_means(std::span<const double> values,
-                               const std::vector<std::size_t>& ends) {
-  const std::vector<double> centres =
-      centres_of(values, ends, Shrinkage::kToMean);
-  std::vector<double> centred(values.size());
-  std::ranges::transform(values, centres, centred.begin(), std::minus<>());
-  return centred;
-}
+/// The draws that were asked for last.
+class KeptDraws {
+ public:
+  /// Makes the draws once, however many threads ask for them.
+  std::shared_ptr<const Draws> of(const NoisyMeans& means) {
+    const std::shared_ptr<Kept> one = place_of(means);
+    std::call_once(one->made, [&] {
+      one->draws.clear();
+      for (std::uint32_t d = 0; d < kDraws; ++d)
+        one->draws.push_back(means.drawn_noise(d));
+    });
+    return {one, &one->draws};
+  }
+
+ private:
+  struct Kept {
+    std::vector<SegmentNoise> noise;
+    std::once_flag made;
+    Draws draws;
+  };
+
+  std::shared_ptr<Kept> place_of(const NoisyMeans& means) {
+    const std::lock_guard lock(mutex_);
+    for (const std::shared_ptr<Kept>& one : kept_)
+      if (one && one->noise == means.noise) return one;
+    std::shared_ptr<Kept>& place = kept_.at(next_);
+    next_ = (next_ + 1) % kept_.size();
+    place = std::make_shared<Kept>();
+    place->noise = means.noise;
+    return place;
+  }
+
+  std::mutex mutex_;
+  std::array<std::shared_ptr<Kept>, kKeptDraws> kept_;
+  std::size_t next_ = 0;
+};
 
 }  // namespace
 
@@ -248,22 +296,9 @@ bool NoisyMeans::without_noise() const {
   return std::ranges::all_of(noise, &SegmentNoise::none);
 }
 
-const Draws& draws_of(const NoisyMeans& means) {
-  struct Kept {
-    std::vector<SegmentNoise> noise;
-    Draws draws;
-  };
-  thread_local std::array<Kept, 6> kept;
-  thread_local std::size_t next = 0;
-  for (const Kept& one : kept)
-    if (one.noise == means.noise) return one.draws;
-  Kept& place = kept.at(next);
-  next = (next + 1) % kept.size();
-  place.draws.clear();
-  for (std::uint32_t d = 0; d < kDraws; ++d)
-    place.draws.push_back(means.drawn_noise(d));
-  place.noise = means.noise;
-  return place.draws;
+std::shared_ptr<const Draws> draws_of(const NoisyMeans& means) {
+  static KeptDraws kept;
+  return kept.of(means);
 }
 
 bool lacks_answers(const NoisyMeans& means) {
@@ -278,34 +313,44 @@ Estimate estimate_beneath_noise(const NoisyMeans& means,
   const double value = statistic(means.values);
   if (means.without_noise() || !std::isfinite(value))
     return {value, Interval{value, value}};
-  const Draws& draws = draws_of(means);
+  const auto kept_draws = draws_of(means);
+  const Draws& draws = *kept_draws;
   auto [low, high] =
       growth == Growth::kSquare
-          ? root_interval(means, draws, statistic, shrinkage)
+          ? root_interval(means, draws, statistic)
           : interval_by_errors(value,
                                errors_about(shrunken(means, draws, shrinkage),
                                             draws, statistic),
-                               growth, kNormal975);
+                               growth);
   if (growth == Growth::kExtreme)
     high = std::max(high, value + half_without_choice(means, draws, statistic));
   return {value, Interval{std::min(value, std::max(least, low)),
                           std::max(value, high)}};
 }
 
+double rms_within(const NoisyMeans& means, double window) {
+  return std::sqrt(sum_of_squares(means.values, window_ends(means, window),
+                                  Shrinkage::kToMean) /
+                   static_cast<double>(means.values.size()));
+}
+
 double least_rms_within(const NoisyMeans& means, double window) {
+  const auto draws = draws_of(means);
   const std::vector<std::size_t> ends = window_ends(means, window);
-  NoisyMeans centred = means;
-  centred.values = less_means(means.values, ends);
-  Draws draws;
-  for (const std::vector<double>& draw : draws_of(means))
-    draws.push_back(less_means(draw, ends));
-  const Statistic square = [](std::span<const double> b) {
-    return mean_square(b, 0.0);
-  };
-  return low_root(
-      square(centred.values),
-      errors_about(shrunken(centred, draws, Shrinkage::kToZero), draws, square),
-      kNormal995);
+  const auto count = static_cast<double>(means.values.size());
+  NoisySquare square{
+      sum_of_squares(means.values, ends, Shrinkage::kToMean) / count, {}, {}};
+  for (const std::vector<double>& draw : *draws) {
+    square.noise.push_back(sum_of_squares(draw, ends, Shrinkage::kToMean) /
+                           count);
+    double& product = square.products.emplace_back(0.0);
+    for_each_about_centre(means.values, ends, Shrinkage::kToMean,
+                          [&](std::size_t i, double centre) {
+                            product += 2.0 / count *
+                                       (means.values[i] - centre) * draw[i];
+                          });
+  }
+  return root_by_quantile(square, square.drift, kNormal995);
 }
 
 Estimate estimate_of_noise(const NoisyMeans& means,
@@ -314,7 +359,8 @@ Estimate estimate_of_noise(const NoisyMeans& means,
   const double value = statistic(means.values);
   if (means.without_noise() || !(value > 0.0) || !std::isfinite(value))
     return {value, Interval{value, value}};
-  const Draws& draws = draws_of(means);
+  const auto kept_draws = draws_of(means);
+  const Draws& draws = *kept_draws;
   const std::vector<double> nothing(means.values.size(), 0.0);
   const double noise =
       mean_square(figures_with(draws, nothing, statistic), 0.0);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -28,10 +29,12 @@ struct NoisyMeans {
   bool without_noise() const;
 };
 
-/// Returns 300 draws of the noise of the means [deg/s], each of all of them.
-/// Draws of the same noise are the same. They are valid until the thread asks
-/// for those of other noise.
-const std::vector<std::vector<double>>& draws_of(const NoisyMeans& means);
+/// Draws of the noise of means [deg/s], each of all of them.
+using Draws = std::vector<std::vector<double>>;
+
+/// Returns 300 draws of the noise of the means. Draws of the same noise are the
+/// same; the last few are kept for all threads. Thread-safe.
+std::shared_ptr<const Draws> draws_of(const NoisyMeans& means);
 
 /// Returns whether a mean is not a number, which a largest value passes over.
 bool lacks_answers(const NoisyMeans& means);
@@ -47,7 +50,9 @@ enum class Shrinkage { kNone, kToZero, kToMean, kToPowerOn };
 /// How noise enlarges a figure.
 enum class Growth {
   kSmooth,  // its error is added to it
-  kSquare,  // a root of a mean square: the error is added to its square
+  // The root of a quadratic form: the noise, and twice its product with the
+  // drift, are added to the square.
+  kSquare,
   // The largest of many: it grows most by the first noise, which chooses the
   // extreme, and less by what is added to that.
   kExtreme,
@@ -55,7 +60,7 @@ enum class Growth {
 
 /// Returns a figure of the means and the 95 % interval of what it would be
 /// without the noise. The error of the figure is drawn: noise is added to the
-/// shrunken means, and e is by how much that changes the figure, or its square.
+/// shrunken means, and e is by how much that changes the figure.
 /// The interval is
 ///
 ///   value - mean(e) -+ 1.96 sigma(e),
@@ -65,15 +70,15 @@ enum class Growth {
 ///   noise, which may be larger than the value by its own noise alone: the
 ///   upper end is at least value + 1.96 sigma of that, with all others as they
 ///   are.
-/// - For a mean square S the upper end is S - q, where q is the quantile of e
-/// of
-///   0.025, by its mean, sigma and skewness, about means that the noise has
-///   lessened: the shrunken means (the means themselves where those are all
-///   noise) and 1.96 standard deviations of the noise that enlarges their S
-///   most. Noise that took away from the drift also took away from the sigma
-///   of e, which would end the interval too low.
 /// - For an extreme figure the lower end is value - 1/(sqrt(2) - 1) mean(e) -
 ///   1.96 sigma(e): as much as the first noise adds where all means are equal.
+/// - A root needs no shrinkage. Its drift is taken for t times the means: the
+///   lower end is the figure of that t for which the square that was seen is
+///   the 0.975 quantile of the squares with drawn noise, by their mean, sigma
+///   and skewness. The upper end is by the 0.025 quantile, for a drift like the
+///   means and one standard deviation of the noise that has most in common with
+///   them: noise that took away from the drift also hides what it has in
+///   common.
 /// The interval has no width if there is no noise.
 Estimate estimate_beneath_noise(const NoisyMeans& means,
                                 const Statistic& statistic, Shrinkage shrinkage,
@@ -86,6 +91,10 @@ Estimate estimate_beneath_noise(const NoisyMeans& means,
 /// takes off the turn-on offset and most of the slow noise. By a normal
 /// quantile of 0.995, so that several windows can be asked.
 double least_rms_within(const NoisyMeans& means, double window);
+
+/// Returns the rms of what is left of the means within such windows, which
+/// least_rms_within() does not exceed.
+double rms_within(const NoisyMeans& means, double window);
 
 /// As estimate_beneath_noise(), for a figure that measures the noise itself, so
 /// that its truth is the root of the mean square over many draws; e are

@@ -202,7 +202,7 @@ SegmentNoise::SegmentNoise(const NoiseLevels& levels,
   }
   const double shortest =
       std::ranges::min(segments, {}, &Segment::length).length;  // [s]
-  while (poles_ < kDrawnPoles &&
+  while (levels.bias_instability > 0.0 && poles_ < kDrawnPoles &&
          flicker_decay_rate(2 * poles_) * shortest < kForgotten)
     ++poles_;
   const double pole = 2.0 * flicker_pole_variance(levels.bias_instability);
@@ -233,21 +233,24 @@ SegmentNoise::SegmentNoise(const NoiseLevels& levels,
       const double rate = flicker_decay_rate(2 * k);
       const double rho = std::exp(-rate * step);
       const double variance = covariance_of_means(rho, n, 0);
-      (k < poles_ ? all : white) += pole * variance;
-      if (k >= poles_) continue;
+      if (k >= poles_) {
+        white += pole * variance;
+        continue;
+      }
       const double gap = i == 0 ? HUGE_VAL
                                 : since - 0.5 * (segment.length - step) -
                                       0.5 * (segments[i - 1].length - step);
       const double kept = std::exp(-rate * gap);
       const double mean = (1.0 - std::pow(rho, n)) / (n * (1.0 - rho));
       const double carried = kept * std::pow(rho, n - 1.0);
-      const double spread =
-          std::sqrt(std::max(0.0, variance - std::pow(mean * kept, 2)));
+      const double fresh = std::sqrt(std::max(0.0, 1.0 - carried * carried));
       const double shared =
-          spread > 0.0 ? mean * (1.0 - kept * carried) / spread : 0.0;
-      const double rest = 1.0 - carried * carried - shared * shared;
-      flicker_.push_back({mean * kept, spread, carried, shared,
-                          std::sqrt(std::max(0.0, rest))});
+          fresh > 0.0 ? mean * (1.0 - kept * carried) / fresh : 0.0;
+      const double own =  // variance that no later segment shares
+          std::max(0.0, variance - std::pow(mean * kept, 2) - shared * shared);
+      all += pole * (variance - own);
+      white += pole * own;
+      flicker_.push_back({carried, fresh, mean * kept, shared});
     }
     steps_.push_back({std::sqrt(white),
                       levels.rate_random_walk * std::sqrt(std::max(0.0, since)),
@@ -259,9 +262,8 @@ SegmentNoise::SegmentNoise(const NoiseLevels& levels,
 void SegmentNoise::draw(RandomStream& random, std::span<double> means) const {
   std::ranges::fill(means, 0.0);
   if (none_) return;
-  std::vector<double> normal(2 * poles_ + (transient_ ? 4 : 3));
+  std::vector<double> normal(poles_ + 2);
   std::vector<double> state(poles_, 0.0);
-  const std::size_t others = 2 * poles_;
   double walk = 0.0;
   double offset = 0.0;
   double transient = 0.0;  // [-], of one sigma
@@ -271,18 +273,16 @@ void SegmentNoise::draw(RandomStream& random, std::span<double> means) const {
     double flicker = 0.0;
     for (std::size_t k = 0; k < poles_; ++k) {
       const PoleStep& pole = flicker_[i * poles_ + k];
-      flicker += pole.mean * state[k] + pole.spread * normal[2 * k];
-      state[k] = pole.carried * state[k] + pole.shared * normal[2 * k] +
-                 pole.rest * normal[2 * k + 1];
+      flicker += pole.mean * state[k] + pole.shared * normal[k];
+      state[k] = pole.carried * state[k] + pole.fresh * normal[k];
     }
-    flicker *= pole_sigma_;
-    walk += step.walk * normal[others];
+    walk += step.walk * normal[poles_];
     if (step.powered_on) {
-      offset = turn_on_ * normal[others + 2];
-      if (transient_) transient = normal[others + 3];
+      offset = turn_on_ * random.normal();
+      if (transient_) transient = random.normal();
     }
-    means[i] = flicker + walk + offset + step.white * normal[others + 1];
-    if (transient_) means[i] += transient * step.transient;
+    means[i] = pole_sigma_ * flicker + walk + offset +
+               step.white * normal[poles_ + 1] + transient * step.transient;
   }
 }
 

@@ -65,11 +65,12 @@ class SegmentNoise {
     bool powered_on;   // since the segment before
   };
   // One slow pole over one segment, of unit variance, after its value e at the
-  // last sample of the segment before: its mean and its value at the last one.
+  // last sample of the segment before: its value e' at the last one, and its
+  // mean but for what is independent of both.
   struct PoleStep {
     bool operator==(const PoleStep&) const = default;
-    double mean, spread;           // mean = mean e + spread n
-    double carried, shared, rest;  // e' = carried e + shared n + rest n'
+    double carried, fresh;  // e' = carried e + fresh n
+    double mean, shared;    // mean = mean e + shared n
   };
   double turn_on_ = 0.0;  // [deg/s]
   bool transient_ = false;

@@ -36,11 +36,12 @@ std::optional<Estimate> residual_figure(const Evidence& evidence,
       },
       figure.shrinkage, figure.least, figure.growth);
   if (!(figure.least_of_rms > 0.0) || !std::isfinite(found.value)) return found;
+  double& low = found.interval->low;
   for (const double window : kWindows)
-    found.interval->low =
-        std::max(found.interval->low,
-                 std::min(found.value, figure.least_of_rms *
-                                           least_rms_within(means, window)));
+    if (figure.least_of_rms * rms_within(means, window) > low)
+      low = std::max(
+          low, std::min(found.value,
+                        figure.least_of_rms * least_rms_within(means, window)));
   return found;
 }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 
 #include "compensation/inputs/sample_ranges.h"
 #include "config/units.h"
@@ -82,33 +83,41 @@ struct Foreseen {
   bool is_undecided() const { return undecided >= kMostOfDraws; }
 };
 
+/// What a gyro without an error shows of metrics that read the same runs.
 class Foresight {
  public:
-  Foresight(const Limit& limit, const QuietRuns& runs,
-            const QualifiedDevice& device, double risk, std::size_t threads)
-      : limit_(limit),
-        metric_(*find_metric(limit.metric)),
-        runs_(runs),
-        device_(device),
-        risk_(risk),
-        threads_(threads) {}
+  Foresight(const QuietRuns& runs, const QualifiedDevice& device, double risk,
+            std::size_t threads)
+      : runs_(runs), device_(device), risk_(risk), threads_(threads) {}
 
   /// Of runs that take `times` as long, with as many samples. The third draw
   /// decides where two differ.
-  Foreseen of(double times) const {
-    Foreseen found;
-    std::array<std::optional<Estimate>, kMostOfDraws> seen;
+  std::vector<Foreseen> of(std::span<const Limit* const> limits,
+                           double times) const {
+    std::vector<Foreseen> found(limits.size());
+    std::array<std::vector<std::optional<Estimate>>, kMostOfDraws> seen;
     for_each_task(seen.size(), threads_, [&](std::size_t draw, std::size_t) {
-      seen.at(draw) = drawn(times, draw);
+      seen.at(draw) = drawn(limits, times, draw);
     });
-    for (const std::optional<Estimate>& one : seen) add(one, found);
-    if (found.undecided < kMostOfDraws && found.decided < kMostOfDraws)
-      add(drawn(times, kMostOfDraws), found);
+    std::vector<const Limit*> split;
+    std::vector<Foreseen*> split_found;
+    for (std::size_t k = 0; k < limits.size(); ++k) {
+      for (const auto& of_draw : seen) add(*limits[k], of_draw[k], found[k]);
+      if (found[k].undecided < kMostOfDraws &&
+          found[k].decided < kMostOfDraws) {
+        split.push_back(limits[k]);
+        split_found.push_back(&found[k]);
+      }
+    }
+    if (split.empty()) return found;
+    const auto last = drawn(split, times, kMostOfDraws);
+    for (std::size_t k = 0; k < split.size(); ++k)
+      add(*split[k], last[k], *split_found[k]);
     return found;
   }
 
   /// How many times as long the runs have to be; nothing where that is no way.
-  std::optional<double> times_as_long() const {
+  std::optional<double> times_as_long(const Limit& limit) const {
     const bool is_steady =
         std::ranges::all_of(runs_.read, [](const ReadRun& run) {
           return run.purpose == RunPurpose::kRest ||
@@ -116,12 +125,14 @@ class Foresight {
         });
     if (!is_steady) return std::nullopt;
     for (const double times : kTimesAsLong)
-      if (!of(times).is_undecided()) return times;
+      if (!of(std::array{&limit}, times).front().is_undecided()) return times;
     return std::nullopt;
   }
 
  private:
-  std::optional<Estimate> drawn(double times, std::size_t draw) const {
+  std::vector<std::optional<Estimate>> drawn(
+      std::span<const Limit* const> limits, double times,
+      std::size_t draw) const {
     std::vector<ReadRun> read = runs_.read;
     std::vector<Recording> recordings = runs_.recordings;
     for (ReadRun& run : read) run.from *= times;
@@ -131,11 +142,15 @@ class Foresight {
     const DeviceEvidence evidence = answered_evidence(
         std::move(read), std::move(recordings),
         {gyro, {}, device_.device.readout.full_scale / kDegree}, 1);
-    return metric_.evaluate(evidence.after);
+    std::vector<std::optional<Estimate>> seen;
+    for (const Limit* limit : limits)
+      seen.push_back(find_metric(limit->metric)->evaluate(evidence.after));
+    return seen;
   }
 
-  void add(const std::optional<Estimate>& seen, Foreseen& found) const {
-    if (decide(limit_, seen, {}, risk_).result != Verdict::kUndecided) {
+  void add(const Limit& limit, const std::optional<Estimate>& seen,
+           Foreseen& found) const {
+    if (decide(limit, seen, {}, risk_).result != Verdict::kUndecided) {
       ++found.decided;
       return;
     }
@@ -143,8 +158,6 @@ class Foresight {
     found.seen = seen;
   }
 
-  const Limit& limit_;
-  const Metric& metric_;
   const QuietRuns& runs_;
   const QualifiedDevice& device_;
   double risk_;
@@ -174,6 +187,18 @@ std::vector<QualificationRun> runs_read(const Qualification& qualification,
       runs.push_back(run);
   return runs;
 }
+
+std::vector<std::string> run_names(const std::vector<QualificationRun>& runs) {
+  std::vector<std::string> names;
+  for (const QualificationRun& run : runs) names.push_back(run.name);
+  return names;
+}
+
+/// Limits on metrics that read the same runs.
+struct LimitsOfRuns {
+  std::vector<QualificationRun> runs;
+  std::vector<const Limit*> limits;
+};
 
 /// The runs of a qualification without noise, each simulated when it is first
 /// asked for.
@@ -247,33 +272,45 @@ std::string undecidable_words(const Limit& limit, const Foreseen& found,
 std::vector<std::string> undecidable_limits(
     const Qualification& qualification, const QualifiedDevice& device,
     const SpecificationFile& specification, std::size_t threads) {
-  std::vector<std::string> sentences;
-  RunsWithoutNoise without_noise(device, threads);
-  for (const Limit& limit : specification.limits) {
-    if (limit.is_own) continue;
-    const Metric& metric = *find_metric(limit.metric);
+  const std::vector<Limit>& limits = specification.limits;
+  std::vector<std::string> sentences(limits.size());
+  std::map<std::vector<std::string>, LimitsOfRuns> foreseeable;  // by runs
+  for (std::size_t k = 0; k < limits.size(); ++k) {
+    if (limits[k].is_own) continue;
+    const Metric& metric = *find_metric(limits[k].metric);
     if (metric.is_of_sigma) continue;
     const std::vector<QualificationRun> runs = runs_read(qualification, metric);
     if (runs.empty()) {
-      sentences.push_back(fmt::format(
+      sentences[k] = fmt::format(
           "limit on {}, {}: cannot be decided, because no run shows it; a run "
           "for one of these purposes would: {}",
-          limit.metric, text_of(limit), words_of_purposes(metric)));
+          limits[k].metric, text_of(limits[k]), words_of_purposes(metric));
       continue;
     }
     const bool has_noise = std::ranges::any_of(
         runs,
         [](const QualificationRun& run) { return run.scenario.noise_enabled; });
-    if (!has_noise || !limit.relative_to.empty() || reads_moving_rates(metric))
+    if (!has_noise || !limits[k].relative_to.empty() ||
+        reads_moving_rates(metric))
       continue;
-    const QuietRuns quiet = without_noise.of(runs);
-    const Foresight foresight(limit, quiet, device,
-                              specification.false_accept_risk, threads);
-    const Foreseen found = foresight.of(1.0);
-    if (found.is_undecided())
-      sentences.push_back(
-          undecidable_words(limit, found, foresight.times_as_long(), runs));
+    LimitsOfRuns& same = foreseeable[run_names(runs)];
+    same.runs = runs;
+    same.limits.push_back(&limits[k]);
   }
+  RunsWithoutNoise without_noise(device, threads);
+  for (const auto& [names, same] : foreseeable) {
+    const QuietRuns quiet = without_noise.of(same.runs);
+    const Foresight foresight(quiet, device, specification.false_accept_risk,
+                              threads);
+    const std::vector<Foreseen> found = foresight.of(same.limits, 1.0);
+    for (std::size_t k = 0; k < found.size(); ++k)
+      if (found[k].is_undecided())
+        sentences[static_cast<std::size_t>(same.limits[k] - limits.data())] =
+            undecidable_words(*same.limits[k], found[k],
+                              foresight.times_as_long(*same.limits[k]),
+                              same.runs);
+  }
+  std::erase(sentences, "");
   return sentences;
 }
 
