@@ -8,9 +8,9 @@
 // Seeds go from FIRST to LAST. The truth is what the same runs show without
 // noise, those that have some also with a converter of 24 bits; of a figure of
 // the noise itself, its root mean square over the seeds; of a figure that
-// depends on the random rates, which follow the seed, that of each seed, and
-// the mean departure from it: the noise of the temperature sensor decides how
-// often it rounds up. The model is trained once, on the training runs. Prints,
+// depends on the random rates, which follow the seed, what the runs of each
+// seed show without the noise of the rate, but with that of the temperature
+// sensor. The model is trained once, on the training runs. Prints,
 // before and after compensation, how many intervals hold the truth, how many
 // lie below and above it, and medians of the truth, of the figure and of the
 // width.
@@ -64,20 +64,6 @@ Figures usual(const Figures& seeds) {
   return Figures(seeds.size(), Estimate{std::sqrt(squares / shown)});
 }
 
-/// The truths of the seeds, moved by the mean departure of the figures.
-Figures with_mean_departure(Figures truths, const Figures& seeds) {
-  double sum = 0.0;
-  int shown = 0;
-  for (std::size_t k = 0; k < seeds.size(); ++k)
-    if (seeds[k] && truths[k]) {
-      sum += seeds[k]->value - truths[k]->value;
-      ++shown;
-    }
-  for (auto& truth : truths)
-    if (truth) truth->value += sum / shown;
-  return truths;
-}
-
 /// One line of the table: a metric before or after compensation.
 std::string counts(const Figures& seeds, const Figures& truths) {
   int shown = 0, covered = 0, below = 0, above = 0;
@@ -121,10 +107,11 @@ void print_study(std::span<char*> arguments) {
   const bool own = std::ranges::any_of(runs.asked(), [](const Metric* metric) {
     return kFiguresOfRates.contains(metric->name);
   });
-  std::vector<FoundMetrics> noisy(seeds), quiet(seeds);
+  const FoundMetrics quiet = runs.quiet(first);
+  std::vector<FoundMetrics> noisy(seeds), own_truth(seeds);
   for_each_task(seeds, threads, [&](std::size_t k, std::size_t) {
     noisy[k] = runs.noisy(first + k);
-    if (own || k == 0) quiet[k] = runs.quiet(first + k);
+    if (own) own_truth[k] = runs.without_rate_noise(first + k);
   });
   for (std::size_t m = 0; m < runs.asked().size(); ++m) {
     const std::string_view name = runs.asked()[m]->name;
@@ -133,9 +120,8 @@ void print_study(std::span<char*> arguments) {
       Figures seen, truth;
       for (std::size_t k = 0; k < seeds; ++k) {
         seen.push_back((noisy[k].*member)[m]);
-        truth.push_back((quiet[of_rates ? k : 0].*member)[m]);
+        truth.push_back(((of_rates ? own_truth[k] : quiet).*member)[m]);
       }
-      if (of_rates) truth = with_mean_departure(std::move(truth), seen);
       if (kFiguresOfNoise.contains(name)) truth = usual(seen);
       fmt::print("{:<47}{:<7}{}\n", name, when, counts(seen, truth));
     };

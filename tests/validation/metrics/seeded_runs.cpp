@@ -62,6 +62,13 @@ FoundMetrics SeededRuns::quiet(std::uint64_t seed) const {
   return found_in(std::move(recordings));
 }
 
+FoundMetrics SeededRuns::without_rate_noise(std::uint64_t seed) const {
+  QualifiedDevice fine = device_;
+  fine.device.noise = {};
+  fine.device.readout.adc_bits = kBitsWithoutNoise;
+  return found_in(qualified_runs(runs_of(seed), fine, 1));
+}
+
 FoundMetrics SeededRuns::found_in(std::vector<Recording> recordings) const {
   std::vector<ReadRun> read;
   for (const QualificationRun& run : qualification_.runs)

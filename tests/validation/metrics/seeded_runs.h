@@ -39,6 +39,10 @@ class SeededRuns {
   /// with a converter of 24 bits.
   FoundMetrics quiet(std::uint64_t seed) const;
 
+  /// Returns the metrics of a seed without the noise of the rate, but with that
+  /// of the temperature sensor: it decides how often the last digit rounds up.
+  FoundMetrics without_rate_noise(std::uint64_t seed) const;
+
  private:
   std::vector<QualificationRun> runs_of(std::uint64_t seed) const;
   FoundMetrics found_in(std::vector<Recording> recordings) const;

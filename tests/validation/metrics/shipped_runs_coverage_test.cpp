@@ -88,10 +88,19 @@ const std::vector<std::string> kOthers = {
 
 // More seeds and every metric that is beneath the noise; test.sh has the
 // metrics that once failed.
-TEST(DeepShippedRuns, HoldTheTruthOfEveryMetric) {
-  for (const char* device : {"nominal", "lifelike"})
-    for (const auto& names : {kOfPowerOns, kOfTables, kOthers})
-      expect_covered(device, names, 100, 90);
+void expect_all_covered(const std::string& device) {
+  std::vector<std::string> all = kOthers;
+  for (const auto& more : {kOfPowerOns, kOfTables})
+    all.insert(all.end(), more.begin(), more.end());
+  expect_covered(device, all, 100, 90);
+}
+
+TEST(DeepShippedRuns, HoldTheTruthOfEveryMetricOfNominal) {
+  expect_all_covered("nominal");
+}
+
+TEST(DeepShippedRuns, HoldTheTruthOfEveryMetricOfLifelike) {
+  expect_all_covered("lifelike");
 }
 
 }  // namespace
