@@ -7,8 +7,7 @@ import unittest
 
 import pytest
 
-from program import (PROGRAM, ROOT, class_folder, ended,
-                     processor_time_of_children)
+from program import PROGRAM, ROOT, class_folder, ended
 
 METHODS = {"cubic", "spline", "bp", "output_and_temperature", "recommended"}
 LIFELIKE = METHODS | {"recommended_with_play"}
@@ -19,10 +18,8 @@ class Demo(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.out = class_folder(cls, "a demo ")
-        start = processor_time_of_children()
         cls.answer = ended(sys.executable, ROOT / "scripts/demo.py", "--program",
                            PROGRAM, "--out", cls.out, cwd=cls.out)
-        cls.seconds = processor_time_of_children() - start
         table = json.loads((cls.out / "table.json").read_text())
         cls.lifelike = {row["method"]: row for row in table["lifelike"]
                         if not row["noise"]}
@@ -30,10 +27,6 @@ class Demo(unittest.TestCase):
         rows = table["rows"]
         cls.quiet = {row["method"]: row for row in rows if not row["noise"]}
         cls.noisy = {row["method"]: row for row in rows if row["noise"]}
-
-    def test_takes_less_than_200_s_of_the_processor(self):
-        # Of the demo alone, a minute: other processes do not lengthen it.
-        self.assertLess(self.seconds, 200)
 
     def test_compensators_table_and_pictures_are_there(self):
         self.assertEqual({path.stem for path in self.out.glob("*.json")},

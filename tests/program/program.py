@@ -164,13 +164,6 @@ def failed(result):
             if check["passed"] is False]
 
 
-def processor_time_of_children():
-    """Seconds that all ended children took, in the program and in the kernel;
-    other processes of the machine do not lengthen them."""
-    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return usage.ru_utime + usage.ru_stime
-
-
 def commands():
     """Names of all commands."""
     return re.findall(r"^  ([a-z]+)  ", said(PROGRAM, "--help"), re.MULTILINE)
