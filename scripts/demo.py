@@ -15,11 +15,12 @@ import sys
 import time
 
 import demo_lifelike
-from demo_runs import (MOTION, NOISE_OFF, REST, SOAKS, SOAKS_HELD_OUT, SWEEPS,
-                       TEST, TRAINING, TRAINING_SEED, VALIDATION)
+import demo_modes
+from demo_runs import (MODES_SWEEPS, MODES_TEST, MOTION, NOISE_OFF, REST,
+                       SCENARIOS, SOAKS, SOAKS_HELD_OUT, SWEEPS, TEST, TRAINING,
+                       TRAINING_SEED, VALIDATION)
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SCENARIOS = ROOT / "scenarios"
 
 METHODS = ["cubic", "spline", "bp", "output_and_temperature", "recommended"]
 LABELS = {
@@ -29,6 +30,7 @@ LABELS = {
     "output_and_temperature": "BP network on (output, T)",
     "recommended": "recommended network",
     "recommended_with_play": "recommended with play",
+    "straight_lines": "straight lines",
 }
 ALLAN_START = 3600.0  # [s], the warm-up is no noise
 
@@ -251,10 +253,14 @@ def main():
     rows = demo.validate()
     note("scored; the same on a unit that remembers ...")
     lifelike = demo_lifelike.study(demo)
+    note("scored; on a unit with spurious modes ...")
+    modes = demo_modes.study(demo)
     (demo.out / "table.json").write_text(json.dumps(
-        {"rows": rows, "lifelike": lifelike, "training_seed": TRAINING_SEED,
+        {"rows": rows, "lifelike": lifelike, "modes": modes,
+         "training_seed": TRAINING_SEED,
          "seeds": {name: seed for name, _, seed, _ in
-                   TRAINING + VALIDATION + TEST + REST + demo_lifelike.RUNS}},
+                   [*TRAINING, *VALIDATION, *TEST, *REST, *demo_lifelike.RUNS,
+                    *MODES_SWEEPS, MODES_TEST]}},
         indent=2) + "\n")
     note("scored; drawing ...")
     demo.compensate()
@@ -264,6 +270,7 @@ def main():
     note("done")
     print(table(rows))
     print(demo_lifelike.table(lifelike, LABELS))
+    print(demo_modes.table(modes, LABELS))
     print("\nPictures (and the same as .svg):")
     for picture in [*sorted(demo.out.glob("*.png")),
                     *sorted(demo.out.glob("more/*.png"))]:

@@ -7,6 +7,9 @@ rate random walk of 0.05 deg/s over a day, is in the labels of each: only other
 days average it out.
 """
 
+import pathlib
+
+SCENARIOS = pathlib.Path(__file__).resolve().parent.parent / "scenarios"
 TRAINING_SEED = 1
 
 
@@ -79,6 +82,17 @@ LIFELIKE_VALIDATION = [lifelike(*run) for run in [
             [48, 18, 32, -12, 22, -35, -5, -18, 8, 38, 28])]]
 LIFELIKE_TEST = [lifelike(*run) for run in TEST
                  if run[0] in SOAKS or run[0] in MOTION]
+
+def with_modes(name, scenario, seed, overrides):
+    """The same run of a unit with spurious modes, a sample in 20 seconds."""
+    return (f"modes_{name}", scenario, seed, [
+        *overrides, 'device="devices/lifelike_with_modes.toml"',
+        "output_rate_Hz=0.05"])
+
+
+# Two sweeps to train on, up and down, and one to hold out.
+MODES_SWEEPS = [with_modes(*run) for run in [*SWEEPS[:2], SOAKS_HELD_OUT[0]]]
+MODES_TEST = with_modes("test", "soak_every_kelvin", 361, [])
 
 # Ten cycles within the temperatures of training. What is scored of one are the
 # rise with its holds and the fall to 25 degC, which all ten have.

@@ -236,6 +236,36 @@ def allan(folder):
     save(figure, folder, "allan_deviation")
 
 
+def with_modes(folder):
+    """Units with spurious modes, and what tables over temperature leave."""
+    curves = np.genfromtxt(folder / "modes/curves.csv", delimiter=",",
+                           comments="#", names=True)
+    temperature, *units = (curves[name] for name in curves.dtype.names)
+    rows = json.loads((folder / "table.json").read_text())["modes"]
+    figure, (top, bottom) = pyplot.subplots(
+        2, 1, sharex=True, figsize=(7.2, 6.0), height_ratios=[1, 1])
+    at_25 = np.argmin(np.abs(temperature - 25))
+    for unit in units:
+        top.plot(temperature, unit - unit[at_25], color=BLUE, lw=1, alpha=0.7)
+    titled(top, f"{len(units)} virtual gyros with spurious modes",
+           "steady zero-rate output, less its value at 25 °C, without noise")
+    top.set(ylabel="drift [°/s]", xlim=(-41, 51))
+    for row, (colour, dash, words) in zip(rows, [
+            (GREY, "--", "least-squares cubic"),
+            (ORANGE, "-.", "straight lines"),
+            (BLUE, "-", "BP network on the temperature")]):
+        bottom.plot(row["temperatures_degC"], row["residual_deg_per_s"], dash,
+                    color=colour, lw=1.4,
+                    label=f"{words}, rms {row['rms_deg_per_s']:.3f} °/s")
+    titled(bottom, "What is left of one more unit, at every kelvin",
+           "trained with noise on soaks every 5 K, up and down; scored without")
+    low, high = bottom.get_ylim()
+    bottom.set(xlabel="chamber temperature [°C]", ylabel="residual [°/s]",
+               ylim=(low, high + 0.35 * (high - low)))
+    bottom.legend(loc="upper right", fontsize=9, ncols=1)
+    save(figure, folder, "spurious_modes")
+
+
 def recommended(folder):
     """What the recommended network makes of motions that it never saw."""
     figure, panels = pyplot.subplots(2, 2, figsize=(9.2, 5.6), sharex="col")
@@ -307,6 +337,7 @@ def main(folder):
         fit(folder, "cubic", "least-squares cubic", "figure_6_cubic")
         fit(folder, "bp", "BP network on the temperature", "figure_7_bp")
         allan(folder)
+        with_modes(folder)
         recommended(folder)
         trap(folder)
 

@@ -24,6 +24,7 @@ class Demo(unittest.TestCase):
         cls.lifelike = {row["method"]: row for row in table["lifelike"]
                         if not row["noise"]}
         cls.lifelike_rows = table["lifelike"]
+        cls.modes = table["modes"]
         rows = table["rows"]
         cls.quiet = {row["method"]: row for row in rows if not row["noise"]}
         cls.noisy = {row["method"]: row for row in rows if row["noise"]}
@@ -33,7 +34,7 @@ class Demo(unittest.TestCase):
                          METHODS | {"table"})
         for suffix, start in [("png", b"\x89PNG"), ("svg", b"<?xml")]:
             pictures = list(self.out.glob(f"*.{suffix}"))
-            self.assertEqual(len(pictures), 5)
+            self.assertEqual(len(pictures), 6)
             more = list(self.out.glob(f"more/*.{suffix}"))
             self.assertEqual({picture.stem for picture in more},
                              {"recommended_network", "trap"})
@@ -82,6 +83,12 @@ class Demo(unittest.TestCase):
             for key, value in row.items():
                 if key.endswith("_deg_per_s"):
                     self.assertTrue(0 <= value < 2, f"{key}: {value}")
+
+    def test_the_table_has_a_unit_with_spurious_modes(self):
+        self.assertIn("A unit with spurious modes", self.answer.stdout)
+        cubic, lines, network = (row["rms_deg_per_s"] for row in self.modes)
+        self.assertLess(lines, cubic / 2)
+        self.assertLess(network, cubic / 2)
 
     def test_a_store_moves_what_was_calibrated_and_a_zero_brings_it_back(self):
         for method in LIFELIKE - {"output_and_temperature", "cubic"}:
