@@ -178,6 +178,44 @@ TEST(SpuriousMode, SlopeOfItsStiffnessIsThatOfDifferences) {
             1e-6 * slope.norm());
 }
 
+double bias_of(const Gyro& gyro, double T, const ModalParameters& modal) {
+  return electronics_at(gyro, T)
+             .output(beam_signal(gyro, modal, {}).demodulated)
+             .rate /
+         kDegree;
+}
+
+// (13.2) with the age and the slip as part of d_s.
+TEST(SpuriousMode, AgeAndSlipMoveItAsADetuningDoes) {
+  Gyro aged = kUnitA.gyro(), moved = aged;
+  aged.device.spurious_modes[0].drift = 3e-3;
+  aged.device.spurious_modes[0].slip = -2e-3;
+  moved.device.spurious_modes[0].detuning += 2 * 3e-3 - 0.5 * 2e-3;
+  const MemoryState memory{.hysteresis = 0.5, .decades = 2};
+  for (const double celsius : {-20.0, 5.0, 25.0, 35.0}) {
+    const double T = celsius + kZeroCelsius;
+    const double bias = bias_of(moved, T, modal_at(moved, T));
+    EXPECT_NEAR(bias_of(aged, T, modal_at(aged, T, memory)), bias, 1e-12);
+    EXPECT_GT(std::abs(bias_at(aged, celsius) - bias), 1e-5) << celsius;
+  }
+}
+
+// A crossing at 5 degC comes when the housing has 5 degC, wherever the beam is.
+TEST(SpuriousMode, FollowsTheHousing) {
+  Gyro gyro = kUnitA.gyro(), none = without_spurious_modes(gyro);
+  gyro.device.spurious_modes[0].follows_housing = true;
+  const double beam = 8 + kZeroCelsius;
+  const auto bump = [&](double housing) {
+    const SpuriousTemperatures at{beam, housing + kZeroCelsius};
+    return bias_of(gyro, beam, modal_at(gyro, at)) -
+           bias_of(none, beam, modal_at(none, beam));
+  };
+  EXPECT_GT(std::abs(bump(5)), 3 * std::abs(bump(8)));
+  EXPECT_GT(std::abs(bump(5)), 3 * std::abs(bump(2)));
+  gyro.device.spurious_modes[0].follows_housing = false;
+  EXPECT_EQ(bump(5), bump(8));
+}
+
 std::string refusal(double loss_factor, double coupling) {
   SpuriousUnit unit = kUnitA;
   unit.loss_factor = loss_factor;
