@@ -30,9 +30,13 @@ ResidualScores residual_scores(std::span<const double> residuals) {
   const auto n = static_cast<double>(residuals.size());
   double sum = 0.0;
   double squares = 0.0;
+  double least = residuals.front();
+  double most = least;
   for (const double r : residuals) {
     sum += r;
     squares += r * r;
+    least = std::min(least, r);
+    most = std::max(most, r);
   }
   if (!std::isfinite(squares)) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -41,7 +45,6 @@ ResidualScores residual_scores(std::span<const double> residuals) {
   const double mean = sum / n;
   double about_mean = 0.0;
   for (const double r : residuals) about_mean += (r - mean) * (r - mean);
-  const auto [least, most] = std::ranges::minmax(residuals);
   return {.blocks = residuals.size(),
           .mean = mean,
           .variance = about_mean / n,
