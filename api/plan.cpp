@@ -130,6 +130,11 @@ PlannedSchedule schedule_of(const SoakPlan& plan) {
   return {plan.temperatures, plan.hours, plan.expected.median};
 }
 
+std::optional<PlanGain> gain_of(const std::optional<MedianRatio>& ratio) {
+  if (!ratio) return {};
+  return PlanGain{ratio->value, ratio->interval.low, ratio->interval.high};
+}
+
 std::vector<double> checked_soaks(std::vector<double> soaks,
                                   const std::string& where,
                                   const TemperatureRange& chamber) {
@@ -219,6 +224,8 @@ SoakPlanResult planned(const Compensator& population, const Device& device,
   found.chosen = s.chosen();
   const std::size_t count = found.chosen.temperatures.size();
   found.even = s.planner.even(count);
+  found.gain = s.planner.gain(found.chosen, found.even);
+  found.straight_lines = s.planner.straight_lines(found.even);
   for (const std::vector<double>& soaks : own)
     found.candidates.push_back(s.planner.judged(soaks));
   found.trade_offs = s.planner.trade_offs(
@@ -228,6 +235,8 @@ SoakPlanResult planned(const Compensator& population, const Device& device,
   found.range = s.model.range();
   found.observed = observed_of(s.model, options.bias_only);
   found.devices = s.model.population().devices;
+  found.devices_tried =
+      static_cast<int>(s.model.population().coefficients.rows());
   found.basis = forecast_basis(s.model.population());
   if (found.basis == ForecastBasis::kGaussian)
     found.warnings.push_back(fmt::format(
@@ -237,6 +246,7 @@ SoakPlanResult planned(const Compensator& population, const Device& device,
         population.content().path()));
   SoakPlanResult result{.chosen = schedule_of(found.chosen),
                         .even = schedule_of(found.even),
+                        .gain = gain_of(found.gain),
                         .warnings = found.warnings};
   for (const SoakPlan& plan : found.candidates)
     result.candidates.push_back(schedule_of(plan));

@@ -19,6 +19,10 @@ constexpr std::size_t kHoldStep = 4;       // [min], of the first search
 constexpr int kHalvings = 6;               // of the way, for the fewest hours
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
+std::size_t minutes_of(const SoakPlan& plan) {
+  return static_cast<std::size_t>(std::lround(plan.hold / 60.0));
+}
+
 }  // namespace
 
 std::vector<double> even_spacing(TemperatureRange range, std::size_t count) {
@@ -86,9 +90,9 @@ std::vector<double> Planner::lags(const std::vector<double>& soaks,
   return found;
 }
 
-ResidualForecast Planner::forecast(const std::vector<double>& soaks,
-                                   std::size_t minutes) const {
-  const std::optional<StartRow> row = start_row_of(soaks);
+Planner::Shown Planner::shown(const std::vector<double>& soaks,
+                              std::size_t minutes,
+                              const std::optional<StartRow>& row) const {
   SoakErrors errors = {lags(soaks, minutes), {}};
   if (row) errors.lag.push_back(row->lag);
   if (behaviour_.noise)
@@ -96,7 +100,33 @@ ResidualForecast Planner::forecast(const std::vector<double>& soaks,
         *behaviour_.noise, soaks,
         {time_.start, time_.ramp, static_cast<double>(minutes) * 60.0},
         row.has_value());
-  return forecast_residual(model_, with_start_row(soaks, row), errors);
+  return {with_start_row(soaks, row), std::move(errors)};
+}
+
+ResidualForecast Planner::forecast(const std::vector<double>& soaks,
+                                   std::size_t minutes) const {
+  const Shown all = shown(soaks, minutes, start_row_of(soaks));
+  return forecast_residual(model_, all.soaks, all.errors);
+}
+
+ResidualDraws Planner::line_draws(const SoakPlan& even) const {
+  const Shown all = shown(even.temperatures, minutes_of(even), std::nullopt);
+  return straight_line_draws(model_, all.soaks, all.errors);
+}
+
+std::optional<ResidualForecast> Planner::straight_lines(
+    const SoakPlan& even) const {
+  if (forecast_basis(model_.population()) != ForecastBasis::kDevices) return {};
+  return forecast_of(line_draws(even));
+}
+
+std::optional<MedianRatio> Planner::gain(const SoakPlan& plan,
+                                         const SoakPlan& even) const {
+  if (forecast_basis(model_.population()) != ForecastBasis::kDevices) return {};
+  const Shown all = shown(plan.temperatures, minutes_of(plan),
+                          start_row_of(plan.temperatures));
+  return ratio_of_medians(residual_draws(model_, all.soaks, all.errors),
+                          line_draws(even));
 }
 
 std::size_t Planner::hold_minutes(const std::vector<double>& soaks) const {
@@ -273,7 +303,8 @@ SoakPlan Planner::within_residual(double residual, double rounding) const {
 std::vector<TradeOff> Planner::trade_offs(std::size_t most) const {
   std::vector<TradeOff> table;
   for (std::size_t count = 1; count <= most; ++count)
-    table.push_back({with_soaks(count), even(count)});
+    table.push_back(
+        {with_soaks(count), even(count), straight_lines(even(count))});
   return table;
 }
 

@@ -32,9 +32,12 @@ struct SoakBehaviour {
   std::optional<StartRow> start_row = {};   // of ways down from the start
 };
 
-/// A number of soaks, planned and evenly spaced.
+/// A number of soaks, planned and evenly spaced; and what straight lines leave
+/// that go through the even ones and know no population. A population that has
+/// no devices to try them on has none.
 struct TradeOff {
   SoakPlan planned, even;
+  std::optional<ResidualForecast> straight_lines = {};
 };
 
 /// Returns `count` temperatures from one end to the other at equal distances;
@@ -81,6 +84,15 @@ class Planner {
   /// that the population does not reach.
   SoakPlan judged(std::vector<double> soaks) const;
 
+  /// Returns what straight lines leave between the soaks of a plan, without a
+  /// row of the start.
+  std::optional<ResidualForecast> straight_lines(const SoakPlan& even) const;
+
+  /// Returns what `plan` leaves over what straight lines leave between the
+  /// soaks of `even`, if the population has its devices.
+  std::optional<MedianRatio> gain(const SoakPlan& plan,
+                                  const SoakPlan& even) const;
+
   /// One entry for each number of soaks from 1 to `most`.
   std::vector<TradeOff> trade_offs(std::size_t most) const;
 
@@ -95,6 +107,13 @@ class Planner {
   double longest_way(std::size_t count, double hours, double hold) const;
   std::vector<double> lags(const std::vector<double>& soaks,
                            std::size_t minutes) const;
+  struct Shown {  // by the soaks, with a row of the start if there is one
+    std::vector<double> soaks;
+    SoakErrors errors;
+  };
+  Shown shown(const std::vector<double>& soaks, std::size_t minutes,
+              const std::optional<StartRow>& row) const;
+  ResidualDraws line_draws(const SoakPlan& even) const;
   ResidualForecast forecast(const std::vector<double>& soaks,
                             std::size_t minutes) const;
   std::size_t hold_minutes(const std::vector<double>& soaks) const;

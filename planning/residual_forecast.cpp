@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -15,12 +16,14 @@
 namespace beamgyro::internal {
 namespace {
 
+using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index kLeastDevices = 3;   // one that is predicted by two others
 constexpr Index kLeastDraws = 4000;  // of devices and noise
+constexpr std::uint32_t kResamples = 400;  // of the devices
 
 // A matrix of normal numbers, from stream `number`.
 MatrixXd normal_numbers(Index rows, Index columns, std::uint32_t number) {
@@ -99,18 +102,61 @@ void append_residuals(const SoakModel& model, const Observation& soaks,
   append_rms(model, e, rms);
 }
 
-ResidualForecast forecast_of_devices(const SoakModel& model,
-                                     const Observation& soaks) {
+// Calls append(noise, rms) in every round, where `noise` has a row a device and
+// the covariance of the root.
+template <typename Append>
+ResidualDraws draws_of_devices(const SoakModel& model, const MatrixXd& root,
+                               const Append& append) {
   const Index devices = model.population().coefficients.rows();
   const Index rounds = (kLeastDraws + devices - 1) / devices;
-  std::vector<double> rms;
+  ResidualDraws draws{static_cast<std::size_t>(devices), {}};
   for (Index round = 0; round < rounds; ++round)
-    append_residuals(model, soaks,
-                     normal_numbers(devices, soaks.noise.cols(),
-                                    static_cast<std::uint32_t>(round)) *
-                         soaks.noise.transpose(),
-                     rms);
-  return quantiles_of(std::move(rms));
+    append(normal_numbers(devices, root.cols(),
+                          static_cast<std::uint32_t>(round)) *
+               root.transpose(),
+           draws.rms);
+  return draws;
+}
+
+// Lines between values at increasing soaks, as weights of the values: one row
+// for each temperature.
+MatrixXd line_weights(const ArrayXd& temperatures,
+                      const std::vector<double>& soaks) {
+  MatrixXd weights =
+      MatrixXd::Zero(temperatures.size(), static_cast<Index>(soaks.size()));
+  for (Index i = 0; i < temperatures.size(); ++i) {
+    const double T = std::clamp(temperatures(i), soaks.front(), soaks.back());
+    const auto above = std::lower_bound(soaks.begin(), soaks.end(), T);
+    const Index right = above - soaks.begin();
+    if (*above == T) {
+      weights(i, right) = 1.0;
+      continue;
+    }
+    const double share = (T - *(above - 1)) / (*above - *(above - 1));
+    weights(i, right) = share;
+    weights(i, right - 1) = 1.0 - share;
+  }
+  return weights;
+}
+
+double middle_of(std::vector<double> values) {
+  const auto middle =
+      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+double ratio_of_middles(const ResidualDraws& draws, const ResidualDraws& others,
+                        const std::vector<std::size_t>& devices) {
+  const auto middle = [&](const ResidualDraws& from) {
+    std::vector<double> rms;
+    rms.reserve(from.rms.size());
+    for (std::size_t first = 0; first < from.rms.size(); first += from.devices)
+      for (const std::size_t device : devices)
+        rms.push_back(from.rms[first + device]);
+    return middle_of(std::move(rms));
+  };
+  return middle(draws) / middle(others);
 }
 
 ResidualForecast forecast_of_process(const SoakModel& model,
@@ -160,13 +206,75 @@ ForecastBasis forecast_basis(const Population& population) {
              : ForecastBasis::kGaussian;
 }
 
+ResidualForecast forecast_of(const ResidualDraws& draws) {
+  return quantiles_of(draws.rms);
+}
+
+ResidualDraws residual_draws(const SoakModel& model,
+                             const std::vector<double>& soaks,
+                             const SoakErrors& errors) {
+  const Observation shown = observation(model, soaks, errors);
+  return draws_of_devices(model, shown.noise,
+                          [&](const MatrixXd& noise, std::vector<double>& rms) {
+                            append_residuals(model, shown, noise, rms);
+                          });
+}
+
+ResidualDraws straight_line_draws(const SoakModel& model,
+                                  const std::vector<double>& soaks,
+                                  const SoakErrors& errors) {
+  const auto count = static_cast<Index>(soaks.size());
+  const ArrayXd grid = model.range_grid();
+  const std::vector<double> lag =
+      errors.lag.empty() ? std::vector(soaks.size(), 0.0) : errors.lag;
+  const MatrixXd root =
+      errors.noise.size() > 0
+          ? errors.noise
+          : MatrixXd(model.noise().bias * MatrixXd::Identity(count, count));
+  const MatrixXd lines = line_weights(grid, soaks);
+  const SoakModel::Bias shown = model.bias(soaks, lag);
+  const SoakModel::Bias all =
+      model.bias({grid.begin(), grid.end()},
+                 std::vector(static_cast<std::size_t>(grid.size()), 0.0));
+  const VectorXd mean = all.mean - lines * shown.mean;
+  // Of the devices without the noise of their training, a row each.
+  const MatrixXd curves = model.population().coefficients * model.truth() *
+                          (all.modes - lines * shown.modes).transpose();
+  return draws_of_devices(
+      model, root, [&](const MatrixXd& noise, std::vector<double>& rms) {
+        MatrixXd left = curves - noise * lines.transpose();
+        left.rowwise() += mean.transpose();
+        for (const auto& one : left.rowwise())
+          rms.push_back(one.norm() /
+                        std::sqrt(static_cast<double>(one.size())));
+      });
+}
+
+MedianRatio ratio_of_medians(const ResidualDraws& draws,
+                             const ResidualDraws& others) {
+  std::vector<std::size_t> devices(draws.devices);
+  std::iota(devices.begin(), devices.end(), 0);
+  const double value = ratio_of_middles(draws, others, devices);
+  std::vector<double> resampled;
+  for (std::uint32_t k = 0; k < kResamples; ++k) {
+    RandomStream stream(0, k, 0, kPlanGainStream);
+    for (std::size_t& device : devices)
+      device = static_cast<std::size_t>(stream.uniform() *
+                                        static_cast<double>(draws.devices));
+    resampled.push_back(ratio_of_middles(draws, others, devices));
+  }
+  std::ranges::sort(resampled);
+  return {value,
+          {percentile(resampled, kIntervalTail),
+           percentile(resampled, 1.0 - kIntervalTail)}};
+}
+
 ResidualForecast forecast_residual(const SoakModel& model,
                                    const std::vector<double>& soaks,
                                    const SoakErrors& errors) {
-  const Observation shown = observation(model, soaks, errors);
   return forecast_basis(model.population()) == ForecastBasis::kDevices
-             ? forecast_of_devices(model, shown)
-             : forecast_of_process(model, shown);
+             ? forecast_of(residual_draws(model, soaks, errors))
+             : forecast_of_process(model, observation(model, soaks, errors));
 }
 
 }  // namespace beamgyro::internal

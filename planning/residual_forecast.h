@@ -6,6 +6,7 @@
 
 #include "planning/chamber.h"
 #include "planning/soak_model.h"
+#include "statistics/intervals.h"
 
 namespace beamgyro::internal {
 
@@ -73,5 +74,39 @@ ForecastBasis forecast_basis(const Population& population);
 ResidualForecast forecast_residual(const SoakModel& model,
                                    const std::vector<double>& soaks,
                                    const SoakErrors& errors = {});
+
+/// The rms over the range [deg/s] that is left of each device of a population
+/// in each draw of the noise: device d in round r at r devices + d.
+struct ResidualDraws {
+  std::size_t devices = 0;
+  std::vector<double> rms;
+};
+
+ResidualForecast forecast_of(const ResidualDraws& draws);
+
+/// Returns the draws behind forecast_residual(). The population must allow
+/// ForecastBasis::kDevices.
+ResidualDraws residual_draws(const SoakModel& model,
+                             const std::vector<double>& soaks,
+                             const SoakErrors& errors = {});
+
+/// Returns the same of straight lines between the soaks, level beyond them,
+/// which take nothing from the population: its devices are only what they are
+/// tried on. One soak is a constant.
+ResidualDraws straight_line_draws(const SoakModel& model,
+                                  const std::vector<double>& soaks,
+                                  const SoakErrors& errors = {});
+
+/// A quotient of medians over devices, with its 95 % interval.
+struct MedianRatio {
+  double value;
+  Interval interval;
+};
+
+/// Returns the median of `draws` over that of `others`, of the same devices.
+/// The interval is by resampling the devices, each with all its draws (random
+/// stream kPlanGainStream). A population of few devices has a wide one.
+MedianRatio ratio_of_medians(const ResidualDraws& draws,
+                             const ResidualDraws& others);
 
 }  // namespace beamgyro::internal

@@ -129,11 +129,22 @@ MatrixXd SoakModel::equations(const std::vector<double>& chamber) const {
                          : rows(known_sensor(array_view(chamber)));
 }
 
+ArrayXd SoakModel::known_beam(const ArrayXd& sensor,
+                              const std::vector<double>& lag) const {
+  const auto [lowest, highest] = population_.range();
+  return (sensor + array_view(lag)).max(lowest).min(highest);
+}
+
+SoakModel::Bias SoakModel::bias(const std::vector<double>& chamber,
+                                const std::vector<double>& lag) const {
+  const ArrayXd beam = known_beam(known_sensor(array_view(chamber)), lag);
+  return {means_.front().predict(beam).matrix(), values(0, beam)};
+}
+
 SoakModel::Lagging SoakModel::lagging(const std::vector<double>& chamber,
                                       const std::vector<double>& lag) const {
-  const auto [lowest, highest] = population_.range();
   const ArrayXd sensor = known_sensor(array_view(chamber));
-  const ArrayXd beam = (sensor + array_view(lag)).max(lowest).min(highest);
+  const ArrayXd beam = known_beam(sensor, lag);
   Lagging found{rows(beam), Eigen::VectorXd(rows_per_soak() * sensor.size())};
   for (Index curve = 0; curve < rows_per_soak(); ++curve) {
     const CubicSpline& mean = means_[static_cast<std::size_t>(curve)];

@@ -68,6 +68,19 @@ class SoakModel {
   Lagging lagging(const std::vector<double>& chamber,
                   const std::vector<double>& lag) const;
 
+  /// The bias [deg/s] at temperatures of the chamber, of beams that lag
+  /// likewise: mean + modes t for a device with coefficients t.
+  struct Bias {
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd modes;
+  };
+  Bias bias(const std::vector<double>& chamber,
+            const std::vector<double>& lag) const;
+
+  /// Returns the temperatures of the chamber [degC] over which the residual is
+  /// averaged.
+  Eigen::ArrayXd range_grid() const;
+
   /// Returns whether the population knows the device at this temperature.
   bool reaches(double chamber) const;
 
@@ -80,7 +93,8 @@ class SoakModel {
 
  private:
   Eigen::ArrayXd known_sensor(const Eigen::ArrayXd& chamber) const;
-  Eigen::ArrayXd range_grid() const;
+  Eigen::ArrayXd known_beam(const Eigen::ArrayXd& sensor,
+                            const std::vector<double>& lag) const;
   Eigen::MatrixXd values(Eigen::Index curve,
                          const Eigen::ArrayXd& sensor) const;
   double noise_of(Eigen::Index curve) const;

@@ -41,6 +41,7 @@ enum RandomPurpose : std::uint32_t {
   kQualifiedRunOrderStream,
   kQualifiedCampaignStream,
   kHalfSplitStream,
+  kPlanGainStream,
 };
 
 /// Returns the inverse of the normal distribution function. Throws

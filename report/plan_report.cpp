@@ -23,6 +23,27 @@ std::string forecast_columns(const SoakPlan& plan) {
                      plan.expected.p95);
 }
 
+std::string gain_lines(const PlanResult& result) {
+  if (!result.gain)
+    return "gain over straight lines between even soaks: not known without "
+           "the devices of the population\n\n";
+  const auto& [value, interval] = *result.gain;
+  std::string_view what = "gain";
+  if (interval.low > 1.0)
+    what = "no gain, straight lines are better";
+  else if (interval.high >= 1.0)
+    what = "no gain";
+  return fmt::format(
+      "{}: the plan leaves {:.2f} [{:.2f}, {:.2f}] of what straight lines "
+      "between {} leave\n"
+      "(medians of {} devices, each predicted by the others, 95 %)\n\n",
+      what, value, interval.low, interval.high,
+      result.even.temperatures.size() == 1
+          ? std::string("one soak and all others")
+          : fmt::format("{} even soaks", result.even.temperatures.size()),
+      result.devices_tried);
+}
+
 std::string schedule_lines(const PlanResult& result) {
   const SoakPlan& plan = result.chosen;
   std::string text = fmt::format(
@@ -54,18 +75,26 @@ std::string comparison(const PlanResult& result) {
   };
   line("planned", result.chosen);
   line("even", result.even);
+  if (result.straight_lines)
+    line("lines", {result.even.temperatures, result.even.hold,
+                   result.even.hours, *result.straight_lines});
   for (const SoakPlan& plan : result.candidates) line("candidate", plan);
   return text;
 }
 
 std::string trade_off_table(const std::vector<TradeOff>& table) {
   std::string text = fmt::format(
-      "\n{:<6}{:>10}{:>9}{:>9}{:>9}{:>10}{:>9}{:>9}{:>9}\n", "soaks",
-      "planned: h", "median", "p90", "p95", "even: h", "median", "p90", "p95");
+      "\n{:<6}{:>10}{:>9}{:>9}{:>9}{:>8}{:>9}{:>9}{:>9}{:>14}{:>8}\n", "soaks",
+      "planned: h", "median", "p90", "p95", "even: h", "median", "p90", "p95",
+      "lines: median", "p95");
   for (const TradeOff& row : table)
-    fmt::format_to(std::back_inserter(text), "{:<6}   {}   {}\n",
+    fmt::format_to(std::back_inserter(text), "{:<6}   {} {}{}\n",
                    row.planned.temperatures.size(),
-                   forecast_columns(row.planned), forecast_columns(row.even));
+                   forecast_columns(row.planned), forecast_columns(row.even),
+                   row.straight_lines ? fmt::format("{:>14.3f}{:>8.3f}",
+                                                    row.straight_lines->median,
+                                                    row.straight_lines->p95)
+                                      : fmt::format("{:>14}{:>8}", "-", "-"));
   return text;
 }
 
@@ -80,6 +109,18 @@ Json soaks_json(const SoakPlan& plan) {
           {"hold_s", plan.hold},
           {"hours", plan.hours},
           {"expected_rms_deg_per_s", forecast_json(plan.expected)}};
+}
+
+Json optional_json(const std::optional<ResidualForecast>& expected) {
+  return expected ? forecast_json(*expected) : Json();
+}
+
+Json gain_json(const PlanResult& result) {
+  if (!result.gain) return {};
+  const auto& [value, interval] = *result.gain;
+  return {{"ratio", value},
+          {"interval", {interval.low, interval.high}},
+          {"devices", result.devices_tried}};
 }
 
 Json schedule_json(const PlanResult& result) {
@@ -102,7 +143,7 @@ Json schedule_json(const PlanResult& result) {
 }  // namespace
 
 std::string plan_text(const PlanResult& result) {
-  return schedule_lines(result) + comparison(result) +
+  return gain_lines(result) + schedule_lines(result) + comparison(result) +
          trade_off_table(result.trade_offs);
 }
 
@@ -111,12 +152,15 @@ Json plan_json(const PlanResult& result) {
   for (const TradeOff& row : result.trade_offs)
     table.push_back({{"soaks", row.planned.temperatures.size()},
                      {"planned", soaks_json(row.planned)},
-                     {"even", soaks_json(row.even)}});
+                     {"even", soaks_json(row.even)},
+                     {"straight_lines", optional_json(row.straight_lines)}});
   for (const SoakPlan& plan : result.candidates)
     candidates.push_back(soaks_json(plan));
   return {{"schedule", schedule_json(result)},
           {"expected_rms_deg_per_s", forecast_json(result.chosen.expected)},
           {"even", soaks_json(result.even)},
+          {"straight_lines", optional_json(result.straight_lines)},
+          {"gain_over_straight_lines", gain_json(result)},
           {"candidates", std::move(candidates)},
           {"trade_off", std::move(table)},
           {"range_degC", {result.range.lowest, result.range.highest}},

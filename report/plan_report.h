@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ namespace beamgyro::internal {
 /// What `plan` has found.
 struct PlanResult {
   SoakPlan chosen, even;  // of the same number of soaks
+  // Of the chosen plan over straight lines between the even soaks; none
+  // without devices of the population.
+  std::optional<MedianRatio> gain;
+  std::optional<ResidualForecast> straight_lines;  // between the even soaks
   std::vector<TradeOff> trade_offs;
   std::vector<SoakPlan> candidates;   // of the user
   ChamberTime time;                   // of the chosen plan
@@ -23,6 +28,7 @@ struct PlanResult {
   TemperatureRange range;             // [degC], of the chamber
   std::vector<std::string> observed;  // "bias" and channels
   int devices = 0;                    // of the population
+  int devices_tried = 0;              // of those, with coefficients
   ForecastBasis basis = ForecastBasis::kGaussian;
   std::vector<std::string> warnings;
 };

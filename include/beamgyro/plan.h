@@ -44,8 +44,18 @@ struct PlannedSchedule {
   double residual = 0;                    ///< [deg/s], median rms of devices
 };
 
+/// What a plan leaves over what straight lines between as many even soaks
+/// leave, without a population: a quotient of medians over devices, each
+/// predicted by the others. It is a gain where `high` is below 1.
+struct PlanGain {
+  double ratio = 0;
+  double low = 0, high = 0;  ///< 95 % interval
+};
+
 struct SoakPlanResult {
   PlannedSchedule chosen = {}, even = {};  ///< even: as many, evenly spaced
+  /// Nothing for a population of an older program, without its devices.
+  std::optional<PlanGain> gain = {};
   /// Of 1, 2, ... soaks.
   std::vector<PlannedSchedule> trade_offs = {};
   std::vector<PlannedSchedule> candidates = {};

@@ -112,6 +112,62 @@ TEST(ResidualForecast, TurnOnStaysWhereIndependentNoiseAveragesOut) {
   EXPECT_GT(forecast({.turn_on = 0.03}), 1.2 * forecast({.own = 0.03}));
 }
 
+std::vector<double> every_kelvin() {
+  std::vector<double> soaks;
+  for (int T = 0; T <= 40; ++T) soaks.push_back(T);
+  return soaks;
+}
+
+TEST(StraightLines, ThroughEveryTemperatureLeaveTheNoiseOfTheSoaksAlone) {
+  const SoakModel model = model_of(small_population(50));
+  const std::vector<double> soaks = every_kelvin();
+  const auto draws = [&](const SlowNoise& noise) {
+    return straight_line_draws(
+        model, soaks, {{}, slow_noise_root(noise, soaks, {20.0, 2.0, 600.0})});
+  };
+  EXPECT_LT(std::ranges::max(draws({.own = 1e-9}).rms), 1e-8);
+  // Of an offset of all soaks the median is 0.6745 sigma: of 4,000 draws within
+  // 4 %, three standard deviations.
+  EXPECT_NEAR(forecast_of(draws({.turn_on = 0.03})).median, 0.6745 * 0.03,
+              0.04 * 0.6745 * 0.03);
+}
+
+TEST(StraightLines, OneSoakIsAConstant) {
+  const Population few = small_population(3);
+  const SoakModel model = model_of(few);
+  const ResidualDraws found = straight_line_draws(
+      model, {20.0}, {{}, Eigen::MatrixXd::Constant(1, 1, 1e-12)});
+  const SoakModel::Bias all = model.bias(every_kelvin(), std::vector(41, 0.0));
+  for (Eigen::Index d = 0; d < 3; ++d) {
+    const VectorXd t = model.truth() * few.coefficients.row(d).transpose();
+    VectorXd curve = all.mean + all.modes * t;
+    curve.array() -= curve(20);
+    EXPECT_NEAR(found.rms[static_cast<std::size_t>(d)],
+                curve.norm() / std::sqrt(41.0), 1e-9);
+  }
+}
+
+TEST(RatioOfMedians, HasAnIntervalOfTheDevices) {
+  const SoakModel model = model_of(small_population(200));
+  const ResidualDraws lines = straight_line_draws(model, {2.0, 20.0});
+  ResidualDraws halves = lines;
+  for (double& rms : halves.rms) rms *= 0.5;
+  const MedianRatio exact = ratio_of_medians(halves, lines);
+  EXPECT_EQ(exact.value, 0.5);
+  EXPECT_EQ(exact.interval.low, 0.5);
+  EXPECT_EQ(exact.interval.high, 0.5);
+
+  const auto width = [](int devices) {
+    const SoakModel of = model_of(small_population(devices));
+    const auto [low, high] =
+        ratio_of_medians(residual_draws(of, {2.0, 20.0}),
+                         straight_line_draws(of, {2.0, 20.0}))
+            .interval;
+    return high - low;
+  };
+  EXPECT_GT(width(20), 2.0 * width(800));
+}
+
 TEST(SlowNoiseRoot, WalksInTheOrderOfTheVisits) {
   // From 20 degC first to 30, then to 0: an hour of hold each, 10 K and 30 K.
   const Eigen::MatrixXd L = slow_noise_root(

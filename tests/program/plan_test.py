@@ -58,6 +58,14 @@ class Plan(ProgramTest):
             "hold_s", "hours", "ramp_K_per_min", "rows", "start_degC",
             "temperatures_degC", "visits"])
         self.assertEqual(plan["even"]["temperatures_degC"], [-40, 5, 50])
+        gain = plan["gain_over_straight_lines"]
+        self.assertEqual(sorted(gain), ["devices", "interval", "ratio"])
+        low, high = gain["interval"]
+        self.assertTrue(0 < low <= gain["ratio"] <= high)
+        self.assertEqual(sorted(plan["straight_lines"]),
+                         ["median", "p90", "p95"])
+        self.assertEqual(plan["trade_off"][2]["straight_lines"],
+                         plan["straight_lines"])
         for one in [plan, plan["even"]]:
             expected = one["expected_rms_deg_per_s"]
             self.assertEqual(list(expected), ["median", "p90", "p95"])
@@ -147,6 +155,15 @@ class Plan(ProgramTest):
         # Half of all |N(0, 0.2)| are above 0.135 deg/s, and no soak tells.
         self.assertGreater(worse["expected_rms_deg_per_s"]["median"],
                            max(0.1, 1.2 * usual["median"]))
+
+    def test_the_gain_over_straight_lines_is_said_first(self):
+        for soaks in (3, 7):
+            first = self.ok("plan", "population.json", "--soaks",
+                            str(soaks)).splitlines()[0]
+            # Of this smooth family the population knows most.
+            self.assertRegex(first, r"^gain: the plan leaves 0\.\d\d \[0\.\d\d, "
+                             r"0\.\d\d\] of what straight lines between "
+                             rf"{soaks} even soaks leave$")
 
     def test_candidates_are_compared(self):
         self.write("mine.txt", "# my soaks\n-40, 5, 50\n\n-30,0\n")
