@@ -19,7 +19,7 @@ constexpr std::size_t kHoldStep = 4;       // [min], of the first search
 constexpr int kHalvings = 6;               // of the way, for the fewest hours
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
-std::size_t minutes_of(const SoakPlan& plan) {
+std::size_t whole_minutes(const SoakPlan& plan) {
   return static_cast<std::size_t>(std::lround(plan.hold / 60.0));
 }
 
@@ -110,7 +110,7 @@ ResidualForecast Planner::forecast(const std::vector<double>& soaks,
 }
 
 ResidualDraws Planner::line_draws(const SoakPlan& even) const {
-  const Shown all = shown(even.temperatures, minutes_of(even), std::nullopt);
+  const Shown all = shown(even.temperatures, whole_minutes(even), std::nullopt);
   return straight_line_draws(model_, all.soaks, all.errors);
 }
 
@@ -123,7 +123,7 @@ std::optional<ResidualForecast> Planner::straight_lines(
 std::optional<MedianRatio> Planner::gain(const SoakPlan& plan,
                                          const SoakPlan& even) const {
   if (forecast_basis(model_.population()) != ForecastBasis::kDevices) return {};
-  const Shown all = shown(plan.temperatures, minutes_of(plan),
+  const Shown all = shown(plan.temperatures, whole_minutes(plan),
                           start_row_of(plan.temperatures));
   return ratio_of_medians(residual_draws(model_, all.soaks, all.errors),
                           line_draws(even));
