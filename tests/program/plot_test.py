@@ -269,7 +269,7 @@ class Results(PlotTest):
                             ROOT / "specs/uav.toml", "--json", "v.json",
                             allowed=(3,))
         self.says(self.picture("v.json"), ": c.json",
-                  "residual_rms_deg_per_s", "Limits", "share of the limit",
+                  "residual_sigma_deg_per_s", "Limits", "share of the limit",
                   "Residuals at rest, after compensation",
                   "Share of the minutes [%]")
 
