@@ -33,14 +33,13 @@ std::string gain_lines(const PlanResult& result) {
     what = "no gain, straight lines are better";
   else if (interval.high >= 1.0)
     what = "no gain";
+  const std::size_t soaks = result.even.temperatures.size();
   return fmt::format(
-      "{}: the plan leaves {:.2f} [{:.2f}, {:.2f}] of what straight lines "
-      "between {} leave\n"
+      "{}: the plan leaves {:.2f} [{:.2f}, {:.2f}] of what {} leave\n"
       "(medians of {} devices, each predicted by the others, 95 %)\n\n",
       what, value, interval.low, interval.high,
-      result.even.temperatures.size() == 1
-          ? std::string("one soak and all others")
-          : fmt::format("{} even soaks", result.even.temperatures.size()),
+      soaks == 1 ? "constants through one soak"
+                 : fmt::format("straight lines between {} even soaks", soaks),
       result.devices_tried);
 }
 

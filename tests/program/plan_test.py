@@ -164,6 +164,8 @@ class Plan(ProgramTest):
             self.assertRegex(first, r"^gain: the plan leaves 0\.\d\d \[0\.\d\d, "
                              r"0\.\d\d\] of what straight lines between "
                              rf"{soaks} even soaks leave$")
+        self.assertIn("of what constants through one soak leave\n",
+                      self.ok("plan", "population.json", "--soaks", "1"))
 
     def test_candidates_are_compared(self):
         self.write("mine.txt", "# my soaks\n-40, 5, 50\n\n-30,0\n")
