@@ -225,11 +225,11 @@ SoakPlanResult planned(const Compensator& population, const Device& device,
   const std::size_t count = found.chosen.temperatures.size();
   found.even = s.planner.even(count);
   found.gain = s.planner.gain(found.chosen, found.even);
-  found.straight_lines = s.planner.straight_lines(found.even);
   for (const std::vector<double>& soaks : own)
     found.candidates.push_back(s.planner.judged(soaks));
   found.trade_offs = s.planner.trade_offs(
       std::min(std::max(count, kLeastTable), s.planner.most_soaks()));
+  found.straight_lines = found.trade_offs.at(count - 1).straight_lines;
   found.time = s.planner.time_of(found.chosen);
   found.rule = s.planner.rule();
   found.range = s.model.range();

@@ -84,10 +84,6 @@ class Planner {
   /// that the population does not reach.
   SoakPlan judged(std::vector<double> soaks) const;
 
-  /// Returns what straight lines leave between the soaks of a plan, without a
-  /// row of the start.
-  std::optional<ResidualForecast> straight_lines(const SoakPlan& even) const;
-
   /// Returns what `plan` leaves over what straight lines leave between the
   /// soaks of `even`, if the population has its devices.
   std::optional<MedianRatio> gain(const SoakPlan& plan,
@@ -113,7 +109,8 @@ class Planner {
   };
   Shown shown(const std::vector<double>& soaks, std::size_t minutes,
               const std::optional<StartRow>& row) const;
-  ResidualDraws line_draws(const SoakPlan& even) const;
+  ResidualDraws line_draws(const SoakPlan& even) const;  // no row of the start
+  std::optional<ResidualForecast> straight_lines(const SoakPlan& even) const;
   ResidualForecast forecast(const std::vector<double>& soaks,
                             std::size_t minutes) const;
   std::size_t hold_minutes(const std::vector<double>& soaks) const;

@@ -9,6 +9,8 @@
 #include <span>
 #include <utility>
 
+#include "compensation/models/array_view.h"
+#include "compensation/models/lookup_table.h"
 #include "linear_algebra/cholesky.h"
 #include "random/random_stream.h"
 #include "statistics/intervals.h"
@@ -122,19 +124,12 @@ ResidualDraws draws_of_devices(const SoakModel& model, const MatrixXd& root,
 // for each temperature.
 MatrixXd line_weights(const ArrayXd& temperatures,
                       const std::vector<double>& soaks) {
-  MatrixXd weights =
-      MatrixXd::Zero(temperatures.size(), static_cast<Index>(soaks.size()));
-  for (Index i = 0; i < temperatures.size(); ++i) {
-    const double T = std::clamp(temperatures(i), soaks.front(), soaks.back());
-    const auto above = std::lower_bound(soaks.begin(), soaks.end(), T);
-    const Index right = above - soaks.begin();
-    if (*above == T) {
-      weights(i, right) = 1.0;
-      continue;
-    }
-    const double share = (T - *(above - 1)) / (*above - *(above - 1));
-    weights(i, right) = share;
-    weights(i, right - 1) = 1.0 - share;
+  const auto count = static_cast<Index>(soaks.size());
+  LookupTable lines{array_view(soaks), {}};
+  MatrixXd weights(temperatures.size(), count);
+  for (Index k = 0; k < count; ++k) {
+    lines.values = VectorXd::Unit(count, k).array();
+    weights.col(k) = lines.predict(temperatures);
   }
   return weights;
 }
