@@ -10,7 +10,7 @@ every 5 K, scored at every kelvin, without noise.
 import h5py
 import numpy as np
 
-from demo_runs import MODES_SWEEPS, MODES_TEST, NOISE_OFF, SCENARIOS
+from demo_runs import MODES_SWEEPS, MODES_TEST, SCENARIOS
 
 UNITS = 8
 METHODS = ["cubic", "straight_lines", "bp"]
@@ -34,11 +34,8 @@ def study(demo):
     """Rows of the table, by method."""
     folder = demo.out / "modes"
     folder.mkdir(exist_ok=True)
-    demo.simulate(MODES_SWEEPS, [])
-    name, scenario, seed, overrides = MODES_TEST
-    sets = [part for text in [*overrides, NOISE_OFF] for part in ("--set", text)]
-    demo.beamgyro("run", SCENARIOS / f"{scenario}.toml", "--seed", seed, *sets,
-                  "-o", demo.recording(name))
+    demo.simulate([*MODES_SWEEPS, MODES_TEST], [])
+    name = MODES_TEST[0]
     demo.beamgyro("characterise", SCENARIOS / "campaigns/lifelike_with_modes.toml",
                   "--devices", UNITS, "--beam-temperature", "-40:50:0.25",
                   "-o", folder / "curves.csv")

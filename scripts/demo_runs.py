@@ -83,6 +83,7 @@ LIFELIKE_VALIDATION = [lifelike(*run) for run in [
 LIFELIKE_TEST = [lifelike(*run) for run in TEST
                  if run[0] in SOAKS or run[0] in MOTION]
 
+
 def with_modes(name, scenario, seed, overrides):
     """The same run of a unit with spurious modes, a sample in 20 seconds."""
     return (f"modes_{name}", scenario, seed, [
@@ -90,7 +91,7 @@ def with_modes(name, scenario, seed, overrides):
         "output_rate_Hz=0.05"])
 
 
-# Two sweeps to train on, up and down, and one to hold out.
+# Two sweeps to train on, up and down, one to hold out, and one without noise.
 MODES_SWEEPS = [with_modes(*run) for run in [*SWEEPS[:2], SOAKS_HELD_OUT[0]]]
 MODES_TEST = with_modes("test", "soak_every_kelvin", 361, [])
 
