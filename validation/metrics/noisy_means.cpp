@@ -28,21 +28,16 @@ double mean_square(std::span<const double> values, double about) {
   return sum / static_cast<double>(values.size());
 }
 
-/// Ends of the ranges of means that are drawn towards one value.
-std::vector<std::size_t> group_ends(const NoisyMeans& means,
-                                    Shrinkage shrinkage) {
+/// Ends of the means since each power-on of each run.
+std::vector<std::size_t> power_on_ends(const NoisyMeans& means) {
   std::vector<std::size_t> ends;
-  if (shrinkage == Shrinkage::kToPowerOn) {
-    std::size_t end = 0;
-    for (const std::size_t size : means.sizes) {
-      for (std::size_t i = end + 1; i < end + size; ++i)
-        if (means.segments[i].power_on != means.segments[i - 1].power_on)
-          ends.push_back(i);
-      end += size;
-      ends.push_back(end);
-    }
-  } else {
-    ends.push_back(means.values.size());
+  std::size_t end = 0;
+  for (const std::size_t size : means.sizes) {
+    for (std::size_t i = end + 1; i < end + size; ++i)
+      if (means.segments[i].power_on != means.segments[i - 1].power_on)
+        ends.push_back(i);
+    end += size;
+    ends.push_back(end);
   }
   return ends;
 }
@@ -76,7 +71,7 @@ std::vector<double> shrunken(const NoisyMeans& means, const Draws& draws,
                              Shrinkage shrinkage) {
   std::vector<double> base = means.values;
   if (shrinkage == Shrinkage::kNone) return base;
-  const std::vector<std::size_t> ends = group_ends(means, shrinkage);
+  const std::vector<std::size_t> ends = {base.size()};
   std::vector<double> noise;  // sums of squares
   for (const std::vector<double>& draw : draws)
     noise.push_back(sum_of_squares(draw, ends, shrinkage));
@@ -203,20 +198,11 @@ std::vector<double> nearer_to_noise(std::vector<double> means,
   return means;
 }
 
-Interval root_interval(const NoisyMeans& means, const Draws& draws,
-                       const Statistic& root) {
-  const NoisySquare square = noisy_square(means.values, draws, root);
-  const NoisySquare nearer =
-      noisy_square(nearer_to_noise(means.values, square, draws), draws, root);
-  return {root_by_quantile(square, square.drift, kNormal975),
-          root_by_quantile(nearer, square.drift, -kNormal975)};
-}
-
 /// Ends of windows of one power-on of one run, none longer than `window` [s].
 std::vector<std::size_t> window_ends(const NoisyMeans& means, double window) {
   std::vector<std::size_t> ends;
   std::size_t begin = 0;
-  for (const std::size_t power_on : group_ends(means, Shrinkage::kToPowerOn)) {
+  for (const std::size_t power_on : power_on_ends(means)) {
     for (std::size_t i = begin + 1; i < power_on; ++i)
       if (means.segments[i].time - means.segments[begin].time >= window) {
         ends.push_back(i);
@@ -315,17 +301,33 @@ Estimate estimate_beneath_noise(const NoisyMeans& means,
     return {value, Interval{value, value}};
   const auto kept_draws = draws_of(means);
   const Draws& draws = *kept_draws;
-  auto [low, high] =
-      growth == Growth::kSquare
-          ? root_interval(means, draws, statistic)
-          : interval_by_errors(value,
-                               errors_about(shrunken(means, draws, shrinkage),
-                                            draws, statistic),
-                               growth);
+  auto [low, high] = interval_by_errors(
+      value, errors_about(shrunken(means, draws, shrinkage), draws, statistic),
+      growth);
   if (growth == Growth::kExtreme)
     high = std::max(high, value + half_without_choice(means, draws, statistic));
   return {value, Interval{std::min(value, std::max(least, low)),
                           std::max(value, high)}};
+}
+
+Estimate estimate_of_range(const NoisyMeans& means, const Statistic& range) {
+  return estimate_beneath_noise(means, range, Shrinkage::kToMean, 0.0,
+                                Growth::kExtreme);
+}
+
+Estimate estimate_of_root(const NoisyMeans& means, const Statistic& root) {
+  if (lacks_answers(means)) return {NAN};
+  const double value = root(means.values);
+  if (means.without_noise() || !std::isfinite(value))
+    return {value, Interval{value, value}};
+  const auto kept_draws = draws_of(means);
+  const Draws& draws = *kept_draws;
+  const NoisySquare square = noisy_square(means.values, draws, root);
+  const NoisySquare nearer =
+      noisy_square(nearer_to_noise(means.values, square, draws), draws, root);
+  const double low = root_by_quantile(square, square.drift, kNormal975);
+  const double high = root_by_quantile(nearer, square.drift, -kNormal975);
+  return {value, Interval{std::min(value, low), std::max(value, high)}};
 }
 
 double rms_within(const NoisyMeans& means, double window) {

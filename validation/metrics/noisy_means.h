@@ -43,16 +43,13 @@ bool lacks_answers(const NoisyMeans& means);
 using Statistic = std::function<double(std::span<const double> means)>;
 
 /// What the figure would be without the noise, roughly: the means themselves,
-/// or drawn together towards zero, towards their mean, or towards the mean
-/// since their power-on, by the share of their variance that is noise.
-enum class Shrinkage { kNone, kToZero, kToMean, kToPowerOn };
+/// or drawn together towards zero or towards their mean, by the share of their
+/// variance that is noise.
+enum class Shrinkage { kNone, kToZero, kToMean };
 
 /// How noise enlarges a figure.
 enum class Growth {
   kSmooth,  // its error is added to it
-  // The root of a quadratic form: the noise, and twice its product with the
-  // drift, are added to the square.
-  kSquare,
   // The largest of many: it grows most by the first noise, which chooses the
   // extreme, and less by what is added to that.
   kExtreme,
@@ -72,18 +69,28 @@ enum class Growth {
 ///   are.
 /// - For an extreme figure the lower end is value - 1/(sqrt(2) - 1) mean(e) -
 ///   1.96 sigma(e): as much as the first noise adds where all means are equal.
-/// - A root needs no shrinkage. Its drift is taken for t times the means: the
-///   lower end is the figure of that t for which the square that was seen is
-///   the 0.975 quantile of the squares with drawn noise, by their mean, sigma
-///   and skewness. The upper end is by the 0.025 quantile, for a drift like the
-///   means and one standard deviation of the noise that has most in common with
-///   them: noise that took away from the drift also hides what it has in
-///   common.
 /// The interval has no width if there is no noise.
 Estimate estimate_beneath_noise(const NoisyMeans& means,
                                 const Statistic& statistic, Shrinkage shrinkage,
                                 double least = -HUGE_VAL,
                                 Growth growth = Growth::kSmooth);
+
+/// Returns estimate_beneath_noise() of the largest mean less the least.
+Estimate estimate_of_range(const NoisyMeans& means, const Statistic& range);
+
+/// As estimate_beneath_noise(), for the root of a quadratic form of the means,
+/// to whose square noise adds its own and twice its product with the drift. The
+/// drift is taken for t times the means: the lower end is the figure of that t
+/// for which the square that was seen is the 0.975 quantile of the squares with
+/// drawn noise, by their mean, sigma and skewness. The upper end is by the
+/// 0.025 quantile, for a drift like the means and one standard deviation of the
+/// noise that has most in common with them: noise that took away from the drift
+/// also hides what it has in common.
+Estimate estimate_of_root(const NoisyMeans& means, const Statistic& root);
+
+/// Any of these for one kind of figure.
+using Estimator = Estimate (*)(const NoisyMeans& means,
+                               const Statistic& statistic);
 
 /// Returns what the rms of the means without noise is at least, by what is left
 /// of them when the mean over each window of `window` [s] of one power-on is

@@ -18,10 +18,17 @@ constexpr std::array kWindows = {HUGE_VAL, 14400.0, 3600.0, 1200.0};  // [s]
 struct ResidualFigure {
   double ResidualScores::*score;
   double least_of_rms;
-  Shrinkage shrinkage;
-  double least;
-  Growth growth;
+  Estimator estimate;
 };
+
+Estimate estimate_of_mean(const NoisyMeans& means, const Statistic& mean) {
+  return estimate_beneath_noise(means, mean, Shrinkage::kNone);
+}
+
+Estimate estimate_of_size(const NoisyMeans& means, const Statistic& largest) {
+  return estimate_beneath_noise(means, largest, Shrinkage::kToZero, 0.0,
+                                Growth::kExtreme);
+}
 
 std::optional<Estimate> residual_figure(const Evidence& evidence,
                                         ResidualFigure figure) {
@@ -29,12 +36,9 @@ std::optional<Estimate> residual_figure(const Evidence& evidence,
   for (const EvidenceRun* run : runs_for(evidence, quiet_purposes()))
     means.add(*run, score_blocks(*run->recording));
   if (means.values.empty()) return std::nullopt;
-  Estimate found = estimate_beneath_noise(
-      means,
-      [&](std::span<const double> r) {
-        return residual_scores(r).*figure.score;
-      },
-      figure.shrinkage, figure.least, figure.growth);
+  Estimate found = figure.estimate(means, [&](std::span<const double> r) {
+    return residual_scores(r).*figure.score;
+  });
   if (!(figure.least_of_rms > 0.0) || !std::isfinite(found.value)) return found;
   double& low = found.interval->low;
   for (const double window : kWindows)
@@ -78,29 +82,24 @@ std::vector<Metric> residual_metrics() {
        "block.",
        quiet_purposes(),
        given(residual_figure,
-             ResidualFigure{&ResidualScores::mean, 0.0, Shrinkage::kNone,
-                            -HUGE_VAL, Growth::kSmooth})},
+             ResidualFigure{&ResidualScores::mean, 0.0, estimate_of_mean})},
       {"residual_sigma_deg_per_s", "Standard deviation of the residual",
        "deg/s", "", "sqrt(sum (r_i - mean)^2 / n) over the blocks of 60 s.",
        quiet_purposes(),
        given(residual_figure,
-             ResidualFigure{&ResidualScores::sigma, 1.0, Shrinkage::kToMean,
-                            0.0, Growth::kSquare})},
+             ResidualFigure{&ResidualScores::sigma, 1.0, estimate_of_root})},
       {"residual_rms_deg_per_s", "Rms of the residual", "deg/s", "",
        "sqrt(sum r_i^2 / n) over the blocks of 60 s.", quiet_purposes(),
        given(residual_figure,
-             ResidualFigure{&ResidualScores::rms, 1.0, Shrinkage::kToZero, 0.0,
-                            Growth::kSquare})},
+             ResidualFigure{&ResidualScores::rms, 1.0, estimate_of_root})},
       {"residual_max_deg_per_s", "Largest residual", "deg/s", "",
        "max |r_i| over the blocks of 60 s.", quiet_purposes(),
        given(residual_figure,
-             ResidualFigure{&ResidualScores::largest, 1.0, Shrinkage::kToZero,
-                            0.0, Growth::kExtreme})},
+             ResidualFigure{&ResidualScores::largest, 1.0, estimate_of_size})},
       {"residual_pp_deg_per_s", "Peak-to-peak residual", "deg/s", "",
        "max r_i - min r_i over the blocks of 60 s.", quiet_purposes(),
-       given(residual_figure,
-             ResidualFigure{&ResidualScores::peak_to_peak, 2.0,
-                            Shrinkage::kToMean, 0.0, Growth::kExtreme})},
+       given(residual_figure, ResidualFigure{&ResidualScores::peak_to_peak, 2.0,
+                                             estimate_of_range})},
       {"normalised_residual", "Residual relative to its noise", "1", "",
        "sqrt(mean r_i^2 / s_i^2) over the blocks of 60 s: s_i is the "
        "standard deviation of a block's mean under the noise that the "

@@ -34,15 +34,12 @@ Soaks all_soaks(const Evidence& evidence) {
 
 std::optional<Estimate> soak_figure(const Evidence& evidence,
                                     double ResidualScores::*figure,
-                                    Growth growth) {
+                                    Estimator estimate) {
   const Soaks all = all_soaks(evidence);
   if (all.soaks.size() < 2) return std::nullopt;
-  return estimate_beneath_noise(
-      all.means,
-      [figure](std::span<const double> b) {
-        return residual_scores(b).*figure;
-      },
-      Shrinkage::kToMean, 0.0, growth);
+  return estimate(all.means, [figure](std::span<const double> b) {
+    return residual_scores(b).*figure;
+  });
 }
 
 /// A mean, and the line between two others that it is compared with.
@@ -72,15 +69,12 @@ Estimate largest_difference(const NoisyMeans& means,
 
 Estimate rms_difference(const NoisyMeans& means,
                         const std::vector<Comparison>& comparisons) {
-  return estimate_beneath_noise(
-      means,
-      [&](std::span<const double> b) {
-        double squares = 0.0;
-        for (const Comparison& c : comparisons)
-          squares += std::pow(difference(c, b), 2);
-        return std::sqrt(squares / static_cast<double>(comparisons.size()));
-      },
-      Shrinkage::kToMean, 0.0, Growth::kSquare);
+  return estimate_of_root(means, [&](std::span<const double> b) {
+    double squares = 0.0;
+    for (const Comparison& c : comparisons)
+      squares += std::pow(difference(c, b), 2);
+    return std::sqrt(squares / static_cast<double>(comparisons.size()));
+  });
 }
 
 /// Part of a ramp run in one direction: indices of means, rising temperature.
@@ -267,7 +261,7 @@ std::vector<Metric> temperature_metrics() {
        "max B(T_j) - min B(T_j): B(T_j) is the mean residual over the "
        "last 300 s of soak j.",
        {kSoak},
-       given(soak_figure, &ResidualScores::peak_to_peak, Growth::kExtreme)},
+       given(soak_figure, &ResidualScores::peak_to_peak, estimate_of_range)},
       {"bias_sigma_deg_per_s",
        "Standard deviation of the bias",
        "deg/s",
@@ -275,7 +269,7 @@ std::vector<Metric> temperature_metrics() {
        "Standard deviation of the B(T_j) about their mean, divided by "
        "their number n.",
        {kSoak},
-       given(soak_figure, &ResidualScores::sigma, Growth::kSquare)},
+       given(soak_figure, &ResidualScores::sigma, estimate_of_root)},
       {"bias_sensitivity_deg_per_s_per_K",
        "Bias sensitivity to temperature",
        "deg/s/K",
