@@ -109,6 +109,8 @@ SoakBehaviour behaviour_of(const PlanOptions& options,
           ? range.lowest
           : range.highest;
   SoakBehaviour found;
+  // A ramp that counts as steady would be taken for dozens of soaks.
+  found.rule.steady = std::min(found.rule.steady, time.ramp / 2.0);
   found.rule.lag =
       lag_minutes(device.thermal, time.start, time.ramp, found.rule.steady);
   found.rows = slowest_rows(device.thermal, farthest, time, found.rule);

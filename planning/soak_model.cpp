@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "compensation/methods/population_own.h"
 #include "compensation/models/array_view.h"
 #include "linear_algebra/eigenvalues.h"
 #include "linear_algebra/linear_systems.h"
@@ -53,6 +54,12 @@ SoakModel::SoakModel(Population population, SensorOfChamber sensor,
     throw std::invalid_argument(
         "the devices of the population are all alike: there is nothing that a "
         "soak could tell; expected a population whose devices differ");
+  for (Index curve = 0; curve < rows_per_soak(); ++curve)
+    noise_.push_back(curve == 0 ? noise().bias
+                                : noise().channel_share *
+                                      curve_spread(population_, curve));
+  truth_ = truth_root(population_);
+  add_own_modes();
   const Index grid = population_.grid();
   for (Index curve = 0; curve < rows_per_soak(); ++curve) {
     means_.push_back(bias_curve(
@@ -63,7 +70,21 @@ SoakModel::SoakModel(Population population, SensorOfChamber sensor,
   }
   const MatrixXd bias = values(0, known_sensor(range_grid()));
   weight_ = bias.transpose() * bias / static_cast<double>(bias.rows());
-  truth_ = truth_root(population_);
+}
+
+void SoakModel::add_own_modes() {
+  const Index before = modes();
+  population_.modes = all_modes(population_);
+  population_.own.clear();
+  const Index added = modes() - before;
+  truth_.conservativeResize(modes(), modes());
+  truth_.rightCols(added).setZero();
+  truth_.bottomRows(added).setZero();
+  truth_.bottomRightCorner(added, added).setIdentity();
+  MatrixXd& c = population_.coefficients;
+  if (c.rows() == 0) return;
+  c.conservativeResize(Eigen::NoChange, modes());
+  c.rightCols(added).setZero();
 }
 
 // One column for each mode, one row for each temperature of the sensor.
@@ -107,17 +128,16 @@ Index SoakModel::rows_per_soak() const {
              : 1 + static_cast<Index>(population_.channels.size());
 }
 
-double SoakModel::noise_of(Index curve) const {
-  return curve == 0
-             ? options_.noise.bias
-             : options_.noise.channel_share * curve_spread(population_, curve);
+PointNoise SoakModel::noise() const {
+  return options_.noise.value_or(PointNoise{population_.point_noise});
 }
 
 MatrixXd SoakModel::rows(const ArrayXd& sensor) const {
   const Index curves = rows_per_soak();
   MatrixXd H(curves * sensor.size(), modes());
   for (Index curve = 0; curve < curves; ++curve) {
-    const MatrixXd own = values(curve, sensor) / noise_of(curve);
+    const MatrixXd own =
+        values(curve, sensor) / noise_[static_cast<std::size_t>(curve)];
     for (Index k = 0; k < own.rows(); ++k)
       H.row(k * curves + curve) = own.row(k);
   }
@@ -148,8 +168,8 @@ SoakModel::Lagging SoakModel::lagging(const std::vector<double>& chamber,
   Lagging found{rows(beam), Eigen::VectorXd(rows_per_soak() * sensor.size())};
   for (Index curve = 0; curve < rows_per_soak(); ++curve) {
     const CubicSpline& mean = means_[static_cast<std::size_t>(curve)];
-    const ArrayXd shift =
-        (mean.predict(beam) - mean.predict(sensor)) / noise_of(curve);
+    const ArrayXd shift = (mean.predict(beam) - mean.predict(sensor)) /
+                          noise_[static_cast<std::size_t>(curve)];
     for (Index k = 0; k < shift.size(); ++k)
       found.shift(k * rows_per_soak() + curve) = shift(k);
   }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "compensation/inputs/features.h"
@@ -27,7 +28,8 @@ using SensorOfChamber = std::function<Eigen::ArrayXd(const Eigen::ArrayXd&)>;
 
 struct SoakModelOptions {
   TemperatureRange range;  // [degC], of the chamber: where the residual counts
-  PointNoise noise = {};
+  // Of a soak; without one what the population has learned.
+  std::optional<PointNoise> noise = {};
   bool bias_only = false;  // soaks observe no channel of the population
 };
 
@@ -46,9 +48,11 @@ class SoakModel {
   SoakModel(Population population, SensorOfChamber sensor,
             const SoakModelOptions& options);
 
+  /// The population, with its own parts as further modes. Its devices have 0
+  /// in them, because their curves are sums of the other modes.
   const Population& population() const { return population_; }
   TemperatureRange range() const { return options_.range; }
-  const PointNoise& noise() const { return options_.noise; }
+  PointNoise noise() const;
   Eigen::Index modes() const { return population_.modes.cols(); }
 
   /// Rows that a soak adds to H.
@@ -92,17 +96,18 @@ class SoakModel {
   const Eigen::MatrixXd& truth() const { return truth_; }
 
  private:
+  void add_own_modes();
   Eigen::ArrayXd known_sensor(const Eigen::ArrayXd& chamber) const;
   Eigen::ArrayXd known_beam(const Eigen::ArrayXd& sensor,
                             const std::vector<double>& lag) const;
   Eigen::MatrixXd values(Eigen::Index curve,
                          const Eigen::ArrayXd& sensor) const;
-  double noise_of(Eigen::Index curve) const;
   Eigen::MatrixXd rows(const Eigen::ArrayXd& sensor) const;
 
   Population population_;
   SensorOfChamber sensor_;
   SoakModelOptions options_;
+  std::vector<double> noise_;  // of a soak, of each curve
   std::vector<CubicSpline>
       modes_;  // of each curve, of the sensor's temperature
   std::vector<CubicSpline> means_;  // likewise

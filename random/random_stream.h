@@ -42,6 +42,7 @@ enum RandomPurpose : std::uint32_t {
   kQualifiedCampaignStream,
   kHalfSplitStream,
   kPlanGainStream,
+  kMembershipStream,
 };
 
 /// Returns the inverse of the normal distribution function. Throws

@@ -88,6 +88,7 @@ struct Fit {
       {};                                 // of fit_model() one or more [deg/s]
   std::size_t chosen = 0;                 // the restart kept
   std::vector<std::string> choices = {};  // what was chosen, from what, and why
+  std::vector<std::string> warnings = {};  // of what the fit does not support
   std::optional<Population> population = {};  // learned, of a PopulationSpec
 
   const TrainSummary& summary() const { return restarts[chosen]; }

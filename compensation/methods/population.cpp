@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
+#include "compensation/methods/population_equations.h"
+#include "compensation/methods/population_own.h"
 #include "linear_algebra/eigenvalues.h"
 #include "linear_algebra/least_squares.h"
 
@@ -131,85 +132,13 @@ void set_modes(Population& p, const MatrixXd& X) {
   p.coefficients = coefficients_of(scaled, vectors, variance.tail(kept));
 }
 
-// Curve number `curve` (0: the bias) of each mode and of the mean at the rows,
-// over the noise: the equations H c = y of unit variance.
-struct Equations {
-  MatrixXd H;
-  VectorXd y;
-};
-Equations equations(const Population& p, Index curve, const ArrayXd& T,
-                    const ArrayXd& measured, double noise) {
-  const auto at_rows = [&](const VectorXd& curves) -> ArrayXd {
-    const ArrayXd own = curves.segment(curve * p.grid(), p.grid());
-    return bias_curve(p, own).predict(T);
-  };
-  Equations e{MatrixXd(T.size(), p.modes.cols()), VectorXd(T.size())};
-  for (Index m = 0; m < p.modes.cols(); ++m)
-    e.H.col(m) = at_rows(p.modes.col(m)) / noise;
-  e.y = (measured - at_rows(p.mean)) / noise;
-  return e;
-}
-
-Index curve_number(const Population& population, const Input& input) {
-  const auto found =
-      std::find(population.channels.begin(), population.channels.end(), input);
-  if (found == population.channels.end())
-    throw std::invalid_argument(fmt::format(
-        "the population does not know the input \"{}\"", input_name(input)));
-  return 1 + (found - population.channels.begin());
-}
-
-// Means of the rows within kPointWidth of each other.
-struct Points {
-  ArrayXd temperature, bias;
-  Eigen::ArrayXXd inputs;
-};
-Points points_of(const TrainingRows& rows) {
-  std::vector<Index> order(static_cast<std::size_t>(rows.size()));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return rows.temperature(a) < rows.temperature(b);
-  });
-  std::vector<std::vector<Index>> groups;
-  for (const Index k : order) {
-    if (groups.empty() ||
-        rows.temperature(k) - rows.temperature(groups.back().front()) >=
-            kPointWidth)
-      groups.emplace_back();
-    groups.back().push_back(k);
-  }
-  const auto count = static_cast<Index>(groups.size());
-  Points points{ArrayXd(count), ArrayXd(count),
-                Eigen::ArrayXXd(count, rows.inputs.cols())};
-  for (Index k = 0; k < count; ++k) {
-    const std::vector<Index>& group = groups[static_cast<std::size_t>(k)];
-    points.temperature(k) = rows.temperature(group).mean();
-    points.bias(k) = rows.bias(group).mean();
-    for (Index i = 0; i < rows.inputs.cols(); ++i)
-      points.inputs(k, i) = rows.inputs.col(i)(group).mean();
-  }
-  return points;
-}
-
-// Prior and points, one equation below the other.
-Equations all_equations(const Population& p, const std::vector<Input>& inputs,
-                        const Points& points, const PointNoise& noise) {
-  const Index modes = p.modes.cols(), count = points.bias.size();
-  const auto curves = static_cast<Index>(inputs.size());
-  Equations all{MatrixXd(modes + curves * count, modes),
-                VectorXd::Zero(modes + curves * count)};
-  all.H.topRows(modes).setIdentity();
-  for (Index i = 0; i < curves && count > 0; ++i) {
-    const Index curve =
-        i == 0 ? 0 : curve_number(p, inputs[static_cast<std::size_t>(i)]);
-    const ArrayXd measured =
-        i == 0 ? points.bias : ArrayXd(points.inputs.col(i));
-    const Equations own = equations(
-        p, curve, points.temperature, measured,
-        i == 0 ? noise.bias : noise.channel_share * curve_spread(p, curve));
-    all.H.middleRows(modes + i * count, count) = own.H;
-    all.y.segment(modes + i * count, count) = own.y;
-  }
+// The prior c ~ N(0, I) above what the points show.
+PointEquations with_prior(const PointEquations& points) {
+  const Index modes = points.H.cols();
+  PointEquations all{MatrixXd(modes + points.H.rows(), modes),
+                     VectorXd(modes + points.H.rows())};
+  all.H << MatrixXd::Identity(modes, modes), points.H;
+  all.y << VectorXd::Zero(modes), points.y;
   return all;
 }
 
@@ -245,6 +174,15 @@ double curve_spread(const Population& population, Index curve) {
   return spreads(population.modes.middleRows(curve * grid, grid), grid)(0);
 }
 
+double usual_point_noise(const Population& population) {
+  constexpr double kShare = 0.15;
+  const MatrixXd bias = population.modes.topRows(population.grid());
+  const double square = (bias.rowwise() - bias.colwise().mean()).squaredNorm() /
+                        static_cast<double>(population.grid());
+  const double usual = PointNoise{}.bias;
+  return square > 0.0 ? std::min(usual, kShare * std::sqrt(square)) : usual;
+}
+
 double steepest_bias(const Population& population) {
   const Index last = population.grid() - 1;
   const auto rise = [&](const MatrixXd& curves) -> MatrixXd {
@@ -262,12 +200,12 @@ AdaptedBias adapted_bias(const Population& population,
   if (population.modes.cols() == 0)
     return {population.mean.head(population.grid()).array(),
             ArrayXd::Zero(population.grid()), ArrayXd::Zero(population.grid())};
-  const Equations all =
-      all_equations(population, inputs, points_of(rows), noise);
+  const PointEquations all =
+      with_prior(point_equations(population, inputs, rows, noise));
   const Index grid = population.grid();
   // A = R^T R of the QR decomposition: its squares are never formed.
   const auto [c, R] = full_rank_solution(all.H, all.y);
-  const MatrixXd bias_modes = population.modes.topRows(grid);
+  const MatrixXd bias_modes = all_modes(population).topRows(grid);
   const MatrixXd roots = R.transpose().triangularView<Eigen::Lower>().solve(
       bias_modes.transpose());
   const ArrayXd variance = roots.colwise().squaredNorm().transpose().array();

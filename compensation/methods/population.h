@@ -26,21 +26,34 @@ struct AdaptationSigma {
   double half_width = 0.0;  // as of SigmaCalibration
 };
 
+/// What a device has of its own in a curve, such as spurious resonances at
+/// temperatures of its own: a Gaussian process that is independent of all other
+/// devices and curves, with Matern's covariance
+///
+///   s^2 (1 + x) exp(-x),   x = sqrt(3) |T - T'| / L.
+struct OwnPart {
+  double deviation = 0.0;  // s, in the unit of the curve, >= 0
+  double length_K = 1.0;   // L [K], > 0
+};
+
 /// The distribution of the gyros of a population. Over devices, the bias b and
 /// further channels q_1, q_2, ... (quadrature, ...) as functions of the
 /// temperature T are one Gaussian process,
 ///
-///   (b, q_1, ...)(T) = mu(T) + Phi(T) c,   c ~ N(0, I).
+///   (b, q_1, ...)(T) = mu(T) + Phi(T) c + r(T),   c ~ N(0, I),
 ///
-/// mu and each column of Phi, a mode, are splines through values on a grid.
+/// where r is the own part of a device. mu, each column of Phi, a mode, and r
+/// are splines through values on a grid.
 struct Population {
   std::vector<Input> channels;  // kColumn each; beside the bias
   Eigen::ArrayXd temperatures;  // [degC], the grid, increasing, at least 4
   // Values on the grid: of the bias [deg/s], then of each channel in its own
   // unit.
-  Eigen::VectorXd mean;   // (1 + channels) * grid
-  Eigen::MatrixXd modes;  // as many rows, one column per mode
-  int devices = 0;        // it was learned from
+  Eigen::VectorXd mean;           // (1 + channels) * grid
+  Eigen::MatrixXd modes;          // as many rows, one column per mode
+  int devices = 0;                // it was learned from
+  std::vector<OwnPart> own = {};  // of each curve; or none has any
+  double point_noise = 0.03;      // [deg/s], of PointNoise unless it is given
   std::optional<AdaptationSigma> sigma = {};
   // c of its devices, one per row, or of kMostCoefficients of them. Files of
   // older programs have none. The Gaussian process takes no notice of them:
@@ -57,6 +70,11 @@ constexpr Eigen::Index kMostCoefficients = 1000;
 /// deviation from its mean, in the unit of the curve; 1 if there is none. Curve
 /// 0 is the bias, the others are the channels in their order.
 double curve_spread(const Population& population, Eigen::Index curve);
+
+/// Returns the 1-sigma of a point that is taken where none is given [deg/s]:
+/// that of PointNoise, which is that of uncompensated gyros, but no more than
+/// 15 % of the rms over devices by which a bias differs from its own mean.
+double usual_point_noise(const Population& population);
 
 /// Returns the largest rms over devices of the slope of the bias between two
 /// temperatures of the grid [deg/s/K].
@@ -96,7 +114,7 @@ struct AdaptedBias {
 
 /// Returns the exact conditional E[b | y] of the Gaussian process and its
 /// deviation. y are the points of the rows, mu and H the values of the
-/// population at them, R their noise:
+/// population at them, those of r among them, R their noise:
 ///
 ///   c | y ~ N(A^-1 H^T R^-1 (y - mu), A^-1),   A = I + H^T R^-1 H.
 ///

@@ -34,6 +34,33 @@ AdaptationSigma read_adaptation(const JsonNode& node) {
           read_half_width(node)};
 }
 
+// Own parts: one for each curve, or none. Files of older programs have none.
+Json own_json(const std::vector<OwnPart>& own) {
+  Json json = Json::array();
+  for (const OwnPart& part : own)
+    json.push_back({{"deviation", finite_json(part.deviation)},
+                    {"length_K", finite_json(part.length_K)}});
+  return json;
+}
+
+std::vector<OwnPart> read_own(const JsonNode& node, std::size_t curves) {
+  std::vector<OwnPart> own;
+  for (const JsonNode& part : node.elements()) {
+    part.require_only({"deviation", "length_K"});
+    own.push_back(
+        {part.at("deviation").number(), read_positive(part.at("length_K"))});
+    if (own.back().deviation < 0.0)
+      part.at("deviation")
+          .fail(
+              fmt::format("{:g}, must not be negative", own.back().deviation));
+  }
+  if (!own.empty() && own.size() != curves)
+    node.fail(
+        fmt::format("{} own parts, must be none or {}, one for each curve",
+                    own.size(), curves));
+  return own;
+}
+
 // The squares of c add up to the number of devices less one for each mode. Of
 // some of the devices that is so within a few per cent.
 void check_coefficients(const JsonNode& node, const Eigen::MatrixXd& c,
@@ -73,6 +100,8 @@ Json population_json(const Population& population) {
                {"temperatures_degC", numbers_json(population.temperatures)},
                {"mean", numbers_json(population.mean)},
                {"modes", rows_json(population.modes.transpose())},
+               {"own", own_json(population.own)},
+               {"point_noise_deg_per_s", finite_json(population.point_noise)},
                {"coefficients", rows_json(population.coefficients)}};
   if (population.sigma) json["sigma"] = adaptation_json(*population.sigma);
   return json;
@@ -96,6 +125,10 @@ Population read_population(const JsonNode& node) {
   population.modes = read_matrix(node.at("modes"), size, kEach).transpose();
   population.coefficients =
       read_coefficients(node, population.modes.cols(), population.devices);
+  if (node.has("own"))
+    population.own = read_own(node.at("own"), 1 + population.channels.size());
+  if (node.has("point_noise_deg_per_s"))
+    population.point_noise = read_positive(node.at("point_noise_deg_per_s"));
   if (node.has("sigma")) population.sigma = read_adaptation(node.at("sigma"));
   return population;
 }

@@ -2,6 +2,7 @@
 // The sigma of a population and of devices adapted from it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -16,6 +17,8 @@ using Eigen::ArrayXd;
 using Eigen::Index;
 
 constexpr double kLeastSpread = 1e-6;  // [deg/s], of devices that are equal
+// Of the posterior deviation, where the noise of points alone explains all.
+constexpr double kLeastFactor = 0.5;
 constexpr int kSoakCounts[] = {3, 5};  // that devices are adapted from
 
 int device_count(const TrainingRows& rows) {
@@ -65,19 +68,17 @@ void add_predictions(const Population& population,
                      int count, ResidualCollector& scored, ArrayXd& scales) {
   const RowMask adapted_to = evenly_spaced(population, own.temperature, count);
   const AdaptedBias adapted =
-      adapted_bias(population, inputs, selected(own, adapted_to), {});
+      adapted_bias(population, inputs, selected(own, adapted_to),
+                   PointNoise{population.point_noise});
   const ArrayXd predicted =
       bias_curve(population, adapted.mean).predict(own.temperature);
   const LookupTable deviation{population.temperatures, adapted.deviation};
-  const LookupTable noise{population.temperatures, adapted.noise};
   const Index before = scales.size();
   Index added = 0;
   scales.conservativeResize(before + own.size());
   for (Index k = 0; k < own.size(); ++k) {
-    if (adapted_to(k) || own.beyond_range(k)) continue;
-    const double error = own.bias(k) - predicted(k);
-    scored.add(own.temperature(k),
-               std::hypot(error, noise.at(own.temperature(k))), 0.0, 0.0,
+    if (adapted_to(k) || own.beyond_range(k) > 0.0) continue;
+    scored.add(own.temperature(k), own.bias(k) - predicted(k), 0.0, 0.0,
                own.device(k));
     scales(before + added++) = deviation.at(own.temperature(k));
   }
@@ -153,11 +154,15 @@ std::optional<AdaptationSigma> adaptation_sigma(
   const RowMask all = RowMask::Constant(rows.size(), true);
   if (rows.size() == 0 || !(scales > 0.0).all()) return std::nullopt;
   AdaptationSigma result;
-  result.factor =
-      mean_square_amplitude(rows, all, ArrayXd::Zero(rows.size()), scales);
+  result.factor = mean_square_amplitude(
+      rows, all, ArrayXd::Constant(rows.size(), population.point_noise),
+      scales);
   result.devices = groups_among(rows, all);
-  if (!(result.factor > 0.0)) return std::nullopt;
-  result.half_width = conformal_half_width(rows, result.factor * scales);
+  result.factor = std::max(result.factor, kLeastFactor);
+  result.half_width = conformal_half_width(
+      rows, ((result.factor * scales).square() +
+             population.point_noise * population.point_noise)
+                .sqrt());
   BiasSigma terms;
   terms.factor = result.factor;
   terms.curve = {ArrayXd::Zero(1),

@@ -222,7 +222,8 @@ class RowCollector {
       cycles_.push_back(cycle_count_);
       legs_.add(without_lag(T.mean(), lag, clamp_));
       const double mean = measured.mean();
-      outside_.push_back(mean < clamp_.lowest || mean > clamp_.highest);
+      outside_.push_back(
+          std::abs(mean - std::clamp(mean, clamp_.lowest, clamp_.highest)));
       values_.push_back(time(block.samples).mean());
       values_.push_back(without_lag(T.mean(), lag, clamp_));
       values_.push_back(b.mean());
@@ -244,7 +245,7 @@ class RowCollector {
         array_view(legs_.legs()),
         output_per_rate_,
         count > 0 ? fastest_ - slowest_ : 0.0,
-        array_view(outside_).cast<bool>(),
+        array_view(outside_),
         array_view(devices_),
         Eigen::Map<const ArrayXXd>(moving_.data(), inputs_,
                                    static_cast<Index>(moving_.size()) / inputs_)
@@ -311,7 +312,8 @@ class RowCollector {
   const LookupTable* scale_factor_;
   Index inputs_;
   std::vector<double> values_, moving_;
-  std::vector<int> runs_, cycles_, outside_, devices_;  // one per row
+  std::vector<int> runs_, cycles_, devices_;  // one per row
+  std::vector<double> outside_;               // [K], likewise
   std::map<std::string, int> device_numbers_;
   LegCounter legs_;
   int run_count_ = -1, cycle_count_ = -1;

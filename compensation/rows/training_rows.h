@@ -38,9 +38,9 @@ struct TrainingRows {
   Eigen::ArrayXi leg;    // part of a cycle between reversals of temperature
   double output_per_rate = 0.0;  // [V/(deg/s)]; 0 without an output that varies
   double true_rate_span = 0.0;   // [deg/s], of the samples that were averaged
-  // Whether the mean measured temperature lies beyond the value that it was
-  // clamped to.
-  Eigen::Array<bool, Eigen::Dynamic, 1> beyond_range;
+  // [K], by which the mean measured temperature lies beyond the value that it
+  // was clamped to; 0 within.
+  Eigen::ArrayXd beyond_range;
   Eigen::ArrayXi device;  // whose run it was
   // Inputs of the blocks that steady_K_per_min left out, whose bias is not
   // used: methods that learn from quadrature take them.

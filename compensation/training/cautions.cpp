@@ -72,7 +72,7 @@ std::string extrapolation_caution(const FittedCase& fitted) {
   const TrainingRows& held_out = fitted.held_out;
   if (held_out.size() == 0) return "";
   const TemperatureRange& range = fitted.rows.range;
-  const auto outside = held_out.beyond_range.count();
+  const auto outside = (held_out.beyond_range > 0.0).count();
   if (outside == 0) return "";
   return fmt::format(
       "{} of {} held-out rows lie outside {:.1f} to {:.1f} degC, the "

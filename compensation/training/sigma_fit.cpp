@@ -65,7 +65,7 @@ ResidualRows residuals_of(const FittedCompensator& trained,
         all_rows(runs, trained.inputs, task, trained.temperature_range,
                  trained.scale_factor ? &*trained.scale_factor : nullptr);
     return selected(all,
-                    !all.beyond_range ||
+                    all.beyond_range == 0.0 ||
                         all.inputs.col(all.inputs.cols() - 2) >= kWarmUpShare);
   }();
   const bool held_out = &runs == &task.held_out_runs;
@@ -151,11 +151,12 @@ BiasSigma uncalibrated(const FittedCompensator& trained,
                        const SigmaTask& task) {
   if (trained.population) return population_sigma(*trained.population);
   if (const auto* adapted = std::get_if<AdaptedSpec>(&task.kind))
-    return adapted_sigma(adapted->population,
-                         adapted_bias(adapted->population, task.inputs,
-                                      task.rows, adapted->noise)
-                             .deviation,
-                         adapted->noise);
+    return adapted_sigma(
+        adapted->population,
+        adapted_bias(adapted->population, task.inputs,
+                     adapted->used_rows(task.rows), adapted->noise)
+            .deviation,
+        adapted->noise);
   if (!is_one_of<PolynomialSpec, SplineSpec>(task.kind) ||
       has_several_devices(task))
     throw UndeterminedFit("it takes residuals of held-out runs");

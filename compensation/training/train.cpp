@@ -293,6 +293,8 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
   p.warnings =
       cautions({c.inputs, c.bias, c.baseline, own, own_unseen,
                 facts.coarsest_resolution, known != TemperatureRange{}});
+  p.warnings.insert(p.warnings.end(), selected.fit.warnings.begin(),
+                    selected.fit.warnings.end());
   if (c.sigma) add_sigma_caution(*c.sigma, own, p.warnings);
   for (const std::string& warning :
        {warning_of_shared_seeds(p.training, p.held_out, groups.has_value()),

@@ -27,7 +27,7 @@ TrainingRows rows_of(const std::vector<Leg>& legs,
     }
   }
   rows.device = rows.run;
-  rows.beyond_range.setConstant(count, false);
+  rows.beyond_range.setZero(count);
   rows.inputs.col(0) = rows.temperature;
   rows.range = {rows.temperature.minCoeff(), rows.temperature.maxCoeff()};
   return rows;

@@ -25,7 +25,8 @@ TEST(ResidualForecast, OfDevicesIsThatOfPopulationsWithoutThem) {
   const SoakModel model = {
       few,
       same_temperature,
-      {.range = few.range(), .noise = {.bias = 1e3, .channel_share = 1e3}}};
+      {.range = few.range(),
+       .noise = PointNoise{.bias = 1e3, .channel_share = 1e3}}};
   // The soak tells nothing: the residual is the distance from the others' mean.
   std::vector<double> expected;
   for (Eigen::Index d = 0; d < 3; ++d) {
@@ -63,7 +64,7 @@ TEST(ResidualForecast, OfDevicesKnowsTailsThatTheProcessDoesNot) {
     return forecast_residual(
         SoakModel(population, same_temperature,
                   {.range = population.range(),
-                   .noise = {.bias = 1e3, .channel_share = 1e3}}),
+                   .noise = PointNoise{.bias = 1e3, .channel_share = 1e3}}),
         {20.0});
   };
   const ResidualForecast devices = forecast(tails);

@@ -160,7 +160,7 @@ TEST(TrainingRows, KnowTheirTimeRunAndPowerCycle) {
   EXPECT_EQ(numbers(rows.run), (std::vector<int>{0, 0, 0, 0, 0, 0, 1, 1}));
   EXPECT_EQ(numbers(rows.cycle), (std::vector<int>{0, 0, 1, 1, 1, 1, 2, 2}));
   EXPECT_EQ(numbers(rows.leg), (std::vector<int>{0, 0, 1, 1, 1, 1, 2, 2}));
-  EXPECT_FALSE(rows.beyond_range.any());
+  EXPECT_TRUE((rows.beyond_range == 0.0).all());
 }
 
 /// Rows of 60 samples at the temperatures given, one after the other.
@@ -249,8 +249,8 @@ TEST(TrainingRows, WithAScaleFactorTheLabelIsWhatItLeaves) {
       rows_from(run.recording(), {}, {20.0, 22.0}, &table);
   EXPECT_NEAR(clamped.bias(9), 0.5 + 1e-3 * clamped.time(9), 1e-12);
   EXPECT_EQ(clamped.temperature(9), 22.0);
-  EXPECT_TRUE(clamped.beyond_range(9));
-  EXPECT_FALSE(clamped.beyond_range(0));
+  EXPECT_GT(clamped.beyond_range(9), 0.0);
+  EXPECT_EQ(clamped.beyond_range(0), 0.0);
 }
 
 TEST(TrainingRows, SelectedRowsKeepAllThatBelongsToThem) {

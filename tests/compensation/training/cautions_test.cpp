@@ -28,7 +28,7 @@ TrainingRows rows_of(const ArrayXd& temperature, const ArrayXd& bias) {
   rows.time =
       60.0 * ArrayXd::LinSpaced(bias.size(), 0.0, double(bias.size() - 1));
   rows.run = rows.cycle = rows.leg = Eigen::ArrayXi::Zero(bias.size());
-  rows.beyond_range = Eigen::Array<bool, Eigen::Dynamic, 1>::Zero(bias.size());
+  rows.beyond_range = ArrayXd::Zero(bias.size());
   return rows;
 }
 

@@ -255,16 +255,20 @@ TEST(AdaptedSigma, CoversUnseenDevicesOfANormalPopulation) {
   EXPECT_NEAR(share, 0.9, 0.06);
 }
 
-// The posterior variance is linear in second moments: it is right on average,
-// though the rows of one run do not show the noise of its points.
+// The posterior variance is linear in second moments: it is right on average
+// for points that have their noise.
 TEST(AdaptationSigma, IsOneForDevicesOfThePopulation) {
   const Population population = fit_population(
       kTemperatureInput, parabolas(200, 3, every_five_kelvins()), 5.0);
+  TrainingRows unseen = parabolas(1000, 4, every_five_kelvins());
+  const std::vector<double> z = white(static_cast<int>(unseen.size()) / 2, 77);
+  for (Index k = 0; k < unseen.size(); ++k)  // two rows are a point
+    unseen.bias(k) +=
+        population.point_noise * z[static_cast<std::size_t>(k / 2)];
   const auto learned =
-      adaptation_sigma(population, kTemperatureInput,
-                       parabolas(100, 4, every_five_kelvins()), {});
+      adaptation_sigma(population, kTemperatureInput, unseen, {});
   ASSERT_TRUE(learned);
-  EXPECT_EQ(learned->devices, 100);
+  EXPECT_EQ(learned->devices, 1000);
   EXPECT_NEAR(learned->factor, 1.0, 0.05);
   EXPECT_GT(learned->half_width, 0.9);
   EXPECT_LT(learned->half_width, 1.7);
