@@ -19,7 +19,9 @@ namespace beamgyro::internal {
 /// - half or more of the powered samples are saturated, or not locked, or one
 ///   is not locked later than kLockTime after its power-on;
 /// - the samples do not show a motion (aliasing_warnings());
-/// - soaks end after duration_s.
+/// - soaks end after duration_s;
+/// - the history of a unit with memory ends at another temperature than the run
+///   begins with.
 class RunWarnings {
  public:
   /// `scenario` and `device` must outlive the object.
@@ -41,6 +43,7 @@ class RunWarnings {
     void add(double celsius);
   };
 
+  std::string history_text() const;
   std::string heat_text() const;
   std::string power_text() const;
   std::string saturation_text() const;

@@ -179,6 +179,8 @@ TEST(Memory, LifelikeUnitHasALoopBetweenHeatingAndCooling) {
   EXPECT_NEAR(widest_loop(nominal_device()), 0.053, 0.002);  // of the lag
 }
 
+// By an independent model ageing makes 0.48 deg/s, the glass, which relaxes
+// from 34.8 to 25.3 degC, another 0.10.
 TEST(Memory, AYearMovesTheBiasByTenthsOfADegreePerSecond) {
   const auto bias = [](const std::string& more) {
     return column_values(simulated(scenario_from(kQuiet + more), lifelike()),
@@ -187,8 +189,7 @@ TEST(Memory, AYearMovesTheBiasByTenthsOfADegreePerSecond) {
   };
   const double drift =
       std::abs(bias("[age]\nhours = 8766\n") - bias("[age]\nhours = 0\n"));
-  EXPECT_GT(drift, 0.2);
-  EXPECT_LT(drift, 0.7);
+  EXPECT_NEAR(drift, 0.58, 0.02);
 }
 
 TEST(Memory, AHistoryOfTheScenarioShapesTheGlass) {

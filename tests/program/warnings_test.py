@@ -48,6 +48,9 @@ WARNED = [
         ("[-100]", "[-5]", "the power is off since power.off_s = -5"),
         ("[-100, 700]", "[-5]", "the power is off since power.off_s = -5, and "
          "power.on_s = 700 is not before duration_s = 600")]],
+    # A history that ends elsewhere than the run begins
+    (SCENARIO, ["memory.relaxation={}", "history.points=[[0, 60], [3600, 60]]"],
+     "history.points ends at 60 degC and the run begins at 25 degC", "1 K/min"),
     (SCENARIO, ["rate.constant_deg_per_s=400"], "all 1200 powered samples are saturated",
      "readout.full_scale_deg_per_s = 150"),
     (SCENARIO, ["drive.voltage_limit_V=0.5"],
