@@ -303,6 +303,9 @@ NoiseParameters read_noise(const ConfigTable& noise) {
           kDegree,
       .turn_on_settling = noise.number_or("turn_on_settling_s", 200, kTime),
       .turn_on_recovery = noise.number_or("turn_on_recovery_s", 3600, kTime),
+      .walk_correlation =
+          noise.number_or("random_walk_correlation_h", 100, between(1, 1e6)) *
+          kHour,
   };
 }
 

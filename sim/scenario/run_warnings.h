@@ -21,7 +21,8 @@ namespace beamgyro::internal {
 /// - the samples do not show a motion (aliasing_warnings());
 /// - soaks end after duration_s;
 /// - the history of a unit with memory ends at another temperature than the run
-///   begins with.
+///   begins with;
+/// - the random walk of a run without an age goes beyond its bound.
 class RunWarnings {
  public:
   /// `scenario` and `device` must outlive the object.
@@ -44,6 +45,7 @@ class RunWarnings {
   };
 
   std::string history_text() const;
+  std::string walk_text() const;
   std::string heat_text() const;
   std::string power_text() const;
   std::string saturation_text() const;
