@@ -16,6 +16,7 @@
 #include "sim/scenario/filtered_motion.h"
 #include "sim/scenario/material_limits.h"
 #include "sim/scenario/motion.h"
+#include "sim/scenario/rebalance_stability.h"
 #include "sim/scenario/run_temperatures.h"
 #include "sim/scenario/sensing_noise.h"
 #include "sim/scenario/simulation.h"
@@ -264,6 +265,7 @@ void simulate_quasistatic(const ScenarioPlan& given, const Gyro& gyro,
   if (!MaterialLimits::stand(beam)) limits.check(temperatures, grid);
   const StaticResponse respond =
       static_response(gyro, motion, beam, memory.get(), grid);
+  std::optional<RebalanceStability> stability = rebalance_stability(gyro);
   std::optional<SlowDriveNoise> drive_noise;
   if (has_channel_noise(scenario, gyro.device))
     drive_noise.emplace(scenario, gyro, beam, key);
@@ -292,6 +294,7 @@ void simulate_quasistatic(const ScenarioPlan& given, const Gyro& gyro,
     }
     motion.sample(samples);
     respond(samples);
+    if (stability) stability->check(scenario, samples);
     if (drive_noise) drive_noise->add_next(samples);
     on_block(recorder.block(std::move(samples)));
   }
