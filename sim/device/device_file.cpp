@@ -43,7 +43,7 @@ std::array<double, kCount> array_or(const ConfigTable& table,
 HysteresisParameters read_hysteresis(const ConfigTable& table) {
   HysteresisParameters parameters{
       .half_width = array_or<kPlayOperators>(
-          table, "half_width_K", {0.5, 1.5, 4, 10}, {0, 200, true, false}),
+          table, "half_width_K", {0.5, 1.5, 4, 10}, between(1e-3, 200)),
       .weight = array_or<kPlayOperators>(table, "weight", {0.2, 0.3, 0.3, 0.2},
                                          non_negative()),
       .stiffness = table.number_or("stiffness", 4e-7, between(-1e-4, 1e-4)),

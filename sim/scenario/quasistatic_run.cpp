@@ -13,6 +13,7 @@
 
 #include "sim/dynamics/mechanical_noise.h"
 #include "sim/dynamics/static_map.h"
+#include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/filtered_motion.h"
 #include "sim/scenario/material_limits.h"
 #include "sim/scenario/motion.h"
@@ -229,7 +230,13 @@ StaticResponse static_response(const Gyro& gyro, const Motion& motion,
                                const SampleGrid& grid) {
   if (motion.has_other_axes() || needs_exact_solution(gyro))
     return MotionResponse(gyro, motion, grid.rate);
-  return RateResponse(gyro, motion, beam, memory, grid);
+  if (memory == nullptr) return RateResponse(gyro, motion, beam, memory, grid);
+  try {
+    return RateResponse(gyro, motion, beam, memory, grid);
+  } catch (const SimulationFailure&) {
+    // No table spans the states; a failure at a sample is thrown there.
+    return MotionResponse(gyro, motion, grid.rate);
+  }
 }
 
 // White noise of the sensing in front of the output stage [rad/sqrt(s)].

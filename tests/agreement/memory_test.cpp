@@ -115,6 +115,41 @@ TEST(Memory, ARunIsThatOfSmallStepsAndTheExactSolution) {
   }
 }
 
+TEST(Memory, ABondThatNoTableResolvesIsSolvedExactly) {
+  // From 25 to -55, 125 and 25 degC at 5 K/min.
+  const auto bias = [](const std::string& more, const char* activation) {
+    return column_values(
+        simulated(scenario_from(kQuiet + more,
+                                "[ambient]\npoints = [[0, 25], [960, -55], "
+                                "[3120, 125], [4320, 25]]\n"
+                                "[chamber]\nstirred = true\n",
+                                "4320", "0.1"),
+                  nominal_device(
+                      {std::string("memory.relaxation.activation_J_per_mol=") +
+                       activation})),
+        "true_bias");
+  };
+  // A run with another axis than the input axis solves every sample exactly.
+  const std::string exact = "[acceleration.x]\nconstant_g = 1e-12\n";
+  for (const char* activation : {"1e5", "1.5e5", "6e5"})
+    EXPECT_LT(farthest(bias("", activation), bias(exact, activation)), 1e-5)
+        << activation;
+}
+
+TEST(Memory, ATableDoesNotFailForStatesThatTheRunNeverVisits) {
+  // The bond freezes at -95 degC with T_f far above and far below T, and is so
+  // soft in the one and so stiff in the other that no table over both locks.
+  const DeviceParameters device =
+      nominal_device({"memory.relaxation.activation_J_per_mol=2e4",
+                      "memory.relaxation.modulus_per_K=-0.005"});
+  const ScenarioPlan scenario =
+      scenario_from(kQuiet,
+                    "[ambient]\npoints = [[0, -95], [2820, 140]]\n"
+                    "[chamber]\nstirred = true\n",
+                    "2820", "0.1");
+  EXPECT_NO_THROW(simulated(scenario, device));
+}
+
 TEST(Memory, EnvelopeAndQuasiStaticRunAgree) {
   const auto bias = [](Fidelity fidelity, const DeviceParameters& device) {
     return column_values(simulated(excursion(fidelity), device), "true_bias");

@@ -40,6 +40,7 @@ TEST(DeviceFile, WhatIsWrongIsRefusedWithItsKeyAndValue) {
       {"readout.full_scale_deg_per_s=inf", "full_scale_deg_per_s"},
       {"noise.turn_on_deg_per_s=\"small\"", "noise.turn_on"},
       {"noise.random_walk_correlation_h=0.5", "random_walk_correlation_h"},
+      {"memory.hysteresis.half_width_K=[0.5, 1.5, 1e-4, 10]", "half_width_K"},
       {"temperature_sensor.noise_K=-1", "temperature_sensor.noise_K"}};
   for (const auto& bad : values)
     EXPECT_TRUE(
