@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -188,7 +190,15 @@ class MotionResponse {
 
   void operator()(RunSamples& samples) {
     motion_.next(samples.time.size());
-    for (std::size_t k = 0; k < samples.time.size(); ++k) write(k, samples);
+    for (std::size_t k = 0; k < samples.time.size(); ++k) {
+      try {
+        write(k, samples);
+      } catch (const SimulationFailure& error) {
+        throw SimulationFailure(fmt::format(
+            "at {:g} s, with the beam at {:.2f} degC: {}", samples.time[k],
+            samples.temperature[kBeam][k] - kZeroCelsius, error.what()));
+      }
+    }
   }
 
  private:

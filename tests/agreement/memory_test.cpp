@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "sim/memory/unit_memory.h"
+#include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/simulation.h"
+#include "tests/config/rejection.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
@@ -148,6 +150,22 @@ TEST(Memory, ATableDoesNotFailForStatesThatTheRunNeverVisits) {
                     "[chamber]\nstirred = true\n",
                     "2820", "0.1");
   EXPECT_NO_THROW(simulated(scenario, device));
+}
+
+TEST(Memory, AVisitedStateThatCannotLockIsNamedByTimeAndTemperature) {
+  // Heated so fast that T_f stays behind and takes most of the bond's modulus.
+  const DeviceParameters device =
+      nominal_device({"memory.relaxation.activation_J_per_mol=1e4",
+                      "memory.relaxation.modulus_per_K=-0.005"});
+  const ScenarioPlan scenario =
+      scenario_from(kQuiet,
+                    "[ambient]\npoints = [[0, -95], [2820, 140]]\n"
+                    "[chamber]\nstirred = true\n",
+                    "2820", "0.05");
+  const std::string text =
+      rejection<SimulationFailure>([&] { simulated(scenario, device); });
+  EXPECT_TRUE(holds(text, " s, with the beam at 9"));
+  EXPECT_TRUE(holds(text, " degC: drive loop: no frequency near "));
 }
 
 TEST(Memory, EnvelopeAndQuasiStaticRunAgree) {
