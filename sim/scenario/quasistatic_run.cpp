@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "config/units.h"
 #include "sim/dynamics/mechanical_noise.h"
 #include "sim/dynamics/static_map.h"
 #include "sim/numerics/simulation_failure.h"

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "config/units.h"
 #include "sim/dynamics/loop_noise.h"
 #include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/sensing_noise.h"
