@@ -246,6 +246,7 @@ std::string read_until_end(OpenFile& file, double seconds, bool& in_time) {
     const ssize_t n = ::read(file.descriptor(), bytes.data(), bytes.size());
     if (n <= 0) return text;
     text.append(bytes.data(), static_cast<std::size_t>(n));
+    if (text.size() > kLongestReading) return text;
   }
 }
 

@@ -168,11 +168,13 @@ LibraryStatement described(const std::filesystem::path& library,
   process.input().reset();
   bool in_time = true;
   std::string text = read_until_end(*process.output(), limits.stall, in_time);
-  const std::optional<ProcessEnd> end =
-      in_time ? process.wait(limits.stall) : std::nullopt;
   const auto refuse = [&](const std::string& why) {
     throw std::invalid_argument(fmt::format("{}: {}", library.string(), why));
   };
+  if (text.size() > kLongestReading)
+    refuse(fmt::format("tells more than {} bytes of itself", kLongestReading));
+  const std::optional<ProcessEnd> end =
+      in_time ? process.wait(limits.stall) : std::nullopt;
   if (!end)
     refuse(fmt::format("cannot be loaded: hung for {:.3g} s", limits.stall));
   if (end->status == 0 && end->signal == 0) {

@@ -33,6 +33,7 @@
 #define EXITS_WHEN_LOADED 21
 #define WANTS_NOTHING 22
 #define WANTS_MANY 23
+#define TELLS_WITHOUT_END 24
 
 #define MANY 20000
 
@@ -51,6 +52,15 @@ __attribute__((constructor)) static void crash(void) {
 
 #if FAULT == EXITS_WHEN_LOADED
 __attribute__((constructor)) static void leave(void) { _exit(0); }
+#endif
+
+#if FAULT == TELLS_WITHOUT_END
+__attribute__((constructor)) static void tell(void) {
+  static const char text[1 << 16];
+  for (;;)
+    for (int descriptor = 3; descriptor < 16; ++descriptor)
+      if (write(descriptor, text, sizeof text) < 0) continue;
+}
 #endif
 
 #if FAULT == WANTS_MANY

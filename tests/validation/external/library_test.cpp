@@ -164,6 +164,8 @@ TEST(LibraryCompensator, WhatIsNoPluginIsRefused) {
   EXPECT_TRUE(holds(refusal("HANGS_WHEN_LOADED"), "hung"));
   EXPECT_TRUE(holds(refusal("EXITS_WHEN_LOADED"),
                     "ended with status 0 before it told its signals"));
+  EXPECT_TRUE(
+      holds(refusal("TELLS_WITHOUT_END"), "tells more than 33554432 bytes"));
   EXPECT_TRUE(holds(refusal("WANTS_NOTHING"), "asks for \"\""));
   EXPECT_TRUE(holds(refusal("missing"), "No such file"));
 }
