@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "cli/hidden_process.h"
 
+#include <fcntl.h>
 #include <sys/prctl.h>
 
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <sstream>
 #include <string>
 
-#include "dataset/files/text_file.h"
+#include "dataset/files/open_file.h"
 #include "validation/external/compensator_source.h"
 #include "validation/external/isolation.h"
 
@@ -21,7 +23,11 @@ namespace {
 void empty_command_line() {
   constexpr int kPlaceOfStart = 48;  // in proc(5), counted from 1
   // The name of the program, which is the second value, may hold spaces.
-  const std::string facts = read_text_file("/proc/self/stat");
+  std::string facts;
+  OpenFile("/proc/self/stat", O_RDONLY)
+      .read_pieces([&](std::span<const std::byte> piece) {
+        facts.append(reinterpret_cast<const char*>(piece.data()), piece.size());
+      });
   std::istringstream values(facts.substr(facts.rfind(')') + 1));
   std::string skipped;
   for (int k = 3; k < kPlaceOfStart; ++k) values >> skipped;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -17,6 +18,7 @@
 #include "cli/progress.h"
 #include "cli/terminal.h"
 #include "cli/validate.h"
+#include "config/readable_files.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/directory.h"
 #include "dataset/files/file_place.h"
@@ -158,12 +160,17 @@ CompensatorSource opened(const std::string& compensator,
   return open_source(compensator, limits);
 }
 
-std::vector<BundleDifference> differences_of(
+std::vector<fs::path> inputs_of(const Bundle& bundle) {
+  std::vector<fs::path> inputs;
+  for (const ListedFile& input : bundle.inputs)
+    inputs.push_back(bundle.directory / input.name);
+  return inputs;
+}
+
+// The options of limits are for the code of whichever bundle has some.
+std::vector<BundleDifference> differences_made_again(
     const Bundle& bundle, const ValidateArguments& arguments) {
-  std::vector<BundleDifference> different = changed_files(bundle);
-  if (!different.empty()) return different;
   BundledRequest request = request_of(bundle);
-  require_limits_for_code(arguments.limits, request.compensator);
   require_permission(bundle, request.compensator, arguments.runs_code);
   request.options.jobs = arguments.options.jobs;
   request.options.plugin_files = arguments.options.plugin_files;
@@ -173,9 +180,24 @@ std::vector<BundleDifference> differences_of(
   const Validator validator(std::move(source), std::move(request.options),
                             true);
   const BundleContent content = bundle_content(validator);
-  different = different_inputs(bundle, content);
+  const auto different = different_inputs(bundle, content);
   if (!different.empty()) return different;
   return different_outputs(bundle, content, outputs_of(judged(validator)));
+}
+
+std::vector<BundleDifference> differences_of(
+    const Bundle& bundle, const ValidateArguments& arguments) {
+  const auto different = changed_files(bundle);
+  if (!different.empty()) return different;
+  const ReadableFiles readable(inputs_of(bundle));
+  try {
+    return differences_made_again(bundle, arguments);
+  } catch (const std::exception&) {
+    const std::optional<fs::path> elsewhere = readable.refused();
+    if (!elsewhere) throw;
+    return {{*elsewhere,
+             "is named by an input and not in the bundle; it was not read"}};
+  }
 }
 
 }  // namespace

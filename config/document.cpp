@@ -15,6 +15,7 @@
 
 #include "config/document_state.h"
 #include "config/file_error.h"
+#include "config/readable_files.h"
 #include "config/toml_parser.h"
 
 namespace beamgyro::internal {
@@ -39,6 +40,7 @@ std::string read_rest(int descriptor, const std::filesystem::path& file) {
 }
 
 std::string read_file(const std::filesystem::path& file) {
+  require_readable(file);
   const std::filesystem::file_status kind = status_of(file);
   if (std::filesystem::exists(kind) &&
       !std::filesystem::is_regular_file(kind)) {

@@ -57,9 +57,8 @@ class LogError(Exception):
 
 
 def skipped_text(counts):
-    skipped = counts["skipped"]
-    return f"{skipped} bytes that are no whole message skipped" if skipped \
-        else ""
+    return f"{counts['skipped']} bytes that are no whole message skipped" \
+        if counts["skipped"] else ""
 
 
 # --- ULog ---------------------------------------------------------------------
@@ -72,27 +71,38 @@ ULOG_TYPES = {"int8_t": "b", "uint8_t": "B", "int16_t": "h", "uint16_t": "H",
 ULOG_LEAST = {b"B": 40, b"F": 3, b"I": 2, b"M": 3, b"P": 2, b"Q": 3, b"A": 4,
               b"R": 2, b"D": 2, b"L": 9, b"C": 11, b"S": 8, b"O": 2}  # bytes
 ULOG_KIND = re.compile(b"[FIMPQARDLCSO]")  # B is the first message only
+ULOG_DEEPEST = 16
 DATA_APPENDED = 1  # the one incompatible flag whose files can be read so
 
 
-def ulog_fields(name, formats):
-    """Name and struct letter of every value of a message, nested ones flat."""
-    if name not in formats:
-        raise LogError(f"the format of {name} is not defined")
-    for field in formats[name].split(";"):
-        if not field:
-            continue
+def spend(left, cost, place):
+    if cost > left[0]:
+        raise LogError(f"{place} makes more values than a log can hold")
+    left[0] -= cost
+
+
+def ulog_fields(name, formats, left, depth=0):
+    """Name and struct letter of each value, nested ones flat, in bounded work."""
+    if name not in formats or depth > ULOG_DEEPEST:
+        why = f"nests {depth} deep" if name in formats else "is not defined"
+        raise LogError(f"the format of {name[:60]} {why}")
+    spend(left, len(formats[name]), name[:60])
+    for field in filter(None, formats[name].split(";")):
+        place = f"{name[:60]}: {field[:60]!r}"
         match = re.fullmatch(r"(\w+)(?:\[(\d+)\])? (\w+)", field)
         if match is None:
-            raise LogError(f"{name}: '{field}' is no field")
-        kind, count, label = match[1], int(match[2] or 1), match[3]
+            raise LogError(f"{place} is no field")
+        kind, label = match[1], match[3]
+        count = int((match[2] or "1")[:12])  # of long numbers Python refuses
+        spend(left, count * len(field), place)
         for index in range(count):
             own = f"{label}[{index}]" if match[2] else label
             if kind in ULOG_TYPES:
                 yield own, ULOG_TYPES[kind]
-            else:
-                for inner, letter in ulog_fields(kind, formats):
-                    yield f"{own}.{inner}", letter
+                continue
+            for inner, letter in ulog_fields(kind, formats, left, depth + 1):
+                spend(left, len(own) + len(inner), place)
+                yield f"{own}.{inner}", letter
 
 
 def ulog_message_end(data, at, sizes):
@@ -175,16 +185,15 @@ def ulog_messages(data, sizes, counts):
         at = following
 
 
-def ulog_sizes(name, formats):
+def ulog_sizes(name, formats, left):
     """The least and the greatest size of the data of a topic, without and with
     the padding at its end; any, where its format is lost."""
     try:
-        fields = list(ulog_fields(name, formats))
+        fields = list(ulog_fields(name, formats, left))
     except LogError:
         return 2, 65535
-    whole = struct.calcsize("<" + "".join(letter for _, letter in fields))
-    written = struct.calcsize("<" + "".join(
-        letter for _, letter in without_padding(fields)))
+    whole, written = (struct.calcsize("<" + "".join(one[1] for one in some))
+                      for some in (fields, without_padding(fields)))
     return 2 + written, 2 + whole
 
 
@@ -199,7 +208,7 @@ def read_ulog(data, topic, instance):
     """Names of the columns and the rows of one instance of a topic."""
     formats, sizes, ids, seen, dropouts = {}, {}, set(), set(), 0
     names, letters, rows, layout = [], "", [], None
-    counts = {"skipped": 0}
+    counts, left = {"skipped": 0}, [1 << 22]  # left to work on
     for kind, body in ulog_messages(data, sizes, counts):
         if kind == b"B" and any(flag & ~(DATA_APPENDED if i == 0 else 0)
                                 for i, flag in enumerate(body[8:16])):
@@ -211,10 +220,10 @@ def read_ulog(data, topic, instance):
             multi, number = struct.unpack_from("<BH", body)
             name = body[3:].decode("ascii", "replace")
             seen.add((name, multi))
-            sizes[number] = ulog_sizes(name, formats)
+            sizes[number] = ulog_sizes(name, formats, left)
             if (name, multi) == (topic, instance):
                 ids.add(number)
-                fields = without_padding(list(ulog_fields(topic, formats)))
+                fields = without_padding([*ulog_fields(topic, formats, left)])
                 names = [label for label, _ in fields]
                 letters = "".join(letter for _, letter in fields)
                 layout = struct.Struct("<" + letters)
@@ -227,9 +236,9 @@ def read_ulog(data, topic, instance):
         elif kind == b"O":
             dropouts += 1
     if not ids:
+        has = ", ".join(f"{name} {multi}" for name, multi in sorted(seen))
         raise LogError(f"no {topic} of instance {instance}; it has " +
-                       (", ".join(f"{name} {multi}" for name, multi
-                                  in sorted(seen)) or "no topic"))
+                       (has[:2000] or "no topic"))
     dropped = f"{dropouts} dropouts" if dropouts else ""
     return names, letters, rows, "; ".join(
         note for note in [dropped, skipped_text(counts)] if note)
@@ -338,7 +347,7 @@ def columns_of(names):
                if name is None and key != "temperature"]
     if missing:
         raise LogError(f"no column for {', '.join(missing)}; it has "
-                       f"{', '.join(names)}")
+                       f"{', '.join(names)[:2000]}")
     return found
 
 
@@ -380,11 +389,10 @@ def main():
     arguments = parser.parse_args()
     name = arguments.output or str(arguments.log.with_suffix(""))
     try:
-        print(convert(arguments.log, name, arguments.instance,
-                      arguments.topic))
+        print(convert(arguments.log, name, arguments.instance, arguments.topic))
     except (LogError, OSError) as error:
         sys.exit(f"flight_log_to_csv.py: {arguments.log}: {error}")
-    except (struct.error, RecursionError) as error:
+    except struct.error as error:
         sys.exit(f"flight_log_to_csv.py: {arguments.log}: damaged: {error}")
 
 

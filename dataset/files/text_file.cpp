@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "config/file_error.h"
+#include "config/readable_files.h"
 #include "dataset/files/open_file.h"
 
 namespace beamgyro::internal {
@@ -33,6 +34,7 @@ void read_in_pieces(const std::filesystem::path& path,
 }
 
 std::string read_text_file(const std::filesystem::path& path) {
+  require_readable(path);
   std::string text;
   read_in_pieces(path, [&](std::string_view piece) { text += piece; });
   return text;

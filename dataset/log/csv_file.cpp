@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 
+#include "dataset/files/number_text.h"
 #include "dataset/files/text_file.h"
 
 namespace beamgyro::internal {
@@ -31,17 +31,6 @@ void split_line(std::string_view line, std::vector<Cell>& cells) {
     cells.push_back({line.substr(first, last - first), first + 1});
     start = comma + 1;
   }
-}
-
-std::optional<double> number_in(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] =
-      std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end != text.data() + text.size() || text.empty()) return std::nullopt;
-  if (error == std::errc::invalid_argument) return std::nullopt;
-  if (error == std::errc::result_out_of_range) return HUGE_VAL;
-  return value;
 }
 
 std::string shown(std::string_view cell) {

@@ -36,13 +36,14 @@ ConfigNode drawn_element(const Draw& draw, double uniform,
 using Names = std::map<std::string_view, std::string_view>;
 
 const Names kUnits = {
-    {"deg", "degree"}, {"degC", "degC"},  {"rad", "rad"},  {"K", "K"},
-    {"K2", "K2"},      {"m", "m"},        {"m2", "m2"},    {"m3", "m3"},
-    {"s", "s"},        {"hours", "h"},    {"min", "min"},  {"Hz", "Hz"},
-    {"V", "V"},        {"F", "F"},        {"C", "C"},      {"N", "N"},
-    {"Pa", "Pa"},      {"W", "W"},        {"J", "J"},      {"kg", "kg"},
-    {"mol", "mol"},    {"g", "g"},        {"g2", "g2"},    {"mK", "(m K)"},
-    {"m2K", "(m2 K)"}, {"kgK", "(kg K)"}, {"ppm", "1e-6"}, {"year", "year"}};
+    {"deg", "degree"}, {"degC", "degC"},  {"rad", "rad"},    {"K", "K"},
+    {"K2", "K2"},      {"m", "m"},        {"m2", "m2"},      {"m3", "m3"},
+    {"s", "s"},        {"hours", "h"},    {"h", "h"},        {"min", "min"},
+    {"Hz", "Hz"},      {"V", "V"},        {"F", "F"},        {"C", "C"},
+    {"N", "N"},        {"Pa", "Pa"},      {"W", "W"},        {"J", "J"},
+    {"kg", "kg"},      {"mol", "mol"},    {"g", "g"},        {"g2", "g2"},
+    {"mK", "(m K)"},   {"m2K", "(m2 K)"}, {"kgK", "(kg K)"}, {"ppm", "1e-6"},
+    {"year", "year"}};
 
 // Takes the last part of the key: "K" of "tc_rad_per_K".
 std::string_view take_last(std::string_view& key) {

@@ -43,7 +43,7 @@ std::array<double, kCount> array_or(const ConfigTable& table,
 HysteresisParameters read_hysteresis(const ConfigTable& table) {
   HysteresisParameters parameters{
       .half_width = array_or<kPlayOperators>(
-          table, "half_width_K", {0.5, 1.5, 4, 10}, {0, 200, true, false}),
+          table, "half_width_K", {0.5, 1.5, 4, 10}, between(1e-3, 200)),
       .weight = array_or<kPlayOperators>(table, "weight", {0.2, 0.3, 0.3, 0.2},
                                          non_negative()),
       .stiffness = table.number_or("stiffness", 4e-7, between(-1e-4, 1e-4)),
@@ -303,6 +303,9 @@ NoiseParameters read_noise(const ConfigTable& noise) {
           kDegree,
       .turn_on_settling = noise.number_or("turn_on_settling_s", 200, kTime),
       .turn_on_recovery = noise.number_or("turn_on_recovery_s", 3600, kTime),
+      .walk_correlation =
+          noise.number_or("random_walk_correlation_h", 100, between(1, 1e6)) *
+          kHour,
   };
 }
 

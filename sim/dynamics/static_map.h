@@ -43,6 +43,10 @@ class StaticMap {
   using MemoryBounds = std::function<MemoryRange(double low, double high)>;
 
   /// The same for a unit with memory; the default tolerance is 1e-5 deg/s.
+  /// Throws SimulationFailure where the range of the states holds one in which
+  /// the drive loop cannot lock, or more than so many polynomials and pieces
+  /// resolve: the states that the unit visits may be harmless, and can be
+  /// solved one by one.
   StaticMap(const Gyro& gyro, double low, double high, double rate_limit,
             MemoryBounds bounds, double tolerance = 1.7e-7);
 
@@ -152,6 +156,7 @@ class StaticMap {
   double rate_limit_, tolerance_;
   double voltage_limit_;
   int rate_degree_ = 0;
+  int fits_ = 0;                              // pieces that have been tried
   Eigen::MatrixXd in_rate_, in_temperature_;  // node_transform() of each
   std::vector<Piece> pieces_;
 };

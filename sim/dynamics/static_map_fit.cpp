@@ -31,6 +31,7 @@ int mirror_of(int index, const std::array<int, 3>& nodes) {
 }
 
 constexpr double kNarrowGlass = 0.1;     // [K], where two polynomials do
+constexpr int kMostFits = 400;           // of a unit with memory
 constexpr double kSmallestPiece = 1e-3;  // [K]
 constexpr double kMargin = 1e-3;         // beyond both ends [K]
 
@@ -39,6 +40,13 @@ using RateBlock = Eigen::Matrix<double, 4, Eigen::Dynamic>;
 Eigen::Map<RateBlock> rate_block(Eigen::MatrixXd& values, int m, int i,
                                  int count) {
   return {values.col(m).data() + Eigen::Index{4} * count * i, 4, count};
+}
+
+SimulationFailure unresolved(double low, double high) {
+  return SimulationFailure(fmt::format(
+      "static map: the response is no smooth function of the memory states of "
+      "the beam at {:.3f} to {:.3f} degC",
+      low - kZeroCelsius, high - kZeroCelsius));
 }
 
 }  // namespace
@@ -346,6 +354,7 @@ double StaticMap::error(const Piece& piece, double memory_share) {
 }
 
 void StaticMap::refine(double low, double high) {
+  if (bounds_ && ++fits_ > kMostFits) throw unresolved(low, high);
   std::optional<Piece> piece = fitted(low, high);
   // The rest of the tolerance is left for the points between the probes.
   const double allowed = 0.25 * tolerance_;
@@ -355,12 +364,14 @@ void StaticMap::refine(double low, double high) {
     // The states do more together.
     good = add_part(*piece, piece->memory.nodes, kTemperatureNodes, false);
     prune(*piece);
-    good = good && (is_small || error(*piece) <= allowed);
+    good = good && error(*piece) <= (is_small ? tolerance_ : allowed);
   }
   if (good) {
     pieces_.push_back(std::move(*piece));
     return;
   }
+  // Smaller pieces do not shorten the expansion in T_f - T_f,ref.
+  if (bounds_ && is_small) throw unresolved(low, high);
   const double middle = 0.5 * (low + high);
   refine(low, middle);
   refine(middle, high);

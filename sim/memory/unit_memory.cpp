@@ -5,14 +5,25 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/numerics/timeline.h"
+
 namespace beamgyro::internal {
 namespace {
 
-// Temperatures of a history in which the bond is cooled from above T_g.
+// How long a unit has rested since its trim before its history begins [s].
+double rest_before(const UnitHistory& history) {
+  if (!history.temperature) return history.age;
+  const std::vector<double>& t = history.temperature->times();
+  const double told = t.back() - t.front();
+  return is_same_time(told, history.age) ? 0
+                                         : std::max(0.0, history.age - told);
+}
+
+// Above T_g and all temperatures from `first` to `start` [K].
 double hot_start(double glass_transition, const UnitHistory& history,
-                 double start) {
+                 double first, double start) {
   constexpr double kAbove = 30;  // [K]
-  double hottest = std::max(glass_transition, start);
+  double hottest = std::max({glass_transition, first, start});
   if (history.temperature) {
     for (const double T : history.temperature->values())
       hottest = std::max(hottest, T);
@@ -88,10 +99,11 @@ UnitMemory::UnitMemory(const MemoryParameters& parameters,
                        double glass_transition, const UnitHistory& history,
                        double start)
     : glass_transition_(glass_transition) {
-  constexpr double kCooling = 1.0 / 60;  // [K/s]
-  const double hot = hot_start(glass_transition, history, start);
-  const double first =
+  const double rested = rest_before(history);
+  const double next =
       history.temperature ? history.temperature->values().front() : start;
+  const double first = rested > 0 ? kAgeingTemperature : next;
+  const double hot = hot_start(glass_transition, history, first, start);
   if (parameters.hysteresis) {
     hysteresis_.emplace(*parameters.hysteresis, hot);
     hysteresis_->push(first);
@@ -100,25 +112,30 @@ UnitMemory::UnitMemory(const MemoryParameters& parameters,
     const std::optional<double>& offset = parameters.relaxation->initial_offset;
     relaxation_.emplace(*parameters.relaxation, glass_transition,
                         offset ? glass_transition + *offset : hot);
-    if (!offset) relaxation_->advance(hot, first, (hot - first) / kCooling);
+    if (!offset)
+      relaxation_->advance(hot, first, (hot - first) / kHandlingRate);
   }
   if (parameters.ageing)
     ageing_.emplace(*parameters.ageing, parameters.ageing->trim_age);
-  if (history.temperature) {
-    live(*history.temperature, history.age);
-  } else if (ageing_) {
-    ageing_->advance(kAgeingTemperature, kAgeingTemperature, history.age);
-  }
-  push_beam(start);
+  if (rested > 0)
+    advance_patches(kAgeingTemperature, kAgeingTemperature, rested);
+  bring(first, next);
+  if (!history.temperature) return;
+  live(*history.temperature, history.age);
+  bring(history.temperature->values().back(), start);
+}
+
+// What a unit is taken through at kHandlingRate does not age it.
+void UnitMemory::bring(double from, double to) {
+  if (relaxation_ && to != from)
+    relaxation_->advance(from, to, std::abs(to - from) / kHandlingRate);
+  push_beam(to);
 }
 
 void UnitMemory::live(const PiecewiseLinear& history, double age) {
   const std::vector<double>& t = history.times();
   const std::vector<double>& T = history.values();
   const double trim = t.back() - age;
-  if (ageing_ && trim < t.front()) {
-    ageing_->advance(kAgeingTemperature, kAgeingTemperature, t.front() - trim);
-  }
   for (std::size_t i = 0; i + 1 < t.size(); ++i) {
     push_beam(T[i]);
     push_beam(T[i + 1]);

@@ -13,6 +13,10 @@ namespace beamgyro::internal {
 /// Temperature at which the effective age runs as fast as time, T_0 [K].
 inline constexpr double kAgeingTemperature = 298.15;
 
+/// Rate at which a unit is cooled from above its glass transition, and at which
+/// it is brought from one place to the next before a run [K/s]: 1 K/min.
+inline constexpr double kHandlingRate = 1.0 / 60;
+
 /// dt_e/dt = exp[-(E_a/R) (1/T - 1/T_0)] at T [K].
 double ageing_rate(double activation, double T);
 
@@ -71,7 +75,7 @@ class PlayOperators {
 
 /// What lies behind a unit when a run begins.
 struct UnitHistory {
-  std::optional<PiecewiseLinear> temperature;  // [K]; ends where the run begins
+  std::optional<PiecewiseLinear> temperature;  // [K]; ends when the run begins
   double age = 0;  // from the trim to the begin of the run [s]
 };
 
@@ -80,12 +84,14 @@ struct UnitHistory {
 class UnitMemory {
  public:
   /// Prepares a unit for a run that begins at `start` [K]:
-  /// - its bond has been cooled through T_g at 1 K/min, from 30 K above T_g and
-  ///   above all later temperatures, or has T_f = T_g + initial_offset;
-  /// - then it has been through `history`, or straight to `start`;
-  /// - its effective age is t_trim and what has passed since the trim: at the
-  ///   temperatures of the history as far as that goes back, before that at
-  ///   25 degC.
+  /// - its bond has been cooled through T_g at kHandlingRate, from 30 K above
+  ///   T_g and above all later temperatures, or has T_f = T_g + initial_offset;
+  /// - it has rested at 25 degC for as much of its age as lies before the
+  ///   history, which is all of it where there is none;
+  /// - it has been through the history.
+  /// Between these it was brought from temperature to temperature, and at last
+  /// to `start`, at kHandlingRate; that takes nothing of its age. Its effective
+  /// age is t_trim and that of rest and history since the trim.
   UnitMemory(const MemoryParameters& parameters, double glass_transition,
              const UnitHistory& history, double start);
 
@@ -105,6 +111,7 @@ class UnitMemory {
   double glass_transition() const { return glass_transition_; }
 
  private:
+  void bring(double from, double to);
   void live(const PiecewiseLinear& history, double age);
 
   double glass_transition_;

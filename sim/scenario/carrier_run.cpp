@@ -12,6 +12,7 @@
 #include "sim/numerics/ode.h"
 #include "sim/scenario/drive_lock.h"
 #include "sim/scenario/loop_run.h"
+#include "sim/scenario/rebalance_stability.h"
 #include "sim/scenario/run_temperatures.h"
 #include "sim/scenario/simulation.h"
 
@@ -225,6 +226,7 @@ void simulate_carrier(const ScenarioPlan& given, const Gyro& gyro,
   std::optional<CarrierTrajectory> twin;
   if (!motion.rate_is_zero())
     twin.emplace(scenario, gyro, motion, temperatures, run.memory(), true);
+  std::optional<RebalanceStability> stability = rebalance_stability(gyro);
   const SampleGrid grid = sample_grid(scenario);
   // Blocks are short, because progress is reported after each.
   const auto block_size =
@@ -233,8 +235,10 @@ void simulate_carrier(const ScenarioPlan& given, const Gyro& gyro,
   for (std::size_t k = 0; k < grid.count; k += block_size) {
     const std::vector<double> block =
         grid.times(k, std::min(block_size, grid.count - k));
-    on_block(run.block(samples_at(block, gyro, temperatures, trajectory,
-                                  twin ? &*twin : nullptr)));
+    RunSamples samples = samples_at(block, gyro, temperatures, trajectory,
+                                    twin ? &*twin : nullptr);
+    if (stability) stability->check(scenario, samples);
+    on_block(run.block(std::move(samples)));
   }
 }
 

@@ -95,6 +95,7 @@ EnvelopeTrajectory::EnvelopeTrajectory(const ScenarioPlan& scenario,
       at_rest_(at_rest),
       limits_(scenario, gyro.device.thermal),
       ode_(gyro, drive_heating(gyro), memory),
+      stability_(rebalance_stability(gyro)),
       pieces_(pieces_until(scenario.duration, borders_of(scenario, motion))) {
   const auto rhs = [this](double t, const auto& y, auto dydt) {
     ode_.rate(inputs(t), y, dydt);
@@ -147,10 +148,19 @@ void EnvelopeTrajectory::begin(std::size_t piece) {
   integrator_->restart(p.start, y);
 }
 
+void EnvelopeTrajectory::check(double t, const VectorXd& y) {
+  const NodeVector nodes = nodes_of(y);
+  limits_.check(t, nodes);
+  if (stability_ &&
+      is_locked(drive_signals(ode_.loops(), y(kFeedback2), y(kFeedback2 + 1),
+                              y(kPllIntegral), y(kAgcIntegral))))
+    stability_->check(t, nodes(kBeam), nodes(kBoard));
+}
+
 void EnvelopeTrajectory::advance_to(double t_end, StateSamples& sampler) {
   if (multistep_) {
     multistep_->advance_to(t_end, [&](const OdeStep& step) {
-      limits_.check(step.end, nodes_of(step.at(step.end)));
+      check(step.end, step.at(step.end));
       sampler.take(step);
     });
     return;
@@ -158,7 +168,7 @@ void EnvelopeTrajectory::advance_to(double t_end, StateSamples& sampler) {
   while (!sampler.complete() && sampler.next_time() < t_end) {
     const double t = sampler.next_time();
     const VectorXd& y = explicit_->advance_to(t);
-    limits_.check(t, nodes_of(y));
+    check(t, y);
     sampler.take_until(t, y);
   }
   explicit_->advance_to(t_end);

@@ -11,6 +11,7 @@
 #include "sim/numerics/ode.h"
 #include "sim/scenario/material_limits.h"
 #include "sim/scenario/motion.h"
+#include "sim/scenario/rebalance_stability.h"
 #include "sim/scenario/run_recorder.h"
 #include "sim/scenario/scenario.h"
 
@@ -36,7 +37,7 @@ class EnvelopeTrajectory {
 
   /// Returns the signals of the gyro at increasing `times` [s], which must
   /// follow those of the call before. Bias and motion are left empty. Throws as
-  /// MaterialLimits and Cvode.
+  /// MaterialLimits, RebalanceStability and Cvode.
   RunSamples advance(std::span<const double> times);
 
   long steps() const { return integrator_->steps(); }
@@ -46,6 +47,7 @@ class EnvelopeTrajectory {
   EnvelopeInputs inputs(double t) const;
   void begin(std::size_t piece);
   void advance_to(double t_end, StateSamples& sampler);
+  void check(double t, const Eigen::VectorXd& y);
 
   const ScenarioPlan& scenario_;
   const Gyro& gyro_;
@@ -53,6 +55,7 @@ class EnvelopeTrajectory {
   bool at_rest_;
   MaterialLimits limits_;
   EnvelopeOde ode_;
+  std::optional<RebalanceStability> stability_;
   std::vector<Piece> pieces_;
   std::size_t piece_ = 0;
   // Inputs that are constant over the present piece.
@@ -69,7 +72,7 @@ class EnvelopeTrajectory {
 /// (EnvelopeOde). A twin at rate 0 gives `true_bias`. Noise, saturation and ADC
 /// follow as in every run. At each power-on the gyro starts at rest. `on_block`
 /// receives the recording block by block, so memory does not grow with the run.
-/// Throws as MaterialLimits and the integrator.
+/// Throws as MaterialLimits, RebalanceStability and the integrator.
 void simulate_envelope(const ScenarioPlan& scenario, const Gyro& gyro,
                        const RunKey& key, const BlockSink& on_block);
 

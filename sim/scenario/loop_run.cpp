@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sim/dynamics/static_map.h"
+#include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/run_temperatures.h"
 
 namespace beamgyro::internal {
@@ -52,10 +53,14 @@ void LoopRun::fill_unpowered_bias(RunSamples& samples) {
   for (std::size_t k = 0; k < samples.time.size(); ++k)
     if (!powered_at(scenario_.powered, samples.time[k])) unpowered.push_back(k);
   if (unpowered.empty()) return;
-  if (filtered_ || needs_exact_solution(gyro_)) {
-    fill_moving(unpowered, samples);
-  } else {
+  if (filtered_ || needs_exact_solution(gyro_))
+    return fill_moving(unpowered, samples);
+  try {
     fill_still(unpowered, samples);
+  } catch (const SimulationFailure&) {
+    if (!memory_) throw;
+    // No table spans the states; a failure at a sample is thrown there.
+    fill_moving(unpowered, samples);
   }
 }
 

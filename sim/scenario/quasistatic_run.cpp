@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,11 +13,14 @@
 #include <stdexcept>
 #include <utility>
 
+#include "config/units.h"
 #include "sim/dynamics/mechanical_noise.h"
 #include "sim/dynamics/static_map.h"
+#include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/filtered_motion.h"
 #include "sim/scenario/material_limits.h"
 #include "sim/scenario/motion.h"
+#include "sim/scenario/rebalance_stability.h"
 #include "sim/scenario/run_temperatures.h"
 #include "sim/scenario/sensing_noise.h"
 #include "sim/scenario/simulation.h"
@@ -186,7 +191,15 @@ class MotionResponse {
 
   void operator()(RunSamples& samples) {
     motion_.next(samples.time.size());
-    for (std::size_t k = 0; k < samples.time.size(); ++k) write(k, samples);
+    for (std::size_t k = 0; k < samples.time.size(); ++k) {
+      try {
+        write(k, samples);
+      } catch (const SimulationFailure& error) {
+        throw SimulationFailure(fmt::format(
+            "at {:g} s, with the beam at {:.2f} degC: {}", samples.time[k],
+            samples.temperature[kBeam][k] - kZeroCelsius, error.what()));
+      }
+    }
   }
 
  private:
@@ -228,7 +241,13 @@ StaticResponse static_response(const Gyro& gyro, const Motion& motion,
                                const SampleGrid& grid) {
   if (motion.has_other_axes() || needs_exact_solution(gyro))
     return MotionResponse(gyro, motion, grid.rate);
-  return RateResponse(gyro, motion, beam, memory, grid);
+  if (memory == nullptr) return RateResponse(gyro, motion, beam, memory, grid);
+  try {
+    return RateResponse(gyro, motion, beam, memory, grid);
+  } catch (const SimulationFailure&) {
+    // No table spans the states; a failure at a sample is thrown there.
+    return MotionResponse(gyro, motion, grid.rate);
+  }
 }
 
 // White noise of the sensing in front of the output stage [rad/sqrt(s)].
@@ -264,6 +283,7 @@ void simulate_quasistatic(const ScenarioPlan& given, const Gyro& gyro,
   if (!MaterialLimits::stand(beam)) limits.check(temperatures, grid);
   const StaticResponse respond =
       static_response(gyro, motion, beam, memory.get(), grid);
+  std::optional<RebalanceStability> stability = rebalance_stability(gyro);
   std::optional<SlowDriveNoise> drive_noise;
   if (has_channel_noise(scenario, gyro.device))
     drive_noise.emplace(scenario, gyro, beam, key);
@@ -292,6 +312,7 @@ void simulate_quasistatic(const ScenarioPlan& given, const Gyro& gyro,
     }
     motion.sample(samples);
     respond(samples);
+    if (stability) stability->check(scenario, samples);
     if (drive_noise) drive_noise->add_next(samples);
     on_block(recorder.block(std::move(samples)));
   }

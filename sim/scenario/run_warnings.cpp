@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "config/units.h"
+#include "sim/memory/unit_memory.h"
 #include "sim/scenario/drive_lock.h"
 #include "sim/thermal/thermal_parameters.h"
 
@@ -259,6 +260,33 @@ void RunWarnings::add(const Recording& block) {
   }
 }
 
+std::string RunWarnings::history_text() const {
+  constexpr double kSame = 1e-6;  // [K]
+  if (!scenario_.history || !device_.memory.any()) return {};
+  const double last = scenario_.history->values().back();
+  const double first = scenario_.ambient.value(0);
+  if (std::abs(first - last) <= kSame) return {};
+  return fmt::format(
+      "history.points ends at {:.6g} degC and the run begins at {:.6g} degC; "
+      "the unit was brought there at {:g} K/min before time 0",
+      last - kZeroCelsius, first - kZeroCelsius, 60 * kHandlingRate);
+}
+
+std::string RunWarnings::walk_text() const {
+  const NoiseParameters& noise = device_.noise;
+  const double t_c = noise.walk_correlation;
+  if (!scenario_.noise_enabled || scenario_.has_age ||
+      noise.rate_random_walk == 0 || scenario_.duration <= t_c)
+    return {};
+  const double K = noise.rate_random_walk / kDegree;
+  return fmt::format(
+      "the random walk of a run without age.hours has no bound: {:.2g} deg/s "
+      "(1-sigma) after {:.4g} h, where noise.random_walk_correlation_h = {:g} "
+      "holds that of a run with age.hours to {:.2g} deg/s",
+      K * std::sqrt(scenario_.duration), scenario_.duration / 3600, t_c / 3600,
+      K * std::sqrt(0.5 * t_c));
+}
+
 std::string RunWarnings::heat_text() const {
   if (clamped_.count == 0) return {};
   return fmt::format(
@@ -308,8 +336,9 @@ std::string RunWarnings::lock_text() const {
 
 std::vector<std::string> RunWarnings::texts() const {
   std::vector<std::string> texts = aliasing_warnings(scenario_);
-  for (std::string text : {soaks_text(scenario_), heat_text(), power_text(),
-                           saturation_text(), lock_text()})
+  for (std::string text :
+       {soaks_text(scenario_), history_text(), walk_text(), heat_text(),
+        power_text(), saturation_text(), lock_text()})
     if (!text.empty()) texts.push_back(std::move(text));
   return texts;
 }

@@ -19,7 +19,10 @@ namespace beamgyro::internal {
 /// - half or more of the powered samples are saturated, or not locked, or one
 ///   is not locked later than kLockTime after its power-on;
 /// - the samples do not show a motion (aliasing_warnings());
-/// - soaks end after duration_s.
+/// - soaks end after duration_s;
+/// - the history of a unit with memory ends at another temperature than the run
+///   begins with;
+/// - the random walk of a run without an age goes beyond its bound.
 class RunWarnings {
  public:
   /// `scenario` and `device` must outlive the object.
@@ -41,6 +44,8 @@ class RunWarnings {
     void add(double celsius);
   };
 
+  std::string history_text() const;
+  std::string walk_text() const;
   std::string heat_text() const;
   std::string power_text() const;
   std::string saturation_text() const;

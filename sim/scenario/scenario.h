@@ -37,7 +37,7 @@ struct ScenarioPlan {
   bool stirred = false;
   PerAxis<RateProfile> motion = no_motion();  // [rad/s] [m/s2]
   bool noise_enabled = true;
-  // Temperatures before time 0 [K], which end there.
+  // Temperatures before time 0 [K]; its last point is at time 0.
   std::optional<PiecewiseLinear> history;
 };
 

@@ -183,6 +183,11 @@ SampledNoise sampled_noise(const NoiseSystem& system, double interval) {
       in_units(step.root, b.unit)};
 }
 
+double growth_rate(const NoiseSystem& system) {
+  check(system);
+  return eigenvalues_of(balanced(system).A).real().maxCoeff();
+}
+
 MatrixXd stationary_root(const NoiseSystem& system) {
   constexpr double kForgotten = 1e-9;  // its square is left out of Sigma
   constexpr int kMaxDoublings = 100;

@@ -35,10 +35,14 @@ struct SampledNoise {
 /// double.
 SampledNoise sampled_noise(const NoiseSystem& system, double interval);
 
+/// Returns the largest real part of the eigenvalues of A [1/s]: a system below
+/// 0 is stable. Throws std::invalid_argument as above for A.
+double growth_rate(const NoiseSystem& system);
+
 /// Returns the lower triangular root of the stationary covariance Sigma,
 ///   A Sigma + Sigma A^T + B B^T = 0,
 /// as the limit of the doubling. Throws std::invalid_argument as above, and
-/// when an eigenvalue of A has a real part not below 0.
+/// when growth_rate() is not below 0.
 Eigen::MatrixXd stationary_root(const NoiseSystem& system);
 
 /// One realisation at the times k h, stationary from the first sample. It draws

@@ -23,15 +23,22 @@ void check_noise(const NoiseParameters& p) {
   require_non_negative(p.angle_random_walk, "angle random walk", "rad/sqrt(s)");
   require_non_negative(p.bias_instability, "bias instability", "rad/s");
   require_non_negative(p.rate_random_walk, "rate random walk", "rad/s/sqrt(s)");
+  if (!(p.walk_correlation > 0.0) || !std::isfinite(p.walk_correlation))
+    throw std::invalid_argument(
+        fmt::format("correlation time of the walk is {} s, must be above 0",
+                    p.walk_correlation));
   require_non_negative(p.turn_on, "turn-on offset", "rad/s");
   require_non_negative(p.turn_on_transient, "turn-on transient", "rad/s");
 }
 
 }  // namespace
 
-WalkSinceTrim::WalkSinceTrim(std::uint64_t seed, std::uint32_t device)
-    : seed_(seed), device_(device) {
-  push(0, kLongestWalk, 0, std::sqrt(kLongestWalk) * normal(0), 1);
+WalkSinceTrim::WalkSinceTrim(std::uint64_t seed, std::uint32_t device,
+                             double correlation)
+    : seed_(seed), device_(device), correlation_(correlation) {
+  const double variance =
+      -0.5 * correlation * std::expm1(-2 * kLongestWalk / correlation);
+  push(0, kLongestWalk, 0, std::sqrt(variance) * normal(0), 1);
 }
 
 double WalkSinceTrim::normal(std::uint32_t number) const {
@@ -41,8 +48,13 @@ double WalkSinceTrim::normal(std::uint32_t number) const {
 void WalkSinceTrim::push(double start, double length, double first, double last,
                          std::uint32_t number) {
   double middle = 0;
-  if (length > kWalkGrid)
-    middle = 0.5 * (first + last) + 0.5 * std::sqrt(length) * normal(number);
+  if (length > kWalkGrid) {
+    // A bridge of the process: its law given the values at both ends.
+    const double decays = 0.5 * length / correlation_;  // of half the length
+    const double variance = 0.5 * correlation_ * std::tanh(decays);
+    middle = 0.5 * (first + last) / std::cosh(decays) +
+             std::sqrt(variance) * normal(number);
+  }
   path_.push_back({start, length, first, last, middle, number});
 }
 
@@ -81,7 +93,7 @@ RateNoise::RateNoise(const NoiseParameters& parameters, double output_rate,
                      run);
   if (age && walk_K_ > 0.0) {
     age_ = *age;
-    walk_since_trim_.emplace(seed, device);
+    walk_since_trim_.emplace(seed, device, parameters.walk_correlation);
   }
 }
 

@@ -12,14 +12,18 @@
 
 namespace beamgyro::internal {
 
-/// The Wiener path W(age) [sqrt(s)] of one device since its factory trim, W(0)
-/// = 0: values at two ages differ by a normal of their distance as variance. It
-/// is one path for every run of a seed and device, in whatever order the ages
-/// are asked for, so a run goes on where an earlier one ended. Drawn by halving
-/// intervals of the path (Levy) down to 1 s, with straight lines between.
+/// The walk W(age) [sqrt(s)] of one device since its factory trim: a
+/// first-order Gauss-Markov process with W(0) = 0,
+///   dW = -W dt/t_c + unit white noise,  var W = (t_c/2) (1 - e^{-2 age/t_c}).
+/// Over times well below t_c it is a Wiener path; over longer ones it is
+/// bounded. It is one path for every run of a seed and device, in whatever
+/// order the ages are asked for, so a run goes on where an earlier one ended.
+/// Drawn by halving intervals of the path (Levy) down to 1 s, with straight
+/// lines between.
 class WalkSinceTrim {
  public:
-  WalkSinceTrim(std::uint64_t seed, std::uint32_t device);
+  /// `correlation` is t_c [s] > 0.
+  WalkSinceTrim(std::uint64_t seed, std::uint32_t device, double correlation);
 
   /// Returns W(age). Fast where the age is near that of the last call. Throws
   /// std::invalid_argument for an age [s] outside 0 .. 2^32.
@@ -41,6 +45,7 @@ class WalkSinceTrim {
 
   std::uint64_t seed_;
   std::uint32_t device_;
+  double correlation_;          // t_c [s]
   std::vector<Interval> path_;  // each but the first is half of the one before
 };
 
@@ -54,6 +59,7 @@ struct NoiseParameters {
   double turn_on_transient = 0.0;    // one sigma of A, per power cycle [rad/s]
   double turn_on_settling = 200.0;   // tau_t of the transient [s]
   double turn_on_recovery = 3600.0;  // tau_off, while power is off [s]
+  double walk_correlation = 3.6e5;   // t_c of WalkSinceTrim [s]
 };
 
 /// White noise, flicker and rate random walk of one run [rad/s], one value a
@@ -61,8 +67,8 @@ struct NoiseParameters {
 ///   white    variance N^2 x output_rate,
 ///   flicker  see FlickerFilter, stationary from the start,
 ///   walk     of a run at an age, K times WalkSinceTrim; else 0 at the first
-///            sample, with steps of variance K^2 / output_rate. It goes on
-///            through power-off.
+///            sample, with steps of variance K^2 / output_rate, without bound.
+///            It goes on through power-off.
 /// The noise does not depend on how a run is cut into calls.
 class RateNoise {
  public:

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "sim/memory/unit_memory.h"
+#include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/simulation.h"
+#include "tests/config/rejection.h"
 #include "tests/sim/device/nominal_device.h"
 #include "tests/sim/scenario/scenario_text.h"
 
@@ -115,6 +117,57 @@ TEST(Memory, ARunIsThatOfSmallStepsAndTheExactSolution) {
   }
 }
 
+TEST(Memory, ABondThatNoTableResolvesIsSolvedExactly) {
+  // From 25 to -55, 125 and 25 degC at 5 K/min.
+  const auto bias = [](const std::string& more, const char* activation) {
+    return column_values(
+        simulated(scenario_from(kQuiet + more,
+                                "[ambient]\npoints = [[0, 25], [960, -55], "
+                                "[3120, 125], [4320, 25]]\n"
+                                "[chamber]\nstirred = true\n",
+                                "4320", "0.1"),
+                  nominal_device(
+                      {std::string("memory.relaxation.activation_J_per_mol=") +
+                       activation})),
+        "true_bias");
+  };
+  // A run with another axis than the input axis solves every sample exactly.
+  const std::string exact = "[acceleration.x]\nconstant_g = 1e-12\n";
+  for (const char* activation : {"1e5", "1.5e5", "6e5"})
+    EXPECT_LT(farthest(bias("", activation), bias(exact, activation)), 1e-5)
+        << activation;
+}
+
+TEST(Memory, ATableDoesNotFailForStatesThatTheRunNeverVisits) {
+  // The bond freezes at -95 degC with T_f far above and far below T, and is so
+  // soft in the one and so stiff in the other that no table over both locks.
+  const DeviceParameters device =
+      nominal_device({"memory.relaxation.activation_J_per_mol=2e4",
+                      "memory.relaxation.modulus_per_K=-0.005"});
+  const ScenarioPlan scenario =
+      scenario_from(kQuiet,
+                    "[ambient]\npoints = [[0, -95], [2820, 140]]\n"
+                    "[chamber]\nstirred = true\n",
+                    "2820", "0.1");
+  EXPECT_NO_THROW(simulated(scenario, device));
+}
+
+TEST(Memory, AVisitedStateThatCannotLockIsNamedByTimeAndTemperature) {
+  // Heated so fast that T_f stays behind and takes most of the bond's modulus.
+  const DeviceParameters device =
+      nominal_device({"memory.relaxation.activation_J_per_mol=1e4",
+                      "memory.relaxation.modulus_per_K=-0.005"});
+  const ScenarioPlan scenario =
+      scenario_from(kQuiet,
+                    "[ambient]\npoints = [[0, -95], [2820, 140]]\n"
+                    "[chamber]\nstirred = true\n",
+                    "2820", "0.05");
+  const std::string text =
+      rejection<SimulationFailure>([&] { simulated(scenario, device); });
+  EXPECT_TRUE(holds(text, " s, with the beam at 9"));
+  EXPECT_TRUE(holds(text, " degC: drive loop: no frequency near "));
+}
+
 TEST(Memory, EnvelopeAndQuasiStaticRunAgree) {
   const auto bias = [](Fidelity fidelity, const DeviceParameters& device) {
     return column_values(simulated(excursion(fidelity), device), "true_bias");
@@ -146,39 +199,45 @@ TEST(Memory, CarrierAndEnvelopeAgree) {
               effect, 1e-4);
 }
 
-// Heating and cooling at 0.05 K/min [deg/s], by the temperature of the sensor.
+// The first fall from 50 to -40 degC against the rise after it, at 0.05 K/min
+// [deg/s], by the temperature of the sensor: by then the bond's glass follows
+// from the cycle and no more from what came before the run.
 double widest_loop(const DeviceParameters& device) {
   const Recording run = simulated(
       scenario_from(kQuiet,
-                    "[ambient.soaks]\ntemperatures_degC = [-40, 50, -40]\n"
+                    "[ambient.soaks]\ntemperatures_degC = [-40, 50, -40, 50]\n"
                     "hold_s = 3600\nramp_K_per_min = 0.05\n"
                     "[chamber]\nstirred = true\n",
-                    "226800", "0.1"),
+                    "338400", "0.1"),
       device);
   const std::vector<double>& T = column_values(run, "true_sensor_temperature");
   const std::vector<double>& bias = column_values(run, "true_bias");
-  const std::size_t top =
-      static_cast<std::size_t>(std::ranges::max_element(T) - T.begin());
+  const auto half = T.begin() + static_cast<std::ptrdiff_t>(T.size() / 2);
+  const auto top = std::max_element(T.begin(), half);
+  const auto bottom = std::min_element(top, T.end());
   double widest = 0;
-  std::size_t down = T.size() - 1;
-  for (std::size_t up = 0; up < top; ++up) {
-    if (T[up] < -35 || T[up] > 48) continue;
-    while (down > top && T[down] < T[up]) --down;
-    const double share = (T[up] - T[down + 1]) / (T[down] - T[down + 1]);
+  auto up = bottom;
+  for (auto down = bottom; down > top; --down) {
+    if (*down < -35 || *down > 48) continue;
+    while (*up < *down) ++up;
+    const auto k = up - T.begin();
+    const double share = (*down - *(up - 1)) / (*up - *(up - 1));
     widest = std::max(
-        widest,
-        std::abs(bias[up] - std::lerp(bias[down + 1], bias[down], share)));
+        widest, std::abs(bias[static_cast<std::size_t>(down - T.begin())] -
+                         std::lerp(bias[static_cast<std::size_t>(k - 1)],
+                                   bias[static_cast<std::size_t>(k)], share)));
   }
   return widest;
 }
 
 TEST(Memory, LifelikeUnitHasALoopBetweenHeatingAndCooling) {
-  const double loop = widest_loop(lifelike());
-  EXPECT_GT(loop, 0.1);
-  EXPECT_LT(loop, 0.3);
+  // 0.214 by an independent model.
+  EXPECT_NEAR(widest_loop(lifelike()), 0.214, 0.002);
   EXPECT_NEAR(widest_loop(nominal_device()), 0.053, 0.002);  // of the lag
 }
 
+// By an independent model ageing makes 0.48 deg/s, the glass, which relaxes
+// from 34.8 to 25.3 degC, another 0.10.
 TEST(Memory, AYearMovesTheBiasByTenthsOfADegreePerSecond) {
   const auto bias = [](const std::string& more) {
     return column_values(simulated(scenario_from(kQuiet + more), lifelike()),
@@ -187,8 +246,7 @@ TEST(Memory, AYearMovesTheBiasByTenthsOfADegreePerSecond) {
   };
   const double drift =
       std::abs(bias("[age]\nhours = 8766\n") - bias("[age]\nhours = 0\n"));
-  EXPECT_GT(drift, 0.2);
-  EXPECT_LT(drift, 0.7);
+  EXPECT_NEAR(drift, 0.58, 0.02);
 }
 
 TEST(Memory, AHistoryOfTheScenarioShapesTheGlass) {

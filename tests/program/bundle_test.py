@@ -164,9 +164,15 @@ class Bundles(Qualified):
     def test_an_input_that_names_a_file_elsewhere_is_found(self):
         """Hash and all, a scenario of the bundle reads one outside."""
         self.bundle()
-        name = "inputs/qualification/q.toml"
-        self.change(f"bundle/{name}", 'scenario = "warm_up.toml"',
-                    f'scenario = "{self.dir}/warm_up.toml"')
+        self.renewed("inputs/qualification/q.toml",
+                     'scenario = "warm_up.toml"',
+                     f'scenario = "{self.dir}/warm_up.toml"')
+        self.assertEqual(self.check(1), f"{self.dir}/warm_up.toml: is named by "
+                         "an input and not in the bundle; it was not read\n")
+
+    def renewed(self, name, pattern, new):
+        """Alters an input of the bundle, and its hash."""
+        self.change(f"bundle/{name}", pattern, new)
         digest = hashlib.sha256(self.text(f"bundle/{name}").encode())
 
         def change(said):
@@ -174,9 +180,28 @@ class Bundles(Qualified):
                 if file["file"] == name:
                     file["sha256"] = digest.hexdigest()
         self.altered(change)
-        told = self.check(1)
-        self.assertIn(f"{self.dir}/warm_up.toml: is read and not in", told)
-        self.assertIn("inputs/qualification/warm_up.toml: is listed", told)
+
+    def test_no_file_elsewhere_is_opened(self):
+        """Its text would be quoted."""
+        self.bundle()
+        self.write("secret", "root:x:0:0\n")
+        for name, pattern, new in [
+                ("q.toml", 'scenario = "warm_up.toml"', 'scenario = "{}"'),
+                ("ramp.toml", r"^points = .*", 'file = "{}"')]:
+            whole = self.files()
+            for place in [self.dir / "secret", "../../../secret", "/etc/passwd"]:
+                self.renewed(f"inputs/qualification/{name}", pattern,
+                             new.format(place))
+                said = self.ended("validate", "--check", "bundle",
+                                  allowed=(1,))
+                self.assertIn("not in the bundle; it was not read", said.stdout)
+                self.assertNotIn("root", said.stdout + said.stderr)
+                for path, text in whole.items():
+                    (self.dir / path).write_bytes(text)
+
+    def test_limits_for_code_are_taken_whether_a_bundle_has_some_or_not(self):
+        self.bundle()
+        self.check(0, "--timeout-s", 3, "--memory-GiB", 1)
 
     def test_the_version_that_made_it_is_said(self):
         self.bundle()

@@ -6,6 +6,7 @@ import random
 import re
 import struct
 import sys
+import time
 
 import numpy as np
 
@@ -80,8 +81,9 @@ class FlightLogs(ProgramTest):
 
     def refused(self, data, says, *arguments):
         self.write("bad.bin", data)
-        self.rejected(SCRIPT, "bad.bin", *arguments, program=sys.executable,
-                      says=says, status=1)
+        return self.rejected(
+            SCRIPT, "bad.bin", *arguments, program=sys.executable, says=says,
+            status=1)
 
     def imported(self, name, axis):
         self.ok("import", f"{name}.csv", "--map", f"{name}.toml", "--axis",
@@ -230,6 +232,43 @@ class FlightLogs(ProgramTest):
         flags = bytearray(ulog(5))
         flags[16 + 3 + 8] = 2
         self.refused(bytes(flags), "flags of a newer version")
+
+    def test_formats_that_no_message_can_have_are_refused_at_once(self):
+        log = ulog(5)
+
+        def with_formats(**texts):
+            bad = b"".join(ulog_message(b"F", f"{name}:{text}".encode())
+                           for name, text in texts.items())
+            first = log.index(b"sensor_gyro:") - 3
+            size = 3 + len("sensor_gyro:") + len(GYRO)
+            return log[:first] + bad + log[first + size:]
+
+        def nested(levels, text, leaf="uint8_t a;"):
+            names = ["sensor_gyro", *(f"n{k}" for k in range(1, levels))]
+            return {**{name: text.format(f"n{k + 1}")
+                       for k, name in enumerate(names)}, f"n{levels}": leaf}
+
+        wide = {f"w{k}": f"uint8_t[60000] {'x' * 60000};" for k in range(20)}
+        begin = time.monotonic()
+        for formats, says in [
+                ({"sensor_gyro": "uint64_t[1000000000] timestamp;"},
+                 "sensor_gyro: 'uint64_t[1000000000] timestamp'"),
+                ({"sensor_gyro": f"uint8_t[{'9' * 9000}] a;"}, "_gyro: 'uint8"),
+                ({"sensor_gyro": "e[1000000000] a;", "e": ""}, "_gyro: 'e[1"),
+                (nested(40, "{0} a;{0} b;"), "nests 17 deep"),
+                (nested(40, "{0} a;{0} b;", ""), "nests 17 deep"),
+                (nested(15, "{0}[9000] a;", ""), "than a log can"),
+                (nested(15, "{0} a;{0} b;{0} c;{0} d;"), "than a log can"),
+                ({"sensor_gyro": "sensor_gyro a;"}, "nests 17 deep"),
+                ({"sensor_gyro": "w0 a;", **wide}, "w0: 'uint8_t[60000] xxx")]:
+            self.assertLess(
+                len(self.refused(with_formats(**formats), says)), 300)
+        self.assertLess(time.monotonic() - begin, 9)
+        # Another topic than the one that is read.
+        other = log.replace(b"other:uint64_t timestamp;inner[2] parts;",
+                            b"other:uint64_t[1000000000] timestamp;in;")
+        self.write("other.ulg", other)
+        self.assertIn("5 rows of sensor_gyro", self.converted("other.ulg"))
 
     def test_import_names_the_script_for_a_binary_log(self):
         self.write("map.toml", '[time]\nrate_Hz = 1\n[gyro]\ncolumn = 1\n'

@@ -48,6 +48,13 @@ WARNED = [
         ("[-100]", "[-5]", "the power is off since power.off_s = -5"),
         ("[-100, 700]", "[-5]", "the power is off since power.off_s = -5, and "
          "power.on_s = 700 is not before duration_s = 600")]],
+    # A history that ends elsewhere than the run begins
+    (SCENARIO, ["memory.relaxation={}", "history.points=[[0, 60], [3600, 60]]"],
+     "history.points ends at 60 degC and the run begins at 25 degC", "1 K/min"),
+    # A run of weeks without an age
+    (SCENARIO, ["duration_s=720000", "output_rate_Hz=0.01"],
+     "random walk of a run without age.hours has no bound: 0.17 deg/s",
+     "after 200 h", "noise.random_walk_correlation_h = 100", "0.085 deg/s"),
     (SCENARIO, ["rate.constant_deg_per_s=400"], "all 1200 powered samples are saturated",
      "readout.full_scale_deg_per_s = 150"),
     (SCENARIO, ["drive.voltage_limit_V=0.5"],

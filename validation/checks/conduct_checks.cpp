@@ -211,7 +211,7 @@ CheckResult check_answers(const CheckContext& context) {
       context,
       {AnswerFault::kCrashed, AnswerFault::kTimedOut, AnswerFault::kOutOfMemory,
        AnswerFault::kTooFew, AnswerFault::kTooMany, AnswerFault::kNotANumber,
-       AnswerFault::kReported},
+       AnswerFault::kStopped, AnswerFault::kReported},
       "Every run is answered, one number for each sample.");
 }
 
@@ -287,7 +287,7 @@ CheckResult check_real_time(const CheckContext& context) {
   if (!context.checked.compensator->is_timed())
     return not_tested("Functions and classes of a program are not timed.");
   CheckResult result =
-      fault_result(context, {AnswerFault::kTooSlow},
+      fault_result(context, {AnswerFault::kTooSlow, AnswerFault::kStopped},
                    "Every run is answered faster than it was recorded.");
   if (result.passed() && !context.answered())
     return not_tested("Too many answers are missing.");

@@ -46,7 +46,7 @@ void add_fault_of_speed(const Recording& run, Answer& answer) {
   if (run.time.size() < 2) return;  // a lone sample tells no duration
   const double duration = duration_with_last_sample(run);
   if (answer.seconds <= duration || has_fault(answer, AnswerFault::kTimedOut) ||
-      has_fault(answer, AnswerFault::kTooSlow))
+      has_fault(answer, AnswerFault::kStopped))
     return;
   // Without the time it took, so that the same inputs give the same words.
   answer.faults.push_back(

@@ -21,6 +21,7 @@
 #include <thread>
 #include <utility>
 
+#include "config/cut_text.h"
 #include "validation/external/answering.h"
 
 extern char** environ;
@@ -152,8 +153,8 @@ std::string last_words(const std::string& text) {
   if (end == text.npos) return "";
   const std::size_t before = text.find_last_of("\r\n", end);
   const std::size_t begin = before == text.npos ? 0 : before + 1;
-  return "; it wrote: " +
-         text.substr(begin, std::min(end + 1 - begin, kLongestLine));
+  const std::string_view line(text.data() + begin, end + 1 - begin);
+  return "; it wrote: " + std::string(cut_text(line, kLongestLine));
 }
 
 ChildProcess::ChildProcess(const ProcessStart& start) try {
@@ -245,6 +246,7 @@ std::string read_until_end(OpenFile& file, double seconds, bool& in_time) {
     const ssize_t n = ::read(file.descriptor(), bytes.data(), bytes.size());
     if (n <= 0) return text;
     text.append(bytes.data(), static_cast<std::size_t>(n));
+    if (text.size() > kLongestReading) return text;
   }
 }
 

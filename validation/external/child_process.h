@@ -73,8 +73,12 @@ class ChildProcess {
 /// Returns whether there was something.
 bool read_available(std::optional<OpenFile>& pipe, std::string& into);
 
+/// The longest text that is read to its end [bytes].
+inline constexpr std::size_t kLongestReading = std::size_t{1} << 25;
+
 /// Returns what a pipe of a child gives until its end or for `seconds`, and
-/// whether it ended in that time.
+/// whether it ended in that time. Reads no more once it is longer than
+/// kLongestReading.
 std::string read_until_end(OpenFile& file, double seconds, bool& in_time);
 
 /// Writes as much of `bytes` as the pipe to a child takes and closes it when

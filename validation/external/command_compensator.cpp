@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <stdexcept>
 #include <utility>
 
+#include "dataset/files/number_text.h"
 #include "dataset/recording/signals.h"
 #include "validation/external/answering.h"
 #include "validation/external/conversation.h"
@@ -50,12 +50,8 @@ class CsvLanguage : public AnswerLanguage {
     if (end == bytes.npos && (!at_end || bytes.empty())) return std::nullopt;
     const std::string_view line = trimmed(bytes.substr(0, end));
     bytes.remove_prefix(end == bytes.npos ? bytes.size() : end + 1);
-    const char* first = line.data() + (line.starts_with('+') ? 1 : 0);
-    const char* last = line.data() + line.size();
-    double rate = 0.0;
-    const auto [rest, failure] = std::from_chars(first, last, rate);
-    if (failure == std::errc() && rest == last) return WrittenAnswer{rate, {}};
-    return WrittenAnswer{{}, std::string(line)};
+    const std::optional<double> rate = number_in(line);
+    return WrittenAnswer{rate, rate ? std::string() : std::string(line)};
   }
 
  private:

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <memory>
 #include <utility>
 
@@ -34,6 +35,7 @@ class FileStream : public CompensatorStream {
   }
 
   void take(const Recording& sample) override;
+  void skip() override { answers_.push_back({NAN}); }
   void finish() override {}
   bool states_sigma() const override { return sigma_.has_value(); }
 
@@ -80,6 +82,7 @@ class ProcessStream : public CompensatorStream {
         period_(period) {}
 
   void take(const Recording& sample) override;
+  void skip() override;
   void finish() override;
   int descriptor() const override {
     return process_ ? process_->descriptor() : -1;
@@ -90,6 +93,7 @@ class ProcessStream : public CompensatorStream {
   void start(const Recording& sample, double period);
   void send(const Recording& sample);
   void take_answers();
+  void answer_skipped();
 
   AnsweringProcess answering_;
   double stall_;                  // [s]
@@ -97,17 +101,19 @@ class ProcessStream : public CompensatorStream {
   std::unique_ptr<Conversation> process_;
   Recording row_;                   // what the language reads, one sample
   std::optional<Recording> first_;  // kept until the second one comes
-  std::size_t answered_ = 0, before_ = 0;  // samples; by earlier processes
+  // Numbers of the samples, from 0: those that wait for the process in asked_.
+  std::size_t taken_ = 0, answered_ = 0;
+  std::deque<std::size_t> asked_;
+  std::size_t by_process_ = 0;  // answers that were taken from this one
 };
 
 void ProcessStream::take(const Recording& sample) {
   if (fault_) return;
   if ((sample.status[0] & kUnpowered) != 0) {
     finish();
-    answers_.push_back({NAN});
-    ++answered_;
-    return;
+    return skip();
   }
+  asked_.push_back(taken_++);
   if (!process_ && !first_ && !period_) {
     first_ = sample;
     return;
@@ -121,11 +127,19 @@ void ProcessStream::take(const Recording& sample) {
   send(sample);
 }
 
+void ProcessStream::skip() {
+  if (fault_) return;
+  ++taken_;
+  answer_skipped();
+}
+
 void ProcessStream::start(const Recording& sample, double period) {
-  before_ = answered_;
+  by_process_ = 0;
   process_ = std::make_unique<Conversation>(
-      answering_.start, *answering_.language, stall_,
-      [this](std::size_t n) { return fmt::format("sample {}", before_ + n); });
+      answering_.start, *answering_.language, stall_, [this](std::size_t n) {
+        const std::size_t k = n - by_process_;
+        return fmt::format("sample {}", k < asked_.size() ? asked_[k] : taken_);
+      });
   row_ = sample;
   answering_.language->start(row_, period, process_->queue());
   send(sample);
@@ -148,10 +162,22 @@ void ProcessStream::take_answers() {
   std::vector<double> rates = process_->answers();
   if (!process_->faults().empty()) {
     fault_ = process_->faults().front();
-    rates.resize(std::min(rates.size(), before_ + fault_->sample - answered_));
+    rates.resize(std::min(rates.size(), fault_->sample - by_process_));
   }
-  for (const double rate : rates) answers_.push_back({rate});
-  answered_ += rates.size();
+  for (const double rate : rates) {
+    answer_skipped();
+    answers_.push_back({rate});
+    ++answered_;
+    ++by_process_;
+    asked_.pop_front();
+  }
+  answer_skipped();
+}
+
+// Those before the next one that waits.
+void ProcessStream::answer_skipped() {
+  const std::size_t next = asked_.empty() ? taken_ : asked_.front();
+  for (; answered_ < next; ++answered_) answers_.push_back({NAN});
 }
 
 void ProcessStream::collect() {

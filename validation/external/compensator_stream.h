@@ -15,8 +15,8 @@ namespace beamgyro::internal {
 
 /// The answer to a sample.
 struct StreamAnswer {
-  double rate;  // [deg/s]; NaN where unpowered
-  // [deg/s], 1-sigma of its bias; NaN where unpowered or not stated
+  double rate;  // [deg/s]; NaN where unpowered or skipped
+  // [deg/s], 1-sigma of its bias; NaN where the rate is, or not stated
   double sigma = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -28,6 +28,10 @@ class CompensatorStream {
   /// Takes the next sample: a recording of one, always with the same columns.
   /// Throws std::invalid_argument when it lacks a variable.
   virtual void take(const Recording& sample) = 0;
+
+  /// Passes over a sample that cannot be read: its answer is NaN, and the
+  /// compensator does not see it.
+  virtual void skip() = 0;
 
   /// No more samples follow: waits for the answers that are missing.
   virtual void finish() = 0;

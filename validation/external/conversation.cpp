@@ -11,13 +11,15 @@
 #include <cmath>
 #include <span>
 
+#include "config/cut_text.h"
+
 namespace beamgyro::internal {
 namespace {
 
 constexpr std::size_t kSentBytes = 1 << 16;      // made ready at a time
 constexpr std::size_t kLongestAnswer = 1 << 16;  // bytes
 constexpr std::size_t kTail = 4096;              // bytes of standard error
-constexpr std::size_t kQuoted = 40;              // characters of an answer
+constexpr std::size_t kQuoted = 40;              // bytes of an answer
 
 // Whether it says that memory was refused: as C, C++, Python, Java and shells
 // say it.
@@ -128,7 +130,7 @@ void Conversation::take_answers() {
       faults_.push_back(
           {AnswerFault::kNotANumber, answered_,
            fmt::format("answered \"{}\", which is no number, to {}",
-                       written->text.substr(0, kQuoted), place())});
+                       cut_text(written->text, kQuoted), place())});
     answers_.push_back(written->rate.value_or(NAN));
     ++answered_;
   }
@@ -136,7 +138,7 @@ void Conversation::take_answers() {
   if (!failed_ && received_.size() > kLongestAnswer)
     fail(AnswerFault::kNotANumber,
          fmt::format("answered \"{}...\", a line without end, to {}",
-                     received_.substr(0, kQuoted), place()));
+                     cut_text(received_, kQuoted), place()));
 }
 
 // Time of the samples that the process has read [s], by their share of bytes:
@@ -170,7 +172,7 @@ void Conversation::turn(double longest, bool owed) {
                      "{:.3g} s",
                      place(), since_progress_.seconds()));
   } else if (time_ && whole_.seconds() > stall_ + taken_time()) {
-    fail(AnswerFault::kTooSlow,
+    fail(AnswerFault::kStopped,
          fmt::format("slower than real time: stopped after {:.3g} s at {}",
                      whole_.seconds(), place()));
   }

@@ -167,17 +167,22 @@ LibraryStatement described(const std::filesystem::path& library,
       library_start(library, limits, isolation, HostTask::kDescribe));
   process.input().reset();
   bool in_time = true;
-  const std::string text =
-      read_until_end(*process.output(), limits.stall, in_time);
-  const std::optional<ProcessEnd> end =
-      in_time ? process.wait(limits.stall) : std::nullopt;
+  std::string text = read_until_end(*process.output(), limits.stall, in_time);
   const auto refuse = [&](const std::string& why) {
     throw std::invalid_argument(fmt::format("{}: {}", library.string(), why));
   };
+  if (text.size() > kLongestReading)
+    refuse(fmt::format("tells more than {} bytes of itself", kLongestReading));
+  const std::optional<ProcessEnd> end =
+      in_time ? process.wait(limits.stall) : std::nullopt;
   if (!end)
     refuse(fmt::format("cannot be loaded: hung for {:.3g} s", limits.stall));
-  if (end->status == 0 && end->signal == 0)
+  if (end->status == 0 && end->signal == 0) {
+    if (!text.ends_with(kEndOfDescription))
+      refuse("ended with status 0 before it told its signals");
+    text.pop_back();
     return read_statement(text, library);
+  }
   const std::string error =
       read_until_end(*process.error(), limits.stall, in_time);
   if (end->status == 2 && !error.empty()) refuse(error);

@@ -204,8 +204,8 @@ void answer_records(const Plugin& plugin, OpenFile& input) {
                                                               plugin.destroy);
   // The library sees one sample at a time, and nothing of the next.
   std::vector<double> record(width);
-  std::array<std::byte, kBatchBytes> batch{};
   const std::size_t size = width * sizeof(double);
+  std::vector<std::byte> batch(std::max(kBatchBytes, size));
   for (std::size_t held = 0;;) {
     const ssize_t n =
         ::read(input.descriptor(), batch.data() + held, batch.size() - held);
@@ -240,7 +240,8 @@ void serve(const std::filesystem::path& file, bool describe) {
   handle_crashes();
   const Plugin plugin = load_plugin(file);
   if (!describe) return answer_records(plugin, input);
-  const std::string text = signals_of(plugin) + training_of(plugin);
+  const std::string text =
+      signals_of(plugin) + training_of(plugin) + kEndOfDescription;
   output.write(std::as_bytes(std::span(text)));
 }
 

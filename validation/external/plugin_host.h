@@ -10,6 +10,10 @@
 
 namespace beamgyro::internal {
 
+/// Ends what a host tells of a library: without it the library has ended the
+/// process before.
+inline constexpr char kEndOfDescription = '\0';
+
 /// First word of the command line of a program that is to call host_plugin()
 /// with the rest.
 constexpr std::string_view kPluginHostWord = "plugin-host";

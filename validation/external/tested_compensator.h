@@ -26,6 +26,7 @@ enum class AnswerFault {
   kKeepsState,        // another answer to the same run after a reset
   kUsesLaterSamples,  // an answer changes with a later sample
   kTooSlow,           // slower than real time
+  kStopped,           // so slow that it was stopped before it had answered all
   kReported,          // reported by a class of the user's own
   kCount              // no fault: how many there are
 };

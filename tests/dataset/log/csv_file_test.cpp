@@ -82,6 +82,13 @@ TEST(CsvFile, RejectsNumbersThatAreNotFinite) {
   }
 }
 
+TEST(CsvFile, NumbersTooSmallForADoubleAreZero) {
+  const CsvTable table = parse_csv("a,b\n1e-400,-1e-400\n+2,0e999", "log.csv");
+  EXPECT_EQ(table.column("a"), (std::vector<double>{0.0, 2.0}));
+  EXPECT_EQ(table.column("b"), (std::vector<double>{0.0, 0.0}));
+  EXPECT_NE(rejection_of("a,b\n1,+-2"), "");
+}
+
 TEST(CsvFile, AMissingColumnIsNamedWithThoseThereAre) {
   const CsvTable table = parse_csv("a,b\n1,2", "log.csv");
   EXPECT_EQ(rejection([&] { table.column("c"); }),

@@ -134,6 +134,7 @@ TEST(ParameterUnits, AreWhatTheKeyEndsIn) {
   EXPECT_EQ(units_of("beam.specific_heat_J_per_kgK"), "J/(kg K)");
   EXPECT_EQ(units_of("age.hours"), "h");
   EXPECT_EQ(units_of("memory.ageing.trim_age_hours"), "h");
+  EXPECT_EQ(units_of("noise.random_walk_correlation_h"), "h");
   EXPECT_EQ(units_of("readout.amplifier_noise_V_per_sqrt_Hz"), "V/sqrt(Hz)");
   EXPECT_EQ(units_of("ambient.soaks.ramp_K_per_min"), "K/min");
   EXPECT_EQ(units_of("readout.mode"), "1");

@@ -18,6 +18,7 @@ TEST(DeviceFile, NominalUnitIsReadInSiUnits) {
   EXPECT_DOUBLE_EQ(device.patches.offset[kFeedback], -5e-6);
   EXPECT_DOUBLE_EQ(device.bond.thickness[kReadout], 34e-6);
   EXPECT_DOUBLE_EQ(device.noise.angle_random_walk, 0.010 * kDegree);
+  EXPECT_DOUBLE_EQ(device.noise.walk_correlation, 3.6e5);
   EXPECT_FALSE(device.beam.angular_gain.has_value());
 }
 
@@ -38,6 +39,8 @@ TEST(DeviceFile, WhatIsWrongIsRefusedWithItsKeyAndValue) {
       {"readout.adc_bits=12.5", "readout.adc_bits"},
       {"readout.full_scale_deg_per_s=inf", "full_scale_deg_per_s"},
       {"noise.turn_on_deg_per_s=\"small\"", "noise.turn_on"},
+      {"noise.random_walk_correlation_h=0.5", "random_walk_correlation_h"},
+      {"memory.hysteresis.half_width_K=[0.5, 1.5, 1e-4, 10]", "half_width_K"},
       {"temperature_sensor.noise_K=-1", "temperature_sensor.noise_K"}};
   for (const auto& bad : values)
     EXPECT_TRUE(

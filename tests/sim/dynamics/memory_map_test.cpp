@@ -79,6 +79,18 @@ TEST_P(MemoryMap, AgreesWithTheExactSolutionEverywhere) {
 
 INSTANTIATE_TEST_SUITE_P(RateLimits, MemoryMap, testing::Values(0.0, 120.0));
 
+TEST(MemoryMap, ARangeOfTheGlassThatItCannotResolveIsRefused) {
+  // T_f far above T, where tau_alpha changes by many decades along the axis.
+  const Gyro gyro =
+      make_gyro(nominal_device({"memory.relaxation.nonlinearity=0.0"}));
+  const auto wide = [](double, double) {
+    return MemoryRange{{-40, -1, 0}, {30, 1, 1}};
+  };
+  EXPECT_TRUE(holds(rejection<SimulationFailure>(
+                        [&] { StaticMap(gyro, 298.15, 298.25, 0, wide); }),
+                    "memory states of the beam at 2"));
+}
+
 TEST(V48Memory, WithoutAnEffectNothingChangesToTheLastBit) {
   // The states act on a device without [memory] as little as on one that has
   // it in its reference state.

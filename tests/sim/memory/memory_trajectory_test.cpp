@@ -153,6 +153,50 @@ TEST(UnitMemory, GoesThroughItsHistory) {
       1e-3);
 }
 
+TEST(UnitMemory, AnAgeLetsTheGlassRelaxAtTheTemperatureOfItsRest) {
+  constexpr double kYear = 3.15576e7, kRest = kZero + 25;  // [s] [K]
+  const UnitMemory aged(nominal(), kGlass, {{}, kYear}, kRest);
+  const UnitMemory stored(nominal(), kGlass,
+                          {PiecewiseLinear({0, kYear}, {kRest, kRest}), kYear},
+                          kRest);
+  const auto fictive = [](const UnitMemory& memory) {
+    return memory.relaxation()->fictive_temperature() - kZero;
+  };
+  EXPECT_EQ(fictive(aged), fictive(stored));
+  EXPECT_EQ(aged.state(kRest).decades, stored.state(kRest).decades);
+  // An independent integration of (12.1) ends at 25.3 degC.
+  EXPECT_NEAR(fictive(aged), 25.3, 0.05);
+
+  // A year of which the history tells the last 10 h only.
+  const UnitMemory partly(nominal(), kGlass,
+                          {PiecewiseLinear({0, 36000}, {kRest, kRest}), kYear},
+                          kRest);
+  EXPECT_NEAR(fictive(partly), fictive(aged), 1e-3);
+}
+
+TEST(UnitMemory, IsBroughtAtAKelvinAMinuteToWhereTheRunBegins) {
+  const auto fictive = [](const UnitHistory& history, double start) {
+    return UnitMemory(nominal(), kGlass, history, start)
+               .relaxation()
+               ->fictive_temperature() -
+           kZero;
+  };
+  // From 60 to 5 degC at 1 K/min as in V49, not in no time.
+  const double hot = kZero + 60;
+  EXPECT_NEAR(fictive({PiecewiseLinear({0, 36000}, {hot, hot}), 0}, kZero + 5),
+              34.206, 0.01);
+  // A unit that has rested for a year, taken through its glass transition.
+  EXPECT_NEAR(fictive({{}, 3.15576e7}, hot), 60, 1e-3);
+}
+
+TEST(UnitMemory, TheWayToTheBeginOfTheRunIsNoAge) {
+  const UnitHistory history{
+      PiecewiseLinear({0, 3600}, {kZero + 25, kZero + 25}), 3600};
+  EXPECT_EQ(
+      UnitMemory(nominal(), kGlass, history, kZero + 60).state(298.15).decades,
+      UnitMemory(nominal(), kGlass, history, kZero + 25).state(298.15).decades);
+}
+
 TEST(UnitMemory, AgesFromItsTrimOn) {
   // 100 h at 60 degC, of which the trim leaves out the first 90; then 1000 h
   // that no history tells of, at 25 degC.

@@ -79,6 +79,15 @@ SampledNoise van_loan(const NoiseSystem& system, double h) {
   return {Phi, Phi * e.topRightCorner(n, n)};  // the covariance for the root
 }
 
+TEST(LinearNoise, GrowthIsTheLargestRealPartOfTheEigenvalues) {
+  NoiseSystem system{Eigen::MatrixXd(3, 3), Eigen::MatrixXd::Ones(3, 1)};
+  // A pair of 0.3 +- 2e3 i, in states of unlike units, and a decay.
+  system.A << 0.3, 2e6, 0, -2, 0.3, 0, 0, 0, -5;
+  EXPECT_NEAR(growth_rate(system), 0.3, 1e-9);
+  system.A.topLeftCorner(2, 2).diagonal().setConstant(-7);
+  EXPECT_NEAR(growth_rate(system), -5, 1e-9);
+}
+
 TEST(SampledNoise, OneDecayHasItsClosedForm) {
   for (double a : {0.1, 37.0, 2000.0}) {
     for (double h : {5e-4, 0.1, 1.0}) {

@@ -117,28 +117,55 @@ TEST(RateNoise, ARunGoesOnWithTheWalkWhereAnEarlierOneEnded) {
   EXPECT_EQ(aged_walk(0, 1, 3).front(), 0.0);
 }
 
-TEST(WalkSinceTrim, HasTheVarianceOfTheTimeBetweenAnyTwoAges) {
+// Of a first-order Gauss-Markov process that is 0 at the trim.
+TEST(WalkSinceTrim, HasTheLawOfGaussAndMarkovBetweenAnyTwoAges) {
   constexpr std::uint32_t kDevices = 20000;
+  constexpr double kCorrelation = 3.6e5;  // [s], 100 h
   // Steps of 40 s, 1 h, 1000 h, a year, and a century.
   constexpr double kAges[] = {0.0, 40.0, 3640.0, 3.60364e6, 3.515e7, 3.2e9};
+  const auto variance = [](double age) {
+    return 0.5 * kCorrelation * -std::expm1(-2.0 * age / kCorrelation);
+  };
   for (std::size_t i = 1; i < std::size(kAges); ++i) {
-    double grown = 0.0, overlap = 0.0;
+    const double kept = std::exp((kAges[i - 1] - kAges[i]) / kCorrelation);
+    double all = 0.0, fresh = 0.0, overlap = 0.0;
     for (std::uint32_t device = 0; device < kDevices; ++device) {
-      WalkSinceTrim walk(7, device);
-      const double before = walk.at(kAges[i - 1]);
-      const double step = walk.at(kAges[i]) - before;
-      grown += step * step / kDevices;
+      WalkSinceTrim walk(7, device, kCorrelation);
+      const double before = walk.at(kAges[i - 1]), after = walk.at(kAges[i]);
+      const double step = after - kept * before;
+      all += after * after / kDevices;
+      fresh += step * step / kDevices;
       overlap += step * before / kDevices;
     }
-    const double time = kAges[i] - kAges[i - 1];
-    EXPECT_NEAR(grown / time, 1.0, 3.0 * std::sqrt(2.0 / kDevices)) << i;
-    EXPECT_NEAR(overlap, 0.0, 3.0 * std::sqrt(time * kAges[i - 1] / kDevices));
+    const double step = variance(kAges[i] - kAges[i - 1]);
+    const double three_sigma = 3.0 * std::sqrt(2.0 / kDevices);
+    EXPECT_NEAR(all / variance(kAges[i]), 1.0, three_sigma) << i;
+    EXPECT_NEAR(fresh / step, 1.0, three_sigma) << i;
+    EXPECT_NEAR(overlap, 0.0,
+                3.0 * std::sqrt(step * variance(kAges[i - 1]) / kDevices));
+  }
+}
+
+TEST(WalkSinceTrim, IsAWienerPathOverTimesBelowItsCorrelation) {
+  // The Allan slope of a day within a run is that of K, whatever came before.
+  constexpr std::size_t kCount = 86400;
+  for (const double age : {0.0, 3.15576e7}) {
+    WalkSinceTrim walk(7, 4, 3.6e6);
+    std::vector<double> rate(kCount);
+    for (std::size_t i = 0; i < kCount; ++i)
+      rate[i] = walk.at(age + static_cast<double>(i));
+    for (const std::size_t m : {10u, 100u, 1000u}) {
+      const AllanDeviation adev = allan_deviation(rate, m);
+      EXPECT_NEAR(adev.value, std::sqrt(static_cast<double>(m) / 3.0),
+                  adev.three_sigma)
+          << age << ' ' << m;
+    }
   }
 }
 
 TEST(WalkSinceTrim, HasIndependentStepsOfASecond) {
   constexpr std::size_t kSteps = 100000;
-  WalkSinceTrim walk(7, 3);
+  WalkSinceTrim walk(7, 3, 3.6e5);
   double variance = 0.0, product = 0.0, last = 0.0;
   for (std::size_t i = 0; i < kSteps; ++i) {
     const double age = 1e6 + static_cast<double>(i);
@@ -152,13 +179,13 @@ TEST(WalkSinceTrim, HasIndependentStepsOfASecond) {
 }
 
 TEST(WalkSinceTrim, DoesNotDependOnTheOrderOfAges) {
-  WalkSinceTrim walk(7, 3);
+  WalkSinceTrim walk(7, 3, 3.6e5);
   for (const double age : {5.5, 3.6e6, 0.0, 4.2e9, 4294967296.0, 17.0, 5.5})
-    EXPECT_EQ(walk.at(age), WalkSinceTrim(7, 3).at(age)) << age;
+    EXPECT_EQ(walk.at(age), WalkSinceTrim(7, 3, 3.6e5).at(age)) << age;
 }
 
 TEST(WalkSinceTrim, RejectsAnAgeThatIsNone) {
-  WalkSinceTrim walk(7, 3);
+  WalkSinceTrim walk(7, 3, 3.6e5);
   EXPECT_EQ(walk.at(0.0), 0.0);
   EXPECT_THROW(walk.at(-1.0), std::invalid_argument);
   EXPECT_THROW(walk.at(NAN), std::invalid_argument);
@@ -256,6 +283,8 @@ TEST(RateNoise, RejectsBadParameters) {
             "angle random walk is -1 rad/sqrt(s), must be 0 or more");
   EXPECT_EQ(rejection_of({.bias_instability = INFINITY}, 10.0),
             "bias instability is inf rad/s, must be 0 or more");
+  EXPECT_EQ(rejection_of({.walk_correlation = 0.0}, 10.0),
+            "correlation time of the walk is 0 s, must be above 0");
   EXPECT_EQ(rejection_of({.rate_random_walk = NAN}, 10.0),
             "rate random walk is nan rad/s/sqrt(s), must be 0 or more");
   EXPECT_EQ(rejection_of({.turn_on = -2.0}, 10.0),

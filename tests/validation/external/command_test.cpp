@@ -159,7 +159,8 @@ TEST_F(CommandCompensator, NonsenseIsQuoted) {
   EXPECT_EQ(word.fault, kNotANumber);
   EXPECT_EQ(word.sample, 700u);
   EXPECT_TRUE(holds(word.words, "\"ready\""));
-  for (const char* line : {"''", "'1,5'", "'1 2'", "'0x1p3'", "'1e999'"})
+  for (const char* line : {"''", "'1,5'", "'1 2'", "'0x1p3'", "'+-0.5'",
+                           "'++1'", "'1e'", "'-'", "'1e999x'"})
     EXPECT_EQ(fault_of(*program(fmt::format("print({})", line))), kNotANumber)
         << line;
   EXPECT_EQ(fault_of(*command("tr -d '\\n' </dev/zero | tr '\\0' x")),
@@ -174,8 +175,42 @@ TEST_F(CommandCompensator, OneNaNOfAHundredThousandAnswersIsFound) {
   EXPECT_EQ(fault_of(*program("print('-inf')")), kNotFinite);
 }
 
+TEST_F(CommandCompensator, NumbersBeyondTheRangeOfDoublesAreNumbers) {
+  for (const char* line : {"1e309", "-1e999", "+123e307", "0.1e310", "inf"}) {
+    const SeenFault seen = only_fault(
+        *program(fmt::format("print('{}' if k == 700 else r)", line)));
+    EXPECT_EQ(seen.fault, kNotFinite) << line;
+    EXPECT_EQ(seen.sample, 700u);
+  }
+  for (const char* line :
+       {"1e-400", "+0.001e-330", "-1e-999999999999999999999", "0e999"}) {
+    const Answer answer =
+        program(fmt::format("print('{}')", line))->answer(tested_run(0.1));
+    EXPECT_TRUE(answer.faults.empty()) << line;
+    EXPECT_EQ(answer.rate[0], 0.0);
+  }
+}
+
+// The fortieth byte of the answer is within a letter of two.
+TEST_F(CommandCompensator, NoLetterIsCutInAQuote) {
+  std::string first = "a";
+  for (int k = 0; k < 19; ++k) first += "ä";
+  const SeenFault answer = only_fault(*program("print('a' + 'ä' * 40)"));
+  EXPECT_TRUE(holds(answer.words, '"' + first + '"')) << answer.words;
+  const SeenFault last =
+      only_fault(*program("print(r)", "", "sys.exit('a' + 'ä' * 200)"));
+  EXPECT_TRUE(last.words.ends_with("ä")) << last.words;
+}
+
+TEST_F(CommandCompensator, OneThatIsStoppedHasNotAnsweredEverySample) {
+  const auto slow = program("time.sleep(0.1); print(r, flush=True)");
+  const SeenFault seen = only_fault(*slow, tested_run(1.0));
+  EXPECT_EQ(seen.fault, kStopped);
+  EXPECT_TRUE(holds(seen.words, "slower than real time: stopped"));
+}
+
 TEST_F(CommandCompensator, SlowerThanRealTimeIsSaid) {
-  const auto slow = program("time.sleep(0.02); print(r)");
+  const auto slow = program("time.sleep(0.012); print(r)");
   EXPECT_EQ(only_fault(*slow, tested_run(1.0)).fault, kTooSlow);
 }
 

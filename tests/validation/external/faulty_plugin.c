@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "include/beamgyro/plugin.h"
@@ -29,6 +30,12 @@
 #define HANGS_WHEN_LOADED 18
 #define STATES_ITS_TRAINING 19
 #define STATES_NONSENSE 20
+#define EXITS_WHEN_LOADED 21
+#define WANTS_NOTHING 22
+#define WANTS_MANY 23
+#define TELLS_WITHOUT_END 24
+
+#define MANY 20000
 
 #define FAULTY_SAMPLE 700
 
@@ -43,6 +50,27 @@ __attribute__((constructor)) static void crash(void) {
 }
 #endif
 
+#if FAULT == EXITS_WHEN_LOADED
+__attribute__((constructor)) static void leave(void) { _exit(0); }
+#endif
+
+#if FAULT == TELLS_WITHOUT_END
+__attribute__((constructor)) static void tell(void) {
+  static const char text[1 << 16];
+  for (;;)
+    for (int descriptor = 3; descriptor < 16; ++descriptor)
+      if (write(descriptor, text, sizeof text) < 0) continue;
+}
+#endif
+
+#if FAULT == WANTS_MANY
+static const char *many(void) {
+  static char names[12 * MANY + 32] = "rate";
+  for (int k = 1; k < MANY; ++k) strcpy(names + 4 + 12 * (k - 1), ",temperature");
+  return names;
+}
+#endif
+
 uint32_t beamgyro_plugin_abi(void) {
   return FAULT == OTHER_VERSION ? 77 : BEAMGYRO_PLUGIN_ABI;
 }
@@ -51,6 +79,10 @@ const char *beamgyro_plugin_signals(void) {
   if (FAULT == HANGS_WHEN_LOADED)
     for (;;) sleep(1);
   if (FAULT == WANTS_TRUTH) return "rate,true_rate";
+  if (FAULT == WANTS_NOTHING) return "";
+#if FAULT == WANTS_MANY
+  return many();
+#endif
   if (FAULT == WANTS_MORE) return "rate,magnetic_field";
   return "rate,temperature";
 }
@@ -110,6 +142,6 @@ static const char *const training[] = {
 #elif FAULT == STATES_NONSENSE
 static const char *const training[] = {"trained well", NULL};
 #endif
-#if FAULT >= STATES_ITS_TRAINING
+#if FAULT == STATES_ITS_TRAINING || FAULT == STATES_NONSENSE
 const char *const *beamgyro_plugin_training(void) { return training; }
 #endif

@@ -47,6 +47,15 @@ TEST(LibraryCompensator, AnswersEveryPoweredSample) {
   }
 }
 
+// A sample is longer than what is read at once.
+TEST(LibraryCompensator, MayNameTwentyThousandSignals) {
+  const Recording run = tested_run(0.1);
+  const Answer answer = faulty_plugin("WANTS_MANY")->answer(run);
+  EXPECT_TRUE(answer.faults.empty()) << answer.faults[0].words;
+  EXPECT_EQ(difference_of(answer, faulty_plugin("NONE")->answer(run)).largest,
+            0.0);
+}
+
 TEST(LibraryCompensator, ReadsTheSignalsThatItNames) {
   EXPECT_EQ(faulty_plugin("NONE")->inputs(),
             (std::vector<std::string>{"rate", "temperature"}));
@@ -153,6 +162,11 @@ TEST(LibraryCompensator, WhatIsNoPluginIsRefused) {
   EXPECT_TRUE(holds(refusal("WANTS_TRUTH"), "\"true_rate\", which no gyro"));
   EXPECT_TRUE(holds(refusal("CRASHES_WHEN_LOADED"), "signal 11"));
   EXPECT_TRUE(holds(refusal("HANGS_WHEN_LOADED"), "hung"));
+  EXPECT_TRUE(holds(refusal("EXITS_WHEN_LOADED"),
+                    "ended with status 0 before it told its signals"));
+  EXPECT_TRUE(
+      holds(refusal("TELLS_WITHOUT_END"), "tells more than 33554432 bytes"));
+  EXPECT_TRUE(holds(refusal("WANTS_NOTHING"), "asks for \"\""));
   EXPECT_TRUE(holds(refusal("missing"), "No such file"));
 }
 
