@@ -109,7 +109,8 @@ const Judged& useful(const Judged& chosen, const std::vector<Judged>& judged) {
 
 class Selector {
  public:
-  explicit Selector(const SelectionData& data) : data_(data) {
+  Selector(const SelectionData& data, bool is_automatic)
+      : data_(data), is_automatic_(is_automatic) {
     if (data.groups)
       groups_ = *data.groups;
     else if (data.held_out.size() > 0)
@@ -139,13 +140,14 @@ class Selector {
     const Judged& kept = one_leg() ? chosen : useful(chosen, judged);
     remarks.push_back(reason(judged, chosen, kept));
     Selected result;
-    result.candidate = kept.candidate;
-    result.weight = kept.weight;
+    result.candidate = kept.weight > 0.0 ? kept.candidate : constant();
     result.errors = kept.errors;
-    result.fit = final_fit(kept.candidate);
-    if (kept.weight < 1.0)
+    result.fit = final_fit(result.candidate);
+    if (kept.weight > 0.0 && kept.weight < 1.0) {
+      result.weight = kept.weight;
       result.fit.model = averaged_with_constant(
           std::move(result.fit.model), data_.rows.bias.mean(), kept.weight);
+    }
     result.fit.choices.insert(result.fit.choices.begin(), remarks.begin(),
                               remarks.end());
     result.constant_errors = constant_errors();
@@ -156,6 +158,7 @@ class Selector {
   bool one_leg() const {
     return data_.groups && groups_.by == Grouping::kSegment;
   }
+  bool averages() const { return is_automatic_ && !one_leg(); }
   // Returns the rows on which candidates are judged.
   const TrainingRows& judging() const {
     return data_.groups ? data_.rows : data_.held_out;
@@ -194,7 +197,7 @@ class Selector {
   Judged judge(const Candidate& candidate, const Predictions& flat) const {
     const Predictions found = predictions(candidate);
     Judged alone{candidate, 1.0, errors_of(found)};
-    if (one_leg() || is_constant(candidate.kind)) return alone;
+    if (!averages() || is_constant(candidate.kind)) return alone;
     const StackingWeight weight =
         stacking_weight(flat, found, judging().bias, groups_);
     const auto average = [&](double share) {
@@ -250,6 +253,7 @@ class Selector {
   }
 
   const SelectionData& data_;
+  bool is_automatic_;  // several candidates, not the decays of one network
   RowGroups groups_;
 };
 
@@ -321,10 +325,11 @@ Selected select_model(std::vector<Candidate> candidates,
   if (candidates.empty())
     throw std::invalid_argument("no candidate can be judged: " +
                                 remarks.front());
+  const bool is_automatic = candidates.size() > 1;
   // With held-out rows fit_model() chooses the decay itself.
   if (data.groups && data.held_out.size() == 0)
     candidates = one_decay_each(candidates);
-  const Selector selector(data);
+  const Selector selector(data, is_automatic);
   Selected result = candidates.size() == 1 ? selector.only(candidates[0])
                                            : selector.best_of(candidates);
   result.fit.choices.insert(result.fit.choices.begin(), remarks.begin(),

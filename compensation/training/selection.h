@@ -36,7 +36,7 @@ struct SelectionData {
 /// A model and the reasons for its choice.
 struct Selected {
   Candidate candidate;
-  double weight = 1.0;  // of the candidate; the rest is a constant's
+  double weight = 1.0;  // > 0, of the candidate; the rest is a constant's
   Fit fit;              // to all rows; its choices tell of every candidate
   // Residuals of the model and of a constant on unseen groups.
   std::optional<GroupErrors> errors, constant_errors;

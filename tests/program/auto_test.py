@@ -167,6 +167,24 @@ class LegsThatDisagree(Auto):
             self.assertEqual(stored["cross_validation"]["groups"], 2)
             self.assertIn("fewer than 3 groups are no evidence", errors)
 
+    def test_a_network_alone_is_no_average_and_is_read(self):
+        two = [self.with_slope(run, slope)
+               for run, slope in zip("ab", [0.45, -0.45])]
+        self.write("network.toml", NETWORK.replace(
+            "restarts = 1", "restarts = 1\nweight_decays = [0, 1e-8, 1e-6]"))
+        _, errors, stored = self.trained(two, "network.toml", "--cv", "run")
+        self.assertEqual(stored["method"], "BP network 2")
+        self.assertIn("no improvement to claim", errors)
+        self.ok("compensate", "c.json", two[0], "-o", "c.h5")
+
+    def test_that_contradict_each_other_leave_a_constant(self):
+        two = [self.with_slope(run, slope)
+               for run, slope in zip("ab", [0.45, -0.45])]
+        _, errors, stored = self.trained(two, AUTO, "--cv", "run")
+        self.assertIn(stored["method"], ["none", "constant"])
+        self.assertIn("no improvement to claim", errors)
+        self.ok("compensate", "c.json", two[0], "-o", "c.h5")
+
     def test_an_average_is_exported_in_every_format(self):
         report, _, stored = self.trained(self.runs[:2], AUTO, "--cv", "leg")
         self.assertIn("beside a constant", stored["method"])

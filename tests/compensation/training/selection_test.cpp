@@ -169,6 +169,33 @@ TEST(Selection, AveragesWithAConstantByWhatLegsAgreeOn) {
       objection_to_claim(selected.errors, selected.constant_errors).empty());
 }
 
+// Slopes of 1 and -1: the weight of the least error is 0.
+TEST(Selection, ACurveOfWeightZeroIsAConstant) {
+  const TrainingRows rows = rows_of({kUp, kDown}, [](double T, int k) {
+    return (k < kUp.rows ? 1.0 : -1.0) * (T - 5.0) / 45.0;
+  });
+  const Selected selected = select_by_folds({kLinear, kCubic}, rows);
+  EXPECT_TRUE(is_constant(selected.candidate.kind));
+  EXPECT_EQ(selected.weight, 1.0);
+  EXPECT_FALSE(reads_inputs(selected.fit.model));
+  EXPECT_NEAR(selected.fit.model.predict(Eigen::ArrayXd{{30.0}})(0), 0.0,
+              1e-12);
+}
+
+// The weight decays of one network are no automatic choice.
+TEST(Selection, OneNetworkIsNotAveragedThoughTheLegsDisagree) {
+  const TrainingRows rows = rows_of({kUp, kDown}, [](double T, int k) {
+    return (k < kUp.rows ? 1.0 : -1.0) * (T - 5.0) / 45.0;
+  });
+  const Selected selected =
+      select_by_folds({candidate("bp(3)", network({0.0, 1e-6}))}, rows);
+  EXPECT_TRUE(std::holds_alternative<BpSpec>(selected.candidate.kind));
+  EXPECT_EQ(selected.weight, 1.0);
+  EXPECT_TRUE(reads_inputs(selected.fit.model));
+  EXPECT_FALSE(
+      objection_to_claim(selected.errors, selected.constant_errors).empty());
+}
+
 TEST(Selection, ThreeLegsThatDisagreeClaimNothingThoughTheAverageGains) {
   const TrainingRows rows = rows_of({kUp, kDown, kUp}, [](double T, int k) {
     return (k < 2 * kUp.rows ? 1.0 : 0.2) * (T - 5.0) / 45.0;
