@@ -163,9 +163,10 @@ TrainedCompensator train(const Model& model,
 TrainedCompensator train(const Model& model, const Set& set,
                          const SetChoice& choice,
                          const TrainingOptions& options) {
-  if (!options.cross_validation.empty())
+  if (!options.cross_validation.empty() && choice.devices.size() != 1)
     throw std::invalid_argument(
-        "cross-validation: of a set the validation devices are held out");
+        "cross-validation: of a set the validation devices are held out; one "
+        "device can be cross-validated");
   const auto part = [&](internal::SetPartNumber number) {
     return internal::runs_of_set(set.directory(), {number, choice.runs});
   };
