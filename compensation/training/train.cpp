@@ -43,19 +43,38 @@ void check_runs(const ModelSpec& spec, const RunSource& runs,
 struct RunFacts {
   std::vector<RunMark> runs;
   double coarsest_resolution = 0.0;  // [K], of the temperature
+  bool is_ageing = false;            // a device, by remembers_or_ages()
 };
+
+// No sensor says 0 to the last bit all the time.
+void require_some_rate(const TrainingRun& run) {
+  const Recording& recording = run.recording;
+  const std::vector<double>& rate = column_values(recording, "rate");
+  std::size_t powered = 0;
+  for (std::size_t k = 0; k < rate.size(); ++k) {
+    if ((recording.status[k] & kUnpowered) != 0) continue;
+    if (rate[k] != 0.0) return;
+    ++powered;
+  }
+  throw std::invalid_argument(fmt::format(
+      "{}: rate is 0 deg/s in all {} powered samples; expected what the gyro "
+      "measures",
+      run.name, powered));
+}
 
 // Returns the same runs and notes facts about each as it passes.
 RunSource noting(const RunSource& runs, RunFacts& facts) {
-  return {runs.count, [&](const RunSource::Visitor& visit) {
-            runs.for_each([&](const TrainingRun& run) {
-              visit(run);  // whose errors name the run
-              if (!run.sha256.empty()) facts.runs.push_back(mark_of(run));
-              facts.coarsest_resolution =
-                  std::max(facts.coarsest_resolution,
-                           temperature_resolution(run.recording));
-            });
-          }};
+  return {
+      runs.count, [&](const RunSource::Visitor& visit) {
+        runs.for_each([&](const TrainingRun& run) {
+          visit(run);  // whose errors name the run
+          require_some_rate(run);
+          if (!run.sha256.empty()) facts.runs.push_back(mark_of(run));
+          facts.coarsest_resolution = std::max(
+              facts.coarsest_resolution, temperature_resolution(run.recording));
+          facts.is_ageing = facts.is_ageing || remembers_or_ages(run.recording);
+        });
+      }};
 }
 
 // Returns the files as a compensator keeps them.
@@ -290,9 +309,9 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
         "no sigma: the curve is averaged with a constant");
   }
   if (groups) p.cross_validated = summary_of(*groups, selected);
-  p.warnings =
-      cautions({c.inputs, c.bias, c.baseline, own, own_unseen,
-                facts.coarsest_resolution, known != TemperatureRange{}});
+  p.warnings = cautions({c.inputs, c.bias, c.baseline, own, own_unseen,
+                         facts.coarsest_resolution, known != TemperatureRange{},
+                         facts.is_ageing});
   if (c.sigma) add_sigma_caution(*c.sigma, own, p.warnings);
   for (const std::string& warning :
        {warning_of_shared_seeds(p.training, p.held_out, groups.has_value()),

@@ -72,6 +72,18 @@ const std::vector<TrainingRun> kSoaks =
 const std::vector<TrainingRun> kOffGrid =
     runs({soaks(-37.5, 47.5, 5.0)}, "off_grid");
 
+TEST(Train, ARateOfZeroIsRefused) {
+  RecordedRun run{.duration = 1200.0, .step = 1.0};
+  run.temperature = [](double t) { return 0.05 * t; };
+  run.bias = [](double) { return 0.0; };
+  for (const FitSpec& kind : {FitSpec{PolynomialSpec{3}}, FitSpec{NoneSpec{}}})
+    EXPECT_TRUE(holds(rejection([&] {
+                        train(curve_spec(kind), runs({run.recording()}, "zero"),
+                              {}, 1);
+                      }),
+                      "zero0.h5: rate is 0 deg/s in all 1200 powered samples"));
+}
+
 TEST(Train, EveryKindBeatsItsBaselineOnUnseenSoaks) {
   const Recording unseen = soaks(-38.0, 48.0, 2.0);
   for (const ModelSpec& spec :
@@ -219,9 +231,10 @@ TEST(Train, RefusesWhatCannotBeTrainedOn) {
   EXPECT_TRUE(holds(missing, "soaks0.h5: input \"quadrature\""));
   RecordedRun still{.duration = 600.0, .step = 1.0};
   still.temperature = [](double t) { return -40.0 + 0.1 * t; };
+  still.bias = [](double) { return 40.0; };
   EXPECT_TRUE(holds(message(network_spec({"output"}, 6),
                             runs({still.recording()}, "still"), kOffGrid),
-                    "input output is 2.5 in all 10 training rows"));
+                    "input output is 3 in all 10 training rows"));
 }
 
 }  // namespace
