@@ -99,13 +99,24 @@ double needed_gain(const Judged& other, const Judged& cubic) {
   return &other > &cubic ? kRicherGain : kUsefulGain;
 }
 
+// A table has corners at the knots of a spline, which drift has not: it gives
+// way to a spline unless it leaves kUsefulGain less.
+bool gives_way_to_spline(const Judged& one, const std::vector<Judged>& judged) {
+  return std::holds_alternative<TableSpec>(one.candidate.kind) &&
+         std::ranges::any_of(judged, [&](const Judged& other) {
+           return std::holds_alternative<SplineSpec>(other.candidate.kind) &&
+                  one.rms() > (1.0 - kUsefulGain) * other.rms();
+         });
+}
+
 // Returns the cubic, or the simplest of those that are clearly better.
 const Judged& better_than(const Judged& cubic,
                           const std::vector<Judged>& judged) {
   std::vector<const Judged*> better;
   std::vector<GroupErrors> errors;
   for (const Judged& each : judged) {
-    if (!is_clearly_less(each.errors, cubic.errors, needed_gain(each, cubic)))
+    if (gives_way_to_spline(each, judged) ||
+        !is_clearly_less(each.errors, cubic.errors, needed_gain(each, cubic)))
       continue;
     better.push_back(&each);
     errors.push_back(each.errors);

@@ -43,7 +43,8 @@ struct Selected {
 ///   moves_more_than_noise(), is kept unless others leave clearly less
 ///   (is_clearly_less()): by kUsefulGain, those after it in the list by
 ///   kRicherGain, a constant by kConstantGain where there are fewer than
-///   kLeastGroups. Of those others choose() takes one;
+///   kLeastGroups. A table gives way to a spline unless it leaves less than
+///   that by kUsefulGain. Of those others choose() takes one;
 /// - else choose() takes one of all, which gives way to "none" or
 ///   "constant", if they are candidates, unless it takes away kUsefulGain of
 ///   their rms.
