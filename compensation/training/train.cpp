@@ -46,29 +46,12 @@ struct RunFacts {
   bool is_ageing = false;            // a device, by remembers_or_ages()
 };
 
-// No sensor says 0 to the last bit all the time.
-void require_some_rate(const TrainingRun& run) {
-  const Recording& recording = run.recording;
-  const std::vector<double>& rate = column_values(recording, "rate");
-  std::size_t powered = 0;
-  for (std::size_t k = 0; k < rate.size(); ++k) {
-    if ((recording.status[k] & kUnpowered) != 0) continue;
-    if (rate[k] != 0.0) return;
-    ++powered;
-  }
-  throw std::invalid_argument(fmt::format(
-      "{}: rate is 0 deg/s in all {} powered samples; expected what the gyro "
-      "measures",
-      run.name, powered));
-}
-
 // Returns the same runs and notes facts about each as it passes.
 RunSource noting(const RunSource& runs, RunFacts& facts) {
   return {
       runs.count, [&](const RunSource::Visitor& visit) {
         runs.for_each([&](const TrainingRun& run) {
           visit(run);  // whose errors name the run
-          require_some_rate(run);
           if (!run.sha256.empty()) facts.runs.push_back(mark_of(run));
           facts.coarsest_resolution = std::max(
               facts.coarsest_resolution, temperature_resolution(run.recording));

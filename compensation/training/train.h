@@ -50,7 +50,6 @@ struct TrainResult {
 /// Throws as training_rows(), and std::invalid_argument when
 /// - there is no run, or one that is another or a part of it
 ///   (require_different_runs());
-/// - the rate of a run is 0 in all powered samples;
 /// - a network has neither held-out runs nor cross-validation;
 /// - the temperatures are too few or too close together, or an input never
 ///   varies.

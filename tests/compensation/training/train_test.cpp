@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "compensation/compensator/compensator_file.h"
@@ -72,16 +73,25 @@ const std::vector<TrainingRun> kSoaks =
 const std::vector<TrainingRun> kOffGrid =
     runs({soaks(-37.5, 47.5, 5.0)}, "off_grid");
 
-TEST(Train, ARateOfZeroIsRefused) {
-  RecordedRun run{.duration = 1200.0, .step = 1.0};
-  run.temperature = [](double t) { return 0.05 * t; };
-  run.bias = [](double) { return 0.0; };
-  for (const FitSpec& kind : {FitSpec{PolynomialSpec{3}}, FitSpec{NoneSpec{}}})
-    EXPECT_TRUE(holds(rejection([&] {
-                        train(curve_spec(kind), runs({run.recording()}, "zero"),
-                              {}, 1);
-                      }),
-                      "zero0.h5: rate is 0 deg/s in all 1200 powered samples"));
+TEST(Train, TheDriveFrequencyOfADeviceThatAgesIsWarnedOf) {
+  Recording run = soaks(-40.0, 50.0, 5.0);
+  Column frequency{"drive_frequency", "Hz", "", Role::kMeasured, {}};
+  for (const double T : column_values(run, "temperature"))
+    frequency.values.push_back(9000.0 - 0.1 * T + 1e-3 * T * T);
+  run.columns.insert(run.columns.begin(), frequency);
+  ModelSpec spec = curve_spec(PolynomialSpec{3});
+  spec.inputs.push_back(parse_input("drive_frequency"));
+  const auto warned = [&] {
+    return std::ranges::count_if(train(spec, runs({run}, "soaks"), {}, 1)
+                                     .compensator.provenance.warnings,
+                                 [](const std::string& warning) {
+                                   return warning.find("no thermometer") !=
+                                          std::string::npos;
+                                 });
+  };
+  EXPECT_EQ(warned(), 0);
+  run.device_text = "[memory.ageing]\n";
+  EXPECT_EQ(warned(), 1);
 }
 
 TEST(Train, EveryKindBeatsItsBaselineOnUnseenSoaks) {
@@ -231,10 +241,9 @@ TEST(Train, RefusesWhatCannotBeTrainedOn) {
   EXPECT_TRUE(holds(missing, "soaks0.h5: input \"quadrature\""));
   RecordedRun still{.duration = 600.0, .step = 1.0};
   still.temperature = [](double t) { return -40.0 + 0.1 * t; };
-  still.bias = [](double) { return 40.0; };
   EXPECT_TRUE(holds(message(network_spec({"output"}, 6),
                             runs({still.recording()}, "still"), kOffGrid),
-                    "input output is 3 in all 10 training rows"));
+                    "input output is 2.5 in all 10 training rows"));
 }
 
 }  // namespace
