@@ -60,6 +60,17 @@ void observe_epochs(internal::ModelSpec& spec, const TrainingOptions& options) {
   });
 }
 
+// A compensator that no command reads is not handed out.
+void require_readable(const internal::CompensatorState& state) {
+  try {
+    internal::parse_compensator(state.text, state.name);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(
+        fmt::format("training gave a compensator that cannot be read back: {}",
+                    error.what()));
+  }
+}
+
 TrainedCompensator trained(const Model& model,
                            const internal::RunSource& training,
                            const internal::RunSource& held_out,
@@ -75,6 +86,7 @@ TrainedCompensator trained(const Model& model,
   state->compensator = std::move(result.compensator);
   state->text = internal::compensator_text(state->compensator);
   state->name = "compensator.json";
+  require_readable(*state);
   std::vector<std::string> warnings = state->compensator.provenance.warnings;
   return {Compensator(std::move(state)), std::move(warnings),
           std::move(report)};
@@ -151,9 +163,10 @@ TrainedCompensator train(const Model& model,
 TrainedCompensator train(const Model& model, const Set& set,
                          const SetChoice& choice,
                          const TrainingOptions& options) {
-  if (!options.cross_validation.empty())
+  if (!options.cross_validation.empty() && choice.devices.size() != 1)
     throw std::invalid_argument(
-        "cross-validation: of a set the validation devices are held out");
+        "cross-validation: of a set the validation devices are held out; one "
+        "device can be cross-validated");
   const auto part = [&](internal::SetPartNumber number) {
     return internal::runs_of_set(set.directory(), {number, choice.runs});
   };

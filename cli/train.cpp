@@ -57,9 +57,12 @@ TrainedCompensator trained(const TrainArguments& arguments,
           "--run and --device choose from a set, and there is none");
     return train(model, runs, held_out, options);
   }
-  if (!held_out.empty() || !options.cross_validation.empty())
+  const bool is_one_device = choice.devices.size() == 1;
+  if (!held_out.empty() ||
+      (!options.cross_validation.empty() && !is_one_device))
     throw std::invalid_argument(
-        "--held-out and --cv: of a set the validation devices are held out");
+        "--held-out and --cv: of a set the validation devices are held out; "
+        "--cv takes one device, --device K");
   return train(model, Set::open(runs[0]), choice, options);
 }
 
@@ -121,7 +124,8 @@ void add_train(CommandLine& program) {
   command.list({"--run", "NAME", "Run to take; may be repeated", "all runs"},
                arguments.choice.runs);
   command.integers({"--device", "NUMBER",
-                    "Device to fit; may be repeated. Holds nothing out",
+                    "Device to fit; may be repeated. Holds nothing out; one "
+                    "may be cross-validated",
                     "the training devices"},
                    arguments.choice.devices, {0, kLastDevice});
   command.example(

@@ -51,6 +51,7 @@ Eigen::ArrayXd BiasModel::predict(
 
 BiasModel averaged_with_constant(BiasModel model, double constant,
                                  double weight) {
+  assert(weight > 0.0 && weight <= 1.0);
   Scale& scale = model.bias_scale;
   scale = {(1.0 - weight) * constant + weight * scale.centre,
            weight * scale.half_width};

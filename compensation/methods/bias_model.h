@@ -48,7 +48,8 @@ inline BiasModel model_of(std::vector<Scale> inputs, BiasFunction function) {
 double rms_residual(const BiasModel& model, const TrainingRows& rows);
 
 /// Returns the model (1 - weight) constant + weight b, where b is the
-/// prediction of `model`: the same function with another bias scale.
+/// prediction of `model`: the same function with another bias scale. The weight
+/// is above 0: a model of weight 0 is a constant and no scale of a function.
 BiasModel averaged_with_constant(BiasModel model, double constant,
                                  double weight);
 

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "compensation/methods/bias_model.h"
+#include "dataset/recording/stated_values.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -113,6 +114,17 @@ std::string rate_caution(const FittedCase& fitted) {
       input_name(*input), kFeelsTheRate);
 }
 
+std::string ageing_caution(const FittedCase& fitted) {
+  const auto reads_frequency = [](const Input& input) {
+    return input.column == "drive_frequency";
+  };
+  if (!fitted.is_ageing || std::ranges::none_of(fitted.inputs, reads_frequency))
+    return "";
+  return "the input \"drive_frequency\" is no thermometer of a device with "
+         "[memory] or [age]: ageing moves it as kelvins do; train without it, "
+         "or validate on runs of a later age";
+}
+
 // Which way the temperature went over the leg of each row: +1, -1, or 0 where
 // it did not move by kLegReversal.
 std::vector<int> directions(const TrainingRows& rows) {
@@ -204,9 +216,15 @@ std::vector<std::string> cautions(const FittedCase& fitted) {
   for (std::string& text :
        std::vector{span_caution(fitted.rows), gap_caution(fitted),
                    resolution_caution(fitted), extrapolation_caution(fitted),
-                   hysteresis_caution(fitted), rate_caution(fitted)})
+                   hysteresis_caution(fitted), rate_caution(fitted),
+                   ageing_caution(fitted)})
     if (!text.empty()) found.push_back(std::move(text));
   return found;
+}
+
+bool remembers_or_ages(const Recording& recording) {
+  return states_device_table(recording, "memory") ||
+         states_scenario_table(recording, "age");
 }
 
 double temperature_resolution(const Recording& recording) {

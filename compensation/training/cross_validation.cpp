@@ -148,19 +148,31 @@ Predictions averaged(const Predictions& constant, const Predictions& model,
 // With q the mean square of model - constant in a group and a the mean product
 // of that with what the constant leaves, the errors are e(0) - 2 w a + w^2 q.
 // Their mean is least at w = sum a / sum q, a ratio of means over the groups,
-// whose variance is n/(n - 1) sum (a - w q)^2 / (sum q)^2.
+// whose variance is n/(n - 1) sum (a - w q)^2 / (sum q)^2. A group's own scale,
+// w = a / q, leaves e(0) - a^2 / q of it.
 StackingWeight stacking_weight(const Predictions& constant,
                                const Predictions& model, const ArrayXd& bias,
                                const RowGroups& groups) {
   const GroupErrors q = group_errors(model, constant.bias, groups);
-  const GroupErrors a = 0.5 * (group_errors(constant, bias, groups) + q -
-                               group_errors(model, bias, groups));
-  if (!(q.sum() > 0.0)) return {0.0, 0.0};
+  const GroupErrors flat = group_errors(constant, bias, groups);
+  const GroupErrors left = group_errors(model, bias, groups);
+  const GroupErrors a = 0.5 * (flat + q - left);
+  if (!(q.sum() > 0.0)) return {0.0, 0.0, 0.0};
   const double weight = std::clamp(a.sum() / q.sum(), 0.0, 1.0);
   const auto count = static_cast<double>(groups.count);
+  const GroupErrors by_own_scale =
+      (q > 0.0).select(flat - a.square() / q, flat);
   return {weight,
           std::sqrt(count / (count - 1.0) * (a - weight * q).square().sum()) /
-              q.sum()};
+              q.sum(),
+          left.sum() > 0.0 ? 1.0 - by_own_scale.sum() / left.sum() : 0.0};
+}
+
+bool is_clearly_less(const GroupErrors& model, const GroupErrors& other,
+                     double least) {
+  const GroupErrors gain = other - model;
+  return rms_of(model) <= (1.0 - least) * rms_of(other) &&
+         gain.mean() > standard_error(gain);
 }
 
 std::size_t choose(const std::vector<GroupErrors>& models) {

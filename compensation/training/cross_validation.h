@@ -67,6 +67,10 @@ Predictions averaged(const Predictions& constant, const Predictions& model,
 struct StackingWeight {
   double value;           // [-], 0 to 1
   double standard_error;  // [-], from the groups' scatter
+  // [-], 0 to 1: the share of what the model leaves that a scale of its own in
+  // each group would take away. Near 1 where groups have one shape of different
+  // size, small where they have different shapes or other offsets.
+  double share_of_scale;
 };
 
 /// Returns the weight of `model` in averaged(), from 0 to 1, that gives the
@@ -78,14 +82,32 @@ StackingWeight stacking_weight(const Predictions& constant,
                                const Eigen::ArrayXd& bias,
                                const RowGroups& groups);
 
+/// From this weight on a model counts as whole.
+constexpr double kWholeWeight = 0.9;  // [-]
+
+/// Smallest StackingWeight::share_of_scale for which a model is averaged.
+constexpr double kLeastShareOfScale = 0.5;  // [-]
+
 /// Fewer groups than this are no evidence.
 constexpr int kLeastGroups = 3;
 
 /// Smallest share of the rms of a constant that a model must take away.
 constexpr double kUsefulGain = 0.1;  // [-]
 
+/// Smallest shares of the rms of the cubic that others must take away: of a
+/// candidate that is richer, and of a constant where there are fewer than
+/// kLeastGroups groups. Of others it is kUsefulGain.
+constexpr double kRicherGain = 0.05;   // [-]
+constexpr double kConstantGain = 0.2;  // [-]
+
 /// Largest relative excess of rms that a simpler model may have.
 constexpr double kAllowedExcess = 0.02;  // [-]
+
+/// Returns whether a model leaves less than another one by `least`, a share of
+/// its rms, and by more than the standard error of the difference over groups:
+/// of two groups, less in both.
+bool is_clearly_less(const GroupErrors& model, const GroupErrors& other,
+                     double least);
 
 /// Returns the index of the first model whose rms residual exceeds the least
 /// one by no more than kAllowedExcess. Models are in order, simplest first;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <stdexcept>
 #include <type_traits>
@@ -117,6 +118,13 @@ const NamedCurve kNamedCurves[] = {{"linear", {1}},
                                    {"cubic_and_slopes", {3}, true},
                                    {"fifth", {5}}};
 
+// A cubic with one further input, as "cubic + temperature_play(2)".
+constexpr std::string_view kCubicAnd = "cubic + ";
+
+std::string cubic_and(const Input& input) {
+  return std::string(kCubicAnd) + input_name(input);
+}
+
 std::vector<std::string> candidate_names() {
   std::vector<std::string> names;
   for_each_alternative<FitSpec>([&]<class Method>() {
@@ -126,8 +134,21 @@ std::vector<std::string> candidate_names() {
       for (const NamedCurve& curve : kNamedCurves)
         names.emplace_back(curve.name);
   });
+  names.push_back(std::string(kCubicAnd) + "INPUT");
   names.push_back("bp(6)");
   return names;
+}
+
+// The further input of a cubic; nothing for a name that means none.
+std::optional<Input> further_input(std::string_view name) try {
+  if (!name.starts_with(kCubicAnd)) return std::nullopt;
+  const Input input = parse_input(name.substr(kCubicAnd.size()));
+  const bool is_temperature =
+      input.kind == InputKind::kColumn && input.column == "temperature";
+  return is_temperature || sees_the_rate(input) ? std::nullopt
+                                                : std::optional(input);
+} catch (const std::invalid_argument&) {
+  return std::nullopt;
 }
 
 // A candidate that is no network; nothing for a name that means none.
@@ -137,6 +158,8 @@ std::optional<Candidate> candidate_curve(const std::string& name,
     if (name == known)
       return Candidate{
           name, all_inputs ? inputs : std::vector<Input>{inputs[0]}, curve};
+  if (const std::optional<Input> further = further_input(name))
+    return Candidate{name, {inputs[0], *further}, PolynomialSpec{3}};
   std::optional<Candidate> candidate;
   with_method(name, [&]<class Method>() {
     if constexpr (requires { Method::kIsCandidate; })
@@ -158,11 +181,36 @@ std::optional<Candidate> candidate_curve(const std::string& name,
           fmt::join(known, ", ")));
 }
 
-std::vector<std::string> usual_candidates(std::size_t inputs) {
-  if (inputs == 1)
-    return {"none", "constant", "linear", "cubic", "spline", "bp(3)", "bp(6)"};
-  return {"none",   "constant", "linear", "cubic", "cubic_and_slopes",
-          "spline", "bp(2,4)",  "bp(2,8)"};
+// Names of cubics with one of the inputs of a kind, or else with `usual`.
+void add_cubics(const std::vector<Input>& inputs, InputKind kind,
+                const char* usual, std::vector<std::string>& names) {
+  const std::size_t before = names.size();
+  for (const Input& input : inputs)
+    if (input.kind == kind && input.column == "temperature")
+      names.push_back(cubic_and(input));
+  if (names.size() == before) names.push_back(cubic_and(parse_input(usual)));
+}
+
+std::vector<std::string> usual_candidates(const std::vector<Input>& inputs) {
+  std::vector<std::string> names = {"none", "constant", "linear", "cubic"};
+  add_cubics(inputs, InputKind::kLowpass, "temperature_lowpass(100)", names);
+  add_cubics(inputs, InputKind::kTemperaturePlay, "temperature_play(2)", names);
+  const bool is_one = inputs.size() == 1;
+  if (!is_one) names.emplace_back("cubic_and_slopes");
+  for (const char* name : {"spline", "table", is_one ? "bp(3)" : "bp(2,4)",
+                           is_one ? "bp(6)" : "bp(2,8)"})
+    names.emplace_back(name);
+  return names;
+}
+
+// The inputs named, then those that candidates add.
+std::vector<Input> inputs_of(std::vector<Input> inputs,
+                             const std::vector<Candidate>& candidates) {
+  for (const Candidate& candidate : candidates)
+    for (const Input& input : candidate.inputs)
+      if (std::ranges::find(inputs, input) == inputs.end())
+        inputs.push_back(input);
+  return inputs;
 }
 
 std::vector<Candidate> read_candidates(const MethodSource& source) {
@@ -173,7 +221,7 @@ std::vector<Candidate> read_candidates(const MethodSource& source) {
   const BpSpec options = BpSpec::read_options(source);
   const std::vector<std::string> names = automatic.has("candidates")
                                              ? automatic.texts("candidates")
-                                             : usual_candidates(inputs.size());
+                                             : usual_candidates(inputs);
   if (names.empty())
     automatic.fail("candidates", "[], needs at least one candidate");
   std::vector<Candidate> candidates;
@@ -215,6 +263,7 @@ ModelSpec read_model(const ConfigDocument& document) {
   if (kind == kAutomatic) {
     source.inputs = read_inputs(root);
     spec.candidates = read_candidates(source);
+    source.inputs = inputs_of(std::move(source.inputs), spec.candidates);
   } else {
     with_method(
         kind, [&]<class Method>() { spec.kind = read_method<Method>(source); });

@@ -2,21 +2,17 @@
 #include "compensation/training/selection.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
-#include "compensation/methods/method_inputs.h"
-#include "compensation/models/array_view.h"
-
 namespace beamgyro::internal {
 namespace {
 
 using Eigen::Index;
-
-constexpr double kSlowNoise = 0.05;  // [-], of n s^2
 
 // A candidate, its weight beside a constant, and the residuals of the two.
 struct Judged {
@@ -30,17 +26,6 @@ struct Judged {
 // Standard errors that the weight of a curve is lowered by where fewer than
 // kLeastGroups disagree [-].
 constexpr double kCaution = 0.25;
-constexpr int kLeastPowerOns = 3;
-constexpr double kPowerOnsApart = 10.0;  // [K]
-
-// Temperatures kPowerOnsApart or more apart at which power came on.
-int power_on_temperatures(const TrainingRows& rows) {
-  std::vector<double> temperatures;
-  for (Eigen::Index k = 0; k < rows.size(); ++k)
-    if (k == 0 || rows.cycle(k) != rows.cycle(k - 1))
-      temperatures.push_back(rows.temperature(k));
-  return distinct_temperatures(array_view(temperatures), kPowerOnsApart);
-}
 
 // A network of several weight decays is as many candidates, the strongest decay
 // first: it is the simplest.
@@ -64,13 +49,6 @@ std::vector<Candidate> one_decay_each(
     }
   }
   return result;
-}
-
-bool is_curve(const Candidate& candidate) {
-  const auto* polynomial = std::get_if<PolynomialSpec>(&candidate.kind);
-  return is_constant(candidate.kind) ||
-         (polynomial != nullptr && polynomial->degree <= 3 &&
-          candidate.inputs.size() == 1);
 }
 
 // Segments are not independent and excuse no simplicity: the last that leaves
@@ -107,9 +85,49 @@ const Judged& useful(const Judged& chosen, const std::vector<Judged>& judged) {
   return gains || is_constant(chosen.candidate.kind) ? chosen : *flat;
 }
 
+const Judged* cubic_of(const std::vector<Judged>& judged) {
+  const auto found = std::ranges::find_if(
+      judged, [](const Judged& each) { return is_cubic(each.candidate); });
+  return found == judged.end() ? nullptr : &*found;
+}
+
+// Share of the rms of the cubic, which is one of `judged`, that another must
+// take away. Those after the cubic are richer.
+double needed_gain(const Judged& other, const Judged& cubic) {
+  if (is_constant(other.candidate.kind))
+    return other.errors.size() < kLeastGroups ? kConstantGain : kUsefulGain;
+  return &other > &cubic ? kRicherGain : kUsefulGain;
+}
+
+// A table has corners at the knots of a spline, which drift has not: it gives
+// way to a spline unless it leaves kUsefulGain less.
+bool gives_way_to_spline(const Judged& one, const std::vector<Judged>& judged) {
+  return std::holds_alternative<TableSpec>(one.candidate.kind) &&
+         std::ranges::any_of(judged, [&](const Judged& other) {
+           return std::holds_alternative<SplineSpec>(other.candidate.kind) &&
+                  one.rms() > (1.0 - kUsefulGain) * other.rms();
+         });
+}
+
+// Returns the cubic, or the simplest of those that are clearly better.
+const Judged& better_than(const Judged& cubic,
+                          const std::vector<Judged>& judged) {
+  std::vector<const Judged*> better;
+  std::vector<GroupErrors> errors;
+  for (const Judged& each : judged) {
+    if (gives_way_to_spline(each, judged) ||
+        !is_clearly_less(each.errors, cubic.errors, needed_gain(each, cubic)))
+      continue;
+    better.push_back(&each);
+    errors.push_back(each.errors);
+  }
+  return better.empty() ? cubic : *better[choose(errors)];
+}
+
 class Selector {
  public:
-  explicit Selector(const SelectionData& data) : data_(data) {
+  Selector(const SelectionData& data, bool is_automatic)
+      : data_(data), is_automatic_(is_automatic) {
     if (data.groups)
       groups_ = *data.groups;
     else if (data.held_out.size() > 0)
@@ -134,18 +152,18 @@ class Selector {
     if (judged.empty())
       throw std::invalid_argument("no candidate can be fitted: " +
                                   remarks.front());
-    const Judged& chosen =
-        judged[one_leg() ? richest_curve(judged) : simplest(judged)];
-    const Judged& kept = one_leg() ? chosen : useful(chosen, judged);
-    remarks.push_back(reason(judged, chosen, kept));
+    const Judged& kept = kept_of(judged, remarks);
+    if (kept.weight == 0.0)
+      remarks.push_back("kept constant: of weight 0 nothing else is left");
     Selected result;
-    result.candidate = kept.candidate;
-    result.weight = kept.weight;
+    result.candidate = kept.weight > 0.0 ? kept.candidate : constant();
     result.errors = kept.errors;
-    result.fit = final_fit(kept.candidate);
-    if (kept.weight < 1.0)
+    result.fit = final_fit(result.candidate);
+    if (kept.weight > 0.0 && kept.weight < 1.0) {
+      result.weight = kept.weight;
       result.fit.model = averaged_with_constant(
           std::move(result.fit.model), data_.rows.bias.mean(), kept.weight);
+    }
     result.fit.choices.insert(result.fit.choices.begin(), remarks.begin(),
                               remarks.end());
     result.constant_errors = constant_errors();
@@ -156,6 +174,51 @@ class Selector {
   bool one_leg() const {
     return data_.groups && groups_.by == Grouping::kSegment;
   }
+  bool averages() const { return is_automatic_ && !one_leg(); }
+
+  // Returns the cubic, where nothing speaks for less than a curve.
+  const Judged* default_of(const std::vector<Judged>& judged) const {
+    return averages() && moves_more_than_noise(data_.rows) ? cubic_of(judged)
+                                                           : nullptr;
+  }
+
+  // Returns the one to keep, and adds why.
+  const Judged& kept_of(const std::vector<Judged>& judged,
+                        std::vector<std::string>& remarks) const {
+    if (const Judged* cubic = default_of(judged)) {
+      const Judged& kept = better_than(*cubic, judged);
+      remarks.push_back(why_beside_the_cubic(judged, *cubic, kept));
+      return kept;
+    }
+    const Judged& chosen =
+        judged[one_leg() ? richest_curve(judged) : simplest(judged)];
+    const Judged& kept = one_leg() ? chosen : useful(chosen, judged);
+    remarks.push_back(reason(judged, chosen, kept));
+    return kept;
+  }
+
+  std::string why_beside_the_cubic(const std::vector<Judged>& judged,
+                                   const Judged& cubic,
+                                   const Judged& kept) const {
+    const auto& best = *std::ranges::min_element(judged, {}, &Judged::rms);
+    if (&kept == &best)
+      return fmt::format("kept {}: the lowest residual", kept.candidate.name);
+    const auto share = [&](const Judged& other) {  // of the cubic, [%]
+      return 100.0 * (1.0 - other.rms() / cubic.rms());
+    };
+    if (&kept != &cubic)
+      return fmt::format(
+          "kept {}: it takes {:.2g} % of the rms of {} away, in the groups "
+          "alike",
+          kept.candidate.name, share(kept), cubic.candidate.name);
+    return fmt::format(
+        "kept {}: of its rms {} takes {:.2g} % away; evidence is {:g} % and "
+        "more than the standard error over {} {}s",
+        kept.candidate.name, best.candidate.name, share(best),
+        100.0 * needed_gain(best, cubic), groups_.count,
+        grouping_name(groups_.by));
+  }
+
   // Returns the rows on which candidates are judged.
   const TrainingRows& judging() const {
     return data_.groups ? data_.rows : data_.held_out;
@@ -167,7 +230,7 @@ class Selector {
     return with_columns(data_.held_out, data_.inputs, candidate.inputs);
   }
   Candidate constant() const {
-    return {"constant", data_.inputs, ConstantSpec{}};
+    return {"constant", {data_.inputs.front()}, ConstantSpec{}};
   }
 
   Predictions predictions(const Candidate& candidate) const {
@@ -194,15 +257,17 @@ class Selector {
   Judged judge(const Candidate& candidate, const Predictions& flat) const {
     const Predictions found = predictions(candidate);
     Judged alone{candidate, 1.0, errors_of(found)};
-    if (one_leg() || is_constant(candidate.kind)) return alone;
+    if (!averages() || is_constant(candidate.kind)) return alone;
     const StackingWeight weight =
         stacking_weight(flat, found, judging().bias, groups_);
     const auto average = [&](double share) {
       return Judged{candidate, share, errors_of(averaged(flat, found, share))};
     };
-    const Judged best = average(weight.value);
-    if (alone.rms() <= (1.0 + kAllowedExcess) * best.rms()) return alone;
-    if (groups_.count >= kLeastGroups) return best;
+    // Only groups of one shape and different sizes tell a common weight.
+    if (weight.value >= kWholeWeight ||
+        weight.share_of_scale < kLeastShareOfScale)
+      return alone;
+    if (groups_.count >= kLeastGroups) return average(weight.value);
     return average(
         std::max(weight.value - kCaution * weight.standard_error, 0.0));
   }
@@ -250,81 +315,63 @@ class Selector {
   }
 
   const SelectionData& data_;
+  bool is_automatic_;  // several candidates, not the decays of one network
   RowGroups groups_;
 };
 
-bool sees_power_on(const Candidate& candidate) {
-  return std::any_of(candidate.inputs.begin(), candidate.inputs.end(),
-                     [](const Input& input) {
-                       return input.kind == InputKind::kSincePowerOn;
-                     });
+// Takes inputs of a candidate away that unseen groups cannot judge. Returns why
+// the candidate is passed over, or an empty text, and says what else is
+// missing.
+std::string why_passed_over(Candidate& candidate, const SelectionData& data,
+                            std::vector<std::string>& remarks) {
+  const std::string objection =
+      objection_to_candidate(candidate, data.rows, *data.groups);
+  if (!objection.empty()) return objection;
+  const RemovedInputs removed = remove_inputs_without_evidence(
+      candidate, data.inputs, data.rows, *data.groups);
+  if (removed.names.empty()) return "";
+  // Without its further inputs it is a curve that other candidates are.
+  if (candidate.inputs.size() == 1 &&
+      !std::holds_alternative<BpSpec>(candidate.kind))
+    return removed.reason;
+  remarks.push_back(fmt::format("{}: without {}: {}", candidate.name,
+                                fmt::join(removed.names, ", "),
+                                removed.reason));
+  return "";
 }
 
-// Returns why unseen groups cannot judge a candidate, or an empty text when
-// they can.
-std::string objection(const Candidate& candidate, const TrainingRows& rows,
-                      const RowGroups& groups) {
-  if (is_constant(candidate.kind)) return "";
-  if (groups.by == Grouping::kSegment && !is_curve(candidate))
-    return "the recordings are one leg of temperature, or legs that share too "
-           "little of it, and nothing independent can be held out: curves up "
-           "to "
-           "the cubic only";
-  if (groups.count < kLeastGroups &&
-      std::holds_alternative<BpSpec>(candidate.kind))
-    return fmt::format("{} {}s or more judge a network; the recordings have {}",
-                       kLeastGroups, grouping_name(groups.by), groups.count);
-  if (groups.by == Grouping::kSegment && !moves_more_than_noise(rows))
-    return "the bias moves no more than slow noise does while the temperature "
-           "goes one way";
-  if (const int ambients = power_on_temperatures(rows);
-      sees_power_on(candidate) && ambients < kLeastPowerOns)
-    return fmt::format(
-        "time since power-on is told from temperature by power-ons at {} "
-        "temperatures {:g} K apart; the recordings have {}",
-        kLeastPowerOns, kPowerOnsApart, ambients);
-  return "";
+std::vector<Candidate> that_can_be_judged(std::vector<Candidate> candidates,
+                                          const SelectionData& data,
+                                          std::vector<std::string>& remarks) {
+  std::vector<Candidate> kept;
+  for (Candidate& candidate : candidates) {
+    const std::string why = why_passed_over(candidate, data, remarks);
+    if (why.empty())
+      kept.push_back(std::move(candidate));
+    else
+      remarks.push_back(
+          fmt::format("{}: passed over, {}", candidate.name, why));
+  }
+  return kept;
 }
 
 }  // namespace
 
-bool is_constant(const FitSpec& kind) {
-  return std::holds_alternative<NoneSpec>(kind) ||
-         std::holds_alternative<ConstantSpec>(kind);
-}
-
-bool moves_more_than_noise(const TrainingRows& rows) {
-  double squares = 0.0, count = 0.0;
-  for (Index k = 2; k < rows.size(); ++k) {
-    if (rows.cycle(k) != rows.cycle(k - 2)) continue;
-    const double second =
-        rows.bias(k) - 2.0 * rows.bias(k - 1) + rows.bias(k - 2);
-    squares += second * second;
-    count += 1.0;
-  }
-  const double variance = (rows.bias - rows.bias.mean()).square().mean();
-  const auto size = static_cast<double>(rows.size());
-  return count > 0.0 && variance > kSlowNoise * size * 0.5 * squares / count;
-}
-
 Selected select_model(std::vector<Candidate> candidates,
                       const SelectionData& data) {
   std::vector<std::string> remarks;
-  if (candidates.size() > 1 && data.groups)
-    std::erase_if(candidates, [&](const Candidate& candidate) {
-      const std::string why = objection(candidate, data.rows, *data.groups);
-      if (!why.empty())
-        remarks.push_back(
-            fmt::format("{}: passed over, {}", candidate.name, why));
-      return !why.empty();
-    });
+  const bool is_automatic = candidates.size() > 1;
+  if (is_automatic && data.groups)
+    candidates = that_can_be_judged(std::move(candidates), data, remarks);
+  else if (data.groups)
+    require_groups_for_inputs(candidates.front(), *data.groups);
   if (candidates.empty())
     throw std::invalid_argument("no candidate can be judged: " +
                                 remarks.front());
   // With held-out rows fit_model() chooses the decay itself.
   if (data.groups && data.held_out.size() == 0)
     candidates = one_decay_each(candidates);
-  const Selector selector(data);
+  const Selector selector(data, is_automatic);
   Selected result = candidates.size() == 1 ? selector.only(candidates[0])
                                            : selector.best_of(candidates);
   result.fit.choices.insert(result.fit.choices.begin(), remarks.begin(),

@@ -43,19 +43,21 @@ void check_runs(const ModelSpec& spec, const RunSource& runs,
 struct RunFacts {
   std::vector<RunMark> runs;
   double coarsest_resolution = 0.0;  // [K], of the temperature
+  bool is_ageing = false;            // a device, by remembers_or_ages()
 };
 
 // Returns the same runs and notes facts about each as it passes.
 RunSource noting(const RunSource& runs, RunFacts& facts) {
-  return {runs.count, [&](const RunSource::Visitor& visit) {
-            runs.for_each([&](const TrainingRun& run) {
-              visit(run);  // whose errors name the run
-              if (!run.sha256.empty()) facts.runs.push_back(mark_of(run));
-              facts.coarsest_resolution =
-                  std::max(facts.coarsest_resolution,
-                           temperature_resolution(run.recording));
-            });
-          }};
+  return {
+      runs.count, [&](const RunSource::Visitor& visit) {
+        runs.for_each([&](const TrainingRun& run) {
+          visit(run);  // whose errors name the run
+          if (!run.sha256.empty()) facts.runs.push_back(mark_of(run));
+          facts.coarsest_resolution = std::max(
+              facts.coarsest_resolution, temperature_resolution(run.recording));
+          facts.is_ageing = facts.is_ageing || remembers_or_ages(run.recording);
+        });
+      }};
 }
 
 // Returns the files as a compensator keeps them.
@@ -290,9 +292,9 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
         "no sigma: the curve is averaged with a constant");
   }
   if (groups) p.cross_validated = summary_of(*groups, selected);
-  p.warnings =
-      cautions({c.inputs, c.bias, c.baseline, own, own_unseen,
-                facts.coarsest_resolution, known != TemperatureRange{}});
+  p.warnings = cautions({c.inputs, c.bias, c.baseline, own, own_unseen,
+                         facts.coarsest_resolution, known != TemperatureRange{},
+                         facts.is_ageing});
   p.warnings.insert(p.warnings.end(), selected.fit.warnings.begin(),
                     selected.fit.warnings.end());
   if (c.sigma) add_sigma_caution(*c.sigma, own, p.warnings);

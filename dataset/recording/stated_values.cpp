@@ -75,7 +75,24 @@ auto with_value(const std::string& text, const std::string& overrides_text,
   return use(*value);
 }
 
+bool has_table(const std::string& text, const std::string& overrides_text,
+               std::string_view name) {
+  return with_value(text, overrides_text, name,
+                    [](const ConfigNode& value) -> std::optional<bool> {
+                      return value.kind == ConfigNode::Kind::kTable;
+                    })
+      .value_or(false);
+}
+
 }  // namespace
+
+bool states_device_table(const Recording& recording, std::string_view name) {
+  return has_table(recording.device_text, recording.overrides_text, name);
+}
+
+bool states_scenario_table(const Recording& recording, std::string_view name) {
+  return has_table(recording.scenario_text, recording.overrides_text, name);
+}
 
 std::optional<double> stated_device_number(const Recording& recording,
                                            std::string_view key) {

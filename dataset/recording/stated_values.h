@@ -13,6 +13,13 @@ namespace beamgyro::internal {
 std::optional<double> stated_device_number(const Recording& recording,
                                            std::string_view key);
 
+/// Returns whether the device file of a recording has the table of that name,
+/// or its overrides make one.
+bool states_device_table(const Recording& recording, std::string_view name);
+
+/// The same for the scenario of a recording.
+bool states_scenario_table(const Recording& recording, std::string_view name);
+
 /// Returns the flag with a dotted key in the scenario and the overrides of a
 /// recording, or nothing where there is none.
 std::optional<bool> stated_scenario_flag(const Recording& recording,

@@ -61,7 +61,8 @@ struct NamedRecording {
 struct SetChoice {
   std::vector<std::string> runs = {};  ///< names; none: all
   /// None: the training devices are fitted, the validation devices held out.
-  /// Otherwise these are fitted, and nothing is held out.
+  /// Otherwise these are fitted, and nothing is held out; one device alone can
+  /// be cross-validated.
   std::vector<std::uint32_t> devices = {};
 };
 
@@ -94,7 +95,8 @@ TrainedCompensator train(const Model& model,
                          const TrainingOptions& options = {});
 
 /// The same for the devices of a set. Also throws std::invalid_argument for a
-/// run or device that it does not have, and for cross-validation.
+/// run or device that it does not have, and for cross-validation of several
+/// devices.
 TrainedCompensator train(const Model& model, const Set& set,
                          const SetChoice& choice = {},
                          const TrainingOptions& options = {});

@@ -89,7 +89,8 @@ def train(model: Union[Path, Mapping[str, Any]],
             validation devices are held out.
         held_out: recordings that a network stops early on.
         set_runs: runs of a set to use; all without.
-        devices: devices of a set to fit; then none is held out.
+        devices: devices of a set to fit; then none is held out. One device
+            alone can be cross-validated.
         seed: of the initial weights of a network.
         cross_validation: "run", "cycle" or "leg": groups that are held out
             in turn.
@@ -112,12 +113,13 @@ def train(model: Union[Path, Mapping[str, Any]],
                        devices=numbered or None)
     with watched(progress, "training") as function:
         if isinstance(runs, Set):
-            if kept or groups:
+            if kept or (groups and len(numbered) != 1):
                 raise ValueError(
-                    "held_out and cross_validation are for recordings; a set "
-                    "holds out its own validation devices")
+                    "held_out is for recordings, and cross_validation for "
+                    "these and for one device of a set; a set holds out its "
+                    "own validation devices")
             found = _core.train_set(
-                core, runs._native, named, numbered, seed, function)
+                core, runs._native, named, numbered, seed, groups, function)
         elif _all_files(fitted := named_runs(runs)) and _all_files(kept):
             found = _core.train_files(
                 core, _files(fitted, "runs"), _files(kept, "held_out"), seed,

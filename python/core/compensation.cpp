@@ -169,10 +169,11 @@ py::tuple train_recordings(const Model& model, const NamedRecordings& runs,
 py::tuple train_set(const Model& model, const Set& set,
                     const std::vector<std::string>& runs,
                     const std::vector<std::uint32_t>& devices,
-                    std::uint64_t seed, const py::object& on_progress) {
+                    std::uint64_t seed, const std::string& cross_validation,
+                    const py::object& on_progress) {
   return trained(long_call(on_progress, [=](const Progress& progress) {
     return train(model, set, {.runs = runs, .devices = devices},
-                 training_options(seed, "", progress));
+                 training_options(seed, cross_validation, progress));
   }));
 }
 

@@ -167,6 +167,24 @@ class LegsThatDisagree(Auto):
             self.assertEqual(stored["cross_validation"]["groups"], 2)
             self.assertIn("fewer than 3 groups are no evidence", errors)
 
+    def test_a_network_alone_is_no_average_and_is_read(self):
+        two = [self.with_slope(run, slope)
+               for run, slope in zip("ab", [0.45, -0.45])]
+        self.write("network.toml", NETWORK.replace(
+            "restarts = 1", "restarts = 1\nweight_decays = [0, 1e-8, 1e-6]"))
+        _, errors, stored = self.trained(two, "network.toml", "--cv", "run")
+        self.assertEqual(stored["method"], "BP network 2")
+        self.assertIn("no improvement to claim", errors)
+        self.ok("compensate", "c.json", two[0], "-o", "c.h5")
+
+    def test_that_contradict_each_other_leave_a_constant(self):
+        two = [self.with_slope(run, slope)
+               for run, slope in zip("ab", [0.45, -0.45])]
+        _, errors, stored = self.trained(two, AUTO, "--cv", "run")
+        self.assertIn(stored["method"], ["none", "constant"])
+        self.assertIn("no improvement to claim", errors)
+        self.ok("compensate", "c.json", two[0], "-o", "c.h5")
+
     def test_an_average_is_exported_in_every_format(self):
         report, _, stored = self.trained(self.runs[:2], AUTO, "--cv", "leg")
         self.assertIn("beside a constant", stored["method"])
@@ -205,11 +223,28 @@ class ManyLegs(Auto):
             self.trained(self.runs, FIVE_INPUTS, name=name)
         self.assertSameBytes("first.json", "again.json")
 
-    def test_needs_warm_ups_to_use_the_time_since_power_on(self):
+    def test_without_warm_ups_drops_the_time_since_power_on_alone(self):
         report, _, stored = self.trained(self.runs, FIVE_INPUTS)
-        self.assertEqual(stored["method"], "cubic spline")
-        self.assertRegex(report, r"choice: bp\(2,8\).*: passed over, time "
-                                 r"since power-on is told from temperature by")
+        self.assertRegex(report, r"choice: bp\(2,8\): without "
+                                 r"since_power_on\(100\), since_power_on\(700\): "
+                                 r"time since power-on is told from")
+        judged = dict(re.findall(r"choice: (.*): ([\d.]+) deg/s rms over 3 "
+                                 r"unseen runs", report))
+        networks = [float(rms) for name, rms in judged.items()
+                    if name.startswith("bp(2,8)")]
+        self.assertLess(min(networks), 0.5 * float(judged["spline"]))
+        self.assertRegex(stored["method"], "BP network 2-")
+        self.assertEqual(self.json("c.json")["inputs"], [
+            "temperature", "temperature_lowpass(100)",
+            "temperature_lowpass(400)"])
+
+    def test_a_network_of_several_inputs_needs_three_of_them(self):
+        self.write("network.toml", NETWORK.replace(
+            '"temperature"', '"temperature", "temperature_lowpass(100)"'))
+        self.rejected("train", *self.runs[:2], "--model", "network.toml", "-o",
+                      "c.json", "--cv", "run",
+                      says=["3 runs or more judge a network of several inputs",
+                            "temperature_lowpass(100)", "have 2"])
 
     def test_without_a_temperature_effect_claims_nothing(self):
         for run in self.runs:

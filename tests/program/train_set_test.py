@@ -136,6 +136,14 @@ class Split(TrainSet):
         self.assertIn(f" {rows['sweep'] + rows['check']} rows", text)
         self.assertGreater(rows["sweep"], rows["check"])
 
+    def test_one_device_is_cross_validated(self):
+        said = self.train("cubic.toml", "one.json", "--device", 3, "--cv",
+                          "run")
+        found = said["cross_validation"]
+        self.assertEqual((found["by"], found["groups"]), ("run", 2))
+        self.assertEqual(said["set"]["devices"], 1)
+        self.assertGreater(min(found["group_rms_deg_per_s"]), 0)
+
     def test_scores_are_those_of_the_test_devices(self):
         self.train("cubic.toml", "cubic.json", "--run", "sweep")
         text, scores = self.scores("cubic.json", "--run", "check")
@@ -307,6 +315,7 @@ class Refused(TrainSet):
         self.refused("--held-out", "set/check_00000.h5",
                      says="is a file of a set; expected a recording")
         self.refused("--held-out", "elsewhere.h5", says="--held-out and --cv")
-        self.refused("--cv", "run", says="--cv")
+        self.refused("--cv", "run", says="--cv takes one device, --device K")
+        self.refused("--cv", "run", "--device", 3, 5, says="--cv")
         self.rejected("train", "nowhere", "--model", "cubic.toml", "-o",
                       "cubic.json", says="nowhere")

@@ -54,6 +54,43 @@ TEST(Cautions, SoundDataDrawNone) {
             Strings{});
 }
 
+TEST(Cautions, TheDriveFrequencyOfADeviceThatAges) {
+  TrainingRows rows = straight(grid(-40.0, 50.0, 1.0));
+  rows.inputs = Eigen::ArrayXXd(rows.size(), 2);
+  rows.inputs.col(0) = rows.temperature;
+  rows.inputs.col(1) =
+      9000.0 - 0.1 * rows.temperature + 1e-3 * rows.temperature.square();
+  const std::vector<Input> inputs{parse_input("temperature"),
+                                  parse_input("drive_frequency")};
+  const BiasModel model =
+      fit_model(PolynomialSpec{1}, inputs, rows, {}, 1).model;
+  const auto found = [&](bool is_ageing) {
+    return cautions(
+        {inputs, model, fit_baseline(rows), rows, {}, 0.0, false, is_ageing});
+  };
+  EXPECT_EQ(found(false), Strings{});
+  expect_one(found(true),
+             "the input \"drive_frequency\" is no thermometer of a device with "
+             "[memory] or [age]");
+}
+
+TEST(Cautions, DevicesThatAgeSayItInTheirFilesOrOverrides) {
+  Recording recording;
+  EXPECT_FALSE(remembers_or_ages(recording));
+  recording.device_text = "[beam]\nlength_m = 0.04\n";
+  recording.scenario_text = "name = \"rest\"\n";
+  EXPECT_FALSE(remembers_or_ages(recording));
+  recording.device_text += "[memory.ageing]\n";
+  EXPECT_TRUE(remembers_or_ages(recording));
+  recording.device_text = "";
+  EXPECT_FALSE(remembers_or_ages(recording));
+  recording.scenario_text += "[age]\nhours = 8766\n";
+  EXPECT_TRUE(remembers_or_ages(recording));
+  recording.scenario_text = "name = \"rest\"\n";
+  recording.overrides_text = "age.hours=8766\n";
+  EXPECT_TRUE(remembers_or_ages(recording));
+}
+
 TEST(Cautions, SpanUnderTenKelvins) {
   EXPECT_EQ(cautions_of(straight(grid(20.0, 30.0, 1.0)), PolynomialSpec{1}),
             Strings{});

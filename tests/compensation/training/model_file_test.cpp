@@ -274,41 +274,62 @@ TEST(ModelFile, AutomaticChoiceNamesItsCandidates) {
 inputs = ["temperature", "temperature_rate(60)"]
 [auto]
 candidates = ["constant", "linear", "cubic", "cubic_and_slopes", "fifth",
-              "table", "spline", "thermistor", "fuzzy", "radial_basis", "bp(2,8)"]
+              "table", "spline", "thermistor", "fuzzy", "radial_basis", "bp(2,8)",
+              "cubic + temperature_play(3)"]
 [bp]
 restarts = 2
 )toml");
-  ASSERT_EQ(spec.candidates.size(), 11u);
+  ASSERT_EQ(spec.candidates.size(), 12u);
   EXPECT_EQ(candidate_names(spec)[10], "bp(2,8)");
   const BpSpec& network = std::get<BpSpec>(spec.candidates[10].kind);
   EXPECT_EQ(network.hidden, (std::vector<int>{2, 8}));
   EXPECT_EQ(network.training.restarts, 2);
   EXPECT_EQ(std::get<PolynomialSpec>(spec.candidates[1].kind).degree, 1);
   EXPECT_EQ(std::get<PolynomialSpec>(spec.candidates[4].kind).degree, 5);
-  // Curves take the temperature alone.
-  for (const Candidate& candidate : spec.candidates)
+  // Curves take the temperature alone, a cubic with an input that one, too.
+  const Candidate& with_play = spec.candidates[11];
+  EXPECT_EQ(with_play.inputs,
+            (std::vector<Input>{parse_input("temperature"),
+                                parse_input("temperature_play(3)")}));
+  EXPECT_EQ(std::get<PolynomialSpec>(with_play.kind).degree, 3);
+  for (std::size_t k = 0; k < 11; ++k) {
+    const Candidate& candidate = spec.candidates[k];
     EXPECT_EQ(candidate.inputs.size(), candidate.name == "cubic_and_slopes" ||
                                                candidate.name == "bp(2,8)"
                                            ? 2u
                                            : 1u)
         << candidate.name;
+  }
+  // Rows have the inputs of all.
+  EXPECT_EQ(input_names(spec.inputs),
+            (std::vector<std::string>{"temperature", "temperature_rate(60)",
+                                      "temperature_play(3)"}));
 }
 
 TEST(ModelFile, AutomaticChoiceHasUsualCandidates) {
   EXPECT_EQ(
       candidate_names(parse("kind = \"auto\"\ninputs = [\"temperature\"]\n")),
-      (std::vector<std::string>{"none", "constant", "linear", "cubic", "spline",
-                                "bp(3)", "bp(6)"}));
-  EXPECT_EQ(candidate_names(parse("kind = \"auto\"\ninputs = [\"temperature\","
-                                  " \"quadrature\"]\n")),
-            (std::vector<std::string>{"none", "constant", "linear", "cubic",
-                                      "cubic_and_slopes", "spline", "bp(2,4)",
-                                      "bp(2,8)"}));
+      (std::vector<std::string>{"none", "constant", "linear", "cubic",
+                                "cubic + temperature_lowpass(100)",
+                                "cubic + temperature_play(2)", "spline",
+                                "table", "bp(3)", "bp(6)"}));
+  EXPECT_EQ(
+      candidate_names(
+          parse("kind = \"auto\"\ninputs = [\"temperature\","
+                " \"temperature_lowpass(30)\", \"temperature_lowpass(400)\","
+                " \"quadrature\"]\n")),
+      (std::vector<std::string>{
+          "none", "constant", "linear", "cubic",
+          "cubic + temperature_lowpass(30)", "cubic + temperature_lowpass(400)",
+          "cubic + temperature_play(2)", "cubic_and_slopes", "spline", "table",
+          "bp(2,4)", "bp(2,8)"}));
 }
 
 TEST(ModelFile, CandidatesThatAreNoneAreRefused) {
-  for (const char* name : {"bp()", "bp(2,)", "bp(2, 8)", "bp(0)", "bp(-3)",
-                           "bp(2.5)", "bp(1001)", "bp(6", "bp", "qubic", ""}) {
+  for (const char* name :
+       {"bp()", "bp(2,)", "bp(2, 8)", "bp(0)", "bp(-3)", "bp(2.5)", "bp(1001)",
+        "bp(6", "bp", "qubic", "", "cubic + rate", "cubic + temperature",
+        "cubic + ", "cubic + play(2)", "cubic+quadrature"}) {
     const std::string message =
         error_of(fmt::format("kind = \"auto\"\ninputs = [\"temperature\"]\n"
                              "[auto]\ncandidates = [\"{}\"]\n",

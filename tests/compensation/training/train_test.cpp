@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "compensation/compensator/compensator_file.h"
@@ -71,6 +72,27 @@ const std::vector<TrainingRun> kSoaks =
     runs({soaks(-40.0, 50.0, 5.0)}, "soaks");
 const std::vector<TrainingRun> kOffGrid =
     runs({soaks(-37.5, 47.5, 5.0)}, "off_grid");
+
+TEST(Train, TheDriveFrequencyOfADeviceThatAgesIsWarnedOf) {
+  Recording run = soaks(-40.0, 50.0, 5.0);
+  Column frequency{"drive_frequency", "Hz", "", Role::kMeasured, {}};
+  for (const double T : column_values(run, "temperature"))
+    frequency.values.push_back(9000.0 - 0.1 * T + 1e-3 * T * T);
+  run.columns.insert(run.columns.begin(), frequency);
+  ModelSpec spec = curve_spec(PolynomialSpec{3});
+  spec.inputs.push_back(parse_input("drive_frequency"));
+  const auto warned = [&] {
+    return std::ranges::count_if(train(spec, runs({run}, "soaks"), {}, 1)
+                                     .compensator.provenance.warnings,
+                                 [](const std::string& warning) {
+                                   return warning.find("no thermometer") !=
+                                          std::string::npos;
+                                 });
+  };
+  EXPECT_EQ(warned(), 0);
+  run.device_text = "[memory.ageing]\n";
+  EXPECT_EQ(warned(), 1);
+}
 
 TEST(Train, EveryKindBeatsItsBaselineOnUnseenSoaks) {
   const Recording unseen = soaks(-38.0, 48.0, 2.0);
