@@ -16,7 +16,8 @@ using Eigen::Index;
 constexpr int kRounds = 8;     // each halves the fastest rate of a stretch
 constexpr double kSlow = 1.5;  // over steady_K_per_min, of a row to the next
 constexpr double kMostMissing = 10.0;  // rows between two that follow
-constexpr double kFast = 0.9;          // quantile of the rates of a stretch
+constexpr Index kReach = 3;    // rows: noise of the temperature averages out
+constexpr double kFast = 0.9;  // quantile of the rates of a stretch
 
 // Stretches of rows between which the temperature changes slowly, also where
 // rows are left out.
@@ -40,12 +41,12 @@ std::vector<RowStretch> following_rows(const TrainingRows& rows,
   return stretches;
 }
 
-// |dT/dt| of each row of a stretch, from its neighbours [K/s].
+// |dT/dt| of each row of a stretch, from rows before and after it [K/s].
 std::vector<double> rates(const TrainingRows& rows, const RowStretch& of) {
   std::vector<double> found;
   for (Index k = of.begin; k < of.end; ++k) {
-    const Index before = std::max(k - 1, of.begin);
-    const Index after = std::min(k + 1, of.end - 1);
+    const Index before = std::max(k - kReach, of.begin);
+    const Index after = std::min(k + kReach, of.end - 1);
     found.push_back(
         std::abs(rows.temperature(after) - rows.temperature(before)) /
         (rows.time(after) - rows.time(before)));
