@@ -61,7 +61,7 @@ void observe_epochs(internal::ModelSpec& spec, const TrainingOptions& options) {
 }
 
 // A compensator that no command reads is not handed out.
-void require_readable(const internal::CompensatorState& state) {
+void require_that_it_reads(const internal::CompensatorState& state) {
   try {
     internal::parse_compensator(state.text, state.name);
   } catch (const std::invalid_argument& error) {
@@ -86,7 +86,7 @@ TrainedCompensator trained(const Model& model,
   state->compensator = std::move(result.compensator);
   state->text = internal::compensator_text(state->compensator);
   state->name = "compensator.json";
-  require_readable(*state);
+  require_that_it_reads(*state);
   std::vector<std::string> warnings = state->compensator.provenance.warnings;
   return {Compensator(std::move(state)), std::move(warnings),
           std::move(report)};

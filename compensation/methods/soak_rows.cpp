@@ -16,6 +16,9 @@ using Eigen::Index;
 constexpr int kRounds = 8;     // each halves the fastest rate of a stretch
 constexpr double kSlow = 1.5;  // over steady_K_per_min, of a row to the next
 constexpr double kMostMissing = 10.0;  // rows between two that follow
+// [K], by which a lag that is corrected with a noisy rate moves a row. Soaks
+// that a faster ramp leads to are farther apart.
+constexpr double kJump = 0.5 * kPointWidth;
 constexpr Index kReach = 3;    // rows: noise of the temperature averages out
 constexpr double kFast = 0.9;  // quantile of the rates of a stretch
 
@@ -34,7 +37,7 @@ std::vector<RowStretch> following_rows(const TrainingRows& rows,
         k == 0 || rows.time(k) - rows.time(k - 1) > kMostMissing * spacing ||
         rows.cycle(k) != rows.cycle(k - 1) || rows.run(k) != rows.run(k - 1) ||
         std::abs(rows.temperature(k) - rows.temperature(k - 1)) >
-            fastest * (rows.time(k) - rows.time(k - 1));
+            kJump + fastest * (rows.time(k) - rows.time(k - 1));
     if (anew) stretches.push_back({k, k});
     stretches.back().end = k + 1;
   }
