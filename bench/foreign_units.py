@@ -30,7 +30,7 @@ from scipy.interpolate import CubicSpline
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCENARIOS = ROOT / "scenarios"
 HOLD, STEP, LAST = 2700, 3000, 600  # of the check [s], and what is used [s]
-SOAKS = {"seven": np.linspace(-40, 50, 7), "calibration": [-36, 0, 36]}
+SOAKS = {"seven": np.linspace(-40, 50, 7), "calibration": [-36, -12, 36]}
 SHOWN = 0.02  # [deg/s]
 RAMP = """name = "slow_ramp"
 device = "{device}"

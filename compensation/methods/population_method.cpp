@@ -93,6 +93,9 @@ AdaptedSpec AdaptedSpec::read(MethodSource& source) {
   const ConfigTable root = source.root();
   const ConfigTable table = source.table(kName);
   AdaptedSpec spec;
+  const double given = table.number_or("noise_deg_per_s", 0.0, positive());
+  spec.noise.channel_share = table.number_or(
+      "channel_noise_share", spec.noise.channel_share, positive());
   const std::string name = root.text("population");
   const std::filesystem::path file =
       source.document.path().parent_path() / name;
@@ -104,10 +107,7 @@ AdaptedSpec AdaptedSpec::read(MethodSource& source) {
   const ConfigTable row_options = root.table_or_empty("rows");
   if (row_options.has("steady_K_per_min"))
     spec.steady_K_per_min = row_options.number("steady_K_per_min");
-  spec.noise.bias = table.number_or("noise_deg_per_s",
-                                    spec.population.point_noise, positive());
-  spec.noise.channel_share = table.number_or(
-      "channel_noise_share", spec.noise.channel_share, positive());
+  spec.noise.bias = given > 0.0 ? given : spec.population.point_noise;
   spec.source =
       fmt::format("{}, {} devices, sha256 {}", file.filename().string(),
                   spec.population.devices, sha256_of_file(file));
