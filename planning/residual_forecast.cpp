@@ -85,9 +85,7 @@ void append_residuals(const SoakModel& model, const Observation& soaks,
                       const MatrixXd& noise, std::vector<double>& rms) {
   const MatrixXd& H = soaks.H;
   const MatrixXd& c = model.population().coefficients;
-  const auto n = static_cast<double>(model.population().devices);
-  const double alpha = (n - 1.0) / (n - 2.0);
-  const double beta = n / (n - 1.0) / (n - 2.0), gamma = n / (n - 1.0);
+  const auto [alpha, beta, gamma] = left_out_device(model.population());
   const MatrixXd B = inverse_with_identity(alpha * H * H.transpose());
   const MatrixXd g = c * H.transpose();  // H c, a row per device
   const MatrixXd Bg = g * B;

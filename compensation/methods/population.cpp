@@ -169,6 +169,11 @@ Population fit_population(const std::vector<Input>& inputs,
   return population;
 }
 
+LeftOutDevice left_out_device(const Population& population) {
+  const auto n = static_cast<double>(population.devices);
+  return {(n - 1.0) / (n - 2.0), n / (n - 1.0) / (n - 2.0), n / (n - 1.0)};
+}
+
 double curve_spread(const Population& population, Index curve) {
   const Index grid = population.grid();
   return spreads(population.modes.middleRows(curve * grid, grid), grid)(0);

@@ -66,6 +66,17 @@ struct Population {
 
 constexpr Eigen::Index kMostCoefficients = 1000;
 
+/// How a device of a population, with the coefficients c among n, lies to the
+/// n - 1 others: they have the mean -c / (n - 1) and the covariance alpha I -
+/// beta c c^T, and the device is gamma c away from their mean:
+///
+///   alpha = (n - 1) / (n - 2), beta = n / ((n - 1) (n - 2)),
+///   gamma = n / (n - 1).
+struct LeftOutDevice {
+  double alpha, beta, gamma;
+};
+LeftOutDevice left_out_device(const Population& population);
+
 /// Returns the root mean square over the grid and over devices of a curve's
 /// deviation from its mean, in the unit of the curve; 1 if there is none. Curve
 /// 0 is the bias, the others are the channels in their order.

@@ -27,9 +27,7 @@ MatrixXd inverse_covariance(const MatrixXd& H, double scale) {
 // Of each device of the population from all others, increasing.
 std::vector<double> own_distances(const Population& population,
                                   const MatrixXd& H) {
-  const auto n = static_cast<double>(population.devices);
-  const double alpha = (n - 1.0) / (n - 2.0), gamma = n / (n - 1.0);
-  const double beta = gamma / (n - 2.0);
+  const auto [alpha, beta, gamma] = left_out_device(population);
   const MatrixXd B = inverse_covariance(H, alpha);
   std::vector<double> distances;
   // The curves that the devices were learned from have no further own parts.

@@ -58,8 +58,8 @@ class LeaveOut {
   explicit LeaveOut(const Population& p)
       : p_(p),
         curves_(p.modes * p.coefficients.transpose()),
-        n_(p.devices),
-        covariance_((n_ - 1.0) / (n_ - 2.0) * p.modes * p.modes.transpose()) {
+        others_(left_out_device(p)),
+        covariance_(others_.alpha * p.modes * p.modes.transpose()) {
     for (Index k = 0; k < p.mean.size() / p.grid(); ++k) {
       const double noise =
           k == 0 ? p.point_noise
@@ -97,7 +97,7 @@ class LeaveOut {
     // Of the posterior with all devices.
     const ArrayXd variance = C.diagonal().head(grid).array() -
                              KB.cwiseProduct(K).rowwise().sum().array();
-    const double gamma = n_ / (n_ - 1.0), beta = gamma / (n_ - 2.0);
+    const auto [alpha, beta, gamma] = others_;
     double sum = 0.0;
     for (const auto& curve : curves_.colwise()) {
       // Without the device: C - beta b b^T, by Sherman and Morrison.
@@ -115,7 +115,7 @@ class LeaveOut {
 
   const Population& p_;
   MatrixXd curves_;  // deviations from the mean, a column for each device
-  double n_;
+  LeftOutDevice others_;
   MatrixXd covariance_;
   std::vector<double> noise_;  // variance of a point of each curve
 };
