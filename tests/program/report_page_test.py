@@ -142,14 +142,31 @@ class ReportPage(unittest.TestCase):
         dark.value("window.dispatchEvent(new Event('beforeprint'))")
         self.assertEqual(dark.value(text), on_light)
 
-    def test_prints_on_at_most_eight_sheets(self):
+    def sheets(self, tab):
         file = self.dir / "printed.pdf"
-        self.opened(dark=True).pdf(file)
+        tab.pdf(file)
         printed = file.read_bytes()
         self.assertTrue(printed.startswith(b"%PDF"))
-        sheets = len(re.findall(rb"/Type /Page\b", printed))
+        return len(re.findall(rb"/Type /Page\b", printed))
+
+    def test_prints_on_at_most_eight_sheets(self):
+        sheets = self.sheets(self.opened(dark=True))
         self.assertGreater(sheets, 3)
         self.assertLessEqual(sheets, 8)
+
+    def test_two_side_by_side_print_on_at_most_eight_sheets(self):
+        device = SCENARIOS / "devices/nominal.toml"
+        ended(PROGRAM, "validate", NAME, "--device", device, "--bundle",
+              "alone", cwd=self.dir, allowed=(0, 3))
+        ended(PROGRAM, "validate", SCENARIOS / "models/spline.toml",
+              "--device", device, "--spec", ROOT / "specs/uav.toml",
+              "--against", "alone/trained.json", "--report", "both",
+              cwd=self.dir, allowed=(0, 3))
+        self.browser.open(self.dir / "both/index.html", 1280, False)
+        shown = self.browser.value(
+            "document.getElementById('against').innerText")
+        self.assertIn("Side by side", shown)
+        self.assertLessEqual(self.sheets(self.browser), 8)
 
     def test_the_head_says_what_was_judged_and_can_be_signed(self):
         head = self.opened().value("document.getElementById('head').innerText")
