@@ -132,6 +132,24 @@ TEST(Population, RowsOfASoakAreOnePoint) {
   EXPECT_LT((many.deviation - two.deviation).abs().maxCoeff(), 1e-12);
 }
 
+TEST(Population, RowsBeyondItsTemperaturesTellNothing) {
+  const Population p = one_mode(false);
+  TrainingRows rows =
+      rows_of({{0, 0, 17.0, 17.0, 1}, {0, 0, 50.0, 50.0, 1}},
+              [](double T, int) { return T > 20.0 ? 9.0 : 4.2; });
+  const PointNoise noise{0.5, 0.01};
+  const TrainingRows inside = selected(rows, rows.temperature < 20.0);
+  const AdaptedBias expected = adapted_bias(p, kTemperature, inside, noise);
+  rows.beyond_range(1) = 3.0;  // [K], it was measured at 53 degC
+  EXPECT_TRUE(
+      (adapted_bias(p, kTemperature, rows, noise).mean == expected.mean).all());
+  rows.beyond_range(1) = 0.1;  // a rounding
+  EXPECT_GT((adapted_bias(p, kTemperature, rows, noise).mean - expected.mean)
+                .abs()
+                .minCoeff(),
+            0.1);
+}
+
 TEST(Population, AChannelTellsOfTheBias) {
   const Population p = one_mode(true);
   TrainingRows rows =
