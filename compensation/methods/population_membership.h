@@ -35,11 +35,11 @@ constexpr double kBeamTemperatureError = 0.5;
 ///
 /// To H a column is added for kBeamTemperatureError, with the slopes of the
 /// device that the points show.
+///
 /// The threshold is that of the population's devices at the same points, each
-/// held against all others, which have the mean -c / (n - 1) and the
-/// covariance P_d of forecast_residual(): a chi-squared distribution would
-/// count too many of them as foreign, because a finite sample leaves out some
-/// of what the next device is. Of N devices it is the one of rank
+/// held against all others (left_out_device()): a chi-squared distribution
+/// would count too many of them as foreign, because a finite sample leaves out
+/// some of what the next device is. Of N devices it is the one of rank
 /// ceil(kOwnShare (N + 1)): a further device of the same kind exceeds it with
 /// the probability 1 - kOwnShare, whatever the distribution (split conformal
 /// prediction). Points of the devices are those of the curves that the

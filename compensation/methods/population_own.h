@@ -17,10 +17,9 @@ Eigen::MatrixXd all_modes(const Population& population);
 /// fewer than kLeastForOwnParts devices.
 ///
 /// Each device is predicted from all others at 3, 5 and 7 even soaks of its own
-/// curves: they have the mean -c / (n - 1) and the covariance P_d of
-/// forecast_residual() in the coordinates of the modes. The score is the mean
-/// logarithm of the normal density of its bias at all temperatures of the grid.
-/// Lengths and deviations are tried from a table, one curve after the other.
+/// curves (left_out_device()). The score is the mean logarithm of the normal
+/// density of its bias at all temperatures of the grid. Lengths and deviations
+/// are tried from a table, one curve after the other.
 std::vector<OwnPart> learned_own_parts(const Population& population);
 
 constexpr int kLeastForOwnParts = 10;
