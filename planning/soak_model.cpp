@@ -55,9 +55,7 @@ SoakModel::SoakModel(Population population, SensorOfChamber sensor,
         "the devices of the population are all alike: there is nothing that a "
         "soak could tell; expected a population whose devices differ");
   for (Index curve = 0; curve < rows_per_soak(); ++curve)
-    noise_.push_back(curve == 0 ? noise().bias
-                                : noise().channel_share *
-                                      curve_spread(population_, curve));
+    noise_.push_back(point_noise_of(population_, curve, noise()));
   truth_ = truth_root(population_);
   add_own_modes();
   const Index grid = population_.grid();

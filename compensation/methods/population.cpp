@@ -179,6 +179,12 @@ double curve_spread(const Population& population, Index curve) {
   return spreads(population.modes.middleRows(curve * grid, grid), grid)(0);
 }
 
+double point_noise_of(const Population& population, Index curve,
+                      const PointNoise& noise) {
+  return curve == 0 ? noise.bias
+                    : noise.channel_share * curve_spread(population, curve);
+}
+
 double usual_point_noise(const Population& population) {
   constexpr double kShare = 0.15;
   const MatrixXd bias = population.modes.topRows(population.grid());
@@ -204,7 +210,7 @@ AdaptedBias adapted_bias(const Population& population,
                          const TrainingRows& rows, const PointNoise& noise) {
   if (population.modes.cols() == 0)
     return {population.mean.head(population.grid()).array(),
-            ArrayXd::Zero(population.grid()), ArrayXd::Zero(population.grid())};
+            ArrayXd::Zero(population.grid())};
   const PointEquations all =
       with_prior(point_equations(population, inputs, rows, noise));
   const Index grid = population.grid();
@@ -214,14 +220,8 @@ AdaptedBias adapted_bias(const Population& population,
   const MatrixXd roots = R.transpose().triangularView<Eigen::Lower>().solve(
       bias_modes.transpose());
   const ArrayXd variance = roots.colwise().squaredNorm().transpose().array();
-  const ArrayXd unexplained = R.triangularView<Eigen::Upper>()
-                                  .solve(roots)
-                                  .colwise()
-                                  .squaredNorm()
-                                  .transpose()
-                                  .array();
   return {(population.mean.head(grid) + bias_modes * c).array(),
-          variance.sqrt(), (variance - unexplained).max(0.0).sqrt()};
+          variance.sqrt()};
 }
 
 CubicSpline bias_curve(const Population& population, const ArrayXd& values) {

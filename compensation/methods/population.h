@@ -36,6 +36,17 @@ struct OwnPart {
   double length_K = 1.0;   // L [K], > 0
 };
 
+constexpr double kPointWidth = 2.0;  // [K]
+
+/// 1-sigma of a point, which is the mean of rows within kPointWidth of each
+/// other. Rows of a soak share slow noise and the turn-on offset, so many are
+/// no better than one.
+struct PointNoise {
+  double bias = 0.03;  // [deg/s], > 0
+  // [-], > 0, of a channel: over its spread within the population
+  double channel_share = 0.01;
+};
+
 /// The distribution of the gyros of a population. Over devices, the bias b and
 /// further channels q_1, q_2, ... (quadrature, ...) as functions of the
 /// temperature T are one Gaussian process,
@@ -49,11 +60,11 @@ struct Population {
   Eigen::ArrayXd temperatures;  // [degC], the grid, increasing, at least 4
   // Values on the grid: of the bias [deg/s], then of each channel in its own
   // unit.
-  Eigen::VectorXd mean;           // (1 + channels) * grid
-  Eigen::MatrixXd modes;          // as many rows, one column per mode
-  int devices = 0;                // it was learned from
-  std::vector<OwnPart> own = {};  // of each curve; or none has any
-  double point_noise = 0.03;      // [deg/s], of PointNoise unless it is given
+  Eigen::VectorXd mean;                    // (1 + channels) * grid
+  Eigen::MatrixXd modes;                   // as many rows, one column per mode
+  int devices = 0;                         // it was learned from
+  std::vector<OwnPart> own = {};           // of each curve; or none has any
+  double point_noise = PointNoise{}.bias;  // [deg/s], unless one is given
   std::optional<AdaptationSigma> sigma = {};
   // c of its devices, one per row, or of kMostCoefficients of them. Files of
   // older programs have none. The Gaussian process takes no notice of them:
@@ -82,6 +93,11 @@ LeftOutDevice left_out_device(const Population& population);
 /// 0 is the bias, the others are the channels in their order.
 double curve_spread(const Population& population, Eigen::Index curve);
 
+/// Returns the 1-sigma of a point of a curve, in the unit of the curve; curve 0
+/// is the bias.
+double point_noise_of(const Population& population, Eigen::Index curve,
+                      const PointNoise& noise);
+
 /// Returns the 1-sigma of a point that is taken where none is given [deg/s]:
 /// that of PointNoise, which is that of uncompensated gyros, but no more than
 /// 15 % of the rms over devices by which a bias differs from its own mean.
@@ -103,24 +119,11 @@ double steepest_bias(const Population& population);
 Population fit_population(const std::vector<Input>& inputs,
                           const TrainingRows& rows, double grid_K);
 
-constexpr double kPointWidth = 2.0;  // [K]
-
-/// 1-sigma of a point, which is the mean of rows within kPointWidth of each
-/// other. Rows of a soak share slow noise and the turn-on offset, so many are
-/// no better than one.
-struct PointNoise {
-  double bias = 0.03;  // [deg/s], > 0
-  // [-], > 0, of a channel: over its spread within the population
-  double channel_share = 0.01;
-};
-
 /// Bias of a device on the grid, given some points of it: conditional mean and
 /// 1-sigma.
 struct AdaptedBias {
   Eigen::ArrayXd mean;       // [deg/s]
   Eigen::ArrayXd deviation;  // [deg/s], 1-sigma
-  // [deg/s], the share of it that the noise of the points makes.
-  Eigen::ArrayXd noise;
 };
 
 /// Returns the exact conditional E[b | y] of the Gaussian process and its
@@ -128,9 +131,6 @@ struct AdaptedBias {
 /// population at them, those of r among them, R their noise:
 ///
 ///   c | y ~ N(A^-1 H^T R^-1 (y - mu), A^-1),   A = I + H^T R^-1 H.
-///
-/// Of A^-1 the noise of y makes A^-1 H^T R^-1 H A^-1 = A^-1 - A^-2, and what
-/// the points do not tell makes A^-2.
 ///
 /// Without rows it is the mean of the population. `inputs` are the columns of
 /// the rows: the temperature, then some of the channels of the population.
@@ -161,11 +161,10 @@ ResidualRows own_curve_residuals(const TrainingRows& rows, double grid_K,
 /// Returns the calibration of devices adapted from `population`, on devices it
 /// was not learned from. Each is adapted from few soaks of its `soaks`, evenly
 /// spaced, and predicted at the others. The factor makes the mean square of
-/// what is missed there, together with the noise that AdaptedBias tells of its
-/// points, that of the posterior deviation: soaks of one run share their
-/// turn-on offset, so their rows do not show this noise. a_rate and a_on are
-/// those of `lagging`, own_curve_residuals(), beyond what soaks leave of the
-/// same curves. Without rows to predict, nothing.
+/// what is missed there over k^2 deviation^2 + noise^2 one: a predicted soak
+/// has the noise of a point. It is at least 0.5. a_rate and a_on are those of
+/// `lagging`, own_curve_residuals(), beyond what soaks leave of the same
+/// curves. Without rows to predict, nothing.
 std::optional<AdaptationSigma> adaptation_sigma(
     const Population& population, const std::vector<Input>& inputs,
     const TrainingRows& soaks, const ResidualRows& lagging);

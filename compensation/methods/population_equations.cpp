@@ -92,10 +92,9 @@ PointEquations point_equations(const Population& population,
                : curve_number(population, inputs[static_cast<std::size_t>(i)]);
     const ArrayXd measured =
         i == 0 ? points.bias : ArrayXd(points.inputs.col(i));
-    const PointEquations own = equations(
-        population, modes, curve, points.temperature, measured,
-        i == 0 ? noise.bias
-               : noise.channel_share * curve_spread(population, curve));
+    const PointEquations own =
+        equations(population, modes, curve, points.temperature, measured,
+                  point_noise_of(population, curve, noise));
     all.H.middleRows(i * count, count) = own.H;
     all.y.segment(i * count, count) = own.y;
   }

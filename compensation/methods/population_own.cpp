@@ -61,9 +61,7 @@ class LeaveOut {
         others_(left_out_device(p)),
         covariance_(others_.alpha * p.modes * p.modes.transpose()) {
     for (Index k = 0; k < p.mean.size() / p.grid(); ++k) {
-      const double noise =
-          k == 0 ? p.point_noise
-                 : PointNoise{}.channel_share * curve_spread(p, k);
+      const double noise = point_noise_of(p, k, PointNoise{p.point_noise});
       noise_.push_back(noise * noise);
     }
   }
