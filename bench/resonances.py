@@ -2,15 +2,20 @@
 """Seven soaks and the ramps between them, of virtual gyros with spurious
 modes: what each method leaves on the steady curve and on unseen ramps.
 
-    /usr/bin/python3 bench/resonances.py 60 [--networks]
+resonances.py UNITS [--networks] [--campaign FILE] [--first K]
 
-BEAMGYRO names the program. One line a unit, then medians and 95 %."""
+Units are drawn as below, or they are those of a campaign. Training: seven soaks
+of an hour from -25 to 45 degC, ramps of 0.5 K/min. Tests: a ramp of 0.03 K/min,
+ramps of 1 K/min up and down, and, without noise, ramps of 2 K/min in still air.
+BEAMGYRO names the program, BEAMGYRO_SIMULATOR another one for the runs. One
+line a unit, then medians and 95 %."""
 
+import argparse
 import json
 import os
 import subprocess
-import sys
 import tempfile
+import tomllib
 from pathlib import Path
 
 import h5py
@@ -49,8 +54,9 @@ seed = {seed}
 points = [{points}]
 
 [chamber]
-stirred = true
+stirred = {stirred}
 """
+TESTS = ["steady", "ramp", "still"]
 
 
 # 100 deg/s from the end of the warm-up on.
@@ -94,27 +100,53 @@ def soaks(temperatures, hold, ramp):
     return points
 
 
+def settings(keys):
+    return [x for key, value in keys.items()
+            for x in ("--set", f"{key}={value}")]
+
+
 class Study:
-    def __init__(self, folder):
+    def __init__(self, folder, campaign=None):
         self.folder = Path(folder)
+        self.campaign = campaign.resolve() if campaign else None
+        self.base = ROOT / "scenarios/devices/nominal.toml"
+        if campaign:
+            named = tomllib.loads(campaign.read_text())["device"]
+            self.base = (campaign.parent / named).resolve()
 
     def call(self, program, *arguments):
         answer = subprocess.run([program, *map(str, arguments), "--quiet"],
-                                capture_output=True, text=True,
+                                capture_output=True, text=True, check=False,
                                 cwd=self.folder)
         if answer.returncode:
             raise SystemExit(answer.stderr)
+        return answer.stdout
 
-    def simulate(self, name, points, keys, seed, rate=0.1, more=""):
+    def prepare(self, units):
+        if self.campaign:
+            self.call(SIMULATOR, "generate", self.campaign, "--devices",
+                      max(2, units), "-o", "set")
+
+    def device(self, unit):
+        """Arguments of the unit."""
+        if self.campaign:
+            drawn = self.call(PROGRAM, "info", "set", "--device", unit)
+            values = drawn.split("\n", 1)[1].split("\n\nrun", 1)[0]
+            return [x for line in values.splitlines() if line
+                    for x in ("--set", line)]
+        rng = np.random.default_rng([13, unit])
+        return settings({**trims(rng), **modes(rng), **NOISE})
+
+    def simulate(self, name, points, device, seed, rate=0.1, more="",
+                 stirred=True):
         text = more + SCENARIO.format(
-            name=name, device=ROOT / "scenarios/devices/nominal.toml",
-            duration=points[-1][0], rate=rate, seed=seed,
+            name=name, device=self.base, duration=points[-1][0], rate=rate,
+            seed=seed, stirred=str(stirred).lower(),
             points=", ".join(f"[{t:.1f}, {T:.4f}]" for t, T in points))
         (self.folder / f"{name}.toml").write_text(text)
         (self.folder / f"{name}.h5").unlink(missing_ok=True)
-        sets = [x for key, value in keys.items()
-                for x in ("--set", f"{key}={value}")]
-        self.call(SIMULATOR, "run", f"{name}.toml", "-o", f"{name}.h5", *sets)
+        self.call(SIMULATOR, "run", f"{name}.toml", "-o", f"{name}.h5",
+                  *device)
 
     def errors(self, model, name, skip):
         """Bias taken away less the bias of the twin without noise [deg/s]."""
@@ -136,11 +168,15 @@ class Study:
 
 def texts(networks):
     shipped = {name: (MODELS / f"{name}.toml").read_text()
-               for name in ["straight_lines", "cubic", "spline", "resonances"]}
+               for name in ["straight_lines", "cubic", "spline", "resonances",
+                            "resonances_and_ramps"]}
     steady = "\n[rows]\nsteady_K_per_min = 0.05\n"
+    blind = "quadrature_noise_deg_per_s = 1e6\n"
     shipped["cubic"] += steady
-    shipped["blind"] = (shipped["resonances"]
-                        + "[resonances]\nquadrature_noise_deg_per_s = 1e6\n")
+    shipped["resonances, blind"] = \
+        shipped["resonances"] + "[resonances]\n" + blind
+    shipped["resonances_and_ramps, blind"] = \
+        shipped["resonances_and_ramps"] + blind
     if networks:
         for name in ["recommended", "recommended_with_quadrature"]:
             shipped[name] = (MODELS / f"{name}.toml").read_text().replace(
@@ -148,44 +184,54 @@ def texts(networks):
     return shipped
 
 
+def left_by(study, unit, networks):
+    device = study.device(unit)
+    silent = [*device, "--set", "noise.enabled=false"]
+    up, down = [-24, 44], [-24, 44, -24]
+    study.simulate("train", soaks(np.linspace(-25, 45, 7), 3600, 0.5), device,
+                   10 * unit + 1)
+    study.simulate("held_out", soaks([45, -25], 3600, 0.5), device,
+                   10 * unit + 2)
+    study.simulate("steady", soaks(up, 3600, 0.03), silent, 10 * unit + 3)
+    study.simulate("ramp", soaks(down, 3600, 1.0), device, 10 * unit + 4,
+                   rate=1)
+    study.simulate("still", soaks(down, 3600, 2.0), silent, 10 * unit + 6,
+                   rate=1, stirred=False)
+    study.simulate("turning", soaks(up, 3600, 1.0), silent, 10 * unit + 5,
+                   more=TURNING)
+    study.simulate("at_rest", soaks(up, 3600, 1.0), silent, 10 * unit + 5)
+    left = {}
+    for name, text in texts(networks).items():
+        model = name.replace(", ", "_")
+        study.train(model, text, name.startswith("recommended"))
+        # A constant is the turn-on offset of training, which re-zeroing takes
+        # away; it is the same for all.
+        for test in TESTS:
+            left[f"{name} {test}"] = float(np.std(
+                study.errors(model, test, 3600)))
+        left[f"{name} of 100 deg/s"] = float(np.abs(
+            study.errors(model, "turning", 3600)
+            - study.errors(model, "at_rest", 3600)).max())
+    return left
+
+
 def main():
-    units = int(sys.argv[1])
-    first = int(os.environ.get("FIRST", 0))
-    networks = "--networks" in sys.argv
+    parser = argparse.ArgumentParser()
+    parser.add_argument("units", type=int)
+    parser.add_argument("--networks", action="store_true")
+    parser.add_argument("--campaign", type=Path)
+    parser.add_argument("--first", type=int, default=0)
+    arguments = parser.parse_args()
+    last = arguments.first + arguments.units
     every = {}
     with tempfile.TemporaryDirectory() as folder:
-        study = Study(folder)
-        for unit in range(first, first + units):
-            rng = np.random.default_rng([13, unit])
-            device = {**trims(rng), **modes(rng), **NOISE}
-            silent = {**device, "noise.enabled": "false"}
-            study.simulate("train", soaks(np.linspace(-25, 45, 7), 3600, 0.5),
-                           device, 10 * unit + 1)
-            study.simulate("held_out", soaks([45, -25], 3600, 0.5), device,
-                           10 * unit + 2)
-            study.simulate("steady", soaks([-24, 44], 3600, 0.03), silent,
-                           10 * unit + 3)
-            study.simulate("ramp", soaks([-24, 44, -24], 3600, 1.0), device,
-                           10 * unit + 4, rate=1)
-            study.simulate("turning", soaks([-24, 44], 3600, 1.0), silent,
-                           10 * unit + 5, more=TURNING)
-            study.simulate("at_rest", soaks([-24, 44], 3600, 1.0), silent,
-                           10 * unit + 5)
-            line = {}
-            for name, text in texts(networks).items():
-                study.train(name, text, name.startswith("recommended"))
-                for test in ["steady", "ramp"]:
-                    error = study.errors(name, test, 3600)
-                    # A constant is the turn-on offset of training, which
-                    # re-zeroing takes away; it is the same for all.
-                    line[f"{name} {test}"] = float(
-                        np.sqrt(np.mean((error - error.mean())**2)))
-                line[f"{name} of 100 deg/s"] = float(np.abs(
-                    study.errors(name, "turning", 3600)
-                    - study.errors(name, "at_rest", 3600)).max())
-            print(unit, json.dumps({k: round(v, 5) for k, v in line.items()}),
+        study = Study(folder, arguments.campaign)
+        study.prepare(last)
+        for unit in range(arguments.first, last):
+            left = left_by(study, unit, arguments.networks)
+            print(unit, json.dumps({k: round(v, 5) for k, v in left.items()}),
                   flush=True)
-            for key, value in line.items():
+            for key, value in left.items():
                 every.setdefault(key, []).append(value)
     for key, values in every.items():
         print(f"{key:40} {np.median(values):.4f} "

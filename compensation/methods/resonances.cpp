@@ -10,6 +10,7 @@
 
 #include "compensation/methods/bias_model.h"
 #include "compensation/methods/bump_shares.h"
+#include "compensation/methods/lines_and_bumps.h"
 #include "compensation/methods/method_inputs.h"
 #include "compensation/methods/quadrature_fit.h"
 
@@ -113,6 +114,40 @@ MatrixXd bumps_of(const ResonanceCurve& curve, const ArrayXd& t) {
   return bumps;
 }
 
+// Heights and rest of the bias, known at soaks alone. `twin` [deg/s] is that of
+// a height of 1 in the quadrature.
+ResonanceCurve with_bias_of_soaks(ResonanceCurve curve, const ArrayXd& beam,
+                                  const ArrayXd& bias, const Scale& temperature,
+                                  double twin) {
+  const LookupTable soaks = at_soaks(beam, bias, temperature);
+  const double scatter =
+      std::sqrt((bias - soaks.predict(beam)).square().mean());
+  // Shares are of the twin in units of the bias.
+  const VectorXd shares =
+      bump_shares(soaks.temperatures.matrix(), soaks.values.matrix(),
+                  twin * bumps_of(curve, soaks.temperatures), scatter);
+  curve.bias_heights =
+      (shares.array() * curve.quadrature_heights.array() * twin).matrix();
+  const ArrayXd left =
+      bias - beam.unaryExpr([&](double t) { return curve.bumps_at(t); });
+  curve.rest = at_soaks(beam, left, temperature);
+  return curve;
+}
+
+// The same of the bias of rows at any temperature.
+ResonanceCurve with_bias_of_all_rows(ResonanceCurve curve, const ArrayXd& beam,
+                                     const ArrayXd& bias,
+                                     const Scale& temperature, double twin,
+                                     double knot_spacing_K) {
+  LinesAndBumps fit =
+      fit_lines_and_bumps(beam, bias, twin * bumps_of(curve, beam),
+                          knot_spacing_K / temperature.half_width);
+  curve.bias_heights =
+      (fit.shares.array() * curve.quadrature_heights.array() * twin).matrix();
+  curve.rest = std::move(fit.lines);
+  return curve;
+}
+
 std::string found_text(const ResonanceCurve& curve, const Scale& temperature,
                        const Scale& quadrature, Index k) {
   const double twin = curve.quadrature_heights(k) * quadrature.half_width;
@@ -135,6 +170,10 @@ ResonancesSpec ResonancesSpec::read(MethodSource& source) {
       table.number_or("beam_sigma_K", spec.beam_sigma_K, positive());
   spec.quadrature_noise = table.number_or("quadrature_noise_deg_per_s",
                                           spec.quadrature_noise, positive());
+  const double spacing =
+      table.number_or("knot_spacing_K", 5.0, between(0.5, 50.0));
+  if (table.choice_or("entries", "soaks", {"soaks", "knots"}) == "knots")
+    spec.knot_spacing_K = spacing;
   return spec;
 }
 
@@ -166,19 +205,11 @@ Fit ResonancesSpec::fit(const FitTask& task) const {
   const ArrayXd beam =
       (x.topLeftCorner(rows.size(), x.cols() - 1).matrix() * curve.position)
           .array();
-  const LookupTable soaks = at_soaks(beam, rows.bias, temperature);
-  const double scatter =
-      std::sqrt((rows.bias - soaks.predict(beam)).square().mean());
-  // Shares are of the twin in units of the bias.
-  const VectorXd shares = bump_shares(
-      soaks.temperatures.matrix(), soaks.values.matrix(),
-      quadrature.half_width * bumps_of(curve, soaks.temperatures), scatter);
-  curve.bias_heights =
-      (shares.array() * found.heights.array() * quadrature.half_width).matrix();
-  const ArrayXd left =
-      rows.bias - beam.unaryExpr([&](double t) { return curve.bumps_at(t); });
-  curve.rest = at_soaks(beam, left, temperature);
-
+  curve = knot_spacing_K
+              ? with_bias_of_all_rows(curve, beam, rows.bias, temperature,
+                                      quadrature.half_width, *knot_spacing_K)
+              : with_bias_of_soaks(curve, beam, rows.bias, temperature,
+                                   quadrature.half_width);
   std::vector<std::string> choices = {fmt::format(
       "{} resonances, {} rows of quadrature without bias, residual of the "
       "quadrature {:.4f} deg/s rms",

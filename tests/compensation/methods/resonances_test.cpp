@@ -8,6 +8,7 @@
 
 #include "compensation/methods/bias_model.h"
 #include "compensation/methods/bump_shares.h"
+#include "compensation/methods/lines_and_bumps.h"
 #include "compensation/methods/quadrature_fit.h"
 #include "tests/compensation/bias_curve.h"
 #include "tests/compensation/rows_of.h"
@@ -64,6 +65,19 @@ TrainingRows soaks_and_ramps(const std::vector<Resonance>& all,
   };
   rows.inputs = columns(rows.temperature, 0.0);
   rows.moving = columns(grid(-40.0, 50.0, 1.0), ahead);
+  return rows;
+}
+
+// The same soaks, and ramps whose bias is known, too.
+TrainingRows with_bias_of_ramps(const std::vector<Resonance>& all,
+                                double ahead) {
+  const TrainingRows soaks = soaks_and_ramps(all, ahead);
+  TrainingRows rows =
+      rows_of({{0, 0, -40.0, 50.0, 14}, {0, 0, -40.0, 50.0, 91}},
+              [&](double T, int) { return bias_at(all, T); });
+  rows.bias.head(14) = soaks.bias;
+  rows.inputs.resize(105, 3);
+  rows.inputs << soaks.inputs, soaks.moving;
   return rows;
 }
 
@@ -185,6 +199,53 @@ TEST(BumpShares, TellHillsFromDipsAndFromNothing) {
   EXPECT_EQ(bump_shares(t, VectorXd::Ones(7), bumps, 1e-4), VectorXd::Zero(3));
 }
 
+TEST(LinesAndBumps, AreFoundTogether) {
+  const ArrayXd t = grid(-1.0, 1.0, 0.02);
+  MatrixXd bumps(t.size(), 2);
+  bumps.col(0) = t.unaryExpr([](double at) {
+    return Resonance{-0.3, 0.2, 0.1}.bias(at);
+  });
+  bumps.col(1) = t.unaryExpr([](double at) {
+    return Resonance{0.5, 0.3, 0.1}.bias(at);
+  });
+  const ArrayXd bias = 0.3 - 0.2 * t - 0.7 * bumps.col(0).array();
+  const LinesAndBumps fit = fit_lines_and_bumps(t, bias, bumps, 0.25);
+  ASSERT_EQ(fit.lines.values.size(), 9);
+  EXPECT_NEAR(fit.shares(0), -0.7, 1e-4);
+  EXPECT_NEAR(fit.shares(1), 0.0, 1e-4);
+  EXPECT_LT((fit.lines.values - (0.3 - 0.2 * fit.lines.temperatures))
+                .abs()
+                .maxCoeff(),
+            1e-5);
+  EXPECT_LT(fit.rms, 1e-5);
+}
+
+// Rows at two ends tell the line between them.
+TEST(LinesAndBumps, AKnotWithoutRowsLiesBetweenTheOthers) {
+  ArrayXd t(8);
+  t << -1.0, -0.9, -0.8, -0.7, 0.7, 0.8, 0.9, 1.0;
+  const LinesAndBumps fit =
+      fit_lines_and_bumps(t, 2.0 + 3.0 * t, MatrixXd(8, 0), 0.1);
+  EXPECT_NEAR(fit.lines.at(0.0), 2.0, 1e-3);
+  EXPECT_NEAR(fit.lines.at(0.33), 2.99, 1e-3);
+}
+
+TEST(LinesAndBumps, OfOneValueOrOnePlaceAndOfNone) {
+  const LinesAndBumps same =
+      fit_lines_and_bumps(ArrayXd::LinSpaced(5, 0.0, 1.0),
+                          ArrayXd::Constant(5, 7.0), MatrixXd::Ones(5, 1), 0.5);
+  EXPECT_EQ(same.lines.at(0.4), 7.0);
+  EXPECT_EQ(same.shares, VectorXd::Zero(1));
+  const LinesAndBumps one = fit_lines_and_bumps(
+      ArrayXd::Ones(2), ArrayXd::LinSpaced(2, 1.0, 3.0), MatrixXd(2, 0), 0.5);
+  EXPECT_NEAR(one.lines.at(1.0), 2.0, 1e-9);
+  EXPECT_THROW(fit_lines_and_bumps(ArrayXd(0), ArrayXd(0), MatrixXd(0, 0), 0.5),
+               std::invalid_argument);
+  EXPECT_THROW(fit_lines_and_bumps(ArrayXd::Ones(2), ArrayXd::Ones(2),
+                                   MatrixXd(2, 0), 0.0),
+               std::invalid_argument);
+}
+
 TEST(Resonances, SoaksAndQuadratureBetweenThemTellTheBiasBetween) {
   const Fit fit = fit_of(soaks_and_ramps(kTwo));
   ASSERT_EQ(curve_of(fit).places.size(), 2);
@@ -233,6 +294,26 @@ TEST(Resonances, QuadratureIsAThermometerOfTheBeam) {
   spec.quadrature_noise = 1e6;  // worth nothing
   const Fit without = fit_of(soaks_and_ramps(kTwo), spec);
   EXPECT_LT(rms_error(with, kTwo, 0.7), 0.5 * rms_error(without, kTwo, 0.7));
+}
+
+TEST(Resonances, TakeTheBiasOfRampsAtTheTemperatureOfTheBeam) {
+  ResonancesSpec spec;
+  spec.quadrature_noise = 1e6;  // not corrected at run time
+  spec.knot_spacing_K = 5.0;
+  const Fit fit = fit_of(with_bias_of_ramps(kTwo, 2.0), spec);
+  EXPECT_NEAR(curve_of(fit).position(0), 0.5, 0.01);
+  EXPECT_LT(worst_error(fit, kTwo), 0.02 * worst_of_straight_lines(kTwo));
+}
+
+// A resonance of the case shows in the quadrature alone.
+TEST(Resonances, TheBiasOfRampsTellsThatABumpHasNone) {
+  TrainingRows rows = with_bias_of_ramps(kTwo, 0.0);
+  rows.bias = 0.02 + 1e-4 * rows.inputs.col(0);
+  ResonancesSpec spec;
+  spec.knot_spacing_K = 5.0;
+  const Fit fit = fit_of(rows, spec);
+  ASSERT_EQ(curve_of(fit).places.size(), 2);
+  EXPECT_LT(curve_of(fit).bias_heights.cwiseAbs().maxCoeff(), 1e-4);
 }
 
 TEST(Resonances, ARampIsNoSoak) {

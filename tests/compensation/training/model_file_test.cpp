@@ -122,6 +122,12 @@ const Wrong kWrong[] = {
     {"kind = \"resonances\"\ninputs = [\"temperature\", \"quadrature\"]\n"
      "[resonances]\nmost = 9\n",
      "most"},
+    {"kind = \"resonances\"\ninputs = [\"temperature\", \"quadrature\"]\n"
+     "[resonances]\nentries = \"bins\"\n",
+     "\"bins\" is not known; expected one of \"soaks\", \"knots\""},
+    {"kind = \"resonances\"\ninputs = [\"temperature\", \"quadrature\"]\n"
+     "[resonances]\nentries = \"knots\"\nknot_spacing_K = 0\n",
+     "knot_spacing_K"},
     {"kind = \"table\"\n[table]\nentries = \"knots\"\n", "entries"},
     {"kind = \"table\"\n[table]\nbin_width_K = 0\n", "bin_width_K"},
     {"kind = \"thermistor\"\n[thermistor]\nb_K = -1\n", "b_K"},
