@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <set>
@@ -90,8 +91,12 @@ void set_quiet(bool quiet) { prints_errors_only = quiet; }
 
 void print_result(std::string_view text) {
   const std::string safe = harmless(text, "\n\t");
-  if (std::fwrite(safe.data(), 1, safe.size(), stdout) != safe.size() ||
-      std::fflush(stdout) != 0)
+  errno = 0;
+  if (std::fwrite(safe.data(), 1, safe.size(), stdout) == safe.size() &&
+      std::fflush(stdout) == 0)
+    return;
+  // Who reads may have enough, as head has; the command goes on to its status.
+  if (errno != EPIPE)
     throw std::runtime_error("cannot write to standard output");
 }
 

@@ -78,7 +78,16 @@ ConfigDocument::ConfigDocument(std::shared_ptr<DocumentState> state)
 
 ConfigDocument ConfigDocument::read(const std::filesystem::path& file,
                                     const Overrides& overrides) {
-  return parse(read_file(file), file.string(), overrides);
+  const std::string text = read_file(file);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == text.npos)
+    throw std::invalid_argument(
+        fmt::format("{}: is empty; expected {}", file.string(), kExpected));
+  if (text[first] == '{')
+    throw std::invalid_argument(
+        fmt::format("{}: is JSON, as compensators and results are; expected {}",
+                    file.string(), kExpected));
+  return parse(text, file.string(), overrides);
 }
 
 ConfigDocument ConfigDocument::parse(std::string_view text,

@@ -145,6 +145,47 @@ std::string last_part(const std::string& path) {
   return path.substr(path.rfind('.') + 1);  // npos + 1 is 0
 }
 
+// Keys that hold values, of all that are known: not the tables.
+std::vector<std::string> keys_of_values(const std::vector<std::string>& known) {
+  std::vector<std::string> keys;
+  for (const std::string& key : known)
+    if (std::ranges::none_of(known, [&](const std::string& other) {
+          return other.starts_with(key + ".");
+        }))
+      keys.push_back(key);
+  return keys;
+}
+
+// What could be meant by a key that no file has: its name in another table,
+// a key spelled like it, or the keys of its table.
+std::string key_advice(const std::vector<std::string>& path,
+                       const std::vector<std::string>& known) {
+  const std::vector<std::string> keys = keys_of_values(known);
+  std::vector<std::string> same_name, same_table;
+  const std::string key = fmt::format("{}", fmt::join(path, "."));
+  const std::string table = key.substr(0, key.find('.')) + ".";
+  for (const std::string& one : keys) {
+    if (last_part(one) == path.back()) same_name.push_back(one);
+    if (path.size() > 1 && one.starts_with(table))
+      same_table.push_back(one.substr(table.size()));
+  }
+  constexpr std::size_t kMostNames = 4;
+  if (path.back().size() > 1 && !same_name.empty() &&
+      same_name.size() <= kMostNames)
+    return fmt::format("; did you mean '{}'?", fmt::join(same_name, "' or '"));
+  if (same_table.empty()) {
+    const std::string near = suggestion(key, keys);
+    if (!near.empty()) return fmt::format("; did you mean '{}'?", near);
+  } else {
+    const std::string near = suggestion(key.substr(table.size()), same_table);
+    if (!near.empty())
+      return fmt::format("; did you mean '{}{}'?", table, near);
+    return fmt::format("; '{}' has {}", table.substr(0, table.size() - 1),
+                       fmt::join(same_table, ", "));
+  }
+  return "; expected a key of the scenario or the device";
+}
+
 }  // namespace
 
 void reject_override(const std::string& argument, const std::string& message) {
@@ -232,15 +273,8 @@ void Overrides::check_all_used() const {
                                        "other keys given",
                                        key));
     }
-    std::string near = suggestion(key, known);
-    for (const std::string& path : known) {  // right name, wrong table
-      if (last_part(path) == set.path.back()) near = path;
-    }
-    reject(set.argument,
-           fmt::format("no file of this command has a key '{}'{}", key,
-                       near.empty()
-                           ? "; expected a key of the scenario or the device"
-                           : fmt::format("; did you mean '{}'?", near)));
+    reject(set.argument, fmt::format("no file of this command has a key '{}'{}",
+                                     key, key_advice(set.path, known)));
   }
 }
 

@@ -89,6 +89,9 @@ std::string decimal_advice(const LogText& log, char decimal,
                            std::string_view cell) {
   const bool comma = decimal == ',';
   const char other = comma ? '.' : ',';
+  if (cell.find(decimal) != cell.npos && cell.find(other) != cell.npos)
+    return fmt::format("one such as {}, without marks of thousands",
+                       comma ? "2548,866" : "2548.866");
   if (std::count(cell.begin(), cell.end(), other) != 1 ||
       cell.find(decimal) != cell.npos)
     return "a number alone, such as -12.5; its unit is stated by the map";

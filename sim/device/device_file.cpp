@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "sim/device/device_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -148,8 +150,13 @@ BeamParameters read_beam(const ConfigTable& beam) {
 PatchParameters read_patches(const ConfigTable& patches,
                              const BeamParameters& beam) {
   const double half = beam.side / 2;
+  const double length = patches.number("length_m", {0, 0.5, true, false});
+  if (!(length < beam.length))
+    patches.fail("length_m", fmt::format("{:g}; expected less than "
+                                         "beam.length_m, which is {:g}",
+                                         length, beam.length));
   return {
-      .length = patches.number("length_m", {0, beam.length, true, true}),
+      .length = length,
       .width = patches.number("width_m", {0, beam.side, true, false}),
       .thickness = patches.number("thickness_m", {0, beam.side, true, false}),
       .youngs_modulus = patches.number("youngs_modulus_Pa", kModulus),

@@ -60,6 +60,8 @@ class Logs(Rejections):
             ("10,1,25degC\n", "its unit is stated by the map")]],
         line("10,--,25\n", "log.csv:3:", "missing_markers"),
         log("t;w;T\n0;1.5;25\n", 'decimal = "." in the map', bench=COMMA),
+        log("t;w;T\n0;2.548,866;25\n", "2548,866, without marks of thousands",
+            bench=COMMA),
         log("t;w;T\n0;1.000,5;25\n", "is not a number", bench=COMMA),
         log(FAST, "log.csv:", "the temperature changes by 0.5",
             "K at such rates in the 4 s of the log, is that right?",

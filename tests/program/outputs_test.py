@@ -2,10 +2,12 @@
 """What the program prints beside its results, and what it leaves of files when
 it is interrupted, killed or out of space."""
 
+import os
 import resource
 import signal
+import subprocess
 
-from program import SCENARIO, ProgramTest, limit
+from program import PATIENCE, PROGRAM, SCENARIO, ProgramTest, limit
 
 
 class Outputs(ProgramTest):
@@ -58,6 +60,21 @@ scenario = "\\u001b[31ms.toml"
         self.assertEqual((answer.stdout, answer.stderr), ("", ""))
         self.rejected("run", "missing.toml", "-o", "b.h5", "--quiet",
                       says="missing.toml")
+
+    def test_a_reader_that_has_enough_is_no_error(self):
+        read, write = os.pipe()
+        os.close(read)
+        with os.fdopen(write, "wb") as closed:
+            answer = subprocess.run(
+                [PROGRAM, "validate", "--list-metrics"], stdout=closed,
+                stderr=subprocess.PIPE, check=False, timeout=PATIENCE)
+        self.assertEqual((answer.returncode, answer.stderr), (0, b""))
+        with open("/dev/full", "wb") as full:
+            answer = subprocess.run(
+                [PROGRAM, "validate", "--list-metrics"], stdout=full,
+                stderr=subprocess.PIPE, check=False, timeout=PATIENCE)
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn(b"cannot write to standard output", answer.stderr)
 
     def test_a_limit_on_the_size_of_files_fails_like_a_full_disk(self):
         self.rejected("run", "s.toml", "-o", "big.h5", says="File too large",

@@ -123,7 +123,16 @@ class Scenarios(Rejections):
         *[override(change, says) for change, says in [
             ("beam.lenght_m=0.04", "beam.length_m"), ("beam.length_m", "beam.length_m"),
             ("beam.length_m=", "beam.length_m"), ("beam.length_m=forty", "forty"),
-            ("duration_s=0", "duration_s"), ("=3", "=3")]],
+            ("duration_s=0", "duration_s"), ("=3", "=3"),
+            ("length_m=0.03", "did you mean 'beam.length_m' or 'patches.length_m'?"),
+            ("air.Q=400", "'air' has inverse_Q"),
+            ("temperature_sensor.bits=8", "'temperature_sensor' has "),
+            ("cross_rate.z=3", "'cross_rate' has x, y")]],
+        # Files of another kind
+        row(RUN, "s.toml: is empty; expected a TOML file", name="nothing", files={
+            "s.toml": " \n"}),
+        row(RUN, "s.toml: is JSON, as compensators", name="JSON", files={
+            "s.toml": '{"filetype": "x"}'}),
         # Outputs
         *[row(["run", "s.toml", "-o", output], output) for output in [
             "nowhere/out.h5", "folder.h5", "s.toml/out.h5", "out.txt"]],
@@ -165,6 +174,8 @@ class Devices(Rejections):
         *in_another_unit("beam.side_m=3.0", "3 mm is 0.003 m"),
         *in_another_unit("patches.thickness_m=0.25", "0.25 mm is 0.00025 m"),
         *in_another_unit("patches.length_m=12", "12 mm is 0.012 m"),
+        *[override("beam.length_m=0.009", "patches.length_m: 0.012; ",
+                   "expected less than beam.length_m, which is 0.009")],
         *in_another_unit("beam.youngs_modulus_Pa=185", "185 GPa is 1.85e+11 Pa"),
         *in_another_unit("patches.youngs_modulus_Pa=61", "61 GPa is 6.1e+10 Pa"),
         *in_another_unit("bond.shear_modulus_Pa=1.5", "1.5 GPa is 1.5e+09 Pa"),
