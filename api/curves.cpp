@@ -29,6 +29,7 @@ constexpr std::size_t kMostPoints = 10000000;  // of all devices
 struct DeviceRows {
   std::vector<CharacteristicRow> rows;
   std::string failure;
+  CharacteristicLimits limits = {};
 };
 
 DeviceRows rows_of(const CampaignPlan& campaign, std::uint32_t number,
@@ -36,7 +37,10 @@ DeviceRows rows_of(const CampaignPlan& campaign, std::uint32_t number,
   const VirtualDevice drawn = campaign.device(number);
   if (!drawn.device) return {{}, drawn.failure};
   try {
-    return {characteristic(make_gyro(*drawn.device), temperatures), {}};
+    std::vector<CharacteristicRow> rows =
+        characteristic(make_gyro(*drawn.device), temperatures);
+    const CharacteristicLimits limits = limits_met(*drawn.device, rows);
+    return {std::move(rows), {}, limits};
   } catch (const SimulationFailure& error) {
     return {{}, error.what()};
   }
@@ -71,7 +75,7 @@ void require_moderate_size(const CampaignPlan& campaign,
 /// not.
 void fill(std::vector<DeviceRows> devices, const std::string& name,
           CampaignCurves& curves) {
-  std::size_t failures = 0;
+  std::size_t failures = 0, not_locked = 0, saturated = 0;
   std::string first_failure;
   for (std::size_t k = 0; k < devices.size(); ++k) {
     if (!devices[k].failure.empty()) {
@@ -80,6 +84,8 @@ void fill(std::vector<DeviceRows> devices, const std::string& name,
       continue;
     }
     curves.devices.push_back(static_cast<std::uint32_t>(k));
+    not_locked += devices[k].limits.not_locked > 0;
+    saturated += devices[k].limits.saturated > 0;
     for (const CharacteristicRow& row : devices[k].rows)
       for (std::size_t i = 0; i < row.size(); ++i)
         curves.columns[i].values.push_back(row[i]);
@@ -92,6 +98,16 @@ void fill(std::vector<DeviceRows> devices, const std::string& name,
     curves.warnings.push_back(
         fmt::format("{}: {} of {} devices do not work and are left out; {}",
                     name, failures, devices.size(), first_failure));
+  if (not_locked > 0)
+    curves.warnings.push_back(fmt::format(
+        "{}: the drive of {} of {} devices needs more than its voltage limit "
+        "at some temperature; the loops do not lock there",
+        name, not_locked, devices.size()));
+  if (saturated > 0)
+    curves.warnings.push_back(fmt::format(
+        "{}: the bias of {} of {} devices is beyond the full scale at some "
+        "temperature",
+        name, saturated, devices.size()));
 }
 
 std::string csv_of(const CampaignCurves& curves) {

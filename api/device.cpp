@@ -95,6 +95,30 @@ std::vector<double> even_temperatures(double start, double stop, double step) {
   return grid;
 }
 
+namespace internal {
+namespace {
+
+void add_limit_warnings(const DeviceState& state,
+                        std::span<const CharacteristicRow> rows,
+                        std::vector<std::string>& warnings) {
+  const CharacteristicLimits limits = limits_met(state.device, rows);
+  if (limits.not_locked > 0)
+    warnings.push_back(
+        fmt::format("{}: at {} of {} temperatures the drive needs more than "
+                    "drive.voltage_limit_V = {:g}; the loops do not lock there",
+                    state.name, limits.not_locked, rows.size(),
+                    state.device.drive.voltage_limit));
+  if (limits.saturated > 0)
+    warnings.push_back(fmt::format(
+        "{}: at {} of {} temperatures the bias is beyond "
+        "readout.full_scale_deg_per_s = {:g}; the output saturates there",
+        state.name, limits.saturated, rows.size(),
+        state.device.readout.full_scale / kDegree));
+}
+
+}  // namespace
+}  // namespace internal
+
 Characteristic characterise(const Device& device,
                             std::span<const double> temperatures_degC) {
   internal::require_material_temperatures(temperatures_degC);
@@ -114,6 +138,7 @@ Characteristic characterise(const Device& device,
   found.csv = internal::characteristic_csv(temperatures_degC, rows);
   found.crossings = crossings_of(gyro, temperatures_degC);
   found.warnings = internal::ceramic_warnings(temperatures_degC, state.name);
+  internal::add_limit_warnings(state, rows, found.warnings);
   return found;
 }
 

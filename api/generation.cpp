@@ -80,7 +80,7 @@ void make_files(const internal::ShardPlan& plan,
   internal::generate_shards(
       plan, files, options.jobs, counts,
       [&](std::uint32_t file, const internal::MadeShard& shard) {
-        set.add(file, shard.bytes, shard.failures);
+        set.add(file, shard.bytes, shard.failures, shard.cautions);
       });
 }
 
@@ -100,6 +100,8 @@ GenerationOutcome generate(const Campaign& campaign,
   make_files(plan, files, options, set);
   const internal::SetState state = set.finish();
   internal::require_nothing_lost(directory, {}, plan.manifest_head(), state);
+  for (std::string& text : internal::caution_texts(state))
+    warnings.push_back(directory.string() + ": " + std::move(text));
   return {.files = state.entries.size(),
           .planned_files = state.planned,
           .files_made = files.size(),

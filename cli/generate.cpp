@@ -106,13 +106,15 @@ int generate(const GenerateArguments& arguments) {
         arguments.output, set.died_before()));
   const std::vector<std::uint32_t> files = set.lacking();
   set_interrupt_note(note_for_interruption(arguments));
-  generate_with_progress("generating " + arguments.output, plan, files,
-                         arguments.jobs,
-                         [&](std::uint32_t file, const MadeShard& shard) {
-                           set.add(file, shard.bytes, shard.failures);
-                         });
+  generate_with_progress(
+      "generating " + arguments.output, plan, files, arguments.jobs,
+      [&](std::uint32_t file, const MadeShard& shard) {
+        set.add(file, shard.bytes, shard.failures, shard.cautions);
+      });
   const SetState state = set.finish();
   print_result(outcome_text(state, files.size()));
+  for (const std::string& text : caution_texts(state))
+    print_warning(fmt::format("{}: {}", arguments.output, text));
   require_nothing_lost(arguments.output, task, plan.manifest_head(), state);
   return arguments.strict && state.failures() > 0 ? kSomeDevicesFailed : 0;
 }

@@ -135,6 +135,8 @@ std::string info_on_set(const fs::path& path) {
       set.head.campaign, state.entries.size(), state.planned, bytes / 1e6,
       state.device_runs(), state.failures(), set.head.seed,
       set.head.program_version, set.head.git_revision, failures_of(state));
+  for (const std::string& caution : caution_texts(state))
+    text += caution + "\n";
   std::string parameters;
   const std::size_t runs = set.head.runs.size();
   for (std::size_t run = 0; run < runs; ++run) {

@@ -144,13 +144,18 @@ ManifestHead head_of(const JsonNode& line) {
 }
 
 Json json_of(const ManifestEntry& entry) {
-  return {{"index", entry.index},
-          {"file", entry.file},
-          {"bytes", entry.bytes},
-          {"sha256", entry.sha256},
-          {"first_device", entry.first_device},
-          {"devices", entry.devices},
-          {"failures", entry.failures}};
+  Json json = {{"index", entry.index},
+               {"file", entry.file},
+               {"bytes", entry.bytes},
+               {"sha256", entry.sha256},
+               {"first_device", entry.first_device},
+               {"devices", entry.devices},
+               {"failures", entry.failures}};
+  if (const CautionCounts& count = entry.cautions; count != CautionCounts{})
+    json["cautions"] = {{"unpowered", count.unpowered},
+                        {"not_locked", count.not_locked},
+                        {"saturated", count.saturated}};
+  return json;
 }
 
 ManifestEntry entry_of(const JsonNode& line) {
@@ -164,6 +169,12 @@ ManifestEntry entry_of(const JsonNode& line) {
   for (const JsonNode& failure : line.at("failures").elements())
     entry.failures.push_back(
         {failure.at("device").small_integer(), failure.at("reason").text()});
+  if (line.has("cautions")) {
+    const JsonNode cautions = line.at("cautions");
+    entry.cautions = {cautions.at("unpowered").small_integer(),
+                      cautions.at("not_locked").small_integer(),
+                      cautions.at("saturated").small_integer()};
+  }
   require(line, is_shard_name(entry.file), "file");
   return entry;
 }

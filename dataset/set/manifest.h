@@ -41,6 +41,14 @@ struct DeviceFailure {
   bool operator==(const DeviceFailure&) const = default;
 };
 
+/// Runs of devices whose samples say little, though the device works.
+struct CautionCounts {
+  std::uint32_t unpowered = 0;   // without any power
+  std::uint32_t not_locked = 0;  // in half of the powered samples or more
+  std::uint32_t saturated = 0;   // in some sample
+  bool operator==(const CautionCounts&) const = default;
+};
+
 /// A file of devices that is complete on the disk.
 struct ManifestEntry {
   std::uint32_t index = 0;
@@ -49,6 +57,7 @@ struct ManifestEntry {
   std::string sha256;
   std::uint32_t first_device = 0, devices = 0;
   std::vector<DeviceFailure> failures;
+  CautionCounts cautions;
   bool operator==(const ManifestEntry&) const = default;
 };
 

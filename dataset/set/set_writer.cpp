@@ -172,6 +172,30 @@ std::uint64_t SetState::failures() const {
   return count;
 }
 
+CautionCounts SetState::cautions() const {
+  CautionCounts sum;
+  for (const auto& [index, entry] : entries) {
+    sum.unpowered += entry.cautions.unpowered;
+    sum.not_locked += entry.cautions.not_locked;
+    sum.saturated += entry.cautions.saturated;
+  }
+  return sum;
+}
+
+std::vector<std::string> caution_texts(const SetState& state) {
+  const CautionCounts count = state.cautions();
+  std::vector<std::string> texts;
+  for (const auto& [runs, what] :
+       {std::pair{count.unpowered, "have no power at any time"},
+        std::pair{count.not_locked,
+                  "are not locked in half of the powered samples or more"},
+        std::pair{count.saturated, "have saturated samples"}})
+    if (runs > 0)
+      texts.push_back(fmt::format("{} of {} device runs {}", runs,
+                                  state.device_runs(), what));
+  return texts;
+}
+
 // Reads the parts first: they are newer, and may be merged while this reads.
 bool every_device_failed(const SetState& state) {
   return state.device_runs() > 0 && state.failures() == state.device_runs();
@@ -282,11 +306,13 @@ std::vector<std::uint32_t> SetWriter::lacking() const {
 }
 
 void SetWriter::add(std::uint32_t index, std::span<const std::byte> bytes,
-                    const std::vector<DeviceFailure>& failures) {
+                    const std::vector<DeviceFailure>& failures,
+                    const CautionCounts& cautions) {
   ManifestEntry entry = expected_entry(head_, index);
   entry.bytes = bytes.size();
   entry.sha256 = sha256(bytes);
   entry.failures = failures;
+  entry.cautions = cautions;
   publish_file(directory_, entry.file, bytes);
   const std::lock_guard lock(mutex_);
   // Tasks of another division may have merged and removed it.

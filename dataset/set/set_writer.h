@@ -37,7 +37,11 @@ struct SetState {
   bool is_whole() const { return entries.size() == planned; }
   std::uint64_t device_runs() const;
   std::uint64_t failures() const;
+  CautionCounts cautions() const;
 };
+
+/// Returns a sentence for each caution that counts device runs of the set.
+std::vector<std::string> caution_texts(const SetState& state);
 
 /// Returns whether no device of a set has values in any run, and one line that
 /// says so with the first reason.
@@ -86,7 +90,8 @@ class SetWriter {
 
   /// Publishes file `index` and then its line. Safe to call from many threads.
   void add(std::uint32_t index, std::span<const std::byte> bytes,
-           const std::vector<DeviceFailure>& failures);
+           const std::vector<DeviceFailure>& failures,
+           const CautionCounts& cautions = {});
 
   /// Merges manifests and writes the views when the set is complete; with
   /// `anew` even if that was done before.

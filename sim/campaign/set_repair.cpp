@@ -110,7 +110,7 @@ void SetRepair::add(std::uint32_t file, const MadeShard& shard) {
         "{}: made again it has other bytes than the manifest says; another "
         "kind of machine made it",
         expected_entry(head_, file).file));
-  set_->add(file, shard.bytes, shard.failures);
+  set_->add(file, shard.bytes, shard.failures, shard.cautions);
 }
 
 }  // namespace beamgyro::internal

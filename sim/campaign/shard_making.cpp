@@ -14,6 +14,20 @@
 namespace beamgyro::internal {
 namespace {
 
+// Adds what the samples of one run of a device show.
+void count(std::span<const std::uint8_t> status, CautionCounts& cautions) {
+  std::size_t powered = 0, unlocked = 0, saturated = 0;
+  for (const std::uint8_t bits : status) {
+    const bool is_powered = (bits & kUnpowered) == 0;
+    powered += is_powered;
+    unlocked += is_powered && (bits & kLoopNotLocked) != 0;
+    saturated += (bits & kOutputSaturated) != 0;
+  }
+  cautions.unpowered += powered == 0;
+  cautions.not_locked += powered > 0 && 2 * unlocked >= powered;
+  cautions.saturated += saturated > 0;
+}
+
 void fail(DeviceRow& row, const std::string& why, DeviceStatus status) {
   row.failure = why.substr(0, why.find('\n'));  // its first line
   row.device_status = status;
@@ -97,11 +111,15 @@ EncodedDevice ShardMaker::encoded(const ShardBuilder& file,
                                   std::uint32_t position,
                                   const PreparedDevice& device,
                                   const VirtualRun& run, const RunKey& key,
-                                  DeviceRow& row) const {
+                                  DeviceRow& row,
+                                  CautionCounts& cautions) const {
   if (row.failure.empty()) {
     const Recording recording = recorded(device, run, key, file.head(), row);
     try {
-      if (row.failure.empty()) return file.encode(position, row, &recording);
+      if (row.failure.empty()) {
+        count(recording.status, cautions);
+        return file.encode(position, row, &recording);
+      }
     } catch (const UnstorableSamples& error) {
       fail(row, error.what(), kNotFinite);
     }
@@ -123,7 +141,8 @@ MadeShard ShardMaker::make(std::uint32_t file, GenerationCounts& counts) {
     row.parameters = device.drawn.parameters;
     row.parameters.insert(row.parameters.end(), drawn.parameters.begin(),
                           drawn.parameters.end());
-    made.file->add(encoded(*made.file, i, device, drawn, {number, run}, row));
+    made.file->add(encoded(*made.file, i, device, drawn, {number, run}, row,
+                           made.cautions));
     if (!row.failure.empty()) {
       made.failures.push_back({number, row.failure});
       ++counts.failures;

@@ -30,6 +30,7 @@ struct MadeShard {
   std::unique_ptr<ShardBuilder> file;  // finished
   std::span<const std::byte> bytes;    // of the file
   std::vector<DeviceFailure> failures;
+  CautionCounts cautions;
 };
 
 /// Makes shard files one after the other. The bytes of a file depend on the
@@ -57,7 +58,8 @@ class ShardMaker {
   void prepare(std::uint32_t range);
   EncodedDevice encoded(const ShardBuilder& file, std::uint32_t position,
                         const PreparedDevice& device, const VirtualRun& run,
-                        const RunKey& key, DeviceRow& row) const;
+                        const RunKey& key, DeviceRow& row,
+                        CautionCounts& cautions) const;
   Recording recorded(const PreparedDevice& device, const VirtualRun& run,
                      const RunKey& key, const ShardHead& head,
                      DeviceRow& row) const;

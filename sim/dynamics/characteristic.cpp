@@ -31,6 +31,8 @@ constexpr std::array<CharacteristicQuantity, kCharacteristicQuantities>
          {"scale_factor", "1", "scale_factor_rel",
           "scale factor relative to that at 25 degC"}}};
 
+constexpr std::size_t kBias = 0, kDriveVoltage = 7;  // of kQuantities
+
 CharacteristicRow row_at(const Gyro& gyro, double celsius) {
   const double T = celsius + kZeroCelsius;
   const ModalParameters modal = modal_at(gyro, T);
@@ -64,6 +66,17 @@ std::vector<CharacteristicRow> characteristic(
   for (const double celsius : temperatures)
     rows.push_back(row_at(gyro, celsius));
   return rows;
+}
+
+CharacteristicLimits limits_met(const DeviceParameters& device,
+                                std::span<const CharacteristicRow> rows) {
+  CharacteristicLimits limits;
+  for (const CharacteristicRow& row : rows) {
+    limits.not_locked += row[kDriveVoltage] >= device.drive.voltage_limit;
+    limits.saturated +=
+        std::abs(row[kBias]) * kDegree >= device.readout.full_scale;
+  }
+  return limits;
 }
 
 std::string characteristic_csv(std::span<const double> temperatures,

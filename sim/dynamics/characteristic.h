@@ -33,6 +33,14 @@ using CharacteristicRow = std::array<double, kCharacteristicQuantities>;
 std::vector<CharacteristicRow> characteristic(
     const Gyro& gyro, std::span<const double> temperatures);
 
+/// Temperatures at which a gyro does not work as it should.
+struct CharacteristicLimits {
+  std::size_t not_locked = 0;  // the drive is at its voltage limit
+  std::size_t saturated = 0;   // the bias is beyond the full scale
+};
+CharacteristicLimits limits_met(const DeviceParameters& device,
+                                std::span<const CharacteristicRow> rows);
+
 /// Returns it as CSV text: a line of names with units, then a line for each
 /// temperature.
 std::string characteristic_csv(std::span<const double> temperatures,

@@ -69,6 +69,17 @@ class Characterise(ProgramTest):
             self.assertAlmostEqual(row["bias_deg_per_s"], 0.5, delta=1e-6)
             self.assertAlmostEqual(row["quadrature_deg_per_s"], 40, delta=1e-6)
 
+    def test_temperatures_where_it_does_not_work_are_told(self):
+        self.assertEqual(
+            self.warned("characterise", "device.toml", "-o", "a.csv"), "")
+        for key, says in [
+                ("drive.voltage_limit_V=0.015", "at 401 of 401 temperatures the "
+                 "drive needs more than drive.voltage_limit_V = 0.015"),
+                ("readout.full_scale_deg_per_s=1", "temperatures the bias is "
+                 "beyond readout.full_scale_deg_per_s = 1")]:
+            self.assertIn(says, self.warned("characterise", "device.toml",
+                                            "--set", key, "-o", "a.csv"))
+
     def test_same_bytes_again(self):
         self.ok("characterise", "device.toml", "-o", "a.csv")
         self.ok("characterise", "device.toml", "-o", "b.csv")

@@ -165,6 +165,23 @@ class Generate(Set):
         self.assertTrue(all(entry["reason"] for entry in reasons))
         self.ok("verify", "set")
 
+    def test_runs_whose_samples_say_little_are_counted(self):
+        self.assertEqual(
+            self.warned("generate", "campaign.toml", "-o", "healthy"), "")
+        self.assertNotIn("cautions", self.text("healthy/manifest.jsonl"))
+        self.change("campaign.toml", "\\[tolerances\\]",
+                    "[tolerances]\n\"drive.voltage_limit_V\" = "
+                    "{ uniform = { low = 0.01, high = 0.02 } }")
+        says = ("14 of 14 device runs are not locked in half of the powered "
+                "samples or more")
+        self.assertIn(f"weak: {says}",
+                      self.warned("generate", "campaign.toml", "-o", "weak"))
+        self.assertIn(says, self.ok("info", "weak"))
+        self.ok("verify", "weak")
+        self.assertIn("the drive of 7 of 7 devices needs more than its voltage "
+                      "limit", self.warned("characterise", "campaign.toml", "-o",
+                                           "c.csv"))
+
     def test_a_whole_table_may_be_drawn(self):
         self.change("campaign.toml", "^ambient_offset_K.*", "[run.vary]\n"
                     '"ambient" = { discrete = { values = [{ constant_degC = 5 '
