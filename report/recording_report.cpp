@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <iterator>
+#include <vector>
 
 #include "dataset/log/log_statistics.h"
 
@@ -56,6 +59,58 @@ std::string blank_text(const LogCounts& counts, const std::string& path) {
 // A gyro's loop and its filters are slower than this rate of samples.
 constexpr double kFastestSampling = 50e3;  // [Hz]
 
+constexpr double kLongLog = 60 * 86400;  // [s]
+constexpr double kSlowSampling = 600;    // [s] between two rows
+constexpr double kLargestRest = 30;      // [deg/s] of a gyro at rest
+constexpr double kLongHold = 600;        // [s]
+
+std::string long_log_text(const Recording& recording, double median_step) {
+  const double duration = recording.time.back() - recording.time.front();
+  if (duration < kLongLog || median_step < kSlowSampling) return {};
+  return fmt::format(
+      "question     is that right? {:.3g} days with a row each {:g} s often "
+      "mean a wrong time.unit\n",
+      duration / 86400, median_step);
+}
+
+// The values between which nine of ten finite ones lie.
+std::array<double, 2> most_values(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  if (values.empty()) return {0.0, 0.0};
+  std::ranges::sort(values);
+  const std::size_t cut = values.size() / 20;
+  return {values[cut], values[values.size() - 1 - cut]};
+}
+
+// What no gyro at rest shows.
+std::string rest_text(const Recording& recording) {
+  const Column* const truth = find_column(recording, "true_rate");
+  const bool is_at_rest =
+      truth != nullptr && std::ranges::all_of(truth->values, [](double rate) {
+        return rate == 0.0;
+      });
+  if (!is_at_rest) return {};
+  const auto [low, high] = most_values(column_values(recording, "rate"));
+  if (std::max(-low, high) > kLargestRest)
+    return fmt::format(
+        "question     can this gyro at rest read {:.4g} to {:.4g} deg/s? more "
+        "than {:g} deg/s often mean swapped columns, or a wrong offset, scale "
+        "or unit in [gyro]\n",
+        low, high, kLargestRest);
+  if (low == high && range_of(recording, "rate").smallest_step == 0)
+    return "question     is the gyro connected? its rate never changes\n";
+  return {};
+}
+
+std::string stuck_text(const Recording& recording) {
+  const ValueRange range = range_of(recording, "temperature");
+  if (range.samples == 0 || range.smallest_step != 0 ||
+      recording.time.back() - recording.time.front() < kLongHold)
+    return {};
+  return "question     does the temperature sensor work? its value never "
+         "changes\n";
+}
+
 std::string sampling_text(const Recording& recording) {
   const Sampling sampling = sampling_of(recording);
   std::string text = fmt::format(
@@ -69,6 +124,7 @@ std::string sampling_text(const Recording& recording) {
                    "a wrong time.unit\n",
                    kFastestSampling);
   }
+  text += long_log_text(recording, sampling.median_step);
   if (sampling.bursts > 1) {
     fmt::format_to(std::back_inserter(text),
                    "bursts       {}, the longest {:g} s; {} gap{}, the longest "
@@ -138,9 +194,10 @@ std::string import_report(const ImportedLog& log, const std::string& path,
   text += sampling_text(recording);
   if (std::ranges::count(recording.status, 0) < std::ssize(recording.status))
     text += fmt::format("status       {}\n", status_words(recording));
-  text += range_text(recording, "rate", "deg/s");
+  text += range_text(recording, "rate", "deg/s") + rest_text(recording);
   if (find_column(recording, "temperature") != nullptr) {
-    text += range_text(recording, "temperature", "degC");
+    text +=
+        range_text(recording, "temperature", "degC") + stuck_text(recording);
   } else {
     text +=
         "temperature  not stated by the map: allan needs none, every other "

@@ -275,9 +275,28 @@ unit = "degC"
         self.assertIn("is the clock of the log coarser than its rows?",
                       self.imported())
 
+    def test_questions_about_a_gyro_at_rest(self):
+        def said(rate, T=lambda k: -30 + 70 * k / 2000, step_ms=1000):
+            self.write("log.csv", table("t,w,T", (
+                (step_ms * k, rate(k), T(k)) for k in range(2000))))
+            return self.imported()
+
+        for rate in [lambda k: 0.1 * (k % 9), lambda k: 29 + k % 2,
+                     lambda k: 900 if k == 7 else 0.1 * (k % 2)]:
+            self.assertNotIn("question", said(rate))
+        self.assertIn("question     can this gyro at rest read 200 to 201 deg/s? ",
+                      said(lambda k: 200 + k % 2))
+        self.assertRegex(said(lambda k: -40 + k % 70),
+                         "can this gyro at rest read -3[67] to 2[56] deg/s?")
+        self.assertIn("is the gyro connected?", said(lambda k: 0))
+        self.assertIn("does the temperature sensor work?",
+                      said(lambda k: k % 2, T=lambda k: 21))
+        self.assertIn("83.3 days with a row each 3600 s often mean a wrong "
+                      "time.unit", said(lambda k: k % 2, step_ms=3600000))
+
     def test_a_question_about_a_column_that_is_mostly_blank(self):
         self.write("log.csv", table("t,w,T", (
-            (10 * k, 0.1, 25 + 0.001 * k if k % 100 == 0 else "")
+            (10 * k, 0.1 + k % 2, 25 + 0.001 * k if k % 100 == 0 else "")
             for k in range(1001))))
         said = self.imported()
         self.assertIn("1001 rows read, 11 kept", said)
