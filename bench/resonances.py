@@ -171,12 +171,12 @@ def texts(networks):
                for name in ["straight_lines", "cubic", "spline", "resonances",
                             "resonances_and_ramps"]}
     steady = "\n[rows]\nsteady_K_per_min = 0.05\n"
-    blind = "quadrature_noise_deg_per_s = 1e6\n"
+    blind = "quadrature_noise_deg_per_s = 1e6\n"  # not corrected by it
     shipped["cubic"] += steady
     shipped["resonances, blind"] = \
         shipped["resonances"] + "[resonances]\n" + blind
-    shipped["resonances_and_ramps, blind"] = \
-        shipped["resonances_and_ramps"] + blind
+    shipped["resonances_and_ramps, corrected"] = \
+        shipped["resonances_and_ramps"].replace(blind, "")
     if networks:
         for name in ["recommended", "recommended_with_quadrature"]:
             shipped[name] = (MODELS / f"{name}.toml").read_text().replace(
