@@ -10,7 +10,8 @@
 #   deep      the benchmarks, compiled; the tests marked `deep`: packages, the site
 #             of the pages, a browser, Slurm, Octave, an emulated Cortex-M4, more
 #             draws
-#   packages  the Debian packages in a bare Debian 12: installed, run, removed
+#   packages  the Debian packages and the wheel in a bare Debian 12: installed,
+#             run, removed
 #   image     the container image on that Debian, built and run
 #
 # Without a PART all of them. The last line is the total.
@@ -109,6 +110,9 @@ if wanted deep || wanted packages || wanted image; then
       rm -rf build/packages
       if script "building the packages" scripts/package.sh build/release; then
         wanted packages && as_root "packages in a bare Debian" scripts/try_packages.sh
+        if wanted packages && script "building the wheel" scripts/wheel.sh build/release; then
+          as_root "wheel in a bare Debian" scripts/try_wheel.sh
+        fi
         wanted image && as_root "image" scripts/try_image.sh
       fi
     fi

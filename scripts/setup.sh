@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Installs the Debian packages that are missing: setup.sh GROUP...
 # demo: what the program is built and the demo run with, which is in every group;
-# test: scripts/test.sh; sanitizers, deep, bare: parts of scripts/sanitize.sh.
+# wheel: scripts/wheel.sh; test: scripts/test.sh; sanitizers, deep, bare: parts of
+# scripts/sanitize.sh.
 # Asks apt only when something is missing, so it works offline afterwards.
 set -euo pipefail
 
@@ -11,26 +12,29 @@ build=(g++ cmake ninja-build libeigen3-dev libsundials-dev libhdf5-dev
        librandom123-dev libboost-dev libdeflate-dev libssl-dev
        libjs-chart.js
        pybind11-dev python3-dev python3-numpy
-       python3 python3-matplotlib python3-h5py)
+       python3 python3-matplotlib python3-h5py python3-xarray
+       python3-h5netcdf python3-pip python3-venv)
 tests=(libgtest-dev libbenchmark-dev clang-format clang-tidy netcdf-bin
        pkg-config mypy
        xvfb python3-tk python3-pytest python3-pytest-xdist python3-sklearn python3-torch
-       python3-xarray python3-h5netcdf python3-netcdf4 python3-scipy
+       python3-netcdf4 python3-scipy
        dpkg-dev file lintian man-db doxygen python3-breathe python3-sphinx
        python3-sphinx-rtd-theme python3-myst-parser
-       python3-ipykernel python3-nbclient python3-nbformat)
+       python3-ipykernel python3-nbclient python3-nbconvert python3-tqdm)
+wheel=(patchelf binutils)
 # What scripts/sanitize.sh has beyond the tests.
 sanitizers=(clang libclang-rt-14-dev)
-deep=(clang chromium slurm-wlm munge octave octave-netcdf git
+deep=("${wheel[@]}" clang chromium slurm-wlm munge octave octave-netcdf git
       gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm)
-bare=(debootstrap buildah git)
+bare=("${wheel[@]}" debootstrap buildah git)
 
-usage="usage: $0 demo|test|sanitizers|deep|bare..."
+usage="usage: $0 demo|wheel|test|sanitizers|deep|bare..."
 [ $# -gt 0 ] || { echo "$usage" >&2; exit 2; }
 wanted=("${build[@]}")
 for group in "$@"; do
   case "$group" in
     demo) ;;
+    wheel) wanted+=("${wheel[@]}") ;;
     test) wanted+=("${tests[@]}") ;;
     sanitizers) wanted+=("${sanitizers[@]}") ;;
     deep) wanted+=("${deep[@]}") ;;

@@ -77,3 +77,20 @@ class Docs(unittest.TestCase):
                 self.assertEqual(
                     path.read_text(),
                     (ROOT / "docs/pictures" / path.name).read_text())
+
+    def test_the_tutorials_need_no_more_than_the_first_command_installs(self):
+        """What `scripts/setup.sh demo` leaves is what a tutorial imports."""
+        setup = (ROOT / "scripts/setup.sh").read_text()
+        installed = setup.split("build=(")[1].split(")")[0].split()
+        pages = [ROOT / "README.md", *sorted(
+            (ROOT / "docs/tutorials").glob("*.md"))]
+        named = set()
+        for page in pages:
+            named |= set(re.findall(r"^(?:import|from) (\w+)",
+                                    page.read_text(), re.MULTILINE))
+            named |= set(re.findall(r'engine="(\w+)"', page.read_text()))
+        self.assertIn("xarray", named)
+        own = {"beamgyro", "arrays"}  # arrays.py is written by the tutorial
+        missing = {name for name in named - own - sys.stdlib_module_names
+                   if f"python3-{name}" not in installed}
+        self.assertEqual(missing, set())

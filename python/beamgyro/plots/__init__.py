@@ -21,6 +21,7 @@ from .documents import PlotError
 from .kinds import KINDS, figure_of, kind_of
 from .recording import Run
 from .style import look, names_of, save
+from .table import columns_of as table_columns
 
 __all__ = ["PlotError", "kind_of", "plot", "plot_allan", "plot_compensator",
            "plot_plan", "plot_recording", "plot_sensitivity", "plot_table",
@@ -124,10 +125,10 @@ def plot_recording(*recordings: Any, names: Sequence[str] = ()) -> Figure:
 
 
 def plot_table(*tables: Any, names: Sequence[str] = ()) -> Figure:
-    """Tables of `characterise`: mappings from column names to arrays."""
+    """Tables of `characterise`: its datasets, or mappings from the names of
+    columns to arrays."""
     names = [*names, *["device"] * (len(tables) - len(names))]
-    return _plotted("table", *({"name": name, **{key: table[key]
-                                                 for key in table}}
+    return _plotted("table", *({"name": name, **table_columns(table)}
                                for table, name in zip(tables, names)))
 
 

@@ -18,6 +18,9 @@ Values = npt.NDArray[np.float64]
 COLUMNS = ("temperature_degC", "bias_deg_per_s", "in_phase_deg_per_s",
            "quadrature_deg_per_s", "drive_frequency_Hz", "split_Hz", "q_drive",
            "q_sense", "drive_voltage_V", "scale_factor_rel")
+# What the dataset of beamgyro.characterise calls them.
+VARIABLES = ("temperature", "bias", "in_phase", "quadrature", "drive_frequency",
+             "split", "q_drive", "q_sense", "drive_voltage", "scale_factor")
 PANELS = [("bias", "°/s", ["bias_deg_per_s"]),
           ("scale factor − 1", "%", ["scale_factor_rel"]),
           ("in-phase error", "°/s", ["in_phase_deg_per_s"]),
@@ -34,6 +37,13 @@ def read(path: pathlib.Path, name: str) -> dict[str, Any]:
     lines = documents.text_of(path).splitlines()
     values = documents.table_of(path, lines)
     return {"name": name, **dict(zip(lines[0].split(","), values.T))}
+
+
+def columns_of(table: Mapping[str, Any]) -> dict[str, Any]:
+    """The columns of a table, or of the dataset of characterise."""
+    named = dict(zip(VARIABLES, COLUMNS))
+    return {named.get(key, key): table[key] for key in [
+        *table, *(getattr(table, "coords", ()))]}
 
 
 def _column(table: Mapping[str, Any], name: str) -> Values:
