@@ -3,14 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <span>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "dataset/netcdf/hdf5_bytes.h"
+#include "dataset/netcdf/hdf5_header.h"
 #include "dataset/netcdf/hdf5_tree.h"
 #include "dataset/netcdf/hdf5_write.h"
 
@@ -31,6 +31,7 @@ struct DrivenFile {
   bool is_read_only = true;
   int failed_write = 0;  // errno of the first one
   haddr_t end_of_addresses = 0, size = 0;
+  ObjectHeaders headers{};
 };
 
 DrivenFile& driven(const H5FD_t* file) {
@@ -126,23 +127,23 @@ bool is_beyond(haddr_t place, std::size_t size) {
 /// Returns whether these are the first bytes of a global heap. HDF5 1.10 does
 /// not check it: damage there crashes or hangs the library.
 bool is_global_heap(std::span<const std::byte> bytes) {
-  constexpr std::string_view kHeapStart = "GCOL\x01";
-  return bytes.size() >= kHeapStart.size() &&
-         std::memcmp(bytes.data(), kHeapStart.data(), kHeapStart.size()) == 0;
+  return starts_with(bytes, "GCOL\x01");
 }
 
 /// Reads from a file that is not written, where no bytes beyond its end are
 /// made up.
-herr_t read_strictly(DrivenFile& from, haddr_t place,
+herr_t read_strictly(DrivenFile& from, H5FD_mem_t kind, haddr_t place,
                      std::span<std::byte> bytes) {
-  if (place > from.size || bytes.size() > from.size - place) return -1;
   const auto fill = [&from](haddr_t start, std::span<std::byte> part) {
-    return from.file->read_at(start, part) == part.size();
+    return start <= from.size && part.size() <= from.size - start &&
+           from.file->read_at(start, part) == part.size();
   };
   bool is_sound = false;
   const herr_t status = guarded([&] {
-    is_sound = fill(place, bytes) &&
-               (!is_tree(bytes) || is_sound_tree(bytes, from.size, fill));
+    is_sound =
+        fill(place, bytes) &&
+        (!is_tree(bytes) || is_sound_tree(bytes, from.size, fill)) &&
+        from.headers.are_sound(place, bytes, kind == H5FD_MEM_OHDR, fill);
   });
   if (status < 0 || !is_sound) return -1;
   if (!is_global_heap(bytes)) return 0;
@@ -150,11 +151,11 @@ herr_t read_strictly(DrivenFile& from, haddr_t place,
   return -1;
 }
 
-herr_t read_driven(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t place,
+herr_t read_driven(H5FD_t* file, H5FD_mem_t kind, hid_t, haddr_t place,
                    std::size_t size, void* buffer) {
   DrivenFile& from = driven(file);
   const std::span bytes(static_cast<std::byte*>(buffer), size);
-  if (from.is_read_only) return read_strictly(from, place, bytes);
+  if (from.is_read_only) return read_strictly(from, kind, place, bytes);
   if (is_beyond(place, size)) return -1;
   return guarded([&] {
     const std::size_t there = from.file->read_at(place, bytes);

@@ -3,9 +3,10 @@
 
 #include <array>
 #include <bit>
-#include <cstring>
 #include <string_view>
 #include <vector>
+
+#include "dataset/netcdf/hdf5_bytes.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -17,20 +18,6 @@ constexpr std::size_t kHeaderBytes = 38, kAddressBytes = 8;
 constexpr std::size_t kNodeHead = 6;               // signature, version, kind
 constexpr std::size_t kNodeFrame = kNodeHead + 4;  // and a checksum
 constexpr std::uint64_t kDeepest = 8;
-
-bool starts(std::span<const std::byte> bytes, std::string_view start) {
-  return bytes.size() >= start.size() &&
-         std::memcmp(bytes.data(), start.data(), start.size()) == 0;
-}
-
-/// A number of `width` bytes, the least one first.
-std::uint64_t number(std::span<const std::byte> bytes, std::size_t place,
-                     std::size_t width) {
-  std::uint64_t value = 0;
-  for (std::size_t k = width; k-- > 0;)
-    value = value << 8 | std::to_integer<std::uint64_t>(bytes[place + k]);
-  return value;
-}
 
 /// The size of a record of a kind, or 0 for kinds that no file of beamgyro has.
 std::uint64_t record_bytes(std::uint64_t kind) {
@@ -101,12 +88,12 @@ bool is_sound_node(Tree& tree, std::uint64_t depth, std::uint64_t place,
     return false;
   if (depth == 0) return true;
   std::vector<std::byte> node(tree.node_size);
-  if (!read(place, node) || !starts(node, kInnerStart)) return false;
+  if (!read(place, node) || !starts_with(node, kInnerStart)) return false;
   std::size_t pointer = kNodeHead + records * tree.record_size;
   for (std::uint64_t k = 0; k <= records; ++k, pointer += level.pointer) {
-    const std::uint64_t child = number(node, pointer, kAddressBytes);
+    const std::uint64_t child = little_number(node, pointer, kAddressBytes);
     const std::uint64_t count =
-        number(node, pointer + kAddressBytes, tree.count_bytes);
+        little_number(node, pointer + kAddressBytes, tree.count_bytes);
     if (!is_sound_node(tree, depth - 1, child, count, read)) return false;
   }
   return true;
@@ -115,7 +102,7 @@ bool is_sound_node(Tree& tree, std::uint64_t depth, std::uint64_t place,
 }  // namespace
 
 bool is_tree(std::span<const std::byte> header) {
-  return starts(header, kTreeStart);
+  return starts_with(header, kTreeStart);
 }
 
 bool is_sound_tree(
@@ -123,12 +110,12 @@ bool is_sound_tree(
     const std::function<bool(std::uint64_t place, std::span<std::byte> bytes)>&
         read) {
   if (header.size() != kHeaderBytes) return false;
-  const std::uint64_t kind = number(header, 5, 1),
-                      depth = number(header, 12, 2);
-  const std::uint64_t root = number(header, 16, 8);
-  const std::uint64_t records = number(header, 24, 2);
-  Tree tree{.node_size = number(header, 6, 4),
-            .record_size = number(header, 10, 2),
+  const std::uint64_t kind = little_number(header, 5, 1),
+                      depth = little_number(header, 12, 2);
+  const std::uint64_t root = little_number(header, 16, 8);
+  const std::uint64_t records = little_number(header, 24, 2);
+  Tree tree{.node_size = little_number(header, 6, 4),
+            .record_size = little_number(header, 10, 2),
             .file_size = file_size};
   return tree.node_size <= file_size && tree.record_size > 0 &&
          tree.record_size == record_bytes(kind) && depth <= kDeepest &&

@@ -104,6 +104,19 @@ TEST_F(Hdf5Damage, TreesThatClaimMoreThanTheyHaveAreRefused) {
   EXPECT_LT(peak_memory() - before, 100'000);
 }
 
+TEST_F(Hdf5Damage, AttributesWithPartsThatEndBehindThemAreRefused) {
+  const Bytes whole = recording_bytes(sample_recording(20));
+  const std::vector<MetadataSum> sums = metadata_sums(whole);
+  for (const char* name : {"filetype", "DIMENSION_LIST", "long_name"})
+    for (const std::size_t before : {4, 2}) {  // sizes of type and of shape
+      Bytes bytes = whole;
+      put(bytes, place_of(whole, name) - before, std::uint16_t{0xff08});
+      mend_metadata(bytes, sums);
+      EXPECT_TRUE(rejected(bytes).starts_with(file.string() + ": cannot "))
+          << name;
+    }
+}
+
 TEST_F(Hdf5Damage, ARecordingOfHundredsOfVariablesHasADeepTreeAndIsRead) {
   Recording recording = sample_recording(5);
   const Column column = recording.columns.front();
