@@ -11,6 +11,7 @@
 
 #include "dataset/netcdf/hdf5_bytes.h"
 #include "dataset/netcdf/hdf5_header.h"
+#include "dataset/netcdf/hdf5_heap.h"
 #include "dataset/netcdf/hdf5_tree.h"
 #include "dataset/netcdf/hdf5_write.h"
 
@@ -141,7 +142,7 @@ herr_t read_strictly(DrivenFile& from, H5FD_mem_t kind, haddr_t place,
   bool is_sound = false;
   const herr_t status = guarded([&] {
     is_sound =
-        fill(place, bytes) &&
+        fill(place, bytes) && is_sound_heap(bytes) &&
         (!is_tree(bytes) || is_sound_tree(bytes, from.size, fill)) &&
         from.headers.are_sound(place, bytes, kind == H5FD_MEM_OHDR, fill);
   });

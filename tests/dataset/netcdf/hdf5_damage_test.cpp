@@ -117,6 +117,26 @@ TEST_F(Hdf5Damage, AttributesWithPartsThatEndBehindThemAreRefused) {
     }
 }
 
+TEST_F(Hdf5Damage, HeapsThatHdf5CannotHoldAreRefused) {
+  const Bytes whole = recording_bytes(sample_recording(20));
+  const std::vector<MetadataSum> sums = metadata_sums(whole);
+  const std::size_t heap = place_of(whole, "FRHP");
+  const auto is_refused_with = [&](std::size_t offset, std::uint8_t value) {
+    Bytes bytes = whole;
+    bytes[heap + offset] = value;
+    mend_metadata(bytes, sums);
+    return rejected(bytes).ends_with("driver read request failed");
+  };
+  // A tree of nothing, which HDF5 would delete when it closes the file: it
+  // fails, and crashes at the end of a process that tidies up, as Python does.
+  EXPECT_TRUE(is_refused_with(25, 0));
+  EXPECT_TRUE(is_refused_with(110, 3));   // blocks in a row
+  EXPECT_TRUE(is_refused_with(112, 1));   // first block, now of two bits
+  EXPECT_TRUE(is_refused_with(128, 2));   // bits of offsets: rows below 0
+  EXPECT_TRUE(is_refused_with(129, 1));   // of a heap beyond all addresses
+  EXPECT_TRUE(is_refused_with(140, 99));  // rows
+}
+
 TEST_F(Hdf5Damage, ARecordingOfHundredsOfVariablesHasADeepTreeAndIsRead) {
   Recording recording = sample_recording(5);
   const Column column = recording.columns.front();
